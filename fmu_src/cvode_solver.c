@@ -1,0 +1,288 @@
+// SUNDIALS CVODE: variable-order BDF with the exact 1x1 Jacobian.
+//
+//     y = delta / L,     y' = a(t) y + V(t) / L,     a = -sigma |V| / F_C                       (Eq. 2)
+//
+// L = F_C / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
+// of F_t / F_C; less where the surfaces move less than that. The step is cut at the reversals of V. CVODE is
+// started anew, in a time that begins at 0, on every piece: it never steps over a kink and no history
+// outlives a step. The impulse and the work are Gauss quadratures of sigma delta and sigma delta V on the
+// dense output.
+#include <stdio.h>
+
+#include "solver.h"
+
+#ifdef FC_WITH_SUNDIALS
+
+#include <cvode/cvode.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <stdlib.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+// CVODE bounds the local error of one step: this fraction of solver.tolerance keeps the sum of them within
+// it.
+#define LOCAL_ERROR_FRACTION 0.01
+// Below this CVODE's own rounding governs and its step size control fails.
+#define SMALLEST_LOCAL_ERROR 1e-13
+#define LARGEST_LOCAL_ERROR  1e-3
+
+#define MOST_PERIODS      1e5      // vibration periods in one communication step: minutes of computing
+#define MOST_STEPS        10000000 // of CVODE between two reversals
+#define STEPS_PER_PERIOD  8.0      // at least: the vibration can't slip between two steps
+#define MOST_FAILED_TRIES 50       // error test or convergence failures of one step of CVODE
+
+// Five-point Gauss-Legendre on [-1, 1]: exact for the degree 9.
+#define GAUSS_POINTS 5
+static const double gauss_node[GAUSS_POINTS] = {-0.90617984593866399280, -0.53846931010568309104, 0.0,
+                                                0.53846931010568309104, 0.90617984593866399280};
+static const double gauss_weight[GAUSS_POINTS] = {0.23692688505618908751, 0.47862867049936646804,
+                                                  0.56888888888888888889, 0.47862867049936646804,
+                                                  0.23692688505618908751};
+
+struct CvodeSolver {
+    SUNContext context;
+    N_Vector y;
+    N_Vector dense;
+    SUNMatrix matrix;
+    SUNLinearSolver linear_solver;
+    void* cvode;
+    // The piece under way, as the callbacks see it.
+    const DahlProblem* problem;
+    double start;       // s, local time at which the piece starts; CVODE's time is 0 there
+    double L;           // m
+    double evaluations; // of a(t), b(t)
+    char reason[160];   // CVODE's last error message
+};
+
+typedef struct {
+    double sigma; // N/m
+    double V;     // m/s
+    double a;     // 1/s
+} Coefficients;
+
+static Coefficients coefficients_at(CvodeSolver* solver, double tau) {
+    const DahlProblem* problem = solver->problem;
+    const double t = solver->start + tau;
+    Coefficients at;
+    at.sigma = dahl_stiffness(problem, t);
+    at.V = drive_V(&problem->drive, t);
+    at.a = -at.sigma * fabs(at.V) / problem->F_C;
+    solver->evaluations += 1.0;
+    return at;
+}
+
+static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
+    CvodeSolver* solver = user;
+    const Coefficients at = coefficients_at(solver, tau);
+    NV_Ith_S(slope, 0) = at.a * NV_Ith_S(y, 0) + at.V / solver->L;
+    return 0;
+}
+
+static int jacobian(realtype tau, N_Vector y, N_Vector slope, SUNMatrix J, void* user, N_Vector t1,
+                    N_Vector t2, N_Vector t3) {
+    (void)y, (void)slope, (void)t1, (void)t2, (void)t3;
+    SM_ELEMENT_D(J, 0, 0) = coefficients_at(user, tau).a;
+    return 0;
+}
+
+static void keep_reason(int code, const char* module, const char* function, char* text, void* user) {
+    (void)module, (void)function;
+    CvodeSolver* solver = user;
+    if (code < 0) {
+        snprintf(solver->reason, sizeof solver->reason, "%s", text);
+    }
+}
+
+static int set_up(CvodeSolver* solver) {
+    if (SUNContext_Create(NULL, &solver->context) != 0) {
+        return 0;
+    }
+    solver->y = N_VNew_Serial(1, solver->context);
+    solver->dense = N_VNew_Serial(1, solver->context);
+    solver->matrix = SUNDenseMatrix(1, 1, solver->context);
+    if (!solver->y || !solver->dense || !solver->matrix) {
+        return 0;
+    }
+    solver->linear_solver = SUNLinSol_Dense(solver->y, solver->matrix, solver->context);
+    solver->cvode = CVodeCreate(CV_BDF, solver->context);
+    if (!solver->linear_solver || !solver->cvode) {
+        return 0;
+    }
+    N_VConst(0.0, solver->y);
+    void* cvode = solver->cvode;
+    return CVodeSetErrHandlerFn(cvode, keep_reason, solver) == CV_SUCCESS &&
+           CVodeInit(cvode, right_hand_side, 0.0, solver->y) == CV_SUCCESS &&
+           CVodeSetUserData(cvode, solver) == CV_SUCCESS &&
+           CVodeSetLinearSolver(cvode, solver->linear_solver, solver->matrix) == CVLS_SUCCESS &&
+           CVodeSetJacFn(cvode, jacobian) == CVLS_SUCCESS &&
+           // A fresh 1x1 Jacobian costs no more than an iteration, and with it one iteration is exact.
+           CVodeSetLSetupFrequency(cvode, 1) == CV_SUCCESS &&
+           CVodeSetJacEvalFrequency(cvode, 1) == CVLS_SUCCESS &&
+           CVodeSetMaxErrTestFails(cvode, MOST_FAILED_TRIES) == CV_SUCCESS &&
+           CVodeSetMaxConvFails(cvode, MOST_FAILED_TRIES) == CV_SUCCESS &&
+           CVodeSetMaxHnilWarns(cvode, -1) == CV_SUCCESS;
+}
+
+CvodeSolver* cvode_solver_new(Message* message) {
+    CvodeSolver* solver = calloc(1, sizeof *solver);
+    if (solver && set_up(solver)) {
+        return solver;
+    }
+    cvode_solver_free(solver);
+    snprintf(message->text, sizeof message->text, "solver.method = cvode: no memory for CVODE");
+    return NULL;
+}
+
+void cvode_solver_free(CvodeSolver* solver) {
+    if (!solver) {
+        return;
+    }
+    CVodeFree(&solver->cvode);
+    if (solver->linear_solver) {
+        SUNLinSolFree(solver->linear_solver);
+    }
+    if (solver->matrix) {
+        SUNMatDestroy(solver->matrix);
+    }
+    if (solver->dense) {
+        N_VDestroy(solver->dense);
+    }
+    if (solver->y) {
+        N_VDestroy(solver->y);
+    }
+    SUNContext_Free(&solver->context);
+    free(solver);
+}
+
+static int failed(const CvodeSolver* solver, double tau, double h, const char* reason, Message* message) {
+    snprintf(message->text, sizeof message->text,
+             "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s",
+             solver->start + tau, h, reason);
+    return 0;
+}
+
+// The deflection's scale over a step of h [s] from delta_0, see the head of this file.
+static double deflection_scale(const DahlProblem* problem, double h, double delta_0) {
+    const Drive* drive = &problem->drive;
+    const ContactAtModulus stiffest = contact_at_modulus(&problem->contact, drive_largest_E(drive, h));
+    const double saturated = problem->F_C / contact_stiffness(&stiffest, drive_smallest_d(drive, h));
+    const double moved = fabs(delta_0) + drive_largest_speed(drive, h) * h;
+    const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
+    return isfinite(L) && L > 0.0 ? L : 1.0;
+}
+
+// First step on a piece: where its layer of width w, sqrt(2 F_C / (sigma |V'|)) after a reversal and
+// F_C / (sigma |V|) elsewhere, lets backward Euler have the asked error.
+static double initial_step(CvodeSolver* solver, double duration, double local_error) {
+    const Coefficients at = coefficients_at(solver, 0.0);
+    const double V_rate = fabs(drive_V_rate(&solver->problem->drive, solver->start));
+    const double ramp = at.sigma * V_rate / (2.0 * solver->problem->F_C);
+    const double inverse_width = fmax(fabs(at.a), sqrt(ramp));
+    return fmin(duration, sqrt(local_error) / fmax(inverse_width, 1.0 / duration));
+}
+
+// Integrates from solver->start for duration [s], between two reversals. y is taken from and left in
+// solver->y.
+static int integrate_piece(CvodeSolver* solver, double duration, double local_error, double h,
+                           StepResult* sum, Message* message) {
+    void* cvode = solver->cvode;
+    const Drive* drive = &solver->problem->drive;
+    const double longest = drive_vibrates(drive) ? 1.0 / (STEPS_PER_PERIOD * drive->vibration.f) : duration;
+    solver->reason[0] = '\0';
+    if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
+        CVodeSStolerances(cvode, local_error, local_error) != CV_SUCCESS ||
+        CVodeSetMaxStep(cvode, longest) != CV_SUCCESS ||
+        CVodeSetInitStep(cvode, initial_step(solver, duration, local_error)) != CV_SUCCESS ||
+        CVodeSetStopTime(cvode, duration) != CV_SUCCESS) {
+        return failed(solver, 0.0, h, solver->reason, message);
+    }
+    double tau = 0.0;
+    for (long steps = 0; tau < duration; ++steps) {
+        if (steps == MOST_STEPS) {
+            return failed(solver, tau, h, "too many internal steps", message);
+        }
+        double tau_next = tau;
+        if (CVode(cvode, duration, solver->y, &tau_next, CV_ONE_STEP) < 0) {
+            return failed(solver, tau, h, solver->reason, message);
+        }
+        const double half = 0.5 * (tau_next - tau);
+        for (int i = 0; i < GAUSS_POINTS; ++i) {
+            const double node = tau + half * (1.0 + gauss_node[i]);
+            if (CVodeGetDky(cvode, node, 0, solver->dense) != CV_SUCCESS) {
+                return failed(solver, node, h, solver->reason, message);
+            }
+            const Coefficients at = coefficients_at(solver, node);
+            const double F = at.sigma * solver->L * NV_Ith_S(solver->dense, 0);
+            sum->impulse += half * gauss_weight[i] * F;
+            sum->work += half * gauss_weight[i] * F * at.V;
+        }
+        tau = tau_next;
+    }
+    return 1;
+}
+
+int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const SolverOptions* options, double h,
+                      double delta_0, StepResult* result, Message* message) {
+    const Drive* drive = &problem->drive;
+    const double periods = drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
+    if (!(periods <= MOST_PERIODS)) {
+        snprintf(message->text, sizeof message->text,
+                 "solver.method = cvode: the communication step of %.5g s holds %.5g periods of vibration.f "
+                 "= %.5g Hz; "
+                 "at most %.0e are allowed; use smaller steps or collocation",
+                 h, periods, drive->vibration.f, MOST_PERIODS);
+        return 0;
+    }
+    const double local_error =
+        fmin(fmax(LOCAL_ERROR_FRACTION * options->tolerance, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
+    solver->problem = problem;
+    solver->L = deflection_scale(problem, h, delta_0);
+    solver->evaluations = 0.0;
+    N_VConst(delta_0 / solver->L, solver->y);
+
+    StepResult sum = {.delta = delta_0};
+    double t = 0.0;
+    while (t < h) {
+        const double t_next = drive_next_event(drive, t, h).time;
+        solver->start = t;
+        if (!(t_next > t)) {
+            return failed(solver, 0.0, h, "no next reversal found", message);
+        }
+        if (!integrate_piece(solver, t_next - t, local_error, h, &sum, message)) {
+            return 0;
+        }
+        t = t_next;
+    }
+    sum.delta = h > 0.0 ? solver->L * NV_Ith_S(solver->y, 0) : delta_0;
+    sum.evaluations = solver->evaluations;
+    if (!isfinite(sum.delta) || !isfinite(sum.impulse) || !isfinite(sum.work)) {
+        return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
+                      message);
+    }
+    *result = sum;
+    return 1;
+}
+
+#else
+
+CvodeSolver* cvode_solver_new(Message* message) {
+    snprintf(message->text, sizeof message->text,
+             "solver.method = cvode is not in this build (built without SUNDIALS); rebuild with "
+             "-DWITH_SUNDIALS=ON "
+             "or use collocation");
+    return NULL;
+}
+
+void cvode_solver_free(CvodeSolver* solver) {
+    (void)solver;
+}
+
+int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const SolverOptions* options, double h,
+                      double delta_0, StepResult* result, Message* message) {
+    (void)solver, (void)problem, (void)options, (void)h, (void)delta_0, (void)result;
+    snprintf(message->text, sizeof message->text, "solver.method = cvode is not in this build");
+    return 0;
+}
+
+#endif
