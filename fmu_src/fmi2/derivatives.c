@@ -1,0 +1,143 @@
+// Derivatives in time (of inputs, given; of F_t, exact) and of outputs with respect to inputs (analytic).
+#include <math.h>
+
+#include "fmi2/instance.h"
+#include "fmi2/log.h"
+#include "fmi2/values.h"
+
+// The variable of the reference if it has the causality; NULL after logging why not.
+static const VariableInfo* expect(const Instance* instance, Call call, fmi2ValueReference vr,
+                                  Causality causality) {
+    if (vr >= variables_count) {
+        refuse(instance, call, "value reference %u is unknown; the largest is %u", vr, variables_count - 1);
+        return NULL;
+    }
+    const VariableInfo* info = &variables_table[vr];
+    if (info->causality != causality) {
+        refuse(instance, call, "%s (value reference %u) is not an %s", info->name, vr,
+               causality == CAUSALITY_INPUT ? "input" : "output");
+        return NULL;
+    }
+    return info;
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                       const fmi2Integer order[], const fmi2Real value[]) {
+    const Call call = CALL_SET_REAL_INPUT_DERIVATIVES;
+    Instance* instance = instance_enter(c, call);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (nvr > 0 && (!vr || !order || !value)) {
+        return refuse(instance, call, "vr, order or value is NULL");
+    }
+    for (size_t i = 0; i < nvr; i++) {
+        const VariableInfo* info = expect(instance, call, vr[i], CAUSALITY_INPUT);
+        if (!info) {
+            return fmi2Error;
+        }
+        if (order[i] != 1) {
+            return refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
+                          info->name);
+        }
+        if (!isfinite(value[i])) {
+            return refuse(instance, call, "derivative of %s = %s per s is not a finite number", info->name,
+                          quantity_text(value[i], info->unit).text);
+        }
+    }
+    for (size_t i = 0; i < nvr; i++) {
+        instance->contact.state.next_rate[variable_input(&variables_table[vr[i]])] = value[i];
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[]) {
+    const Call call = CALL_GET_REAL_OUTPUT_DERIVATIVES;
+    Instance* instance = instance_enter(c, call);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (nvr > 0 && (!vr || !order || !value)) {
+        return refuse(instance, call, "vr, order or value is NULL");
+    }
+    for (size_t i = 0; i < nvr; i++) {
+        const VariableInfo* info = expect(instance, call, vr[i], CAUSALITY_OUTPUT);
+        if (!info) {
+            return fmi2Error;
+        }
+        if (info->offset != offsetof(Variables, F_t)) {
+            return refuse(instance, call, "%s has no derivative in time here: only F_t has", info->name);
+        }
+        if (order[i] != 1) {
+            return refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
+                          info->name);
+        }
+    }
+    Message message;
+    if (!instance_refresh_outputs(instance, &message)) {
+        return refuse(instance, call, "the outputs can't be computed: %s", message.text);
+    }
+    for (size_t i = 0; i < nvr; i++) {
+        value[i] = friction_contact_force_rate(&instance->contact);
+    }
+    return fmi2OK;
+}
+
+// Row of the gradient that belongs to the output; NULL for an output that does not depend on the present
+// inputs.
+static const double* gradient_row(const OutputGradient* gradient, const VariableInfo* output) {
+    switch (output->offset) {
+    case offsetof(Variables, F_t):
+        return gradient->F_t;
+    case offsetof(Variables, sigma):
+        return gradient->sigma;
+    case offsetof(Variables, A_r):
+        return gradient->A_r;
+    default:
+        return NULL;
+    }
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
+                                        size_t nUnknown, const fmi2ValueReference vKnown_ref[], size_t nKnown,
+                                        const fmi2Real dvKnown[], fmi2Real dvUnknown[]) {
+    const Call call = CALL_GET_DIRECTIONAL_DERIVATIVE;
+    Instance* instance = instance_enter(c, call);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if ((nUnknown > 0 && (!vUnknown_ref || !dvUnknown)) || (nKnown > 0 && (!vKnown_ref || !dvKnown))) {
+        return refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
+    }
+    double direction[INPUT_COUNT] = {0.0};
+    for (size_t k = 0; k < nKnown; k++) {
+        const VariableInfo* info = expect(instance, call, vKnown_ref[k], CAUSALITY_INPUT);
+        if (!info) {
+            return fmi2Error;
+        }
+        if (!isfinite(dvKnown[k])) {
+            return refuse(instance, call, "direction of %s = %s is not a finite number", info->name,
+                          quantity_text(dvKnown[k], info->unit).text);
+        }
+        direction[variable_input(info)] += dvKnown[k];
+    }
+    for (size_t u = 0; u < nUnknown; u++) {
+        if (!expect(instance, call, vUnknown_ref[u], CAUSALITY_OUTPUT)) {
+            return fmi2Error;
+        }
+    }
+    Message message;
+    if (!instance_refresh_outputs(instance, &message)) {
+        return refuse(instance, call, "the outputs can't be computed: %s", message.text);
+    }
+    const OutputGradient gradient = friction_contact_output_gradient(&instance->contact);
+    for (size_t u = 0; u < nUnknown; u++) {
+        const double* row = gradient_row(&gradient, &variables_table[vUnknown_ref[u]]);
+        dvUnknown[u] = 0.0;
+        for (int input = 0; row && input < INPUT_COUNT; input++) {
+            dvUnknown[u] += row[input] * direction[input];
+        }
+    }
+    return fmi2OK;
+}

@@ -1,0 +1,262 @@
+// A saved state as bytes, to be kept outside the process and read back on any machine.
+//
+//     offset  size  content
+//     0       8     "FRICTION"
+//     8       4     version of this layout
+//     12      4     size of all the bytes
+//     16      38    guid of the FMU
+//     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
+//                   time, rates of the last step, rates of the next step: 8 bytes each
+//                   state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
+//                   8
+//     end - 8 8     FNV-1a hash of all the bytes before it
+//
+// Numbers are little-endian whatever the machine: integers in two's complement, doubles in IEEE 754. There
+// are no pointers and no padding, so equal states give equal bytes. The hash is changed by every change of a
+// single byte: each step of it is one-to-one.
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "fmi2/log.h"
+#include "fmi2/state.h"
+#include "fmi2/values.h"
+
+enum {
+    LAYOUT_VERSION = 1,
+    MAGIC_SIZE = 8,
+    GUID_SIZE = 38,
+    HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE,
+    HASH_SIZE = 8
+};
+
+static const char magic[MAGIC_SIZE + 1] = "FRICTION";
+
+_Static_assert(sizeof(FrictionState) == sizeof(Variables) + (1 + 2 * INPUT_COUNT) * sizeof(double),
+               "a new member of FrictionState must be added to transfer_state");
+
+static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
+    uint64_t hash = 14695981039346656037u;
+    for (size_t i = 0; i < size; i++) {
+        hash = (hash ^ bytes[i]) * 1099511628211u;
+    }
+    return hash;
+}
+
+// One walk over the fields of a state serves to measure, to write and to read it.
+typedef enum { MEASURE, WRITE, READ } Direction;
+
+typedef struct {
+    Direction direction;
+    unsigned char* bytes;
+    size_t at;
+} Cursor;
+
+static void transfer_bits(Cursor* cursor, uint64_t* bits, size_t size) {
+    if (cursor->direction == WRITE) {
+        for (size_t i = 0; i < size; i++) {
+            cursor->bytes[cursor->at + i] = (unsigned char)(*bits >> (8 * i));
+        }
+    } else if (cursor->direction == READ) {
+        *bits = 0;
+        for (size_t i = 0; i < size; i++) {
+            *bits |= (uint64_t)cursor->bytes[cursor->at + i] << (8 * i);
+        }
+    }
+    cursor->at += size;
+}
+
+static void transfer_integer(Cursor* cursor, int* value) {
+    const int32_t before = *value;
+    uint64_t bits = (uint32_t)before;
+    transfer_bits(cursor, &bits, 4);
+    const uint32_t low = (uint32_t)bits;
+    int32_t after;
+    memcpy(&after, &low, sizeof after);
+    *value = after;
+}
+
+static void transfer_real(Cursor* cursor, double* value) {
+    uint64_t bits;
+    memcpy(&bits, value, sizeof bits);
+    transfer_bits(cursor, &bits, 8);
+    memcpy(value, &bits, sizeof bits);
+}
+
+static void transfer_state(Cursor* cursor, SavedState* saved) {
+    FrictionState* friction = &saved->friction;
+    for (unsigned vr = 0; vr < variables_count; vr++) {
+        const VariableInfo* info = &variables_table[vr];
+        if (info->type == TYPE_REAL) {
+            transfer_real(cursor, variable_real(&friction->variables, info));
+        } else {
+            transfer_integer(cursor, variable_integer(&friction->variables, info));
+        }
+    }
+    transfer_real(cursor, &friction->time);
+    for (int input = 0; input < INPUT_COUNT; input++) {
+        transfer_real(cursor, &friction->rate[input]);
+    }
+    for (int input = 0; input < INPUT_COUNT; input++) {
+        transfer_real(cursor, &friction->next_rate[input]);
+    }
+    Machine* machine = &saved->machine;
+    transfer_integer(cursor, &machine->state);
+    transfer_integer(cursor, &machine->outputs_stale);
+    transfer_integer(cursor, &machine->tolerance_is_set);
+    transfer_integer(cursor, &machine->has_stop_time);
+    transfer_real(cursor, &machine->start_time);
+    transfer_real(cursor, &machine->stop_time);
+}
+
+static size_t serialized_size(void) {
+    Cursor cursor = {MEASURE, NULL, HEADER_SIZE};
+    SavedState none = {0};
+    transfer_state(&cursor, &none);
+    return cursor.at + HASH_SIZE;
+}
+
+static void write_header(unsigned char* bytes, size_t size) {
+    Cursor cursor = {WRITE, bytes, MAGIC_SIZE};
+    uint64_t version = LAYOUT_VERSION;
+    uint64_t whole = size;
+    memcpy(bytes, magic, MAGIC_SIZE);
+    transfer_bits(&cursor, &version, 4);
+    transfer_bits(&cursor, &whole, 4);
+    const size_t guid_length = strlen(variables_guid);
+    memset(bytes + cursor.at, 0, GUID_SIZE);
+    memcpy(bytes + cursor.at, variables_guid, guid_length < GUID_SIZE ? guid_length : GUID_SIZE);
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t* size) {
+    const Call call = CALL_SERIALIZED_FMU_STATE_SIZE;
+    const Instance* instance = instance_enter(c, call);
+    if (!instance || !saved_state_of(instance, call, FMUstate)) {
+        return fmi2Error;
+    }
+    if (!size) {
+        return refuse(instance, call, "size is NULL");
+    }
+    *size = serialized_size();
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
+                                 size_t size) {
+    const Call call = CALL_SERIALIZE_FMU_STATE;
+    const Instance* instance = instance_enter(c, call);
+    const SavedState* saved = instance ? saved_state_of(instance, call, FMUstate) : NULL;
+    if (!saved) {
+        return fmi2Error;
+    }
+    const size_t needed = serialized_size();
+    if (!serializedState) {
+        return refuse(instance, call, "serializedState is NULL");
+    }
+    if (size < needed) {
+        return refuse(instance, call, "size = %" PRIu64 " is below the %" PRIu64 " bytes of a state",
+                      (uint64_t)size, (uint64_t)needed);
+    }
+    unsigned char* bytes = (unsigned char*)serializedState;
+    SavedState copy = *saved;
+    Cursor cursor = {WRITE, bytes, HEADER_SIZE};
+    write_header(bytes, needed);
+    transfer_state(&cursor, &copy);
+    uint64_t hash = fnv1a(bytes, cursor.at);
+    transfer_bits(&cursor, &hash, HASH_SIZE);
+    return fmi2OK;
+}
+
+// Why the bytes can't be a state of this FMU; NULL if they can.
+static const char* flaw_of_bytes(const unsigned char* bytes, size_t size) {
+    const size_t expected = serialized_size();
+    if (size < HEADER_SIZE) {
+        return "the bytes are cut off";
+    }
+    unsigned char header[HEADER_SIZE];
+    write_header(header, expected);
+    if (memcmp(bytes, header, MAGIC_SIZE) != 0) {
+        return "the bytes are not a state of this FMU: they do not begin with FRICTION";
+    }
+    if (memcmp(bytes + MAGIC_SIZE, header + MAGIC_SIZE, 4) != 0) {
+        return "the bytes have another version of the layout";
+    }
+    if (memcmp(bytes + MAGIC_SIZE + 8, header + MAGIC_SIZE + 8, GUID_SIZE) != 0) {
+        return "the bytes come from another version of the FMU: the guid differs";
+    }
+    if (size != expected || memcmp(bytes + MAGIC_SIZE + 4, header + MAGIC_SIZE + 4, 4) != 0) {
+        return "the bytes are cut off or too many";
+    }
+    Cursor cursor = {READ, (unsigned char*)bytes, expected - HASH_SIZE};
+    uint64_t hash;
+    transfer_bits(&cursor, &hash, HASH_SIZE);
+    return hash == fnv1a(bytes, expected - HASH_SIZE) ? NULL : "the bytes are damaged: the checksum differs";
+}
+
+static int all_finite(const double* values, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int is_flag(int value) {
+    return value == 0 || value == 1;
+}
+
+static int machine_is_sound(const Machine* machine) {
+    const int known = machine->state == INSTANTIATED || machine->state == INITIALIZATION_MODE ||
+                      machine->state == STEP_COMPLETE || machine->state == TERMINATED;
+    return known && is_flag(machine->outputs_stale) && is_flag(machine->tolerance_is_set) &&
+           is_flag(machine->has_stop_time) && isfinite(machine->start_time) && isfinite(machine->stop_time);
+}
+
+// The name of the first part of the state with a value that it can't have; NULL if there is none.
+static const char* unsound_part(SavedState* saved) {
+    for (unsigned vr = 0; vr < variables_count; vr++) {
+        const VariableInfo* info = &variables_table[vr];
+        const double value = info->type == TYPE_REAL ? *variable_real(&saved->friction.variables, info)
+                                                     : *variable_integer(&saved->friction.variables, info);
+        if (!variable_allows(info, value)) {
+            return info->name;
+        }
+    }
+    const FrictionState* friction = &saved->friction;
+    if (!isfinite(friction->time) || !all_finite(friction->rate, INPUT_COUNT) ||
+        !all_finite(friction->next_rate, INPUT_COUNT)) {
+        return "the time or a rate of an input";
+    }
+    return machine_is_sound(&saved->machine) ? NULL : "the state of the instance";
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
+                                   fmi2FMUstate* FMUstate) {
+    const Call call = CALL_DESERIALIZE_FMU_STATE;
+    const Instance* instance = instance_enter(c, call);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (!serializedState) {
+        return refuse(instance, call, "serializedState is NULL");
+    }
+    unsigned char* bytes = (unsigned char*)serializedState; // only read
+    const char* flaw = flaw_of_bytes(bytes, size);
+    if (flaw) {
+        return refuse(instance, call, "%s (%" PRIu64 " bytes)", flaw, (uint64_t)size);
+    }
+    SavedState read = {.mark = SAVED_STATE_MARK};
+    Cursor cursor = {READ, bytes, HEADER_SIZE};
+    transfer_state(&cursor, &read);
+    const char* part = unsound_part(&read);
+    if (part) {
+        return refuse(instance, call, "the bytes hold an impossible value of %s", part);
+    }
+    SavedState* saved = saved_state_to_fill(instance, call, FMUstate);
+    if (!saved) {
+        return fmi2Error;
+    }
+    *saved = read;
+    return fmi2OK;
+}
