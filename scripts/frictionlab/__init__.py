@@ -1,0 +1,1 @@
+"""Shared parts of the commands in scripts/ and of the tests."""

@@ -1,0 +1,32 @@
+"""What all tests share: the built FMU."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from frictionlab.simulate import FrictionFmu
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def fmu_path() -> Path:
+    path = ROOT / "build" / "FrictionContact.fmu"
+    if not path.is_file():
+        pytest.fail(f"{path.relative_to(ROOT)} is missing: build it with scripts/run", pytrace=False)
+    return path
+
+
+@pytest.fixture(scope="session")
+def fmu(fmu_path: Path) -> Iterator[FrictionFmu]:
+    """The FMU, loaded once for all tests."""
+    with FrictionFmu(fmu_path) as loaded:
+        yield loaded
+
+
+@pytest.fixture(scope="session")
+def unzipped_fmu(fmu: FrictionFmu) -> Path:
+    """The directory with the FMU's files."""
+    return fmu.directory
