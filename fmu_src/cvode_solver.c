@@ -26,12 +26,12 @@
 #define LOCAL_ERROR_FRACTION 0.01
 // Below this rounding governs: the true error stops following solver.tolerance between 1e-10 and 1e-12.
 #define SMALLEST_LOCAL_ERROR 1e-14
-#define LARGEST_LOCAL_ERROR  1e-3
+#define LARGEST_LOCAL_ERROR 1e-3
 
-#define MOST_PERIODS      1e5      // vibration periods in one communication step: minutes of computing
-#define MOST_STEPS        10000000 // of CVODE between two reversals
-#define STEPS_PER_PERIOD  8.0      // at least: the vibration can't slip between two steps
-#define MOST_FAILED_TRIES 50       // error test or convergence failures of one step of CVODE
+#define MOST_PERIODS 1e5     // vibration periods in one communication step: minutes of computing
+#define MOST_STEPS 10000000  // of CVODE between two reversals
+#define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
+#define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
 
 // Five-point Gauss-Legendre on [-1, 1]: exact for the degree 9.
 #define GAUSS_POINTS 5
@@ -275,9 +275,7 @@ CvodeSolver* cvode_solver_new(Message* message) {
     return NULL;
 }
 
-void cvode_solver_free(CvodeSolver* solver) {
-    (void)solver;
-}
+void cvode_solver_free(CvodeSolver* solver) { (void)solver; }
 
 int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const SolverOptions* options, double h,
                       double delta_0, StepResult* result, Message* message) {

@@ -18,11 +18,11 @@
 
 // sigma |V| h / F_C up to which |growth per step| <= 1: of 1 - z, and of 1 - z + z^2/2 - z^3/6 + z^4/24.
 #define EXPLICIT_EULER_LIMIT 2.0
-#define RK4_LIMIT            2.785293563405282
+#define RK4_LIMIT 2.785293563405282
 
 // Samples of sigma |V| per vibration period; the largest one is within 0.1 % of the maximum.
 #define SAMPLES_PER_PERIOD 256.0
-#define MOST_SAMPLES       1e6
+#define MOST_SAMPLES 1e6
 
 typedef struct {
     double delta;   // m
