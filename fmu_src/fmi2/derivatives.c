@@ -84,9 +84,9 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-// Row of the gradient that belongs to the output; NULL for an output that does not depend on the present
-// inputs.
-static const double* gradient_row(const OutputGradient* gradient, const VariableInfo* output) {
+// Row of the gradient that belongs to the output; NULL for an output that does not depend on the present inputs.
+// Before the first step F_t_mean is F_t.
+static const double* gradient_row(const OutputGradient* gradient, const VariableInfo* output, int initializing) {
     switch (output->offset) {
     case offsetof(Variables, F_t):
         return gradient->F_t;
@@ -94,6 +94,8 @@ static const double* gradient_row(const OutputGradient* gradient, const Variable
         return gradient->sigma;
     case offsetof(Variables, A_r):
         return gradient->A_r;
+    case offsetof(Variables, F_t_mean):
+        return initializing ? gradient->F_t : NULL;
     default:
         return NULL;
     }
@@ -132,8 +134,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         return refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
     const OutputGradient gradient = friction_contact_output_gradient(&instance->contact);
+    const int initializing = instance->machine.state == INITIALIZATION_MODE;
     for (size_t u = 0; u < nUnknown; u++) {
-        const double* row = gradient_row(&gradient, &variables_table[vUnknown_ref[u]]);
+        const double* row = gradient_row(&gradient, &variables_table[vUnknown_ref[u]], initializing);
         dvUnknown[u] = 0.0;
         for (int input = 0; row && input < INPUT_COUNT; input++) {
             dvUnknown[u] += row[input] * direction[input];

@@ -36,7 +36,7 @@ static fmi2Status refuse_reference(const Instance* instance, Call call, fmi2Valu
                       info->name, vr);
     }
     return refuse(instance, call, "%s (value reference %u) is a %s, not a%s %s", info->name, vr,
-                  type_name(info->type), wanted == TYPE_ENUMERATION ? "n" : "", type_name(wanted));
+                  type_name(info->type), wanted == TYPE_INTEGER ? "n" : "", type_name(wanted));
 }
 
 static int is_variable_of_type(fmi2ValueReference vr, VariableType type) {

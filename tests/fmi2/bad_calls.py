@@ -1,0 +1,324 @@
+"""Wrong calls and values, each with what the host is told. The state afterwards is always the state before."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from ctypes import byref, c_char_p, c_double, c_int, c_uint, c_void_p
+from dataclasses import dataclass
+
+from fmi_library import Instance
+
+NAN, INF = math.nan, math.inf
+
+
+@dataclass(frozen=True)
+class BadCall:
+    title: str
+    state: str  # where it is tried
+    call: Callable[[Instance], int]
+    told: tuple[str, ...]  # parts of the message
+
+
+def _set(name: str, value: float, *told: str, state: str = "step complete") -> BadCall:
+    title = f"{name} = {value:g}"
+    return BadCall(
+        title, state, lambda instance: instance.set({name: value}), (f"fmi2SetReal: {name} = ", *told)
+    )
+
+
+def _choose(name: str, value: int, *told: str, state: str = "instantiated") -> BadCall:
+    return BadCall(f"{name} = {value}", state, lambda instance: instance.choose({name: value}), (name, *told))
+
+
+def _step(title: str, t: float, h: float, *told: str) -> BadCall:
+    return BadCall(title, "step complete", lambda instance: instance.step(t, h), ("fmi2DoStep: ", *told))
+
+
+def _setup(title: str, told: tuple[str, ...], *arguments: float) -> BadCall:
+    return BadCall(
+        title, "instantiated", lambda instance: instance.call("fmi2SetupExperiment", *arguments), told
+    )
+
+
+def _references(*references: int) -> object:
+    return (c_uint * len(references))(*references)
+
+
+def _v_reference(instance: Instance) -> int:
+    return instance.library.variables["V"].reference
+
+
+NOT_FINITE = [
+    _set(name, value, "is not a finite number")
+    for name in ("V", "d", "E", "F_C", "contact.stiffnessScale", "vibration.V_1", "vibration.phase_d")
+    for value in (NAN, INF, -INF)
+]
+
+OUT_OF_BOUNDS = [
+    _set("d", 0.0, "0 m", "below its minimum 1e-12 m"),
+    _set("d", -14e-6, "-1.4e-05 m", "below its minimum 1e-12 m"),
+    _set("E", 0.0, "0 Pa", "below its minimum 1 Pa"),
+    _set("E", -1e9, "-1000000000 Pa", "below its minimum 1 Pa"),
+    _set("F_C", 0.0, "0 N", "below its minimum 1e-12 N"),
+    _set("F_C", -55.0, "-55 N", "below its minimum 1e-12 N"),
+    _set("contact.sigma", 0.0, "below its minimum 1e-06 N/m"),
+    _set("contact.stiffnessScale", -1.0, "= -1 is below its minimum 1e-15"),
+    _set("vibration.f", 0.0, "0 Hz", "below its minimum 1e-06 Hz"),
+    _set("vibration.V_1", -1.0, "-1 m/s", "below its minimum 0 m/s"),
+    _set("vibration.a_d", -1e-6, "-1e-06 m", "below its minimum 0 m"),
+    _set("contact.nu", 0.6, "0.6", "above its maximum 0.5", state="instantiated"),
+    _set("contact.R_q", 0.0, "below its minimum 1e-12 m", state="instantiated"),
+    _set("contact.lambda", -3.0, "below its minimum 1e-06", state="initialization"),
+    _set("solver.tolerance", 0.0, "below its minimum 1e-12", state="instantiated"),
+    _set("solver.tolerance", 1.0, "above its maximum 0.01", state="instantiated"),
+    _set("solver.stepSize", -1e-8, "below its minimum 1e-15 s", state="initialization"),
+    _choose("friction.model", 0, "= 0 is not one of its values: 1 (Dahl), 2 (Coulomb)"),
+    _choose("friction.model", 3, "= 3 is not one of its values", state="initialization"),
+    _choose("contact.model", -1, "= -1 is not one of its values: 1 (Asperities), 2 (Constant)"),
+    _choose("solver.method", 7, "= 7 is not one of its values: 1 (collocation), 2 (cvode)"),
+]
+
+NOT_SETTABLE = [
+    BadCall(
+        f"{name} set between steps",
+        "step complete",
+        lambda i, n=name: i.set({n: 1e-6}),
+        (name, "fixed parameter"),
+    )
+    for name in ("delta_0", "contact.R_q", "solver.tolerance", "solver.stepSize")
+] + [
+    BadCall(
+        f"{name} set between steps",
+        "step complete",
+        lambda i, n=name: i.choose({n: 1}),
+        (name, "fixed parameter"),
+    )
+    for name in ("friction.model", "contact.model", "solver.method")
+]
+NOT_SETTABLE += [
+    BadCall(
+        f"{name} set in state {state}", state, lambda i, n=name: i.set({n: 1.0}), (name, kind, "can't be set")
+    )
+    for state in ("instantiated", "initialization", "step complete")
+    for name, kind in (("F_t", "an output"), ("delta", "an output"), ("solver.evaluations", "a local"))
+]
+
+WRONG_REFERENCE = [
+    BadCall(
+        "fmi2GetReal of an unknown value reference",
+        "step complete",
+        lambda i: i.call("fmi2GetReal", _references(4711), 1, (c_double * 1)()),
+        ("fmi2GetReal: value reference 4711 is unknown",),
+    ),
+    BadCall(
+        "fmi2SetReal of an unknown value reference",
+        "step complete",
+        lambda i: i.call(
+            "fmi2SetReal", _references(_v_reference(i), 4294967295), 2, (c_double * 2)(0.7, 0.7)
+        ),
+        ("fmi2SetReal: value reference 4294967295 is unknown",),
+    ),
+    BadCall(
+        "fmi2GetInteger of a Real",
+        "step complete",
+        lambda i: i.call("fmi2GetInteger", _references(_v_reference(i)), 1, (c_int * 1)()),
+        ("fmi2GetInteger: V", "is a Real, not an Integer"),
+    ),
+    BadCall(
+        "fmi2SetInteger of a Real",
+        "step complete",
+        lambda i: i.choose({"V": 1}),
+        ("fmi2SetInteger: V", "is a Real, not an Integer"),
+    ),
+    BadCall(
+        "fmi2SetReal of an Enumeration",
+        "instantiated",
+        lambda i: i.set({"friction.model": 1.0}),
+        ("fmi2SetReal: friction.model", "is an Enumeration: use the Integer functions"),
+    ),
+    BadCall(
+        "fmi2GetBoolean of a Real",
+        "step complete",
+        lambda i: i.call("fmi2GetBoolean", _references(_v_reference(i)), 1, (c_int * 1)()),
+        ("fmi2GetBoolean: V", "is a Real, not a Boolean"),
+    ),
+    BadCall(
+        "fmi2SetBoolean of an unknown value reference",
+        "step complete",
+        lambda i: i.call("fmi2SetBoolean", _references(99), 1, (c_int * 1)()),
+        ("fmi2SetBoolean: value reference 99 is unknown",),
+    ),
+    BadCall(
+        "fmi2GetString of a Real",
+        "step complete",
+        lambda i: i.call("fmi2GetString", _references(_v_reference(i)), 1, (c_char_p * 1)()),
+        ("fmi2GetString: V", "is a Real, not a String"),
+    ),
+    BadCall(
+        "fmi2SetString of a Real",
+        "step complete",
+        lambda i: i.call("fmi2SetString", _references(_v_reference(i)), 1, (c_char_p * 1)(b"1")),
+        ("fmi2SetString: V", "is a Real, not a String"),
+    ),
+]
+
+NULL_POINTERS = [
+    BadCall(
+        f"{function} without {missing}",
+        "step complete",
+        lambda i, f=function, a=arguments: i.call(f, *a),
+        (f"{function}: ", "NULL"),
+    )
+    for function, missing, arguments in (
+        ("fmi2GetReal", "vr", (None, 1, (c_double * 1)())),
+        ("fmi2GetReal", "value", (_references(0), 1, None)),
+        ("fmi2SetReal", "vr", (None, 1, (c_double * 1)())),
+        ("fmi2SetReal", "value", (_references(0), 1, None)),
+        ("fmi2GetInteger", "value", (_references(11), 1, None)),
+        ("fmi2SetInteger", "value", (_references(11), 1, None)),
+        ("fmi2GetBoolean", "vr", (None, 1, (c_int * 1)())),
+        ("fmi2SetString", "vr", (None, 1, (c_char_p * 1)())),
+        ("fmi2SetDebugLogging", "categories", (1, 1, None)),
+        ("fmi2SetDebugLogging", "a category", (1, 1, (c_char_p * 1)())),
+        ("fmi2SetRealInputDerivatives", "order", (_references(0), 1, None, (c_double * 1)())),
+        ("fmi2GetRealOutputDerivatives", "value", (_references(3), 1, (c_int * 1)(1), None)),
+        (
+            "fmi2GetDirectionalDerivative",
+            "dvKnown",
+            (_references(3), 1, _references(0), 1, None, (c_double * 1)()),
+        ),
+        ("fmi2GetFMUstate", "the place for the state", (None,)),
+        ("fmi2SetFMUstate", "a state", (None,)),
+        ("fmi2SerializedFMUstateSize", "a state", (None, None)),
+        ("fmi2SerializeFMUstate", "a state", (None, None, 0)),
+        ("fmi2DeSerializeFMUstate", "bytes", (None, 0, byref(c_void_p()))),
+        ("fmi2GetRealStatus", "value", (2, None)),
+        ("fmi2GetBooleanStatus", "value", (3, None)),
+    )
+]
+
+BAD_STEPS = [
+    _step("step size -1e-5", 0.0, -1e-5, "communicationStepSize = -1e-05 s must be finite and at least 0 s"),
+    _step("step size NaN", 0.0, NAN, "communicationStepSize = nan s"),
+    _step("step size infinite", 0.0, INF, "communicationStepSize = inf s"),
+    _step("time NaN", NAN, 1e-5, "currentCommunicationPoint = nan s, but the instance is at 0 s"),
+    _step("time infinite", INF, 1e-5, "currentCommunicationPoint = inf s"),
+    _step(
+        "time ahead of the instance",
+        1e-5,
+        1e-5,
+        "currentCommunicationPoint = 1e-05 s, but the instance is at 0 s",
+    ),
+    _step("time behind the instance", -1e-5, 1e-5, "currentCommunicationPoint = -1e-05 s"),
+]
+
+BAD_EXPERIMENTS = [
+    _setup("tolerance NaN", ("tolerance = nan",), 1, NAN, 0.0, 0, 0.0),
+    _setup("start time NaN", ("startTime = nan s",), 0, 0.0, NAN, 0, 0.0),
+    _setup("start time infinite", ("startTime = inf s",), 0, 0.0, INF, 0, 0.0),
+    _setup("stop time NaN", ("stopTime = nan s",), 0, 0.0, 0.0, 1, NAN),
+    _setup("stop time before start time", ("stopTime = 1 s is before startTime = 2 s",), 0, 0.0, 2.0, 1, 1.0),
+]
+
+BAD_DERIVATIVES = [
+    BadCall(
+        "input derivative of order 2",
+        "step complete",
+        lambda i: i.set_input_rates({"V": 1.0}, order=2),
+        ("order = 2 of V", "only order 1"),
+    ),
+    BadCall(
+        "input derivative of an output",
+        "step complete",
+        lambda i: i.set_input_rates({"F_t": 1.0}),
+        ("F_t", "is not an input"),
+    ),
+    BadCall(
+        "input derivative NaN",
+        "step complete",
+        lambda i: i.set_input_rates({"V": 1.0, "d": NAN}),
+        ("derivative of d = nan m per s is not a finite number",),
+    ),
+    BadCall(
+        "output derivative of order 2",
+        "step complete",
+        lambda i: i.output_rate("F_t", order=2)[0],
+        ("order = 2 of F_t", "only order 1"),
+    ),
+    BadCall(
+        "output derivative of sigma",
+        "step complete",
+        lambda i: i.output_rate("sigma")[0],
+        ("sigma has no derivative in time here: only F_t has",),
+    ),
+    BadCall(
+        "output derivative of an input",
+        "step complete",
+        lambda i: i.output_rate("V")[0],
+        ("V", "is not an output"),
+    ),
+    BadCall(
+        "directional derivative of an input",
+        "step complete",
+        lambda i: i.directional(["d"], {"V": 1.0})[0],
+        ("d", "is not an output"),
+    ),
+    BadCall(
+        "directional derivative to a parameter",
+        "step complete",
+        lambda i: i.directional(["F_t"], {"F_C": 1.0})[0],
+        ("F_C", "is not an input"),
+    ),
+    BadCall(
+        "directional derivative along NaN",
+        "step complete",
+        lambda i: i.directional(["F_t"], {"V": NAN})[0],
+        ("direction of V = nan m/s is not a finite number",),
+    ),
+]
+
+OTHERS = [
+    BadCall(
+        "unknown log category",
+        "step complete",
+        lambda i: i.call("fmi2SetDebugLogging", 1, 2, (c_char_p * 2)(b"logEvents", b"logEverything")),
+        ("log category 'logEverything' is unknown",),
+    ),
+    BadCall(
+        "fmi2GetRealStatus of fmi2DoStepStatus",
+        "step complete",
+        lambda i: i.call("fmi2GetRealStatus", 0, (c_double * 1)()),
+        ("only fmi2LastSuccessfulTime",),
+    ),
+    BadCall(
+        "fmi2GetBooleanStatus of an unknown kind",
+        "step complete",
+        lambda i: i.call("fmi2GetBooleanStatus", 99, (c_int * 1)()),
+        ("status kind 99",),
+    ),
+    BadCall(
+        "fmi2GetStatus of fmi2DoStepStatus",
+        "step complete",
+        lambda i: i.call("fmi2GetStatus", 0, (c_int * 1)()),
+        ("synchronous",),
+    ),
+    BadCall(
+        "a state that is none",
+        "step complete",
+        lambda i: i.call("fmi2SetFMUstate", (c_double * 100)()),
+        ("not a state of this FMU",),
+    ),
+]
+
+BAD_CALLS = [
+    *NOT_FINITE,
+    *OUT_OF_BOUNDS,
+    *NOT_SETTABLE,
+    *WRONG_REFERENCE,
+    *NULL_POINTERS,
+    *BAD_STEPS,
+    *BAD_EXPERIMENTS,
+    *BAD_DERIVATIVES,
+    *OTHERS,
+]

@@ -1,0 +1,297 @@
+"""The FMU's shared library as a host sees it: the raw FMI 2.0 functions, without a tool between them and a test."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
+MODEL_EXCHANGE, CO_SIMULATION = range(2)
+DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED_STATUS = range(4)
+
+LOGGER = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)
+
+
+class Callbacks(ctypes.Structure):
+    _fields_ = [
+        ("logger", LOGGER),
+        ("allocateMemory", c_void_p),
+        ("freeMemory", c_void_p),
+        ("stepFinished", c_void_p),
+        ("componentEnvironment", c_void_p),
+    ]
+
+
+_GET = [POINTER(c_uint), c_size_t]
+SIGNATURES: dict[str, list[Any]] = {
+    "fmi2SetDebugLogging": [c_int, c_size_t, POINTER(c_char_p)],
+    "fmi2SetupExperiment": [c_int, c_double, c_double, c_int, c_double],
+    "fmi2EnterInitializationMode": [],
+    "fmi2ExitInitializationMode": [],
+    "fmi2Terminate": [],
+    "fmi2Reset": [],
+    "fmi2GetReal": [*_GET, POINTER(c_double)],
+    "fmi2GetInteger": [*_GET, POINTER(c_int)],
+    "fmi2GetBoolean": [*_GET, POINTER(c_int)],
+    "fmi2GetString": [*_GET, POINTER(c_char_p)],
+    "fmi2SetReal": [*_GET, POINTER(c_double)],
+    "fmi2SetInteger": [*_GET, POINTER(c_int)],
+    "fmi2SetBoolean": [*_GET, POINTER(c_int)],
+    "fmi2SetString": [*_GET, POINTER(c_char_p)],
+    "fmi2GetFMUstate": [POINTER(c_void_p)],
+    "fmi2SetFMUstate": [c_void_p],
+    "fmi2FreeFMUstate": [POINTER(c_void_p)],
+    "fmi2SerializedFMUstateSize": [c_void_p, POINTER(c_size_t)],
+    "fmi2SerializeFMUstate": [c_void_p, c_char_p, c_size_t],
+    "fmi2DeSerializeFMUstate": [c_char_p, c_size_t, POINTER(c_void_p)],
+    "fmi2GetDirectionalDerivative": [*_GET, *_GET, POINTER(c_double), POINTER(c_double)],
+    "fmi2SetRealInputDerivatives": [*_GET, POINTER(c_int), POINTER(c_double)],
+    "fmi2GetRealOutputDerivatives": [*_GET, POINTER(c_int), POINTER(c_double)],
+    "fmi2DoStep": [c_double, c_double, c_int],
+    "fmi2CancelStep": [],
+    "fmi2GetStatus": [c_int, POINTER(c_int)],
+    "fmi2GetRealStatus": [c_int, POINTER(c_double)],
+    "fmi2GetIntegerStatus": [c_int, POINTER(c_int)],
+    "fmi2GetBooleanStatus": [c_int, POINTER(c_int)],
+    "fmi2GetStringStatus": [c_int, POINTER(c_char_p)],
+    "fmi2EnterEventMode": [],
+    "fmi2NewDiscreteStates": [c_void_p],
+    "fmi2EnterContinuousTimeMode": [],
+    "fmi2CompletedIntegratorStep": [c_int, POINTER(c_int), POINTER(c_int)],
+    "fmi2SetTime": [c_double],
+    "fmi2SetContinuousStates": [POINTER(c_double), c_size_t],
+    "fmi2GetDerivatives": [POINTER(c_double), c_size_t],
+    "fmi2GetEventIndicators": [POINTER(c_double), c_size_t],
+    "fmi2GetContinuousStates": [POINTER(c_double), c_size_t],
+    "fmi2GetNominalsOfContinuousStates": [POINTER(c_double), c_size_t],
+}
+
+
+@dataclass(frozen=True)
+class Variable:
+    name: str
+    reference: int
+    kind: str  # Real or Enumeration
+    causality: str
+    variability: str
+    start: str | None
+    min: float | None
+    max: float | None
+
+
+@dataclass(frozen=True)
+class LogMessage:
+    name: str
+    status: int
+    category: str
+    text: str
+
+
+class Library:
+    """One loaded FMU, from the folder it was unpacked to."""
+
+    def __init__(self, folder: Path) -> None:
+        root = ElementTree.parse(folder / "modelDescription.xml").getroot()
+        self.guid: str = root.attrib["guid"]
+        self.log_categories = [
+            category.attrib["name"] for category in root.iterfind("LogCategories/Category")
+        ]
+        self.variables = {
+            variable.name: variable
+            for variable in map(_variable, root.iterfind("ModelVariables/ScalarVariable"))
+        }
+        self.dll = ctypes.CDLL(str(folder / "binaries" / "linux64" / "FrictionContact.so"))
+        for name, arguments in SIGNATURES.items():
+            getattr(self.dll, name).argtypes = [c_void_p, *arguments]
+        self.dll.fmi2Instantiate.argtypes = [
+            c_char_p,
+            c_int,
+            c_char_p,
+            c_char_p,
+            POINTER(Callbacks),
+            c_int,
+            c_int,
+        ]
+        self.dll.fmi2Instantiate.restype = c_void_p
+        self.dll.fmi2FreeInstance.argtypes = [c_void_p]
+        self.dll.fmi2FreeInstance.restype = None
+        self.dll.fmi2GetVersion.restype = c_char_p
+        self.dll.fmi2GetTypesPlatform.restype = c_char_p
+
+    def names(self, causality: str, kind: str = "Real") -> list[str]:
+        return [v.name for v in self.variables.values() if v.causality == causality and v.kind == kind]
+
+
+def _variable(element: ElementTree.Element) -> Variable:
+    typed = element[0]
+    bounds = [None if typed.get(key) is None else float(typed.attrib[key]) for key in ("min", "max")]
+    return Variable(
+        name=element.attrib["name"],
+        reference=int(element.attrib["valueReference"]),
+        kind=typed.tag,
+        causality=element.attrib["causality"],
+        variability=element.attrib["variability"],
+        start=typed.get("start"),
+        min=bounds[0],
+        max=bounds[1],
+    )
+
+
+class Instance:
+    """An instance and the messages it has logged. Methods return the status; nothing is raised on fmi2Error."""
+
+    def __init__(
+        self,
+        library: Library,
+        name: str | None = "contact",
+        guid: str | None = None,
+        kind: int = CO_SIMULATION,
+        resource_location: str | None = None,
+        logging_on: bool = False,
+        with_logger: bool = True,
+    ) -> None:
+        self.library = library
+        self.messages: list[LogMessage] = []
+        self._logger = LOGGER(self._log) if with_logger else LOGGER()
+        self._callbacks = Callbacks(logger=self._logger)
+        self.component = library.dll.fmi2Instantiate(
+            None if name is None else name.encode(),
+            kind,
+            (library.guid if guid is None else guid).encode(),
+            None if resource_location is None else resource_location.encode(),
+            byref(self._callbacks),
+            0,
+            int(logging_on),
+        )
+
+    def _log(self, _environment: int, name: bytes, status: int, category: bytes, text: bytes) -> None:
+        self.messages.append(LogMessage(name.decode(), status, category.decode(), text.decode()))
+
+    def __enter__(self) -> Instance:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.free()
+
+    def free(self) -> None:
+        if self.component:
+            self.library.dll.fmi2FreeInstance(self.component)
+            self.component = None
+
+    def call(self, function: str, *arguments: Any) -> int:
+        return getattr(self.library.dll, function)(self.component, *arguments)
+
+    # life cycle
+
+    def initialize(self, start: float = 0.0, stop: float | None = None) -> None:
+        """From instantiated to step complete; a failure is the test's."""
+        assert self.call("fmi2SetupExperiment", 0, 0.0, start, int(stop is not None), stop or 0.0) == OK
+        assert self.call("fmi2EnterInitializationMode") == OK
+        assert self.call("fmi2ExitInitializationMode") == OK, self.messages
+
+    def bring_to(self, state: str) -> None:
+        """state as in the columns of the standard's table: instantiated, initialization, step complete, terminated."""
+        if state == "instantiated":
+            return
+        if state == "initialization":
+            assert self.call("fmi2EnterInitializationMode") == OK
+            return
+        self.initialize()
+        if state == "terminated":
+            assert self.call("fmi2Terminate") == OK
+
+    def step(self, t: float, h: float) -> int:
+        return self.call("fmi2DoStep", t, h, 1)
+
+    # values
+
+    def references(self, names: Sequence[str]) -> Any:
+        return (c_uint * len(names))(*(self.library.variables[name].reference for name in names))
+
+    def set(self, values: Mapping[str, float]) -> int:
+        """Sets Reals in one call."""
+        reals = (c_double * len(values))(*values.values())
+        return self.call("fmi2SetReal", self.references(list(values)), len(values), reals)
+
+    def choose(self, values: Mapping[str, int]) -> int:
+        """Sets Enumerations in one call."""
+        integers = (c_int * len(values))(*values.values())
+        return self.call("fmi2SetInteger", self.references(list(values)), len(values), integers)
+
+    def get(self, *names: str) -> list[float]:
+        reals = (c_double * len(names))()
+        assert self.call("fmi2GetReal", self.references(names), len(names), reals) == OK, self.messages
+        return list(reals)
+
+    def chosen(self, name: str) -> int:
+        integer = (c_int * 1)()
+        assert self.call("fmi2GetInteger", self.references([name]), 1, integer) == OK, self.messages
+        return integer[0]
+
+    # derivatives
+
+    def set_input_rates(self, rates: Mapping[str, float], order: int = 1) -> int:
+        orders = (c_int * len(rates))(*([order] * len(rates)))
+        values = (c_double * len(rates))(*rates.values())
+        references = self.references(list(rates))
+        return self.call("fmi2SetRealInputDerivatives", references, len(rates), orders, values)
+
+    def output_rate(self, name: str, order: int = 1) -> tuple[int, float]:
+        value = (c_double * 1)()
+        status = self.call(
+            "fmi2GetRealOutputDerivatives", self.references([name]), 1, (c_int * 1)(order), value
+        )
+        return status, value[0]
+
+    def directional(self, unknowns: Sequence[str], direction: Mapping[str, float]) -> tuple[int, list[float]]:
+        result = (c_double * len(unknowns))()
+        status = self.call(
+            "fmi2GetDirectionalDerivative",
+            self.references(unknowns),
+            len(unknowns),
+            self.references(list(direction)),
+            len(direction),
+            (c_double * len(direction))(*direction.values()),
+            result,
+        )
+        return status, list(result)
+
+    # states
+
+    def save(self, state: c_void_p | None = None) -> c_void_p:
+        state = c_void_p() if state is None else state
+        assert self.call("fmi2GetFMUstate", byref(state)) == OK, self.messages
+        return state
+
+    def restore(self, state: c_void_p) -> int:
+        return self.call("fmi2SetFMUstate", state)
+
+    def drop(self, state: c_void_p) -> int:
+        return self.call("fmi2FreeFMUstate", byref(state))
+
+    def serialize(self, state: c_void_p) -> bytes:
+        size = c_size_t()
+        assert self.call("fmi2SerializedFMUstateSize", state, byref(size)) == OK
+        buffer = ctypes.create_string_buffer(size.value)
+        assert self.call("fmi2SerializeFMUstate", state, buffer, size.value) == OK
+        return buffer.raw
+
+    def deserialize(self, data: bytes) -> tuple[int, c_void_p]:
+        state = c_void_p()
+        return self.call("fmi2DeSerializeFMUstate", data, len(data), byref(state)), state
+
+    def fingerprint(self) -> bytes:
+        """Everything that the instance will do depends on these bytes."""
+        state = self.save()
+        data = self.serialize(state)
+        assert self.drop(state) == OK
+        return data
+
+    @property
+    def last_message(self) -> LogMessage:
+        return self.messages[-1]

@@ -1,0 +1,73 @@
+"""Every wrong call is fmi2Error with one message, and leaves an instance that does what an untouched twin does."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+from bad_calls import BAD_CALLS, BadCall
+from fmi_library import ERROR, OK, Instance
+
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+
+
+def continue_run(instance: Instance, state: str) -> list[float]:
+    """The bits of a short run from the state on."""
+    if state == "instantiated":
+        assert instance.call("fmi2EnterInitializationMode") == OK
+    if state != "step complete":
+        assert instance.call("fmi2ExitInitializationMode") == OK
+    for step in range(3):
+        assert instance.step(step * 1e-5, 1e-5) == OK, instance.messages
+    return instance.get(*OUTPUTS)
+
+
+@pytest.mark.parametrize("bad", BAD_CALLS, ids=lambda bad: f"{bad.title} ({bad.state})")
+def test_bad_call(
+    new_instance: Callable[..., Instance], capfd: pytest.CaptureFixture[str], bad: BadCall
+) -> None:
+    touched, twin = new_instance(), new_instance()
+    touched.bring_to(bad.state)
+    twin.bring_to(bad.state)
+    assert bad.call(touched) == ERROR
+    assert len(touched.messages) == 1
+    message = touched.last_message
+    assert (message.name, message.status, message.category) == ("contact", ERROR, "logStatusError")
+    for part in bad.told:
+        assert part in message.text
+    assert touched.fingerprint() == twin.fingerprint()
+    assert continue_run(touched, bad.state) == continue_run(twin, bad.state)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_refused_value_keeps_the_good_ones_of_the_same_call_out(instance: Instance) -> None:
+    instance.bring_to("step complete")
+    before = instance.get("V", "d", "E")
+    assert instance.set({"V": 0.7, "d": 15e-6, "E": float("nan")}) == ERROR
+    assert instance.get("V", "d", "E") == before
+
+
+def test_values_that_do_not_go_together_are_refused_and_can_be_mended(
+    new_instance: Callable[..., Instance],
+) -> None:
+    instance, twin = new_instance(), new_instance()
+    for each in (instance, twin):
+        each.initialize()
+    good = instance.get("d")[0]
+    assert instance.set({"vibration.a_d": 2 * good}) == OK
+    assert instance.step(0.0, 1e-5) == ERROR
+    assert re.search(r"\bd\b.*vibration\.a_d|vibration\.a_d.*\bd\b", instance.last_message.text)
+    assert instance.set({"vibration.a_d": 0.0}) == OK
+    assert instance.step(0.0, 1e-5) == OK
+    assert twin.step(0.0, 1e-5) == OK
+    assert instance.get(*OUTPUTS) == twin.get(*OUTPUTS)
+
+
+def test_values_that_do_not_go_together_are_refused_when_initialization_ends(instance: Instance) -> None:
+    assert instance.set({"vibration.a_d": 20e-6}) == OK
+    assert instance.call("fmi2EnterInitializationMode") == OK
+    assert instance.call("fmi2ExitInitializationMode") == ERROR
+    assert "vibration.a_d" in instance.last_message.text
+    assert instance.set({"vibration.a_d": 1e-6}) == OK
+    assert instance.call("fmi2ExitInitializationMode") == OK

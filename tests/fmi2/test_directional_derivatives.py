@@ -1,0 +1,83 @@
+"""fmi2GetDirectionalDerivative: every output to every input, against central differences through the FMU."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from fmi_library import OK, Instance
+
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5}
+SCENES = {
+    "asperities": ({}, {"contact.stiffnessScale": 1e-6}),
+    "constant stiffness": ({"contact.model": 2}, {}),
+    "Coulomb": ({"friction.model": 2}, {}),
+    "weak material": ({}, {"contact.Y": 4e6, "contact.stiffnessScale": 1e-6, "contact.R": 1e-3}),
+    "vibrating": ({}, {"contact.stiffnessScale": 1e-6, "vibration.V_1": 0.3, "vibration.a_d": 1e-6}),
+}
+
+
+def differences(instance: Instance, name: str) -> list[float]:
+    step = STEPS[name]
+    start = instance.get(name)[0]
+    values = []
+    for x in (start + step, start - step):
+        assert instance.set({name: x}) == OK
+        values.append(instance.get(*OUTPUTS))
+    assert instance.set({name: start}) == OK
+    return [(above - below) / (2 * step) for above, below in zip(*values, strict=True)]
+
+
+def scales(instance: Instance, name: str) -> list[float]:
+    """Size of one output over one input: rounding of the differences is judged against it."""
+    start = abs(instance.get(name)[0])
+    return [abs(value) / start for value in instance.get(*OUTPUTS)]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("state", ["initialization", "step complete"])
+def test_each_output_to_each_input(new_instance: Callable[..., Instance], scene: str, state: str) -> None:
+    choices, values = SCENES[scene]
+    instance = new_instance()
+    assert instance.choose(choices) == OK
+    assert instance.set({**values, "delta_0": 2e-9}) == OK
+    instance.bring_to(state)
+    if state == "step complete":
+        assert instance.step(0.0, 1.23e-5) == OK
+    for name in STEPS:
+        status, derivatives = instance.directional(OUTPUTS, {name: 1.0})
+        assert status == OK
+        expected = differences(instance, name)
+        for output, exact, difference, scale in zip(
+            OUTPUTS, derivatives, expected, scales(instance, name), strict=True
+        ):
+            assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
+
+
+def test_some_derivatives_are_not_zero(new_instance: Callable[..., Instance]) -> None:
+    instance = new_instance()
+    assert instance.set({"delta_0": 2e-9}) == OK
+    instance.bring_to("initialization")
+    _, by_d = instance.directional(("F_t", "sigma", "A_r"), {"d": 1.0})
+    _, by_E = instance.directional(("F_t", "sigma"), {"E": 1.0})
+    assert all(slope < 0 for slope in by_d)
+    assert all(slope > 0 for slope in by_E)
+
+
+def test_a_direction_is_the_sum_of_its_parts(new_instance: Callable[..., Instance]) -> None:
+    instance = new_instance()
+    assert instance.set({"delta_0": 2e-9}) == OK
+    instance.initialize()
+    assert instance.step(0.0, 1e-9) == OK
+    direction = {"V": 0.3, "d": -2e-7, "E": 4e8}
+    parts = [instance.directional(OUTPUTS, {name: slope})[1] for name, slope in direction.items()]
+    _, together = instance.directional(OUTPUTS, direction)
+    assert together == [pytest.approx(sum(each), rel=1e-12, abs=0) for each in zip(*parts, strict=True)]
+
+
+def test_no_known_variable_gives_zero(new_instance: Callable[..., Instance]) -> None:
+    instance = new_instance()
+    instance.initialize()
+    assert instance.directional(OUTPUTS, {}) == (OK, [0.0] * len(OUTPUTS))
+    assert instance.directional([], {"V": 1.0}) == (OK, [])

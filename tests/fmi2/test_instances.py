@@ -1,0 +1,115 @@
+"""Many instances in one process: instantiation, independence, threads."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from fmi_library import CO_SIMULATION, MODEL_EXCHANGE, OK, Instance, Library
+
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (
+            {"guid": "{00000000-0000-0000-0000-000000000000}"},
+            "the guid is {00000000-0000-0000-0000-000000000000}",
+        ),
+        ({"guid": ""}, "the guid is"),
+        ({"kind": MODEL_EXCHANGE}, "only fmi2CoSimulation"),
+        ({"kind": 17}, "fmuType = 17"),
+        ({"name": ""}, "the instance name is missing"),
+        ({"name": None}, "the instance name is missing"),
+    ],
+)
+def test_refused_instantiation(library: Library, arguments: dict[str, object], told: str) -> None:
+    refused = Instance(library, **arguments)  # type: ignore[arg-type]
+    assert refused.component is None
+    assert len(refused.messages) == 1
+    assert refused.last_message.category == "logStatusError"
+    assert told in refused.last_message.text
+
+
+def test_no_guid_and_no_callbacks(library: Library) -> None:
+    instantiate = library.dll.fmi2Instantiate
+    assert instantiate(b"contact", CO_SIMULATION, library.guid.encode(), None, None, 0, 0) is None
+    instance = Instance(library)
+    assert instantiate(b"contact", CO_SIMULATION, None, None, instance._callbacks, 0, 0) is None
+    assert "the guid is missing" in instance.last_message.text
+    instance.free()
+
+
+@pytest.mark.parametrize(
+    "location",
+    [None, "", "file:///a b/resources", "file:///a%20b/resources", "C:\\nonsense", "file://" + "x" * 10_000],
+)
+def test_any_resource_location(new_instance: Callable[..., Instance], location: str | None) -> None:
+    instance = new_instance(resource_location=location)
+    instance.initialize()
+    assert instance.step(0.0, 1e-5) == OK
+
+
+@pytest.mark.parametrize("name", ["a", "Ünïcode µ", "with % and #", "n" * 100_000])
+def test_any_name(new_instance: Callable[..., Instance], name: str) -> None:
+    instance = new_instance(name=name)
+    instance.step(0.0, 1.0)
+    assert instance.last_message.name == name
+
+
+def scene(number: int) -> dict[str, float]:
+    chance = random.Random(number)
+    return {
+        "V": chance.uniform(-0.5, 0.5),
+        "d": chance.uniform(13e-6, 17e-6),
+        "F_C": chance.uniform(10, 100),
+        "contact.stiffnessScale": 10 ** chance.uniform(-6, 0),
+        "vibration.V_1": chance.choice([0.0, 0.3]),
+        "vibration.a_d": chance.choice([0.0, 1e-6]),
+    }
+
+
+def run(instance: Instance, number: int, steps: int) -> list[float]:
+    values = scene(number)
+    assert instance.set(values) == OK
+    instance.initialize()
+    for step in range(steps):
+        if step % 5 == 4:
+            instance.step(-1.0, 1e-5)  # refused, with a message
+        assert instance.set({"V": values["V"] + 0.01 * step}) == OK
+        assert instance.step(step * 1.7e-5, 1.7e-5) == OK, instance.messages
+    return instance.get(*OUTPUTS)
+
+
+def test_a_hundred_instances_step_by_turns(library: Library) -> None:
+    alone = []
+    for number in range(100):
+        with Instance(library) as instance:
+            alone.append(run(instance, number, 3))
+    together = [Instance(library, name=f"contact {number}") for number in range(100)]
+    for number, instance in enumerate(together):
+        assert instance.set(scene(number)) == OK
+        instance.initialize()
+    for step in range(3):
+        for number, instance in enumerate(together):
+            assert instance.set({"V": scene(number)["V"] + 0.01 * step}) == OK
+            assert instance.step(step * 1.7e-5, 1.7e-5) == OK
+    assert [instance.get(*OUTPUTS) for instance in together] == alone
+    random.Random(1).shuffle(together)
+    for instance in together:
+        instance.free()
+
+
+def test_a_hundred_instances_in_threads(library: Library) -> None:
+    def one(number: int) -> list[float]:
+        with Instance(library, name=f"contact {number}", logging_on=True) as instance:
+            results = run(instance, number, 20)
+            assert all(message.name == f"contact {number}" for message in instance.messages)
+            return results
+
+    alone = [one(number) for number in range(100)]
+    with ThreadPoolExecutor(max_workers=16) as threads:
+        assert list(threads.map(one, range(100))) == alone

@@ -1,0 +1,261 @@
+"""Saving, restoring and serializing the state: replay to the last bit, and bytes that can't be fooled."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from ctypes import byref, c_void_p, create_string_buffer
+
+import pytest
+from fmi_library import ERROR, OK, Instance, Library
+
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta", "solver.evaluations", "V", "d", "E")
+METHODS = {"collocation": 1, "cvode": 2, "backwardEuler": 3, "trapezoid": 4, "rk4": 5, "explicitEuler": 6}
+GUID_AT, BODY_AT, HASH_SIZE = 16, 54, 8
+
+
+def vibrating(new_instance: Callable[..., Instance], method: int = 1) -> Instance:
+    """Soft enough for the explicit methods at their internal step."""
+    instance = new_instance()
+    assert instance.choose({"solver.method": method}) == OK
+    soft = {
+        "contact.stiffnessScale": 1e-6,
+        "vibration.V_1": 0.4,
+        "vibration.a_d": 5e-7,
+        "solver.stepSize": 1e-7,
+    }
+    assert instance.set(soft) == OK
+    assert instance.call("fmi2EnterInitializationMode") == OK
+    if instance.call("fmi2ExitInitializationMode") != OK and "SUNDIALS" in instance.last_message.text:
+        pytest.skip("this build has no cvode, and says so")
+    return instance
+
+
+def run(instance: Instance, first: int, last: int, h: float = 1.3e-5) -> list[list[float]]:
+    rows = []
+    for step in range(first, last):
+        assert instance.set({"V": 0.05 * (step % 3) - 0.04}) == OK
+        if step % 4 == 1:
+            assert instance.set_input_rates({"V": 100.0, "d": 1e-2}) == OK
+        assert instance.step(step * h, h) == OK, instance.messages
+        rows.append(instance.get(*OUTPUTS))
+    return rows
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_replay_gives_the_same_bits(new_instance: Callable[..., Instance], method: str) -> None:
+    instance = vibrating(new_instance, METHODS[method])
+    run(instance, 0, 5)
+    state = instance.save()
+    first = run(instance, 5, 15)
+    assert instance.restore(state) == OK
+    assert run(instance, 5, 15) == first
+    assert instance.restore(state) == OK
+    assert run(instance, 5, 15) == first
+    assert instance.drop(state) == OK
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_another_instance_replays_from_the_bytes(new_instance: Callable[..., Instance], method: str) -> None:
+    instance = vibrating(new_instance, METHODS[method])
+    run(instance, 0, 5)
+    assert instance.set_input_rates({"V": -50.0}) == OK
+    data = instance.fingerprint()
+    first = run(instance, 5, 15)
+    for state in ("instantiated", "initialization", "step complete", "terminated"):
+        other = new_instance()
+        other.bring_to(state)
+        status, saved = other.deserialize(data)
+        assert status == OK
+        assert other.restore(saved) == OK
+        assert other.fingerprint() == data
+        assert run(other, 5, 15) == first
+        assert other.drop(saved) == OK
+
+
+def test_a_saved_state_outlives_its_instance(new_instance: Callable[..., Instance]) -> None:
+    instance, other = vibrating(new_instance), new_instance()
+    run(instance, 0, 3)
+    state = instance.save()
+    expected = instance.fingerprint()
+    instance.free()
+    assert other.restore(state) == OK
+    assert other.fingerprint() == expected
+    assert other.drop(state) == OK
+
+
+def test_the_buffer_is_used_again(instance: Instance) -> None:
+    instance.initialize()
+    state = instance.save()
+    address = state.value
+    assert instance.step(0.0, 1e-5) == OK
+    assert instance.save(state).value == address
+    assert instance.step(1e-5, 1e-5) == OK
+    assert instance.restore(state) == OK
+    assert instance.step(1e-5, 1e-5) == OK
+    data = instance.fingerprint()
+    assert instance.call("fmi2DeSerializeFMUstate", data, len(data), byref(state)) == OK
+    assert state.value == address
+    assert instance.drop(state) == OK
+    assert state.value is None
+
+
+def test_freeing_nothing_is_allowed(instance: Instance) -> None:
+    assert instance.call("fmi2FreeFMUstate", None) == OK
+    assert instance.call("fmi2FreeFMUstate", byref(c_void_p())) == OK
+
+
+def test_equal_states_give_equal_bytes(new_instance: Callable[..., Instance]) -> None:
+    one, other = vibrating(new_instance), vibrating(new_instance)
+    for instance in (one, other):
+        run(instance, 0, 4)
+        assert instance.set({"d": 15e-6, "F_C": 40.0}) == OK
+    one.get(*OUTPUTS)
+    assert one.fingerprint() == other.fingerprint()
+    assert other.set({"F_C": 40.000000000000007}) == OK
+    assert one.fingerprint() != other.fingerprint()
+
+
+def test_names_and_log_switches_are_not_part_of_a_state(new_instance: Callable[..., Instance]) -> None:
+    quiet, loud = new_instance(name="a"), new_instance(name="another", logging_on=True)
+    assert quiet.fingerprint() == loud.fingerprint()
+
+
+def test_every_damaged_byte_is_noticed(instance: Instance) -> None:
+    instance.initialize()
+    assert instance.step(0.0, 1e-5) == OK
+    good = instance.fingerprint()
+    for position in range(len(good)):
+        for flip in (0x01, 0x80, 0xFF):
+            bad = bytearray(good)
+            bad[position] ^= flip
+            instance.messages.clear()
+            status, state = instance.deserialize(bytes(bad))
+            assert (status, state.value) == (ERROR, None), position
+            assert len(instance.messages) == 1
+    assert instance.fingerprint() == good
+
+
+def test_every_truncation_is_noticed(instance: Instance) -> None:
+    good = instance.fingerprint()
+    for size in range(len(good)):
+        status, state = instance.deserialize(good[:size])
+        assert (status, state.value) == (ERROR, None), size
+        assert "cut off" in instance.last_message.text
+    assert instance.deserialize(good + b"\0")[0] == ERROR
+
+
+def test_a_refused_state_leaves_the_buffer_alone(instance: Instance) -> None:
+    instance.initialize()
+    state = instance.save()
+    before = instance.serialize(state)
+    assert instance.call("fmi2DeSerializeFMUstate", b"FRICTION" * 50, 400, byref(state)) == ERROR
+    assert instance.serialize(state) == before
+    assert instance.drop(state) == OK
+
+
+def test_too_small_a_buffer_is_refused_untouched(instance: Instance) -> None:
+    state = instance.save()
+    size = len(instance.serialize(state))
+    buffer = create_string_buffer(b"\x55" * (size - 1), size - 1)
+    assert instance.call("fmi2SerializeFMUstate", state, buffer, size - 1) == ERROR
+    assert str(size) in instance.last_message.text
+    assert buffer.raw == b"\x55" * (size - 1)
+    assert instance.drop(state) == OK
+
+
+def resealed(data: bytes, position: int, new: bytes) -> bytes:
+    """The bytes with a new content and a valid checksum (64-bit FNV-1a)."""
+    body = bytearray(data[:-HASH_SIZE])
+    body[position : position + len(new)] = new
+    checksum = 14695981039346656037
+    for byte in body:
+        checksum = (checksum ^ byte) * 1099511628211 % 2**64
+    return bytes(body) + checksum.to_bytes(HASH_SIZE, "little")
+
+
+def offsets(library: Library) -> dict[str, int]:
+    at, places = BODY_AT, {}
+    for variable in library.variables.values():
+        places[variable.name] = at
+        at += 8 if variable.kind == "Real" else 4
+    places["time"] = at
+    places["next_rate of V"] = at + 8 * 4
+    places["state"] = at + 8 * 7
+    places["outputs_stale"] = places["state"] + 4
+    places["start_time"] = places["state"] + 16
+    return places
+
+
+def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, instance: Instance) -> None:
+    assert instance.set({"V": 0.125}) == OK
+    instance.initialize(start=2.0)
+    data = instance.fingerprint()
+    places = offsets(library)
+    assert data[:8] == b"FRICTION"
+    assert struct.unpack_from("<II", data, 8) == (1, len(data))
+    assert data[GUID_AT:BODY_AT].decode() == library.guid
+    assert struct.unpack_from("<d", data, places["V"]) == (0.125,)
+    assert struct.unpack_from("<i", data, places["solver.method"]) == (1,)
+    assert struct.unpack_from("<d", data, places["time"]) == (2.0,)
+    assert len(data) == places["start_time"] + 2 * 8 + HASH_SIZE
+    assert resealed(data, 0, b"") == data
+
+
+@pytest.mark.parametrize(
+    ("place", "new", "told"),
+    [
+        ("V", struct.pack("<d", float("nan")), "V"),
+        ("d", struct.pack("<d", -1.0), "d"),
+        ("F_t", struct.pack("<d", float("inf")), "F_t"),
+        ("contact.R_q", struct.pack("<d", 0.0), "contact.R_q"),
+        ("friction.model", struct.pack("<i", 3), "friction.model"),
+        ("solver.method", struct.pack("<i", -1), "solver.method"),
+        ("time", struct.pack("<d", float("nan")), "time"),
+        ("next_rate of V", struct.pack("<d", float("inf")), "rate"),
+        ("state", struct.pack("<i", 1 << 4), "state"),
+        ("outputs_stale", struct.pack("<i", 2), "state"),
+        ("start_time", struct.pack("<d", float("-inf")), "state"),
+    ],
+)
+def test_sealed_bytes_with_impossible_values_are_refused(
+    library: Library, instance: Instance, place: str, new: bytes, told: str
+) -> None:
+    instance.initialize()
+    before = instance.fingerprint()
+    status, state = instance.deserialize(resealed(before, offsets(library)[place], new))
+    assert (status, state.value) == (ERROR, None)
+    assert (
+        instance.last_message.text.endswith(f"impossible value of {told}")
+        or told in instance.last_message.text
+    )
+    assert instance.fingerprint() == before
+
+
+@pytest.mark.parametrize(
+    ("position", "new", "told"),
+    [(0, b"OTHERFMU", "do not begin with FRICTION"), (8, b"\x02", "version"), (GUID_AT + 1, b"zzzz", "guid")],
+)
+def test_foreign_bytes_are_refused_with_the_reason(
+    instance: Instance, position: int, new: bytes, told: str
+) -> None:
+    status, _ = instance.deserialize(resealed(instance.fingerprint(), position, new))
+    assert status == ERROR
+    assert told in instance.last_message.text
+
+
+def test_a_state_with_inputs_that_do_not_go_together_can_be_saved(
+    new_instance: Callable[..., Instance],
+) -> None:
+    one, other = new_instance(), new_instance()
+    for instance in (one, other):
+        instance.initialize()
+        if instance is one:
+            instance.get("F_t")
+        assert instance.set({"vibration.a_d": 1.0}) == OK
+    assert one.fingerprint() == other.fingerprint()
+    status, state = one.deserialize(one.fingerprint())
+    assert status == OK
+    assert one.restore(state) == OK
+    assert one.step(0.0, 1e-5) == ERROR
+    assert one.drop(state) == OK

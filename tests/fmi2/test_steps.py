@@ -1,0 +1,155 @@
+"""fmi2DoStep: exact ends, any time, the stop time, input derivatives, the status functions."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+from ctypes import c_double, c_int
+
+import pytest
+from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED_STATUS, WARNING, Instance
+
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+
+
+def reached(instance: Instance) -> float:
+    value = (c_double * 1)()
+    assert instance.call("fmi2GetRealStatus", LAST_SUCCESSFUL_TIME, value) == OK
+    return value[0]
+
+
+def test_the_last_successful_time_is_the_end_of_the_step(instance: Instance) -> None:
+    instance.initialize(start=0.25)
+    assert reached(instance) == 0.25
+    t = 0.25
+    for h in (0.1, 0.0, 1e-12, 0.7, 1.0 / 3.0):
+        assert instance.step(t, h) == OK
+        t += h
+        assert reached(instance) == t
+    assert instance.step(t, -1.0) == ERROR
+    assert reached(instance) == t
+
+
+def test_the_contact_never_asks_to_terminate(instance: Instance) -> None:
+    instance.initialize()
+    value = (c_int * 1)(7)
+    assert instance.call("fmi2GetBooleanStatus", TERMINATED_STATUS, value) == OK
+    assert value[0] == 0
+
+
+@pytest.mark.parametrize("start", [0.0, -3.7, 1e-9, 12345.678, 1e9, -1e12])
+def test_thousands_of_uneven_steps_end_where_they_should(instance: Instance, start: float) -> None:
+    instance.initialize(start=start)
+    chance = random.Random(20)
+    t = start
+    for _ in range(3000):
+        h = 10.0 ** chance.uniform(-7, -2)
+        assert instance.step(t, h) == OK, instance.messages
+        t = t + h
+    assert reached(instance) == t
+
+
+@pytest.mark.parametrize("h", [1e-12, 1e-7, 0.1, 1.0 / 3.0, 1e9])
+def test_a_host_may_multiply_steps_instead_of_adding_them(instance: Instance, h: float) -> None:
+    start = 0.1
+    instance.initialize(start=start)
+    for step in range(2000):
+        assert instance.step(start + step * h, h) == OK, instance.messages
+
+
+def test_a_step_of_no_length_changes_no_output(instance: Instance) -> None:
+    instance.initialize()
+    assert instance.step(0.0, 1e-4) == OK
+    before = instance.get("F_t", "W_f", "sigma", "A_r", "delta")
+    assert instance.step(1e-4, 0.0) == OK
+    assert instance.get("F_t", "W_f", "sigma", "A_r", "delta") == before
+
+
+def test_a_step_of_1e9_seconds(instance: Instance) -> None:
+    instance.initialize()
+    assert instance.step(0.0, 1e9) == OK
+    force, mean, work = instance.get("F_t", "F_t_mean", "W_f")
+    assert force == pytest.approx(55.0, rel=1e-12)
+    assert mean == pytest.approx(55.0, rel=1e-12)
+    assert work == pytest.approx(55.0 * 0.005 * 1e9, rel=1e-12)
+
+
+def test_the_stop_time_is_the_last_end(instance: Instance) -> None:
+    instance.initialize(start=0.0, stop=0.3)
+    for step in range(3):
+        assert instance.step(step * 0.1, 0.1) == OK, instance.messages  # 0.2 + 0.1 > 0.3 by rounding
+    assert instance.step(reached(instance), 1e-6) == ERROR
+    assert "after the stop time 0.3 s" in instance.last_message.text
+    assert instance.step(reached(instance), 0.0) == OK
+
+
+def test_a_step_beyond_the_stop_time_is_refused_as_a_whole(instance: Instance) -> None:
+    instance.initialize(stop=1.0)
+    before = instance.fingerprint()
+    assert instance.step(0.0, 1.1) == ERROR
+    assert "1.1 s" in instance.last_message.text
+    assert instance.fingerprint() == before
+
+
+def test_a_step_without_a_finite_end_is_refused(instance: Instance) -> None:
+    instance.initialize(start=1.5e308)
+    assert instance.step(1.5e308, 1.5e308) == ERROR
+    assert "no finite end" in instance.last_message.text
+
+
+def test_linear_inputs_end_where_they_lead_and_stay_there(instance: Instance) -> None:
+    """At constant stiffness the work over a long step is F_C times the path, to the deflection's share."""
+    assert instance.choose({"friction.model": 2}) == OK
+    instance.initialize()
+    V, d, E = instance.get("V", "d", "E")
+    rates = {"V": 3.0, "d": 2e-3, "E": -1e12}
+    h = 1e-3
+    assert instance.set_input_rates(rates) == OK
+    assert instance.step(0.0, h) == OK
+    ends = instance.get("V", "d", "E")
+    assert ends == [
+        pytest.approx(x + rate * h, rel=1e-14) for x, rate in zip((V, d, E), rates.values(), strict=True)
+    ]
+    assert instance.get("W_f") == [pytest.approx(55.0 * (V * h + 3.0 * h * h / 2), rel=1e-9)]
+    assert instance.step(h, h) == OK
+    assert instance.get("V", "d", "E") == ends
+    assert instance.get("W_f") == [pytest.approx(55.0 * (V * h + 1.5 * h * h + ends[0] * h), rel=1e-9)]
+
+
+def test_a_coarse_step_over_the_vibration_is_told_once(new_instance: Callable[..., Instance]) -> None:
+    instance = new_instance()
+    assert instance.set({"vibration.V_1": 1.44}) == OK
+    instance.initialize()
+    half_period = 0.5 / 20e3
+    assert instance.step(0.0, 0.9 * half_period) == OK
+    assert instance.messages == []
+    t = 0.9 * half_period
+    for _ in range(3):
+        assert instance.step(t, 1e-3) == OK
+        t += 1e-3
+    assert len(instance.messages) == 1
+    assert (instance.last_message.status, instance.last_message.category) == (WARNING, "logStatusWarning")
+    for part in ("0.001 s", "20000 Hz", "F_t_mean"):
+        assert part in instance.last_message.text
+    steady = new_instance()
+    steady.initialize()
+    assert steady.step(0.0, 1.0) == OK
+    assert steady.messages == []
+
+
+def test_results_do_not_depend_on_when_the_run_starts_without_vibration(
+    new_instance: Callable[..., Instance],
+) -> None:
+    results = []
+    for start in (0.0, 1e6):
+        instance = new_instance()
+        assert instance.set({"contact.stiffnessScale": 1e-6}) == OK
+        instance.initialize(start=start)
+        t = start
+        for _ in range(4):
+            assert instance.step(t, 2.0**-10) == OK
+            t += 2.0**-10
+        results.append(instance.get(*OUTPUTS))
+    assert results[0] == results[1]
+    assert not math.isclose(results[0][0], 55.0, rel_tol=1e-6)

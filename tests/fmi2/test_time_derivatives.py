@@ -1,0 +1,69 @@
+"""fmi2GetRealOutputDerivatives: the exact slope of F_t, against differences of F_t over short steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from fmi_library import OK, Instance
+
+RATES = {"V": 2.0, "d": 1e-3, "E": 5e12}
+
+
+def soft_instance(new_instance: Callable[..., Instance]) -> Instance:
+    """Relaxes within 1 / (sigma V / F_C), about 2 ms, so that a step of 1e-8 s is short."""
+    instance = new_instance()
+    assert instance.set({"contact.stiffnessScale": 1e-6}) == OK
+    instance.initialize()
+    assert instance.step(0.0, 1e-3) == OK
+    return instance
+
+
+def slope_ahead(instance: Instance, t: float, h: float, rates: dict[str, float]) -> float:
+    """Second-order forward difference of F_t over two steps with the inputs moving at the rates."""
+    start = instance.save()
+    forces = instance.get("F_t")
+    for step in range(2):
+        assert instance.set_input_rates(rates) == OK
+        assert instance.step(t + step * h, h) == OK
+        forces += instance.get("F_t")
+    assert instance.restore(start) == OK
+    assert instance.drop(start) == OK
+    return (-3 * forces[0] + 4 * forces[1] - forces[2]) / (2 * h)
+
+
+@pytest.mark.parametrize(
+    "moving", [[], ["V"], ["d"], ["E"], ["V", "d", "E"]], ids=lambda names: "+".join(names) or "held"
+)
+def test_slope_of_the_force_with_the_rates_of_the_next_step(
+    new_instance: Callable[..., Instance], moving: list[str]
+) -> None:
+    instance = soft_instance(new_instance)
+    rates = {name: RATES[name] for name in moving}
+    expected = slope_ahead(instance, 1e-3, 1e-6, rates)
+    assert abs(expected) > 1.0
+    assert instance.set_input_rates(rates) == OK
+    status, slope = instance.output_rate("F_t")
+    assert status == OK
+    assert slope == pytest.approx(expected, rel=1e-5)
+
+
+def test_slope_of_the_force_after_a_step_continues_its_rates(new_instance: Callable[..., Instance]) -> None:
+    instance = soft_instance(new_instance)
+    assert instance.set_input_rates(RATES) == OK
+    assert instance.step(1e-3, 1e-5) == OK
+    expected = slope_ahead(instance, 1e-3 + 1e-5, 1e-7, RATES)
+    held = slope_ahead(instance, 1e-3 + 1e-5, 1e-7, {})
+    status, slope = instance.output_rate("F_t")
+    assert status == OK
+    assert slope == pytest.approx(expected, rel=1e-5)
+    assert slope != pytest.approx(held, rel=1e-2)
+
+
+def test_slope_sees_an_input_set_since_the_step(new_instance: Callable[..., Instance]) -> None:
+    instance = soft_instance(new_instance)
+    assert instance.set({"V": -0.02}) == OK
+    expected = slope_ahead(instance, 1e-3, 1e-7, {})
+    status, slope = instance.output_rate("F_t")
+    assert status == OK
+    assert slope == pytest.approx(expected, rel=1e-5)
