@@ -86,7 +86,8 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 
 // Row of the gradient that belongs to the output; NULL for an output that does not depend on the present inputs.
 // Before the first step F_t_mean is F_t.
-static const double* gradient_row(const OutputGradient* gradient, const VariableInfo* output, int initializing) {
+static const double* gradient_row(const OutputGradient* gradient, const VariableInfo* output,
+                                  int initializing) {
     switch (output->offset) {
     case offsetof(Variables, F_t):
         return gradient->F_t;

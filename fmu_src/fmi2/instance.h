@@ -25,6 +25,8 @@ typedef struct {
     char name[];
 } Instance;
 
+_Static_assert(sizeof(Instance) <= 4096, "an instance fits into a page of memory");
+
 // The instance if the call is legal in its state. Otherwise NULL: c was NULL, or the refusal has been logged.
 Instance* instance_enter(fmi2Component c, Call call);
 

@@ -7,13 +7,9 @@
 #include "fmi2/log.h"
 #include "fmi2/values.h"
 
-const char* fmi2GetTypesPlatform(void) {
-    return fmi2TypesPlatform;
-}
+const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 
-const char* fmi2GetVersion(void) {
-    return fmi2Version;
-}
+const char* fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
                               fmi2String fmuResourceLocation, const fmi2CallbackFunctions* functions,

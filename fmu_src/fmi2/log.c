@@ -19,9 +19,7 @@ unsigned log_mask_quiet(void) {
     return log_category_bit(LOG_STATUS_ERROR) | log_category_bit(LOG_STATUS_WARNING);
 }
 
-unsigned log_mask_all(void) {
-    return (1u << variables_log_categories_count) - 1u;
-}
+unsigned log_mask_all(void) { return (1u << variables_log_categories_count) - 1u; }
 
 static void send(const fmi2CallbackFunctions* callbacks, fmi2String name, fmi2Status status,
                  fmi2String category, const char* function, const char* format, va_list arguments) {

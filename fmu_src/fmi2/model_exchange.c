@@ -6,9 +6,7 @@ static fmi2Status refuse_model_exchange(fmi2Component c, Call call) {
     return fmi2Error;
 }
 
-fmi2Status fmi2EnterEventMode(fmi2Component c) {
-    return refuse_model_exchange(c, CALL_ENTER_EVENT_MODE);
-}
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return refuse_model_exchange(c, CALL_ENTER_EVENT_MODE); }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* fmi2eventInfo) {
     (void)fmi2eventInfo;

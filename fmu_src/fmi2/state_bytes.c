@@ -202,9 +202,7 @@ static int all_finite(const double* values, size_t count) {
     return 1;
 }
 
-static int is_flag(int value) {
-    return value == 0 || value == 1;
-}
+static int is_flag(int value) { return value == 0 || value == 1; }
 
 static int machine_is_sound(const Machine* machine) {
     const int known = machine->state == INSTANTIATED || machine->state == INITIALIZATION_MODE ||

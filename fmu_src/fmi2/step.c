@@ -8,9 +8,7 @@
 
 // Hosts keep time in their own way, adding steps or multiplying them; what is a rounding of time to them must
 // not stop a run. There is no absolute allowance: steps of 1e-12 s are as good as steps of 1e9 s.
-static double rounding_of_time(double t, double h) {
-    return 1e-6 * h + 16.0 * DBL_EPSILON * fabs(t);
-}
+static double rounding_of_time(double t, double h) { return 1e-6 * h + 16.0 * DBL_EPSILON * fabs(t); }
 
 static int check_step(const Instance* instance, double t, double h) {
     if (!(h >= 0.0 && h <= DBL_MAX)) {

@@ -1,4 +1,4 @@
-"""Wrong calls and values, each with what the host is told. The state afterwards is always the state before."""
+"""Wrong calls and values, each with what the host is told. The state afterwards is the one before."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The FMU's shared library as a host sees it: the raw FMI 2.0 functions, without a tool between them and a test."""
+"""The shared library as a host sees it: the raw FMI 2.0 functions, no tool between them and a test."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def _variable(element: ElementTree.Element) -> Variable:
 
 
 class Instance:
-    """An instance and the messages it has logged. Methods return the status; nothing is raised on fmi2Error."""
+    """An instance and the messages it has logged. Methods return the status; fmi2Error raises nothing."""
 
     def __init__(
         self,
@@ -195,7 +195,7 @@ class Instance:
         assert self.call("fmi2ExitInitializationMode") == OK, self.messages
 
     def bring_to(self, state: str) -> None:
-        """state as in the columns of the standard's table: instantiated, initialization, step complete, terminated."""
+        """To instantiated, initialization, step complete or terminated."""
         if state == "instantiated":
             return
         if state == "initialization":

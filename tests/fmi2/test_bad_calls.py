@@ -1,4 +1,4 @@
-"""Every wrong call is fmi2Error with one message, and leaves an instance that does what an untouched twin does."""
+"""Every wrong call is fmi2Error with one message, and leaves the instance like an untouched twin."""
 
 from __future__ import annotations
 
