@@ -1,0 +1,33 @@
+# Compiler and linker options. Contraction to fused multiply-add is off and fast math never on, so that every
+# platform computes the same numbers.
+
+add_library(fc_options INTERFACE)
+target_compile_options(fc_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${FC_WERROR}>:-Werror>
+    -ffp-contract=off $<$<CONFIG:Release>:-O3>)
+
+add_library(fc_shared INTERFACE)
+if(APPLE)
+    target_link_options(fc_shared INTERFACE "LINKER:-exported_symbols_list,${CMAKE_SOURCE_DIR}/cmake/exports.txt")
+elseif(UNIX)
+    target_link_options(fc_shared INTERFACE
+        "LINKER:--version-script=${CMAKE_SOURCE_DIR}/cmake/exports.map" LINKER:--exclude-libs,ALL)
+    if(NOT FC_SANITIZE)
+        target_link_options(fc_shared INTERFACE LINKER:-z,defs)
+    endif()
+endif()
+
+if(FC_SANITIZE)
+    target_compile_options(fc_options INTERFACE -fsanitize=${FC_SANITIZE} -fno-omit-frame-pointer -g)
+    target_link_options(fc_options INTERFACE -fsanitize=${FC_SANITIZE})
+endif()
+if(FC_COVERAGE)
+    target_compile_options(fc_options INTERFACE --coverage -O0 -g)
+    target_link_options(fc_options INTERFACE --coverage)
+endif()
+
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT FC_SANITIZE AND NOT FC_COVERAGE)
+    include(CheckIPOSupported)
+    check_ipo_supported(RESULT link_time_optimization LANGUAGES C)
+    set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ${link_time_optimization})
+endif()

@@ -1,0 +1,63 @@
+# SUNDIALS CVODE as static libraries, from the distribution's archive, unpacked but not installed: the package alone
+# holds all that is needed, installing it would bring some 150 others. Gives the target sundials_cvode_static.
+#
+# FC_SUNDIALS_DIR is shared by all build trees under build/ and filled once.
+
+set(FC_SUNDIALS_DIR "${CMAKE_SOURCE_DIR}/build/sundials" CACHE PATH "SUNDIALS headers and static libraries (a prefix)")
+set(FC_SUNDIALS_PARTS cvode sunlinsoldense sunmatrixdense sunnonlinsolnewton nvecserial generic)
+
+function(fc_fetch_sundials)
+    find_program(APT_GET apt-get)
+    find_program(DPKG_DEB dpkg-deb)
+    mark_as_advanced(APT_GET DPKG_DEB)
+    set(instead "set -DFC_SUNDIALS_DIR to a prefix that holds its static libraries, or configure with -DWITH_SUNDIALS=OFF")
+    if(NOT APT_GET OR NOT DPKG_DEB)
+        message(FATAL_ERROR "SUNDIALS can't be fetched: apt-get and dpkg-deb are missing; ${instead}")
+    endif()
+
+    message(STATUS "Fetching SUNDIALS with apt-get download (unpacked under build/, not installed)")
+    string(RANDOM LENGTH 12 suffix)
+    set(unfinished "${FC_SUNDIALS_DIR}.${suffix}")
+    file(MAKE_DIRECTORY "${unfinished}")
+    set(download "${APT_GET}" -qq -o APT::Sandbox::User=root download libsundials-dev)
+    execute_process(COMMAND ${download} WORKING_DIRECTORY "${unfinished}" RESULT_VARIABLE failed ERROR_VARIABLE why)
+    if(failed)
+        message(STATUS "apt-get update: the package lists are missing or old")
+        execute_process(COMMAND "${APT_GET}" -qq update OUTPUT_QUIET ERROR_QUIET)
+        execute_process(COMMAND ${download} WORKING_DIRECTORY "${unfinished}" RESULT_VARIABLE failed ERROR_VARIABLE why)
+    endif()
+    if(NOT failed)
+        file(GLOB archive "${unfinished}/*.deb")
+        execute_process(COMMAND "${DPKG_DEB}" -x "${archive}" "${unfinished}" RESULT_VARIABLE failed ERROR_VARIABLE why)
+    endif()
+    if(failed)
+        file(REMOVE_RECURSE "${unfinished}")
+        string(STRIP "${why}" why)
+        message(FATAL_ERROR "SUNDIALS can't be fetched (apt-get download libsundials-dev: ${why}); ${instead}")
+    endif()
+    foreach(part ${FC_SUNDIALS_PARTS})
+        file(GLOB library "${unfinished}/usr/lib/*/libsundials_${part}.a")
+        file(COPY ${library} DESTINATION "${unfinished}/prefix/lib")
+    endforeach()
+    file(COPY "${unfinished}/usr/include" "${unfinished}/usr/share/doc/libsundials-dev/copyright"
+         DESTINATION "${unfinished}/prefix")
+    if(NOT EXISTS "${FC_SUNDIALS_DIR}")
+        file(RENAME "${unfinished}/prefix" "${FC_SUNDIALS_DIR}")
+    endif()
+    file(REMOVE_RECURSE "${unfinished}")
+endfunction()
+
+if(NOT EXISTS "${FC_SUNDIALS_DIR}/include/cvode/cvode.h")
+    fc_fetch_sundials()
+endif()
+
+add_library(sundials_cvode_static INTERFACE)
+target_include_directories(sundials_cvode_static SYSTEM INTERFACE "${FC_SUNDIALS_DIR}/include")
+foreach(part ${FC_SUNDIALS_PARTS})
+    set(library "${FC_SUNDIALS_DIR}/lib/libsundials_${part}.a")
+    if(NOT EXISTS "${library}")
+        message(FATAL_ERROR "SUNDIALS in ${FC_SUNDIALS_DIR} is incomplete, ${library} is missing: "
+                            "remove that folder, or configure with -DWITH_SUNDIALS=OFF")
+    endif()
+    target_link_libraries(sundials_cvode_static INTERFACE "${library}")
+endforeach()

@@ -1,0 +1,101 @@
+"""Packs an FMU: model description with its guid, binaries, sources and any further files.
+
+The same input gives the same bytes: names are sorted and timestamps fixed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import zipfile
+from pathlib import Path
+
+import model_description
+
+FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": ".dylib"}
+
+
+def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, Path]:
+    """What a C11 compiler needs to build the FMU alone: path under sources/ -> file."""
+    files = {
+        path.relative_to(source_dir).as_posix(): path for path in source_dir.rglob("*") if path.suffix in (".c", ".h")
+    }
+    files["fmi2/variables.c"] = table
+    files |= {name: fmi_headers / name for name in FMI_HEADERS}
+    return files
+
+
+def binary_name(platform: str, identifier: str) -> str:
+    """binaries/linux64/FrictionContact.so and its like: platform is linux64, win64, aarch64-darwin, ..."""
+    system = platform.rsplit("-", maxsplit=1)[-1].rstrip("0123456789")
+    if system not in BINARY_SUFFIXES:
+        raise ValueError(f"unknown FMI platform {platform}")
+    return f"binaries/{platform}/{identifier}{BINARY_SUFFIXES[system]}"
+
+
+def packaged_xml(path: Path, sources: list[str]) -> bytes:
+    """The model description as it goes into the FMU: with its guid and the list of its C sources."""
+    xml = path.read_bytes()
+    guid = model_description.guid_of(xml)
+    head, found, rest = xml.decode().partition("<CoSimulation")
+    attributes, closed, rest = rest.partition("/>")
+    if not found or not closed or "<" in attributes:
+        raise ValueError(f"{path}: expected one CoSimulation element without content")
+    files = "".join(f'      <File name="{name}"/>\n' for name in sources)
+    text = f"{head}<CoSimulation{attributes}>\n    <SourceFiles>\n{files}    </SourceFiles>\n  </CoSimulation>{rest}"
+    return text.replace(f'guid="{model_description.GUID_PLACEHOLDER}"', f'guid="{guid}"').encode()
+
+
+def write_fmu(
+    output: Path, xml: Path, binaries: dict[str, Path], sources: dict[str, Path], others: dict[str, Path]
+) -> None:
+    """Writes output whole or not at all. The dictionaries map platforms, paths under sources/, paths to files."""
+    identifier = model_description.read(xml).model_identifier
+    c_files = sorted(name for name in sources if name.endswith(".c"))
+    entries = {"modelDescription.xml": packaged_xml(xml, c_files)}
+    entries |= {binary_name(platform, identifier): path.read_bytes() for platform, path in binaries.items()}
+    entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
+    entries |= {name: path.read_bytes() for name, path in others.items()}
+    unfinished = output.with_suffix(f".{os.getpid()}.part")
+    try:
+        with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name in sorted(entries, key=lambda name: (name != "modelDescription.xml", name)):
+                info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+                info.compress_type = zipfile.ZIP_DEFLATED
+                info.create_system = 3  # Unix, wherever it is packed
+                info.external_attr = 0o100644 << 16
+                archive.writestr(info, entries[name])
+        unfinished.replace(output)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def _pair(text: str) -> tuple[str, Path]:
+    name, separator, path = text.partition("=")
+    if not separator:
+        raise argparse.ArgumentTypeError(f"{text} is not of the form NAME=FILE")
+    return name, Path(path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Pack an FMU.")
+    parser.add_argument("output", type=Path)
+    parser.add_argument("--xml", type=Path, required=True, help="modelDescription.xml with its placeholder")
+    parser.add_argument("--sources", type=Path, required=True, help="folder of the C sources")
+    parser.add_argument("--table", type=Path, required=True, help="generated variable table")
+    parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers")
+    parser.add_argument("--binary", type=_pair, action="append", default=[], metavar="PLATFORM=FILE")
+    parser.add_argument("--file", type=_pair, action="append", default=[], metavar="NAME=FILE")
+    arguments = parser.parse_args()
+    write_fmu(
+        arguments.output,
+        arguments.xml,
+        dict(arguments.binary),
+        source_files(arguments.sources, arguments.table, arguments.fmi_headers),
+        dict(arguments.file),
+    )
+
+
+if __name__ == "__main__":
+    main()
