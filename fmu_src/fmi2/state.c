@@ -12,7 +12,7 @@ SavedState* saved_state_of(const Instance* instance, Call call, fmi2FMUstate sta
         return NULL;
     }
     if (saved->mark != SAVED_STATE_MARK) {
-        refuse(instance, call, "FMUstate is not a state of this FMU, or has been freed");
+        refuse(instance, call, "FMUstate is not a state of this FMU");
         return NULL;
     }
     return saved;
@@ -104,7 +104,6 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
     if (!saved) {
         return fmi2Error;
     }
-    saved->mark = 0;
     free(saved);
     *FMUstate = NULL;
     return fmi2OK;

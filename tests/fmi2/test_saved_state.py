@@ -244,18 +244,42 @@ def test_foreign_bytes_are_refused_with_the_reason(
     assert told in instance.last_message.text
 
 
+@pytest.mark.parametrize("state", ["initialization", "step complete"])
 def test_a_state_with_inputs_that_do_not_go_together_can_be_saved(
-    new_instance: Callable[..., Instance],
+    new_instance: Callable[..., Instance], state: str
 ) -> None:
     one, other = new_instance(), new_instance()
     for instance in (one, other):
-        instance.initialize()
+        instance.bring_to(state)
+        assert instance.set({"d": 15e-6, "F_C": 50.0}) == OK
         if instance is one:
-            instance.get("F_t")
-        assert instance.set({"vibration.a_d": 1.0}) == OK
+            instance.get(*OUTPUTS)
+        assert instance.set({"d": 16e-6, "vibration.a_d": 1.0}) == OK
     assert one.fingerprint() == other.fingerprint()
-    status, state = one.deserialize(one.fingerprint())
+    status, saved = one.deserialize(one.fingerprint())
     assert status == OK
-    assert one.restore(state) == OK
-    assert one.step(0.0, 1e-5) == ERROR
-    assert one.drop(state) == OK
+    assert one.restore(saved) == OK
+    follow_up = {
+        "initialization": ("fmi2ExitInitializationMode",),
+        "step complete": ("fmi2DoStep", 0.0, 1e-5, 1),
+    }
+    assert one.call(*follow_up[state]) == ERROR
+    assert one.set({"vibration.a_d": 0.0}) == OK
+    assert one.call(*follow_up[state]) == OK
+    assert one.drop(saved) == OK
+
+
+def test_reading_in_initialization_mode_leaves_the_state_as_it_is(
+    new_instance: Callable[..., Instance],
+) -> None:
+    read, silent = new_instance(), new_instance()
+    for instance in (read, silent):
+        assert instance.set({"delta_0": 1e-9}) == OK
+        assert instance.call("fmi2SetupExperiment", 0, 0.0, 3.5, 0, 0.0) == OK
+        instance.bring_to("initialization")
+        assert instance.set({"vibration.a_d": 1.0}) == OK
+        if instance is read:
+            assert instance.set({"vibration.a_d": 0.0}) == OK
+            instance.get(*OUTPUTS)
+            assert instance.set({"vibration.a_d": 1.0}) == OK
+    assert read.fingerprint() == silent.fingerprint()
