@@ -173,6 +173,13 @@ static double deflection_scale(const DahlProblem* problem, double h, double delt
     return isfinite(L) && L > 0.0 ? L : 1.0;
 }
 
+// The errors of as many vibration periods as the bristle remembers, a path of L, add up in its deflection.
+static double local_error_bound(const Drive* drive, double tolerance, double h, double L) {
+    const double memory = fmin(h, L / drive_largest_speed(drive, h));
+    const double periods = drive_vibrates(drive) ? fmax(1.0, memory * drive->vibration.f) : 1.0;
+    return fmin(fmax(LOCAL_ERROR_FRACTION * tolerance / periods, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
+}
+
 // First step on a piece: where its layer of width w, sqrt(2 F_C / (sigma |V'|)) after a reversal and
 // F_C / (sigma |V|) elsewhere, lets backward Euler have the asked error.
 static double initial_step(CvodeSolver* solver, double duration, double local_error) {
@@ -235,10 +242,9 @@ int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const Sol
                  h, periods, drive->vibration.f, MOST_PERIODS);
         return 0;
     }
-    const double local_error =
-        fmin(fmax(LOCAL_ERROR_FRACTION * options->tolerance, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
     solver->problem = problem;
     solver->L = deflection_scale(problem, h, delta_0);
+    const double local_error = local_error_bound(drive, options->tolerance, h, solver->L);
     solver->evaluations = 0.0;
     N_VConst(delta_0 / solver->L, solver->y);
 
