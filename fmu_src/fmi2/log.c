@@ -21,11 +21,32 @@ unsigned log_mask_quiet(void) {
 
 unsigned log_mask_all(void) { return (1u << variables_log_categories_count) - 1u; }
 
-static void send(const fmi2CallbackFunctions* callbacks, fmi2String name, fmi2Status status,
-                 fmi2String category, const char* function, const char* format, va_list arguments) {
+static int is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// The host's locale may have put a separator of one or more bytes where the decimal point belongs.
+static void restore_decimal_points(char* text) {
+    char half[16];
+    snprintf(half, sizeof half, "%.1f", 0.5); // 0, separator, 5
+    const size_t width = strlen(half) - 2;
+    if (half[1] == '.') {
+        return;
+    }
+    char* to = text;
+    for (const char* from = text; *from; to++) {
+        const int is_separator =
+            from > text && is_digit(from[-1]) && strncmp(from, half + 1, width) == 0 && is_digit(from[width]);
+        *to = is_separator ? '.' : *from;
+        from += is_separator ? width : 1;
+    }
+    *to = '\0';
+}
+
+static void send_text(const fmi2CallbackFunctions* callbacks, fmi2String name, fmi2Status status,
+                      fmi2String category, const char* function, const char* format, va_list arguments) {
     char text[TEXT_SIZE];
     const int prefix = snprintf(text, sizeof text, "%s: ", function);
     vsnprintf(text + prefix, sizeof text - (size_t)prefix, format, arguments);
+    restore_decimal_points(text);
 
     char escaped[2 * TEXT_SIZE];
     size_t length = 0;
@@ -43,8 +64,8 @@ fmi2Status refuse(const Instance* instance, Call call, const char* format, ...) 
     if (instance->callbacks.logger) {
         va_list arguments;
         va_start(arguments, format);
-        send(&instance->callbacks, instance->name, fmi2Error, LOG_STATUS_ERROR, call_table[call].function,
-             format, arguments);
+        send_text(&instance->callbacks, instance->name, fmi2Error, LOG_STATUS_ERROR,
+                  call_table[call].function, format, arguments);
         va_end(arguments);
     }
     return fmi2Error;
@@ -55,8 +76,8 @@ void log_text(const Instance* instance, Call call, fmi2Status status, const char
     if (instance->callbacks.logger && (instance->log_mask & log_category_bit(category))) {
         va_list arguments;
         va_start(arguments, format);
-        send(&instance->callbacks, instance->name, status, category, call_table[call].function, format,
-             arguments);
+        send_text(&instance->callbacks, instance->name, status, category, call_table[call].function, format,
+                  arguments);
         va_end(arguments);
     }
 }
@@ -65,29 +86,16 @@ void log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String nam
     if (callbacks && callbacks->logger) {
         va_list arguments;
         va_start(arguments, format);
-        send(callbacks, name ? name : "", fmi2Error, LOG_STATUS_ERROR, call_table[CALL_INSTANTIATE].function,
-             format, arguments);
+        send_text(callbacks, name ? name : "", fmi2Error, LOG_STATUS_ERROR,
+                  call_table[CALL_INSTANTIATE].function, format, arguments);
         va_end(arguments);
     }
 }
 
 QuantityText quantity_text(double value, const char* unit) {
-    char printed[32];
-    snprintf(printed, sizeof printed, "%.15g", value);
-
-    // The host's locale may have put a separator of one or more bytes where the point belongs.
+    const int without_unit = unit[0] == '\0' || strcmp(unit, "1") == 0;
     QuantityText quantity;
-    size_t length = 0;
-    for (const char* c = printed; *c; c++) {
-        if (strchr("0123456789+-einfa", *c)) {
-            quantity.text[length++] = *c;
-        } else if (length > 0 && quantity.text[length - 1] != '.') {
-            quantity.text[length++] = '.';
-        }
-    }
-    quantity.text[length] = '\0';
-    if (unit[0] != '\0' && strcmp(unit, "1") != 0) {
-        snprintf(quantity.text + length, sizeof quantity.text - length, " %s", unit);
-    }
+    snprintf(quantity.text, sizeof quantity.text, "%.15g%s%s", value, without_unit ? "" : " ",
+             without_unit ? "" : unit);
     return quantity;
 }

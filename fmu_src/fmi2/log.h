@@ -3,8 +3,8 @@
 // Errors always reach the logger, since a status without a reason helps nobody. Warnings do unless the host
 // asks for other categories only. The other categories are silent until fmi2Instantiate or
 // fmi2SetDebugLogging turns them on. The logger gets the finished text as its format, with '%' and '#'
-// doubled as FMI 2.0 asks: hosts that format and hosts that print the format as it is show the same. Nothing
-// goes to stdout or stderr.
+// doubled as FMI 2.0 asks: hosts that format and hosts that print the format as it is show the same. Numbers
+// have a decimal point in every locale. Nothing goes to stdout or stderr.
 #ifndef FC_LOG_H
 #define FC_LOG_H
 
@@ -35,7 +35,7 @@ unsigned log_mask_all(void);
 // The bit of the category in log_mask; 0 if there is no such category or it is NULL.
 unsigned log_category_bit(fmi2String category);
 
-// A value with 15 significant digits, a decimal point in every locale, and its unit unless that is "" or "1".
+// A value with 15 significant digits and its unit, unless that is "" or "1".
 typedef struct {
     char text[48];
 } QuantityText;
