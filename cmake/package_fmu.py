@@ -19,7 +19,9 @@ BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": "
 def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, Path]:
     """What a C11 compiler needs to build the FMU alone: path under sources/ -> file."""
     files = {
-        path.relative_to(source_dir).as_posix(): path for path in source_dir.rglob("*") if path.suffix in (".c", ".h")
+        path.relative_to(source_dir).as_posix(): path
+        for path in source_dir.rglob("*")
+        if path.suffix in (".c", ".h")
     }
     files["fmi2/variables.c"] = table
     files |= {name: fmi_headers / name for name in FMI_HEADERS}
@@ -43,14 +45,18 @@ def packaged_xml(path: Path, sources: list[str]) -> bytes:
     if not found or not closed or "<" in attributes:
         raise ValueError(f"{path}: expected one CoSimulation element without content")
     files = "".join(f'      <File name="{name}"/>\n' for name in sources)
-    text = f"{head}<CoSimulation{attributes}>\n    <SourceFiles>\n{files}    </SourceFiles>\n  </CoSimulation>{rest}"
+    listed = f">\n    <SourceFiles>\n{files}    </SourceFiles>\n  </CoSimulation>"
+    text = f"{head}<CoSimulation{attributes}{listed}{rest}"
     return text.replace(f'guid="{model_description.GUID_PLACEHOLDER}"', f'guid="{guid}"').encode()
 
 
 def write_fmu(
     output: Path, xml: Path, binaries: dict[str, Path], sources: dict[str, Path], others: dict[str, Path]
 ) -> None:
-    """Writes output whole or not at all. The dictionaries map platforms, paths under sources/, paths to files."""
+    """Writes output whole or not at all.
+
+    binaries maps platforms, sources paths under sources/, others paths in the FMU, to files.
+    """
     identifier = model_description.read(xml).model_identifier
     c_files = sorted(name for name in sources if name.endswith(".c"))
     entries = {"modelDescription.xml": packaged_xml(xml, c_files)}

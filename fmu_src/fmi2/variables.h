@@ -22,7 +22,7 @@ typedef struct {
     double min;                  // in unit, inclusive; -DBL_MAX where the XML gives none
     double max;                  // in unit, inclusive; DBL_MAX where the XML gives none
     const char* const* literals; // names of the enumeration's values 1, 2, ...; NULL for other types
-    size_t offset;               // into Variables of friction_contact.h: a double for Real, an int for Enumeration
+    size_t offset; // into Variables of friction_contact.h: a double for Real, an int for Enumeration
 } VariableInfo;
 
 extern const VariableInfo variables_table[];

@@ -32,7 +32,10 @@ def presets() -> dict[str, Path]:
 
 
 def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path:
-    """Configures and builds a preset; the path of its FMU. Shows a bar, in the given progress or one of its own."""
+    """Configures and builds a preset and gives the path of its FMU.
+
+    Shows a bar in the given progress, or in one of its own.
+    """
     if progress is None:
         columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
         with Progress(*columns, console=Console(stderr=True), transient=True) as own:
