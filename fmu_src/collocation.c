@@ -1,0 +1,191 @@
+// The default method. Inputs held and no vibration: the closed form. Otherwise 9-stage Radau IIA steps, split
+// exactly at the reversals of V, where |V| has a kink, and graded towards them:
+//
+//        reversal                                        reversal
+//     |V|   |.  '   '      '         '         '      '   '  .|
+//           |-|--|----|--------|-----------|--------|----|--|-|      steps
+//            w_a                                            w_b      layers
+//
+// After a reversal the force relaxes within a layer w; before one the deflection lags behind a moving stiffness
+// within a layer as wide. A step at distance x from a layer's event is at most resolution (x + w) long, so a few
+// steps cross any number of decades. The resolution is what the error control moves: an error per step of at most
+// tolerance F_C times the fraction that relaxes in the step, which bounds the error after any number of steps.
+#include <math.h>
+
+#include "periods.h"
+#include "radau_step.h"
+
+// Estimated errors are held this far below the tolerance: the estimate is within a factor of 10 for 99 % of steps.
+static const double SAFETY = 0.1;
+// The error of a step goes about as this power of the resolution.
+static const double ORDER = 12.0;
+// Steps are at most resolution * this, in the time over which the logarithm of sigma or the phase moves by 1.
+static const double SMOOTH_STEP = 2.0;
+static const double SMALLEST_RESOLUTION = 0.02;
+// sigma itself must stay resolved where nothing relaxes and no error is seen.
+static const double LARGEST_RESOLUTION = 3.0;
+// Rounding in a step, over F_C: asking for less would only shorten steps.
+static const double ROUNDING = 2e-13;
+
+// Where the two trajectories of the interval's map are: P started from 1 and Q started from 0.
+typedef struct {
+    DahlMap map;
+    double resolution;
+    double smooth_time;     // s
+    double delta_scale;     // m, size of the deflection at the start
+    double delta_tolerance; // m, error allowed in the deflection
+    double evaluations;
+} Progress;
+
+// Time [s] in which the bristle relaxes by 1 from t on, V moving linearly: solves g x + g' x^2 / 2 = 1.
+static double relaxation_layer(const DahlProblem* problem, double t) {
+    const double per_speed = dahl_stiffness(problem, t) / problem->F_C;
+    const double g = per_speed * fabs(drive_V(&problem->drive, t));
+    const double g_rate = per_speed * fabs(drive_V_rate(&problem->drive, t));
+    return 2.0 / (g + sqrt(g * g + 2.0 * g_rate));
+}
+
+// Width [s] of a dip of |V| at t that does not reach zero: that of the parabola, or the time to relax by 1 in it.
+static double dip_layer(const DahlProblem* problem, double t) {
+    const Drive* drive = &problem->drive;
+    const double curvature = drive->vibration.V_1 * drive->omega * drive->omega;
+    const double per_speed = dahl_stiffness(problem, t) / problem->F_C;
+    return fmax(sqrt(2.0 * fabs(drive_V(drive, t)) / curvature), cbrt(6.0 / (per_speed * curvature)));
+}
+
+// Time [s] over which the phase or ln(sigma) moves by 1, at the least.
+static double smooth_time(const DahlProblem* problem, double h) {
+    const Drive* drive = &problem->drive;
+    double rate = drive_vibrates(drive) ? drive->omega : 0.0;
+    if (!problem->at_E.constant) {
+        const double log_slope = 2.0 * problem->at_E.decay + 3.0 / drive_smallest_d(drive, h);
+        rate += log_slope * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
+        rate += fabs(drive->E.rate) / drive_smallest_E(drive, h);
+    }
+    return 1.0 / rate;
+}
+
+static double largest_stiffness(const DahlProblem* problem, double h) {
+    const ContactAtModulus stiffest =
+        contact_at_modulus(&problem->contact, drive_largest_E(&problem->drive, h));
+    return contact_stiffness(&stiffest, drive_smallest_d(&problem->drive, h));
+}
+
+// Step [s] at t between the events at start and end with the layers w_a and w_b.
+static double graded_step(const Progress* progress, double t, double start, double end, double w_a, double w_b) {
+    const double resolution = progress->resolution;
+    const double left = end - t;
+    const double after = resolution * (t - start + w_a);
+    const double before = resolution / (1.0 + resolution) * (left + w_b);
+    const double smallest = 4e-16 * end; // below this t + h would not move
+    const double h = fmax(smallest, fmin(resolution * SMOOTH_STEP * progress->smooth_time, fmin(after, before)));
+    if (h >= left / 1.1) {
+        return left;
+    }
+    return h > 0.5 * left ? 0.5 * left : h;
+}
+
+// Estimated error over what the step is allowed, for the map's two trajectories.
+static double relative_error(const Progress* progress, const RadauStep* step, double F_C) {
+    const double P = 1.0 - progress->map.relaxation;
+    const RadauTail homogeneous = radau_tail_homogeneous(step, P * progress->delta_scale);
+    const RadauTail full = radau_tail_full(step, progress->map.offset);
+    const double error = radau_error(&homogeneous, step->z_mean) + radau_error(&full, step->z_mean);
+    const double rounding = ROUNDING * F_C / step->sigma[RADAU_STAGES - 1];
+    const double allowed = fmax(SAFETY * progress->delta_tolerance, rounding) * fmin(1.0, step->z_mean);
+    return error > 0.0 ? error / allowed : 0.0;
+}
+
+static void accept(Progress* progress, const RadauStep* step, double h) {
+    DahlMap* map = &progress->map;
+    const double P = 1.0 - map->relaxation;
+    const double Q = map->offset;
+    const double relaxed = radau_impulse_relaxed(step, h);
+    map->impulse_slope += relaxed * P;
+    map->impulse_offset += relaxed * Q + radau_impulse_driven(step, h);
+    map->relaxation -= P * step->relaxed[RADAU_STAGES - 1];
+    map->offset += Q * step->relaxed[RADAU_STAGES - 1] + step->driven[RADAU_STAGES - 1];
+}
+
+// From one event to the next: V keeps its sign.
+static void cross(Progress* progress, const DahlProblem* problem, double start, double end, double w_a, double w_b) {
+    const double V_middle = drive_V(&problem->drive, 0.5 * (start + end));
+    const double sign = V_middle > 0.0 ? 1.0 : V_middle < 0.0 ? -1.0 : 0.0;
+    const DahlMap before = progress->map;
+    double t = start;
+    while (t < end) {
+        const double h = graded_step(progress, t, start, end, w_a, w_b);
+        RadauStep step;
+        radau_step(problem, t, h, sign, &step);
+        progress->evaluations += RADAU_STAGES;
+
+        const double error = relative_error(progress, &step, problem->F_C);
+        const double change = error > 0.0 ? fmin(1.6, fmax(0.3, pow(error, -1.0 / ORDER))) : 1.6;
+        const int can_shrink = progress->resolution > SMALLEST_RESOLUTION && t + 0.5 * h > t;
+        if (error > 1.0 && can_shrink) {
+            progress->resolution *= fmin(0.95 * change, 0.8);
+            continue;
+        }
+        progress->resolution = fmin(LARGEST_RESOLUTION, progress->resolution * change);
+        accept(progress, &step, h);
+        t = h < end - t ? t + h : end;
+    }
+    // Work from F |V| = F_C (|V| - s delta'), exact and without quadrature.
+    DahlMap* map = &progress->map;
+    const double path = sign * drive_displacement(&problem->drive, start, end);
+    map->work_slope += sign * problem->F_C * (map->relaxation - before.relaxation);
+    map->work_offset += problem->F_C * (path - sign * (map->offset - before.offset));
+}
+
+// Without stiffness there is no force: the bristle goes with V.
+static DahlMap slack_map(const DahlProblem* problem, double h) {
+    DahlMap map = dahl_identity();
+    map.offset = drive_displacement(&problem->drive, 0.0, h);
+    return map;
+}
+
+static DahlMap collocation_interval(const DahlProblem* problem, const SolverOptions* options, double duration,
+                                    double delta_0, double* evaluations) {
+    const Drive* drive = &problem->drive;
+    const double saturated = problem->F_C / largest_stiffness(problem, duration);
+    if (!isfinite(saturated)) {
+        return slack_map(problem, duration);
+    }
+    Progress progress = {
+        .map = dahl_identity(),
+        .resolution = 1.5 * pow(options->tolerance, 1.0 / (2 * RADAU_STAGES)),
+        .smooth_time = smooth_time(problem, duration),
+        .delta_scale = fmax(fabs(delta_0), problem->F_C / dahl_stiffness(problem, 0.0)),
+        .delta_tolerance = options->tolerance * saturated,
+    };
+    double start = 0.0;
+    double w_a = relaxation_layer(problem, start);
+    while (start < duration) {
+        const DriveEvent event = drive_next_event(drive, start, duration);
+        double w_b = INFINITY; // nothing ahead
+        if (event.time < duration) {
+            w_b = event.reversal ? relaxation_layer(problem, event.time) : dip_layer(problem, event.time);
+        }
+        cross(&progress, problem, start, event.time, w_a, w_b);
+        start = event.time;
+        w_a = w_b;
+    }
+    *evaluations += progress.evaluations;
+    return progress.map;
+}
+
+int collocation_step(const DahlProblem* problem, const SolverOptions* options, double h, double delta_0,
+                     StepResult* result, Message* message) {
+    const Drive* drive = &problem->drive;
+    if (!drive_is_constant(drive)) {
+        return periods_step(collocation_interval, problem, options, h, delta_0, result, message);
+    }
+    const DahlMap map = dahl_constant_map(drive->V.value, dahl_stiffness(problem, 0.0), problem->F_C, h);
+    *result = (StepResult){
+        .delta = (1.0 - map.relaxation) * delta_0 + map.offset,
+        .impulse = map.impulse_slope * delta_0 + map.impulse_offset,
+        .work = map.work_slope * delta_0 + map.work_offset,
+        .evaluations = 1.0,
+    };
+    return 1;
+}

@@ -1,0 +1,182 @@
+#include "drive.h"
+
+#include <math.h>
+
+#include "constants.h"
+
+// f t modulo 1, exact to the last bit of t: the product's rounding error is added back.
+static double phase_in_cycles(double f, double t) {
+    const double cycles = f * t;
+    if (!isfinite(cycles)) {
+        return 0.0;
+    }
+    const double lost = fma(f, t, -cycles);
+    double fraction = (cycles - floor(cycles)) + lost;
+    fraction -= floor(fraction);
+    return fraction < 1.0 ? fraction : 0.0;
+}
+
+Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibration, double start) {
+    return (Drive){
+        .V = V,
+        .d = d,
+        .E = E,
+        .vibration = vibration,
+        .omega = FC_TWO_PI * vibration.f,
+        .theta_0 = FC_TWO_PI * phase_in_cycles(vibration.f, start),
+    };
+}
+
+int drive_vibrates(const Drive* drive) { return drive->vibration.V_1 != 0.0 || drive->vibration.a_d != 0.0; }
+
+int drive_is_linear(const Drive* drive) {
+    return drive->V.rate != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0;
+}
+
+int drive_is_constant(const Drive* drive) { return !drive_vibrates(drive) && !drive_is_linear(drive); }
+
+static double theta(const Drive* drive, double t) { return drive->theta_0 + drive->omega * t; }
+
+static double linear(LinearInput input, double t) { return input.value + input.rate * t; }
+
+double drive_V(const Drive* drive, double t) {
+    const double V = linear(drive->V, t);
+    return drive->vibration.V_1 != 0.0 ? V + drive->vibration.V_1 * cos(theta(drive, t)) : V;
+}
+
+double drive_d(const Drive* drive, double t) {
+    const double d = linear(drive->d, t);
+    return drive->vibration.a_d != 0.0
+               ? d + drive->vibration.a_d * cos(theta(drive, t) + drive->vibration.phase_d)
+               : d;
+}
+
+double drive_E(const Drive* drive, double t) { return linear(drive->E, t); }
+
+double drive_V_rate(const Drive* drive, double t) {
+    return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
+}
+
+double drive_d_rate(const Drive* drive, double t) {
+    return drive->d.rate - drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);
+}
+
+double drive_smallest_d(const Drive* drive, double h) {
+    return fmin(drive->d.value, linear(drive->d, h)) - drive->vibration.a_d;
+}
+
+double drive_smallest_E(const Drive* drive, double h) { return fmin(drive->E.value, linear(drive->E, h)); }
+
+double drive_largest_E(const Drive* drive, double h) { return fmax(drive->E.value, linear(drive->E, h)); }
+
+double drive_largest_speed(const Drive* drive, double h) {
+    return fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
+}
+
+double drive_displacement(const Drive* drive, double t0, double t1) {
+    const double duration = t1 - t0;
+    const double middle = 0.5 * (t0 + t1);
+    double displacement = linear(drive->V, middle) * duration;
+    if (drive->vibration.V_1 != 0.0) {
+        displacement += 2.0 * drive->vibration.V_1 / drive->omega * sin(0.5 * drive->omega * duration) *
+                        cos(theta(drive, middle));
+    }
+    return displacement;
+}
+
+// The first angle after theta, by more than the rounding of a root, that equals target modulo 2 pi.
+static const double SAME_ANGLE = 1e-8;
+
+static double next_angle(double now, double target) {
+    double ahead = fmod(target - now, FC_TWO_PI);
+    if (ahead < 0.0) {
+        ahead += FC_TWO_PI;
+    }
+    return ahead > SAME_ANGLE ? now + ahead : now + ahead + FC_TWO_PI;
+}
+
+// Root of V in the bracket [t0, t1], on which V is monotone: Newton, kept inside by bisection.
+static double root_of_V(const Drive* drive, double t0, double t1) {
+    const double V_0 = drive_V(drive, t0);
+    double t = 0.5 * (t0 + t1);
+    for (int i = 0; i < 100; i++) {
+        const double V = drive_V(drive, t);
+        if ((V < 0.0) == (V_0 < 0.0)) {
+            t0 = t;
+        } else {
+            t1 = t;
+        }
+        double next = t - V / drive_V_rate(drive, t);
+        if (!(next > t0 && next < t1)) {
+            next = 0.5 * (t0 + t1);
+        }
+        if (fabs(next - t) <= 1e-16 * fabs(t) || next == t0 || next == t1) {
+            return next;
+        }
+        t = next;
+    }
+    return t;
+}
+
+// A dip shallower than this is smooth enough to be stepped over.
+static int is_dip(const Drive* drive, double t) {
+    const double V = drive_V(drive, t);
+    const double curvature = -drive->vibration.V_1 * cos(theta(drive, t));
+    return V * curvature >= 0.0 && fabs(V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
+}
+
+static DriveEvent first_of_held_vibration(const Drive* drive, double t, double end) {
+    const double V_1 = drive->vibration.V_1;
+    const double ratio = -drive->V.value / V_1;
+    const double now = theta(drive, t);
+    double angle;
+    int reversal;
+    if (fabs(ratio) < 1.0) {
+        angle = fmin(next_angle(now, acos(ratio)), next_angle(now, -acos(ratio)));
+        reversal = 1;
+    } else {
+        angle = next_angle(now, ratio < 0.0 ? FC_PI : 0.0);
+        reversal = 0;
+    }
+    const double time = t + (angle - now) / drive->omega;
+    if (!(time < end) || (!reversal && !is_dip(drive, time))) {
+        return (DriveEvent){end, 0};
+    }
+    return (DriveEvent){time, reversal};
+}
+
+static DriveEvent first_of_linear_vibration(const Drive* drive, double t, double end) {
+    // V is monotone between the angles where sin(theta) = V' / (V_1 omega), if there are any.
+    const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
+    const double skip = SAME_ANGLE / drive->omega;
+    double from = t + skip;
+    while (from < end) {
+        double to = end;
+        if (fabs(slope) < 1.0) {
+            const double now = theta(drive, from);
+            const double angle = fmin(next_angle(now, asin(slope)), next_angle(now, FC_PI - asin(slope)));
+            to = from + (angle - now) / drive->omega;
+        }
+        const int stops_at_end = !(to < end);
+        if (stops_at_end) {
+            to = end;
+        }
+        if ((drive_V(drive, from) < 0.0) != (drive_V(drive, to) < 0.0)) {
+            return (DriveEvent){root_of_V(drive, from, to), 1};
+        }
+        if (!stops_at_end && is_dip(drive, to)) {
+            return (DriveEvent){to, 0};
+        }
+        from = to;
+    }
+    return (DriveEvent){end, 0};
+}
+
+DriveEvent drive_next_event(const Drive* drive, double t, double end) {
+    if (drive->vibration.V_1 == 0.0) {
+        const double root = -drive->V.value / drive->V.rate; // no root where V' = 0: infinite or NaN
+        return root > t && root < end ? (DriveEvent){root, 1} : (DriveEvent){end, 0};
+    }
+    return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
+                                : first_of_linear_vibration(drive, t, end);
+}

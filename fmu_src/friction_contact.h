@@ -1,0 +1,87 @@
+// One vibrating contact: its variables, its state, and how it advances. The only header that FMI sees.
+//
+// Variables carries every variable of modelDescription.xml under its own name: contact.R_q is the C expression
+// contact.R_q. The table that FMI uses is generated from the XML and finds them by offsetof.
+#ifndef FC_FRICTION_CONTACT_H
+#define FC_FRICTION_CONTACT_H
+
+#include "contact.h"
+#include "drive.h"
+#include "message.h"
+#include "solver.h"
+
+typedef enum { FRICTION_DAHL = 1, FRICTION_COULOMB = 2 } FrictionModel;
+
+typedef struct {
+    double V;        // m/s  input
+    double d;        // m    input
+    double E;        // Pa   input
+    double F_t;      // N    output
+    double F_t_mean; // N    output
+    double W_f;      // J    output
+    double sigma;    // N/m  output
+    double A_r;      // m2   output
+    double delta;    // m    output, the state
+    double delta_0;  // m
+    double F_C;      // N
+    struct {
+        int model; // FrictionModel
+    } friction;
+    ContactParameters contact;
+    Vibration vibration;
+    struct {
+        int method;         // SolverMethod
+        double tolerance;   // 1
+        double stepSize;    // s
+        double evaluations; // 1, evaluations of a(t), b(t) since the start
+    } solver;
+} Variables;
+
+typedef enum { INPUT_V, INPUT_D, INPUT_E, INPUT_COUNT } Input;
+
+// Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
+typedef struct {
+    Variables variables;
+    double time;                   // s, the communication point reached
+    double rate[INPUT_COUNT];      // time derivatives of the inputs over the last step
+    double next_rate[INPUT_COUNT]; // the same for the next step; zero again after it
+} FrictionState;
+
+typedef struct {
+    FrictionState state;
+    CvodeSolver* cvode; // only when solver.method = cvode
+} FrictionContact;
+
+// Functions that return int return 1, or 0 with *message filled and the contact unchanged.
+
+// After all start values and parameters are set: checks their combination, starts the state from delta_0 at time
+// start [s], computes the outputs.
+int friction_contact_initialize(FrictionContact* contact, double start, Message* message);
+void friction_contact_free(FrictionContact* contact); // frees what initialize allocated
+
+// Checks what single bounds can't: the separation stays positive under vibration, the stiffness is a finite number.
+int friction_contact_check(const FrictionContact* contact, Message* message);
+
+// Advances from t to t + h [s], h >= 0. The inputs move at next_rate and stay where they end.
+int friction_contact_advance(FrictionContact* contact, double t, double h, Message* message);
+
+// Recomputes F_t, sigma, A_r from the state and the present inputs and parameters (delta, F_t_mean and W_f are what
+// the last step left). Call after an input or a tunable parameter changed and before an output is read.
+void friction_contact_update_outputs(FrictionContact* contact);
+
+// Time derivative of F_t at the present time [N/s], with the inputs moving at the rates of the last step or, where
+// new ones have been set, of the next.
+double friction_contact_force_rate(const FrictionContact* contact);
+
+// Partial derivatives of the outputs with respect to the inputs at the present time and deflection.
+typedef struct {
+    double F_t[INPUT_COUNT];
+    double sigma[INPUT_COUNT];
+    double A_r[INPUT_COUNT];
+} OutputGradient; // delta, F_t_mean and W_f do not depend on the present inputs
+OutputGradient friction_contact_output_gradient(const FrictionContact* contact);
+
+// The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to use.
+int friction_contact_undersamples(const FrictionContact* contact, double h);
+
+#endif

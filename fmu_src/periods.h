@@ -1,0 +1,23 @@
+// Many vibration periods for the price of one.
+//
+// With the inputs held, every period of the vibration is the same affine map of the deflection, so n periods are the
+// n-th power of one. With moving inputs the periods differ and are gone through one by one.
+#ifndef FC_PERIODS_H
+#define FC_PERIODS_H
+
+#include "dahl.h"
+#include "message.h"
+#include "solver.h"
+
+// Integrates the problem over [0, duration]. delta_0 [m] only scales the errors; the map holds for any. Adds what it
+// spends to *evaluations.
+typedef DahlMap (*IntervalMap)(const DahlProblem* problem, const SolverOptions* options, double duration,
+                               double delta_0, double* evaluations);
+
+// More periods than this with moving inputs are refused: they would take minutes.
+extern const double PERIODS_WITH_MOVING_INPUTS;
+
+int periods_step(IntervalMap interval, const DahlProblem* problem, const SolverOptions* options, double h,
+                 double delta_0, StepResult* result, Message* message);
+
+#endif

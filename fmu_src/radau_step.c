@@ -1,0 +1,131 @@
+#include "radau_step.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "radau_tables.h"
+
+static void evaluate(const DahlProblem* problem, double t, double h, double sign, RadauStep* step) {
+    step->z_mean = 0.0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        const double t_i = t + RADAU_NODES[i] * h;
+        const double V = drive_V(&problem->drive, t_i);
+        step->sigma[i] = dahl_stiffness(problem, t_i);
+        step->shift[i] = h * V;
+        // sign V and not |V|: V may be a rounding error past its reversal, and g must stay smooth there.
+        step->z[i] = sign * step->shift[i] * step->sigma[i] / problem->F_C;
+        step->z_mean += RADAU_WEIGHTS[i] * step->z[i];
+    }
+}
+
+// Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative.
+static void solve_two(double matrix[RADAU_STAGES][RADAU_STAGES], double x[RADAU_STAGES], double y[RADAU_STAGES]) {
+    for (int k = 0; k < RADAU_STAGES; k++) {
+        const double pivot = 1.0 / matrix[k][k];
+        matrix[k][k] = pivot;
+        for (int i = k + 1; i < RADAU_STAGES; i++) {
+            const double factor = matrix[i][k] * pivot;
+            for (int j = k + 1; j < RADAU_STAGES; j++) {
+                matrix[i][j] -= factor * matrix[k][j];
+            }
+            x[i] -= factor * x[k];
+            y[i] -= factor * y[k];
+        }
+    }
+    for (int k = RADAU_STAGES - 1; k >= 0; k--) {
+        for (int j = k + 1; j < RADAU_STAGES; j++) {
+            x[k] -= matrix[k][j] * x[j];
+            y[k] -= matrix[k][j] * y[j];
+        }
+        x[k] *= matrix[k][k];
+        y[k] *= matrix[k][k];
+    }
+}
+
+void radau_step(const DahlProblem* problem, double t, double h, double sign, RadauStep* step) {
+    evaluate(problem, t, h, sign, step);
+    double matrix[RADAU_STAGES][RADAU_STAGES];
+    memcpy(matrix, RADAU_INVERSE, sizeof matrix);
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        matrix[i][i] += step->z[i];
+        step->relaxed[i] = -step->z[i];
+        step->driven[i] = step->shift[i];
+    }
+    solve_two(matrix, step->relaxed, step->driven);
+}
+
+double radau_impulse_relaxed(const RadauStep* step, double h) {
+    double sum = 0.0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum += RADAU_WEIGHTS[i] * step->sigma[i] * (1.0 + step->relaxed[i]);
+    }
+    return h * sum;
+}
+
+double radau_impulse_driven(const RadauStep* step, double h) {
+    double sum = 0.0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum += RADAU_WEIGHTS[i] * step->sigma[i] * step->driven[i];
+    }
+    return h * sum;
+}
+
+static RadauTail tail_of(const double slope[RADAU_STAGES]) {
+    RadauTail tail;
+    for (int k = 0; k < RADAU_TAIL; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < RADAU_STAGES; i++) {
+            sum += RADAU_LEGENDRE_TAIL[k][i] * slope[i];
+        }
+        tail.coefficient[k] = fabs(sum);
+    }
+    return tail;
+}
+
+RadauTail radau_tail_homogeneous(const RadauStep* step, double u_0) {
+    double slope[RADAU_STAGES];
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        slope[i] = -step->z[i] * (1.0 + step->relaxed[i]) * u_0;
+    }
+    return tail_of(slope);
+}
+
+RadauTail radau_tail_full(const RadauStep* step, double u_0) {
+    double slope[RADAU_STAGES];
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        slope[i] = step->shift[i] - step->z[i] * ((1.0 + step->relaxed[i]) * u_0 + step->driven[i]);
+    }
+    return tail_of(slope);
+}
+
+// Legendre coefficient of degree 8, over 17, of e^(-z (1 - x)) on [0, 1]: e^(-z/2) i_8(z/2), i_n the modified
+// spherical Bessel function; the larger of its expansions at small and at large z, right within a factor of 2.
+static double weight_of_the_defect(double z) {
+    enum { N = RADAU_STAGES - 1 };
+    const double double_factorial = 34459425.0; // 17!!
+    const double x = 0.5 * z;
+    if (x <= 0.0) {
+        return 0.0;
+    }
+    const double x_2 = x * x;
+    const double x_4 = x_2 * x_2;
+    const double small = x < 40.0 ? x_4 * x_4 * exp(-x) / double_factorial * (1.0 + x_2 / (4 * N + 6)) : 0.0;
+    const double large = exp(-N * (N + 1) / (2.0 * x)) / (2.0 * x);
+    return fmax(small, large);
+}
+
+// The collocation polynomial's defect is about (next Legendre coefficient) (P_9 - P_8), which is orthogonal to
+// polynomials of degree 7. The error at the end is the defect weighted with e^-G, G the remaining relaxation: only
+// the parts of e^-G and of the defect's own variation beyond degree 7 count.
+double radau_error(const RadauTail* tail, double z_mean) {
+    const double none = 1e-300;
+    const double* c = tail->coefficient;
+    const double one_degree = c[0] / (c[1] + none);
+    const double two_degrees = sqrt(fmax(c[0] / (c[2] + none), c[1] / (c[3] + none)));
+    const double three_degrees = cbrt(c[0] / (c[3] + none));
+    const double decay = fmin(1.0, fmax(one_degree, fmax(two_degrees, three_degrees)));
+    const double defect = decay * fmax(c[0], decay * fmax(c[1], decay * c[2]));
+    const double decay_2 = decay * decay;
+    const double decay_4 = decay_2 * decay_2;
+    return defect * (weight_of_the_defect(z_mean) + decay_4 * decay_4 / (1.0 + z_mean));
+}
