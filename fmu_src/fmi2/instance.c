@@ -45,16 +45,6 @@ void instance_set_start_values(Instance* instance) {
     }
 }
 
-int instance_initialize_contact(const Instance* instance, FrictionContact* contact, Message* message) {
-    double next_rate[INPUT_COUNT];
-    memcpy(next_rate, instance->contact.state.next_rate, sizeof next_rate);
-    if (!friction_contact_initialize(contact, instance->machine.start_time, message)) {
-        return 0;
-    }
-    memcpy(contact->state.next_rate, next_rate, sizeof next_rate);
-    return 1;
-}
-
 int instance_refresh_outputs(Instance* instance, Message* message) {
     if (!instance->machine.outputs_stale) {
         return 1;
@@ -62,7 +52,7 @@ int instance_refresh_outputs(Instance* instance, Message* message) {
     FrictionContact* contact = &instance->contact;
     if (instance->machine.state == INITIALIZATION_MODE) {
         FrictionContact trial = {.state = contact->state, .cvode = NULL};
-        if (!instance_initialize_contact(instance, &trial, message)) {
+        if (!friction_contact_initialize(&trial, instance->machine.start_time, message)) {
             return 0;
         }
         contact->state = trial.state;

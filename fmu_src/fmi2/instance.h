@@ -38,8 +38,4 @@ void instance_set_start_values(Instance* instance);
 // together.
 int instance_refresh_outputs(Instance* instance, Message* message);
 
-// Starts the contact from the values set. Input derivatives set before the first step stay.
-// Returns 1, or 0 with *message filled and the instance unchanged.
-int instance_initialize_contact(const Instance* instance, FrictionContact* contact, Message* message);
-
 #endif

@@ -151,7 +151,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     }
     Message message;
     friction_contact_free(&instance->contact);
-    if (!instance_initialize_contact(instance, &instance->contact, &message)) {
+    if (!friction_contact_initialize(&instance->contact, instance->machine.start_time, &message)) {
         return refuse(instance, CALL_EXIT_INITIALIZATION_MODE, "%s", message.text);
     }
     instance->machine.state = STEP_COMPLETE;
