@@ -38,7 +38,8 @@ def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path
     """
     if progress is None:
         columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-        with Progress(*columns, console=Console(stderr=True), transient=True) as own:
+        console = Console(stderr=True)
+        with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as own:
             return build_fmu(preset, own)
     folder = presets()[preset]
     task = progress.add_task("Configuring", total=100)
