@@ -278,7 +278,42 @@ BAD_DERIVATIVES = [
     ),
 ]
 
+BAD_DERIVATIVES += [
+    BadCall(
+        "directional derivative of an unknown value reference",
+        "step complete",
+        lambda i: i.call("fmi2GetDirectionalDerivative", _references(99), 1, None, 0, None, (c_double * 1)()),
+        ("value reference 99 is unknown",),
+    ),
+]
+
+
+def _with_saved_state(instance: Instance, function: str, *arguments: object) -> int:
+    state = instance.save()
+    status = instance.call(function, state, *arguments)
+    instance.drop(state)
+    return status
+
+
 OTHERS = [
+    BadCall(
+        "fmi2SerializedFMUstateSize without a place for the size",
+        "step complete",
+        lambda i: _with_saved_state(i, "fmi2SerializedFMUstateSize", None),
+        ("size is NULL",),
+    ),
+    BadCall(
+        "fmi2SerializeFMUstate without a place for the bytes",
+        "step complete",
+        lambda i: _with_saved_state(i, "fmi2SerializeFMUstate", None, 1000),
+        ("serializedState is NULL",),
+    ),
+    BadCall(
+        "fmi2DeSerializeFMUstate without a place for the state",
+        "step complete",
+        lambda i: i.call("fmi2DeSerializeFMUstate", data := i.fingerprint(), len(data), None),
+        ("the pointer to FMUstate is NULL",),
+    ),
     BadCall(
         "unknown log category",
         "step complete",

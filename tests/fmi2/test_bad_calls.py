@@ -57,6 +57,9 @@ def test_values_that_do_not_go_together_are_refused_and_can_be_mended(
     good = instance.get("d")[0]
     assert instance.set({"vibration.a_d": 2 * good}) == OK
     assert instance.step(0.0, 1e-5) == ERROR
+    assert instance.output_rate("F_t")[0] == ERROR
+    assert instance.directional(["F_t"], {"d": 1.0})[0] == ERROR
+    assert "the outputs can't be computed" in instance.last_message.text
     assert re.search(r"\bd\b.*vibration\.a_d|vibration\.a_d.*\bd\b", instance.last_message.text)
     assert instance.set({"vibration.a_d": 0.0}) == OK
     assert instance.step(0.0, 1e-5) == OK
