@@ -20,11 +20,7 @@ static Drive drive_from(const FrictionState* state, double start, const double r
 
 // The problem at the present time, with the rates of the last step or, where they have been set, of the next.
 static DahlProblem problem_now(const FrictionState* state) {
-    double rate[INPUT_COUNT];
-    for (int i = 0; i < INPUT_COUNT; i++) {
-        rate[i] = state->next_rate[i] != 0.0 ? state->next_rate[i] : state->rate[i];
-    }
-    const Drive drive = drive_from(state, state->time, rate);
+    const Drive drive = drive_from(state, state->time, state->next_rate_set ? state->next_rate : state->rate);
     return dahl_problem(&state->variables.contact, &drive, state->variables.F_C);
 }
 
@@ -147,6 +143,7 @@ int friction_contact_advance(FrictionContact* contact, double t, double h, Messa
         next.rate[i] = next.next_rate[i];
         next.next_rate[i] = 0.0;
     }
+    next.next_rate_set = 0;
     FrictionContact after = {.state = next, .cvode = contact->cvode};
     friction_contact_update_outputs(&after);
     v = &after.state.variables;

@@ -45,6 +45,7 @@ typedef struct {
     double time;                   // s, the communication point reached
     double rate[INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[INPUT_COUNT]; // the same for the next step; zero again after it
+    int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
 } FrictionState;
 
 typedef struct {

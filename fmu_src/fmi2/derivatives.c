@@ -47,6 +47,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     }
     for (size_t i = 0; i < nvr; i++) {
         instance->contact.state.next_rate[variable_input(&variables_table[vr[i]])] = value[i];
+        instance->contact.state.next_rate_set = 1;
     }
     return fmi2OK;
 }

@@ -181,7 +181,8 @@ def offsets(library: Library) -> dict[str, int]:
         at += 8 if variable.kind == "Real" else 4
     places["time"] = at
     places["next_rate of V"] = at + 8 * 4
-    places["state"] = at + 8 * 7
+    places["next_rate_set"] = at + 8 * 7
+    places["state"] = places["next_rate_set"] + 4
     places["outputs_stale"] = places["state"] + 4
     places["start_time"] = places["state"] + 16
     return places
@@ -213,6 +214,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
         ("solver.method", struct.pack("<i", -1), "solver.method"),
         ("time", struct.pack("<d", float("nan")), "time"),
         ("next_rate of V", struct.pack("<d", float("inf")), "rate"),
+        ("next_rate_set", struct.pack("<i", 2), "rate"),
         ("state", struct.pack("<i", 1 << 4), "state"),
         ("outputs_stale", struct.pack("<i", 2), "state"),
         ("start_time", struct.pack("<d", float("-inf")), "state"),

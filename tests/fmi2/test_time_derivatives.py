@@ -60,6 +60,17 @@ def test_slope_of_the_force_after_a_step_continues_its_rates(new_instance: Calla
     assert slope != pytest.approx(held, rel=1e-2)
 
 
+def test_a_rate_set_to_zero_ends_the_rates_of_the_last_step(new_instance: Callable[..., Instance]) -> None:
+    instance = soft_instance(new_instance)
+    assert instance.set_input_rates(RATES) == OK
+    assert instance.step(1e-3, 1e-5) == OK
+    held = slope_ahead(instance, 1e-3 + 1e-5, 1e-7, {})
+    assert instance.set_input_rates({"V": 0.0}) == OK
+    status, slope = instance.output_rate("F_t")
+    assert status == OK
+    assert slope == pytest.approx(held, rel=1e-5)
+
+
 def test_slope_sees_an_input_set_since_the_step(new_instance: Callable[..., Instance]) -> None:
     instance = soft_instance(new_instance)
     assert instance.set({"V": -0.02}) == OK
