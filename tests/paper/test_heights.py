@@ -1,0 +1,99 @@
+"""Height statistics: the quadrature against closed forms, the FMU and an independent package."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from frictionlab.heights import (
+    GapError,
+    Surfaces,
+    area,
+    closed_form_area,
+    exponential,
+    height_integral,
+    load,
+    separation,
+    stiffness,
+)
+from frictionlab.scenarios import E_FULL, E_REDUCED
+from frictionlab.simulate import FrictionFmu
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+TABLE_1 = Surfaces()
+
+
+def package_rows() -> list[dict[str, str]]:
+    with (DATA / "gaussian_heights.csv").open() as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+@pytest.mark.parametrize("row", package_rows(), ids=lambda row: row["h"])
+def test_gaussian_integrals_match_contactmechanics(row: dict[str, str]) -> None:
+    for n in ("0", "1", "1.5"):
+        # 1e-11: what the package, which integrates in one piece, leaves
+        assert height_integral(float(row["h"]), float(n)) == pytest.approx(float(row[f"F_{n}"]), abs=1e-11)
+
+
+@pytest.mark.parametrize("h", [0.0, 1.0, 14 / 6, 4.0])
+def test_gaussian_integrals_match_closed_forms(h: float) -> None:
+    tail = 0.5 * math.erfc(h / math.sqrt(2.0))
+    peak = math.exp(-0.5 * h * h) / math.sqrt(2.0 * math.pi)
+    assert height_integral(h, 0.0) == pytest.approx(tail, rel=1e-11)
+    assert height_integral(h, 1.0) == pytest.approx(peak - h * tail, rel=1e-9)
+
+
+@pytest.mark.parametrize("n", [0.0, 1.0, 1.5])
+def test_exponential_integrals_match_gamma_function(n: float) -> None:
+    expected = 17.0 * math.exp(-3.0 * 2.0) * math.gamma(n + 1.0) / 3.0 ** (n + 1.0)
+    assert height_integral(2.0, n, exponential(17.0, 3.0)) == pytest.approx(expected, rel=1e-11)
+
+
+@pytest.mark.parametrize("E", [E_FULL, E_REDUCED, 1e9])
+@pytest.mark.parametrize("d", [6e-6, 14e-6, 20e-6])
+def test_area_by_quadrature_is_the_fmus(fmu: FrictionFmu, d: float, E: float) -> None:
+    with fmu.session({"d": d, "E": E}) as session:
+        A_r, sigma = session.read(["A_r", "sigma"])
+    assert area(TABLE_1, d, E) == pytest.approx(A_r, rel=1e-11)
+    assert stiffness(TABLE_1, d, E) == pytest.approx(sigma, rel=1e-11)
+    assert closed_form_area(TABLE_1, d, E) == pytest.approx(A_r, rel=1e-13)
+
+
+def test_gap_between_the_densities_at_14_um() -> None:
+    gaussian = area(TABLE_1, 14e-6, model="gaussian")
+    assert gaussian == pytest.approx(9.998e-7, rel=1e-4)
+    assert area(TABLE_1, 14e-6) / gaussian == pytest.approx(0.52, abs=0.005)
+    # nearly all asperities yield here, so elastic ones alone touch on half the area (Eq. 8 against Eq. 15)
+    assert area(TABLE_1, 14e-6, model="elastic") / gaussian == pytest.approx(0.5, abs=1e-3)
+
+
+def test_load_of_elastic_gaussian_is_greenwood_williamson() -> None:
+    row = next(row for row in package_rows() if row["h"] == "2.0")
+    s = TABLE_1
+    expected = 4 / 3 * s.eta * s.A_n * E_FULL * math.sqrt(s.R) * s.R_q**1.5 * float(row["F_1.5"])
+    assert load(s, 2.0 * s.R_q, model="elastic") == pytest.approx(expected, rel=1e-7)
+
+
+def test_load_of_exponential_heights_in_closed_form() -> None:
+    """Plastic part by hand; the elastic part lies within its bounds over (0, omega_c)."""
+    s, d = TABLE_1, 14e-6
+    x = s.lambda_ * s.critical_interference(E_FULL) / s.R_q
+    front = s.eta * s.A_n * s.c * math.exp(-s.lambda_ * d / s.R_q)
+    plastic = front * math.pi * s.R * s.R_q * s.yield_pressure * (2.0 + x) * math.exp(-x) / s.lambda_**2
+    hertz = front * 4 / 3 * E_FULL * math.sqrt(s.R) * s.R_q**1.5 * (x / s.lambda_) ** 2.5 / 2.5
+    assert plastic + hertz * math.exp(-x) <= load(s, d) <= plastic + hertz
+    assert hertz < 1e-4 * plastic
+
+
+@pytest.mark.parametrize("model", ["exponential", "gaussian", "elastic"])
+@pytest.mark.parametrize("wanted", [0.1, 40.0, 240.0])
+def test_separation_inverts_load(model: str, wanted: float) -> None:
+    d = separation(TABLE_1, wanted, E_REDUCED, model)
+    assert load(TABLE_1, d, E_REDUCED, model) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_impossible_load_names_its_bound() -> None:
+    with pytest.raises(GapError, match=r"load = 1e\+12 N is out of reach.*3\.41"):
+        separation(TABLE_1, 1e12)
