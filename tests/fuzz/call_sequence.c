@@ -1,0 +1,231 @@
+// Fuzzes sequences of FMI calls, legal or not, with good and bad values, on two instances that exchange states.
+//
+// Each byte of the input is a call or a part of its arguments. After every call:
+//     fmi2OK or fmi2Warning    all variables that can be read are finite numbers
+//     fmi2Error                at least one message, and the state is the one before, to the last bit
+//     anything else            is never returned
+// A step that succeeds is taken back and done again: the bits must be the same.
+#include "host.h"
+
+enum { INSTANCES = 2, SLOTS = 3, CALLS_MOST = 60 };
+
+typedef struct {
+    const uint8_t* at;
+    const uint8_t* end;
+} Bytes;
+
+static unsigned next_byte(Bytes* input) { return input->at < input->end ? *input->at++ : 0; }
+
+static double next_real(Bytes* input) {
+    static const double telling[] = {
+        0.0,    -0.0,   1.0,   -1.0,  0.005,  -0.005, 14e-6,  20e-6,  1e-6, 1e-12, 1e-9,   1e-7,
+        5e-5,   1e-4,   1e-3,  0.01,  0.5,    2.0,    55.0,   1e3,    2e4,  1e6,   2.5e6,  58e9,
+        1e9,    1e12,   1e100, 1e300, -1e300, 1e-300, 5e-324, 1.7e-5, 0.44, 3.0,   1.5707, 1.7976931348623157e308};
+    const unsigned count = sizeof telling / sizeof *telling;
+    const unsigned choice = next_byte(input) % (count + 8);
+    if (choice < count) {
+        return telling[choice];
+    }
+    switch (choice - count) {
+    case 0:
+        return (double)NAN;
+    case 1:
+        return (double)INFINITY;
+    case 2:
+        return -(double)INFINITY;
+    case 3: {
+        double value = 0.0;
+        for (size_t i = 0; i < sizeof value; i++) {
+            ((unsigned char*)&value)[i] = (unsigned char)next_byte(input);
+        }
+        return value;
+    }
+    default:
+        return 1e-3 * (double)(next_byte(input) * 256 + next_byte(input)) - 20.0;
+    }
+}
+
+static fmi2ValueReference next_reference(Bytes* input) {
+    const unsigned byte = next_byte(input);
+    return byte < 250 ? byte % variables_count : byte == 250 ? 4294967295u : byte;
+}
+
+typedef struct {
+    fmi2Component instance[INSTANCES];
+    fmi2FMUstate slot[SLOTS];
+    double time; // s, of the last step done
+} Bench;
+
+static fmi2Status step(Bytes* input, Bench* bench, fmi2Component c) {
+    const unsigned how = next_byte(input) % 8;
+    const double h = next_real(input);
+    double reached = 0.0;
+    fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &reached);
+    const double t = how == 0 ? next_real(input) : how == 1 ? bench->time : reached;
+    if (!is_short_work(c, h)) {
+        return fmi2OK;
+    }
+    fmi2FMUstate before = NULL;
+    HOLD(fmi2GetFMUstate(c, &before) == fmi2OK, "a state can be saved");
+    const fmi2Status status = fmi2DoStep(c, t, h, fmi2True);
+    if (status == fmi2OK) {
+        bench->time = t + h;
+        const StateBytes first = state_of(c);
+        HOLD(fmi2SetFMUstate(c, before) == fmi2OK, "the step can be taken back");
+        HOLD(fmi2DoStep(c, t, h, fmi2True) == fmi2OK, "and done again");
+        const StateBytes second = state_of(c);
+        HOLD(same_state(&first, &second), "a step done again gives the same bits");
+        HOLD(fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &reached) == fmi2OK && reached == t + h,
+             "the step ends at t + h");
+    }
+    HOLD(fmi2FreeFMUstate(c, &before) == fmi2OK, "a saved state can be freed");
+    return status;
+}
+
+static fmi2Status set_reals(Bytes* input, fmi2Component c) {
+    fmi2ValueReference vr[3];
+    double value[3];
+    const size_t count = next_byte(input) % 4;
+    for (size_t i = 0; i < count; i++) {
+        vr[i] = next_reference(input);
+        value[i] = next_real(input);
+    }
+    return fmi2SetReal(c, vr, count, value);
+}
+
+static fmi2Status directional(Bytes* input, fmi2Component c) {
+    const fmi2ValueReference unknown = next_reference(input);
+    const fmi2ValueReference known = next_reference(input);
+    const double direction = next_real(input);
+    double slope = 0.0;
+    const fmi2Status status = fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &direction, &slope);
+    HOLD(status != fmi2OK || !isnan(slope) || !(fabs(direction) < 1e100), "a directional derivative is a number");
+    return status;
+}
+
+static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
+    char bytes[STATE_SIZE_MOST];
+    size_t size = 0;
+    const unsigned slot = next_byte(input) % SLOTS;
+    if (!bench->slot[slot] || fmi2SerializedFMUstateSize(c, bench->slot[slot], &size) != fmi2OK) {
+        return fmi2OK;
+    }
+    HOLD(fmi2SerializeFMUstate(c, bench->slot[slot], bytes, size) == fmi2OK, "a state can be written");
+    const unsigned damage = next_byte(input);
+    const unsigned place = next_byte(input) * 2;
+    if (damage && place < size) {
+        bytes[place] = (char)(bytes[place] ^ (int)damage);
+    }
+    fmi2FMUstate* into = &bench->slot[next_byte(input) % SLOTS];
+    const fmi2Status status = fmi2DeSerializeFMUstate(c, bytes, size, into);
+    HOLD((status == fmi2OK) == !(damage && place < size), "damaged bytes are refused, others are not");
+    return status;
+}
+
+static fmi2Status call(Bytes* input, Bench* bench, fmi2Component* place) {
+    fmi2Component c = *place;
+    const unsigned function = next_byte(input) % 32;
+    fmi2ValueReference vr = 0;
+    double real = 0.0;
+    int integer = 0;
+    switch (function) {
+    case 0:
+        return fmi2SetupExperiment(c, (int)(next_byte(input) % 2), next_real(input), next_real(input),
+                                   (int)(next_byte(input) % 2), next_real(input));
+    case 1:
+        return fmi2EnterInitializationMode(c);
+    case 2:
+        return fmi2ExitInitializationMode(c);
+    case 3:
+        return fmi2Terminate(c);
+    case 4:
+        return fmi2Reset(c);
+    case 5:
+        fmi2FreeInstance(c);
+        *place = instantiate();
+        return fmi2OK;
+    case 6:
+        vr = next_reference(input);
+        return fmi2GetReal(c, &vr, 1, &real);
+    case 7:
+        vr = next_reference(input);
+        return fmi2GetInteger(c, &vr, 1, &integer);
+    case 8:
+        vr = next_reference(input);
+        integer = (int)next_byte(input) - 2;
+        return fmi2SetInteger(c, &vr, 1, &integer);
+    case 9:
+        vr = reference_of(offsetof(Variables, solver.method));
+        integer = (int)(next_byte(input) % 8);
+        return fmi2SetInteger(c, &vr, 1, &integer);
+    case 10:
+    case 11:
+        return fmi2GetFMUstate(c, &bench->slot[next_byte(input) % SLOTS]);
+    case 12:
+    case 13:
+        return fmi2SetFMUstate(c, bench->slot[next_byte(input) % SLOTS]);
+    case 14:
+        return fmi2FreeFMUstate(c, &bench->slot[next_byte(input) % SLOTS]);
+    case 15:
+        return carry_state(input, bench, c);
+    case 16:
+        return directional(input, c);
+    case 17:
+        vr = next_reference(input);
+        integer = (int)(next_byte(input) % 3);
+        return fmi2GetRealOutputDerivatives(c, &vr, 1, &integer, &real);
+    case 18:
+    case 19:
+        vr = next_byte(input) % 4;
+        integer = next_byte(input) % 16 ? 1 : 2;
+        real = next_real(input);
+        return fmi2SetRealInputDerivatives(c, &vr, 1, &integer, &real);
+    case 20: {
+        const fmi2String categories[] = {"logEvents", "logStatusError", "logNothing", NULL};
+        return fmi2SetDebugLogging(c, (int)(next_byte(input) % 2), next_byte(input) % 5 % 4,
+                                   categories + next_byte(input) % 2);
+    }
+    case 21:
+        return fmi2GetRealStatus(c, (fmi2StatusKind)(next_byte(input) % 5), &real);
+    case 22:
+        return fmi2GetBooleanStatus(c, (fmi2StatusKind)(next_byte(input) % 5), &integer);
+    case 23:
+        return fmi2CancelStep(c);
+    case 24:
+        return fmi2SetTime(c, next_real(input));
+    case 25:
+    case 26:
+    case 27:
+        return set_reals(input, c);
+    default:
+        return step(input, bench, c);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    Bytes input = {data, data + size};
+    Bench bench = {.instance = {instantiate(), instantiate()}};
+    for (int calls = 0; input.at < input.end && calls < CALLS_MOST; calls++) {
+        fmi2Component* place = &bench.instance[*input.at < 128 ? 0 : 1];
+        const StateBytes before = state_of(*place);
+        messages = 0;
+        const fmi2Status status = call(&input, &bench, place);
+        HOLD(status == fmi2OK || status == fmi2Warning || status == fmi2Error, "the status is one of three");
+        if (status == fmi2Error) {
+            const StateBytes after = state_of(*place);
+            HOLD(messages > 0, "an error comes with a message");
+            HOLD(same_state(&before, &after), "an error changes nothing");
+        } else {
+            check_outputs(*place);
+        }
+    }
+    for (int i = 0; i < SLOTS; i++) {
+        HOLD(fmi2FreeFMUstate(bench.instance[0], &bench.slot[i]) == fmi2OK, "a slot can be freed");
+    }
+    for (int i = 0; i < INSTANCES; i++) {
+        fmi2FreeInstance(bench.instance[i]);
+    }
+    return 0;
+}

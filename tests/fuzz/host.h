@@ -1,0 +1,111 @@
+// What both fuzzers share: a host that counts the log, and rules that hold after every call.
+#ifndef FC_FUZZ_HOST_H
+#define FC_FUZZ_HOST_H
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmi2/variables.h"
+#include "fmi2Functions.h"
+#include "friction_contact.h"
+
+#define STATE_SIZE_MOST 1024
+
+typedef struct {
+    size_t size;
+    char bytes[STATE_SIZE_MOST];
+} StateBytes;
+
+// A rule that does not hold is a finding: the fuzzer keeps the input.
+#define HOLD(rule, text)                                                                                     \
+    do {                                                                                                     \
+        if (!(rule)) {                                                                                       \
+            fprintf(stderr, "%s:%d: broken: %s\n", __FILE__, __LINE__, text);                                \
+            abort();                                                                                         \
+        }                                                                                                    \
+    } while (0)
+
+static int messages;
+
+static void count_message(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
+                          fmi2String category, fmi2String text, ...) {
+    (void)environment, (void)status;
+    HOLD(name && category && text && strlen(text) < 512, "a message has a name, a category and a short text");
+    messages++;
+}
+
+static const fmi2CallbackFunctions callbacks = {count_message, calloc, free, NULL, NULL};
+
+static fmi2Component instantiate(void) {
+    fmi2Component c =
+        fmi2Instantiate("fuzzed", fmi2CoSimulation, variables_guid, NULL, &callbacks, fmi2False, fmi2True);
+    HOLD(c, "instantiation succeeds");
+    return c;
+}
+
+// All that the instance will do depends on these bytes.
+static StateBytes state_of(fmi2Component c) {
+    StateBytes state = {0};
+    fmi2FMUstate saved = NULL;
+    HOLD(fmi2GetFMUstate(c, &saved) == fmi2OK, "a state can be saved");
+    HOLD(fmi2SerializedFMUstateSize(c, saved, &state.size) == fmi2OK && state.size <= sizeof state.bytes,
+         "its size is known");
+    HOLD(fmi2SerializeFMUstate(c, saved, state.bytes, state.size) == fmi2OK, "it can be written");
+    HOLD(fmi2FreeFMUstate(c, &saved) == fmi2OK && !saved, "it can be freed");
+    return state;
+}
+
+static int same_state(const StateBytes* a, const StateBytes* b) {
+    return a->size == b->size && memcmp(a->bytes, b->bytes, a->size) == 0;
+}
+
+static fmi2ValueReference reference_of(size_t offset) {
+    fmi2ValueReference vr = 0;
+    while (variables_table[vr].offset != offset) {
+        vr++;
+    }
+    return vr;
+}
+
+// Whether a step is short work: the slow methods and moving inputs under vibration take a time in proportion to h.
+// A step that is refused anyway is.
+static int is_short_work(fmi2Component c, double h) {
+    const fmi2ValueReference reals[] = {
+        reference_of(offsetof(Variables, vibration.f)), reference_of(offsetof(Variables, vibration.V_1)),
+        reference_of(offsetof(Variables, vibration.a_d)), reference_of(offsetof(Variables, solver.stepSize))};
+    const fmi2ValueReference method_reference = reference_of(offsetof(Variables, solver.method));
+    double value[4];
+    int method;
+    if (fmi2GetReal(c, reals, 4, value) != fmi2OK || fmi2GetInteger(c, &method_reference, 1, &method) != fmi2OK) {
+        return 1;
+    }
+    const int vibrates = value[1] != 0.0 || value[2] != 0.0;
+    const double periods = vibrates ? h * value[0] : 0.0;
+    if (method >= METHOD_BACKWARD_EULER) {
+        return !(h / value[3] > 2000.0) && !(periods > 2000.0);
+    }
+    return !(periods > (method == METHOD_CVODE ? 5.0 : 30.0));
+}
+
+static void check_outputs(fmi2Component c) {
+    fmi2ValueReference vr[64];
+    double value[64];
+    size_t count = 0;
+    for (unsigned i = 0; i < variables_count && count < 64; i++) {
+        if (variables_table[i].type == TYPE_REAL) {
+            vr[count++] = i;
+        }
+    }
+    if (fmi2GetReal(c, vr, count, value) != fmi2OK) {
+        return; // not in this state, or the values set do not go together: the message says so
+    }
+    for (size_t i = 0; i < count; i++) {
+        HOLD(isfinite(value[i]), variables_table[vr[i]].name);
+    }
+}
+
+#endif

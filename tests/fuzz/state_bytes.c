@@ -1,0 +1,77 @@
+// Fuzzes fmi2DeSerializeFMUstate, and what an instance does with a state that it accepts.
+//
+// First byte even: the rest is given as it is. Odd: the rest becomes the values of a state that is sealed with a
+// right header and checksum, so that the values themselves are tried.
+//     refused     a message, no state, and the instance as before
+//     accepted    written again, the same bytes; the instance runs on, is saved and freed
+#include "host.h"
+
+enum { HEADER_SIZE = 54, HASH_SIZE = 8 };
+
+static uint64_t fnv1a(const char* bytes, size_t size) {
+    uint64_t hash = 14695981039346656037u;
+    for (size_t i = 0; i < size; i++) {
+        hash = (hash ^ (unsigned char)bytes[i]) * 1099511628211u;
+    }
+    return hash;
+}
+
+// The state of an initialized instance with the values replaced, as far as there are bytes for them.
+static StateBytes sealed(fmi2Component c, const uint8_t* values, size_t count) {
+    StateBytes state = state_of(c);
+    const size_t room = state.size - HEADER_SIZE - HASH_SIZE;
+    memcpy(state.bytes + HEADER_SIZE, values, count < room ? count : room);
+    const uint64_t hash = fnv1a(state.bytes, state.size - HASH_SIZE);
+    for (unsigned i = 0; i < HASH_SIZE; i++) {
+        state.bytes[state.size - HASH_SIZE + i] = (char)(unsigned char)(hash >> (8 * i));
+    }
+    return state;
+}
+
+static void use(fmi2Component c) {
+    check_outputs(c);
+    double t = 0.0;
+    double slope = 0.0;
+    const fmi2ValueReference F_t = reference_of(offsetof(Variables, F_t));
+    const fmi2Integer first = 1;
+    if (fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &t) == fmi2OK && is_short_work(c, 1e-5)) {
+        fmi2DoStep(c, t, 1e-5, fmi2True);
+        fmi2GetRealOutputDerivatives(c, &F_t, 1, &first, &slope);
+    }
+    fmi2EnterInitializationMode(c);
+    fmi2ExitInitializationMode(c);
+    check_outputs(c);
+    fmi2Terminate(c);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    if (size == 0) {
+        return 0;
+    }
+    fmi2Component c = instantiate();
+    HOLD(fmi2EnterInitializationMode(c) == fmi2OK && fmi2ExitInitializationMode(c) == fmi2OK, "it initializes");
+    const StateBytes before = state_of(c);
+    const StateBytes made = data[0] % 2 ? sealed(c, data + 1, size - 1) : (StateBytes){0};
+    const char* bytes = data[0] % 2 ? made.bytes : (const char*)data + 1;
+    const size_t count = data[0] % 2 ? made.size : size - 1;
+
+    messages = 0;
+    fmi2FMUstate state = NULL;
+    const fmi2Status status = fmi2DeSerializeFMUstate(c, bytes, count, &state);
+    if (status == fmi2OK) {
+        char again[STATE_SIZE_MOST];
+        HOLD(state && fmi2SerializeFMUstate(c, state, again, sizeof again) == fmi2OK, "it can be written");
+        HOLD(memcmp(again, bytes, count) == 0, "an accepted state is written as it was read");
+        HOLD(fmi2SetFMUstate(c, state) == fmi2OK, "an accepted state can be set");
+        use(c);
+    } else {
+        const StateBytes after = state_of(c);
+        HOLD(status == fmi2Error && messages == 1 && !state, "a refusal is an error with a message");
+        HOLD(same_state(&before, &after), "a refusal changes nothing");
+    }
+    HOLD(fmi2FreeFMUstate(c, &state) == fmi2OK, "the state can be freed");
+    fmi2FreeInstance(c);
+    return 0;
+}
