@@ -21,7 +21,7 @@ static const double SAFETY = 0.1;
 static const double ORDER = 12.0;
 // Steps are at most resolution * this, in the time over which the logarithm of sigma or the phase moves by 1.
 static const double SMOOTH_STEP = 2.0;
-static const double SMALLEST_RESOLUTION = 0.02;
+static const double SMALLEST_RESOLUTION = 0.05;
 // sigma itself must stay resolved where nothing relaxes and no error is seen.
 static const double LARGEST_RESOLUTION = 3.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
@@ -65,20 +65,24 @@ static double smooth_time(const DahlProblem* problem, double h) {
     return 1.0 / rate;
 }
 
-static double largest_stiffness(const DahlProblem* problem, double h) {
-    const ContactAtModulus stiffest =
-        contact_at_modulus(&problem->contact, drive_largest_E(&problem->drive, h));
-    return contact_stiffness(&stiffest, drive_smallest_d(&problem->drive, h));
-}
+// A stretch of time on which V keeps its sign, and the events on both sides that its steps are graded towards. The
+// event ahead may lie beyond the end.
+typedef struct {
+    double start, end; // s
+    double event;      // s, at or beyond the end; infinite if there is none
+    double w_a, w_b;   // s, layers at the start and at the event
+} Stretch;
 
-// Step [s] at t between the events at start and end with the layers w_a and w_b.
-static double graded_step(const Progress* progress, double t, double start, double end, double w_a, double w_b) {
+// Length [s] of the step at t.
+static double graded_step(const Progress* progress, const Stretch* stretch, double t) {
     const double resolution = progress->resolution;
+    const double end = stretch->end;
     const double left = end - t;
-    const double after = resolution * (t - start + w_a);
-    const double before = resolution / (1.0 + resolution) * (left + w_b);
+    const double after = resolution * (t - stretch->start + stretch->w_a);
+    const double before = resolution / (1.0 + resolution) * (stretch->event - t + stretch->w_b);
     const double smallest = 4e-16 * end; // below this t + h would not move
-    const double h = fmax(smallest, fmin(resolution * SMOOTH_STEP * progress->smooth_time, fmin(after, before)));
+    const double h =
+        fmax(smallest, fmin(resolution * SMOOTH_STEP * progress->smooth_time, fmin(after, before)));
     if (h >= left / 1.1) {
         return left;
     }
@@ -107,14 +111,15 @@ static void accept(Progress* progress, const RadauStep* step, double h) {
     map->offset += Q * step->relaxed[RADAU_STAGES - 1] + step->driven[RADAU_STAGES - 1];
 }
 
-// From one event to the next: V keeps its sign.
-static void cross(Progress* progress, const DahlProblem* problem, double start, double end, double w_a, double w_b) {
+static void cross(Progress* progress, const DahlProblem* problem, const Stretch* stretch) {
+    const double start = stretch->start;
+    const double end = stretch->end;
     const double V_middle = drive_V(&problem->drive, 0.5 * (start + end));
     const double sign = V_middle > 0.0 ? 1.0 : V_middle < 0.0 ? -1.0 : 0.0;
     const DahlMap before = progress->map;
     double t = start;
     while (t < end) {
-        const double h = graded_step(progress, t, start, end, w_a, w_b);
+        const double h = graded_step(progress, stretch, t);
         RadauStep step;
         radau_step(problem, t, h, sign, &step);
         progress->evaluations += RADAU_STAGES;
@@ -126,7 +131,8 @@ static void cross(Progress* progress, const DahlProblem* problem, double start, 
             progress->resolution *= fmin(0.95 * change, 0.8);
             continue;
         }
-        progress->resolution = fmin(LARGEST_RESOLUTION, progress->resolution * change);
+        progress->resolution =
+            fmax(SMALLEST_RESOLUTION, fmin(LARGEST_RESOLUTION, progress->resolution * change));
         accept(progress, &step, h);
         t = h < end - t ? t + h : end;
     }
@@ -147,7 +153,7 @@ static DahlMap slack_map(const DahlProblem* problem, double h) {
 static DahlMap collocation_interval(const DahlProblem* problem, const SolverOptions* options, double duration,
                                     double delta_0, double* evaluations) {
     const Drive* drive = &problem->drive;
-    const double saturated = problem->F_C / largest_stiffness(problem, duration);
+    const double saturated = problem->F_C / dahl_largest_stiffness(problem, duration);
     if (!isfinite(saturated)) {
         return slack_map(problem, duration);
     }
@@ -158,17 +164,20 @@ static DahlMap collocation_interval(const DahlProblem* problem, const SolverOpti
         .delta_scale = fmax(fabs(delta_0), problem->F_C / dahl_stiffness(problem, 0.0)),
         .delta_tolerance = options->tolerance * saturated,
     };
-    double start = 0.0;
-    double w_a = relaxation_layer(problem, start);
-    while (start < duration) {
-        const DriveEvent event = drive_next_event(drive, start, duration);
-        double w_b = INFINITY; // nothing ahead
-        if (event.time < duration) {
-            w_b = event.reversal ? relaxation_layer(problem, event.time) : dip_layer(problem, event.time);
+    Stretch stretch = {.w_a = relaxation_layer(problem, 0.0)};
+    while (stretch.start < duration) {
+        // An event farther beyond the end than the end is from here does not shape the steps.
+        const double horizon = duration + (duration - stretch.start);
+        const DriveEvent event = drive_next_event(drive, stretch.start, horizon);
+        stretch.event = event.time < horizon ? event.time : INFINITY;
+        stretch.end = fmin(event.time, duration);
+        if (event.time < horizon) {
+            stretch.w_b =
+                event.reversal ? relaxation_layer(problem, stretch.end) : dip_layer(problem, stretch.end);
         }
-        cross(&progress, problem, start, event.time, w_a, w_b);
-        start = event.time;
-        w_a = w_b;
+        cross(&progress, problem, &stretch);
+        stretch.start = stretch.end;
+        stretch.w_a = stretch.w_b;
     }
     *evaluations += progress.evaluations;
     return progress.map;

@@ -22,18 +22,19 @@ ContactAtModulus contact_at_modulus(const ContactParameters* p, double E) {
     return at;
 }
 
-double contact_area(const ContactAtModulus* c, double d) { return c->area_0 * exp(-c->decay * d); }
+ContactState contact_state(const ContactAtModulus* c, double d) {
+    const double e = exp(-c->decay * d);
+    return (ContactState){.sigma = c->constant ? c->stiffness_0 : c->stiffness_0 * (e * e) / (d * d * d),
+                          .A_r = c->area_0 * e};
+}
 
 double contact_stiffness(const ContactAtModulus* c, double d) {
-    if (c->constant) {
-        return c->stiffness_0;
-    }
-    return c->stiffness_0 * exp(-2.0 * c->decay * d) / (d * d * d);
+    return c->constant ? c->stiffness_0 : contact_state(c, d).sigma;
 }
 
 ContactGradient contact_area_gradient(const ContactParameters* p, double d, double E) {
     const ContactAtModulus at = contact_at_modulus(p, E);
-    const double A_r = contact_area(&at, d);
+    const double A_r = contact_state(&at, d).A_r;
     // x ~ E^-2, so d(1 + e^-x)/dE = 2 x e^-x / E.
     const double x = p->lambda * critical_interference(p, E) / p->R_q;
     const double e = exp(-x);
@@ -46,10 +47,9 @@ ContactGradient contact_stiffness_gradient(const ContactParameters* p, double d,
         return (ContactGradient){0.0, 0.0};
     }
     const ContactAtModulus at = contact_at_modulus(p, E);
-    const double sigma = contact_stiffness(&at, d);
-    const double A_r = contact_area(&at, d);
+    const ContactState now = contact_state(&at, d);
     const double area_by_E = contact_area_gradient(p, d, E).by_E;
-    const double log_area_slope = A_r > 0.0 ? area_by_E / A_r : 0.0;
-    return (ContactGradient){.by_d = -sigma * (2.0 * at.decay + 3.0 / d),
-                             .by_E = sigma * (1.0 / E + 2.0 * log_area_slope)};
+    const double log_area_slope = now.A_r > 0.0 ? area_by_E / now.A_r : 0.0;
+    return (ContactGradient){.by_d = -now.sigma * (2.0 * at.decay + 3.0 / d),
+                             .by_E = now.sigma * (1.0 / E + 2.0 * log_area_slope)};
 }

@@ -38,6 +38,11 @@ typedef struct {
     int constant;       // stiffness does not depend on d
 } ContactAtModulus;
 
+typedef struct {
+    double sigma; // N/m
+    double A_r;   // m2
+} ContactState;
+
 // Partial derivatives of one quantity q with respect to the separation and the modulus.
 typedef struct {
     double by_d; // [q]/m
@@ -47,9 +52,9 @@ typedef struct {
 // E [Pa] > 0.
 ContactAtModulus contact_at_modulus(const ContactParameters* p, double E);
 
-// sigma [N/m] and A_r [m2] at separation d [m] > 0.
+// At separation d [m] > 0: both, or the stiffness sigma [N/m] alone.
+ContactState contact_state(const ContactAtModulus* c, double d);
 double contact_stiffness(const ContactAtModulus* c, double d);
-double contact_area(const ContactAtModulus* c, double d);
 
 // Exact derivatives of sigma and A_r at d [m] > 0 and E [Pa] > 0.
 ContactGradient contact_stiffness_gradient(const ContactParameters* p, double d, double E);

@@ -165,10 +165,8 @@ static int failed(const CvodeSolver* solver, double tau, double h, const char* r
 
 // The deflection's scale over a step of h [s] from delta_0, see the head of this file.
 static double deflection_scale(const DahlProblem* problem, double h, double delta_0) {
-    const Drive* drive = &problem->drive;
-    const ContactAtModulus stiffest = contact_at_modulus(&problem->contact, drive_largest_E(drive, h));
-    const double saturated = problem->F_C / contact_stiffness(&stiffest, drive_smallest_d(drive, h));
-    const double moved = fabs(delta_0) + drive_largest_speed(drive, h) * h;
+    const double saturated = problem->F_C / dahl_largest_stiffness(problem, h);
+    const double moved = fabs(delta_0) + drive_largest_speed(&problem->drive, h) * h;
     const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
     return isfinite(L) && L > 0.0 ? L : 1.0;
 }

@@ -4,16 +4,31 @@
 
 DahlProblem dahl_problem(const ContactParameters* contact, const Drive* drive, double F_C) {
     return (DahlProblem){
-        .contact = *contact, .at_E = contact_at_modulus(contact, drive->E.value), .drive = *drive, .F_C = F_C};
+        .contact = contact, .at_E = contact_at_modulus(contact, drive->E.value), .drive = *drive, .F_C = F_C};
+}
+
+static ContactAtModulus contact_at(const DahlProblem* problem, double t) {
+    const Drive* drive = &problem->drive;
+    return drive->E.rate == 0.0 ? problem->at_E : contact_at_modulus(problem->contact, drive_E(drive, t));
+}
+
+ContactState dahl_contact_state(const DahlProblem* problem, double t) {
+    const ContactAtModulus at_E = contact_at(problem, t);
+    return contact_state(&at_E, drive_d(&problem->drive, t));
 }
 
 double dahl_stiffness(const DahlProblem* problem, double t) {
-    const Drive* drive = &problem->drive;
-    if (drive->E.rate != 0.0) {
-        const ContactAtModulus at_E = contact_at_modulus(&problem->contact, drive_E(drive, t));
-        return contact_stiffness(&at_E, drive_d(drive, t));
+    if (problem->at_E.constant) {
+        return problem->at_E.stiffness_0;
     }
-    return contact_stiffness(&problem->at_E, drive_d(drive, t));
+    const ContactAtModulus at_E = contact_at(problem, t);
+    return contact_stiffness(&at_E, drive_d(&problem->drive, t));
+}
+
+double dahl_largest_stiffness(const DahlProblem* problem, double h) {
+    const Drive* drive = &problem->drive;
+    const ContactAtModulus stiffest = contact_at_modulus(problem->contact, drive_largest_E(drive, h));
+    return contact_stiffness(&stiffest, drive_smallest_d(drive, h));
 }
 
 DahlMap dahl_identity(void) { return (DahlMap){0}; }
@@ -25,7 +40,8 @@ DahlMap dahl_compose(const DahlMap* first, const DahlMap* second) {
         .relaxation = first->relaxation + kept * second->relaxation,
         .offset = first->offset - second->relaxation * first->offset + second->offset,
         .impulse_slope = first->impulse_slope + second->impulse_slope * kept,
-        .impulse_offset = first->impulse_offset + second->impulse_slope * first->offset + second->impulse_offset,
+        .impulse_offset =
+            first->impulse_offset + second->impulse_slope * first->offset + second->impulse_offset,
         .work_slope = first->work_slope + second->work_slope * kept,
         .work_offset = first->work_offset + second->work_slope * first->offset + second->work_offset,
     };

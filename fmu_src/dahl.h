@@ -11,15 +11,19 @@
 #include "drive.h"
 
 typedef struct {
-    ContactParameters contact;
+    const ContactParameters* contact;
     ContactAtModulus at_E; // contact at the modulus of the start of the step
     Drive drive;
     double F_C; // N
 } DahlProblem;
 
+// Keeps the pointer to the parameters of the contact.
 DahlProblem dahl_problem(const ContactParameters* contact, const Drive* drive, double F_C);
 
-double dahl_stiffness(const DahlProblem* problem, double t); // sigma(t) [N/m]
+// sigma and A_r at the local time t [s]; sigma [N/m] alone; an upper bound of sigma [N/m] over [0, h].
+ContactState dahl_contact_state(const DahlProblem* problem, double t);
+double dahl_stiffness(const DahlProblem* problem, double t);
+double dahl_largest_stiffness(const DahlProblem* problem, double h);
 
 typedef struct {
     double relaxation;     // 1      delta_1 = (1 - relaxation) delta_0 + offset

@@ -16,15 +16,14 @@ static double phase_in_cycles(double f, double t) {
     return fraction < 1.0 ? fraction : 0.0;
 }
 
-Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibration, double start) {
-    return (Drive){
-        .V = V,
-        .d = d,
-        .E = E,
-        .vibration = vibration,
-        .omega = FC_TWO_PI * vibration.f,
-        .theta_0 = FC_TWO_PI * phase_in_cycles(vibration.f, start),
-    };
+Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibration, double start,
+                 double rest) {
+    Drive drive = {.V = V, .d = d, .E = E, .vibration = vibration};
+    if (drive_vibrates(&drive)) {
+        drive.omega = FC_TWO_PI * vibration.f;
+        drive.theta_0 = FC_TWO_PI * (phase_in_cycles(vibration.f, start) + vibration.f * rest);
+    }
+    return drive;
 }
 
 int drive_vibrates(const Drive* drive) { return drive->vibration.V_1 != 0.0 || drive->vibration.a_d != 0.0; }
@@ -58,7 +57,8 @@ double drive_V_rate(const Drive* drive, double t) {
 }
 
 double drive_d_rate(const Drive* drive, double t) {
-    return drive->d.rate - drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);
+    return drive->d.rate -
+           drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);
 }
 
 double drive_smallest_d(const Drive* drive, double h) {

@@ -27,24 +27,24 @@ typedef struct {
     LinearInput E; // Pa
     Vibration vibration;
     double omega;   // rad/s
-    double theta_0; // rad, phase at local time 0, in [0, 2 pi)
+    double theta_0; // rad, phase at local time 0
 } Drive;
 
-// The drive of a step that starts at the absolute time start [s].
-Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibration, double start);
+// The drive of a step that starts at the absolute time start + rest [s], rest being what rounding cut off start.
+Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibration, double start, double rest);
 
 int drive_vibrates(const Drive* drive);  // an amplitude is not zero
 int drive_is_linear(const Drive* drive); // a rate is not zero
 int drive_is_constant(const Drive* drive);
 
-double drive_V(const Drive* drive, double t);            // m/s
-double drive_d(const Drive* drive, double t);            // m
-double drive_E(const Drive* drive, double t);            // Pa
-double drive_V_rate(const Drive* drive, double t);       // m/s2
-double drive_d_rate(const Drive* drive, double t);       // m/s
-double drive_smallest_d(const Drive* drive, double h);   // lower bound of d over [0, h]
-double drive_smallest_E(const Drive* drive, double h);   // lower bound of E over [0, h]
-double drive_largest_E(const Drive* drive, double h);    // upper bound of E over [0, h]
+double drive_V(const Drive* drive, double t);             // m/s
+double drive_d(const Drive* drive, double t);             // m
+double drive_E(const Drive* drive, double t);             // Pa
+double drive_V_rate(const Drive* drive, double t);        // m/s2
+double drive_d_rate(const Drive* drive, double t);        // m/s
+double drive_smallest_d(const Drive* drive, double h);    // lower bound of d over [0, h]
+double drive_smallest_E(const Drive* drive, double h);    // lower bound of E over [0, h]
+double drive_largest_E(const Drive* drive, double h);     // upper bound of E over [0, h]
 double drive_largest_speed(const Drive* drive, double h); // upper bound of |V| over [0, h]
 
 // integral of V over [t0, t1] [m], exact.

@@ -79,10 +79,7 @@ static Integrals rk4(Integrals y, double h, const Coefficients* start, const Coe
 
 // sigma(t) |V(t)| over [0, h] is at most this [N/s]: the product of the two largest values.
 static double power_bound(const DahlProblem* problem, double h) {
-    const ContactAtModulus stiffest =
-        contact_at_modulus(&problem->contact, drive_largest_E(&problem->drive, h));
-    return contact_stiffness(&stiffest, drive_smallest_d(&problem->drive, h)) *
-           drive_largest_speed(&problem->drive, h);
+    return dahl_largest_stiffness(problem, h) * drive_largest_speed(&problem->drive, h);
 }
 
 // The largest sigma(t) |V(t)| over [0, h] [N/s], sampled; the bound where that would take too many samples.

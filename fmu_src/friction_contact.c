@@ -11,16 +11,18 @@ static int fail(Message* message, const char* format, double a, double b, double
     return 0;
 }
 
-// The drive of a step from the absolute time start on, the inputs moving at these rates.
-static Drive drive_from(const FrictionState* state, double start, const double rate[INPUT_COUNT]) {
+// The drive from the absolute time start + rest on, the inputs moving at these rates.
+static Drive drive_from(const FrictionState* state, double start, double rest,
+                        const double rate[INPUT_COUNT]) {
     const Variables* v = &state->variables;
     return drive_make((LinearInput){v->V, rate[INPUT_V]}, (LinearInput){v->d, rate[INPUT_D]},
-                      (LinearInput){v->E, rate[INPUT_E]}, v->vibration, start);
+                      (LinearInput){v->E, rate[INPUT_E]}, v->vibration, start, rest);
 }
 
 // The problem at the present time, with the rates of the last step or, where they have been set, of the next.
 static DahlProblem problem_now(const FrictionState* state) {
-    const Drive drive = drive_from(state, state->time, state->next_rate_set ? state->next_rate : state->rate);
+    const Drive drive = drive_from(state, state->time, state->time_rest,
+                                   state->next_rate_set ? state->next_rate : state->rate);
     return dahl_problem(&state->variables.contact, &drive, state->variables.F_C);
 }
 
@@ -31,21 +33,23 @@ static int check_drive(const DahlProblem* problem, double h, Message* message) {
     const double a_d = drive->vibration.a_d;
     if (!(d > 0.0)) {
         return drive->d.rate == 0.0
-                   ? fail(message, "vibration.a_d = %.9g m must be below d = %.9g m: the separation d - a_d must stay "
-                                   "above 0 m",
+                   ? fail(message,
+                          "vibration.a_d = %.9g m must be below d = %.9g m: the separation d - a_d must stay "
+                          "above 0 m",
                           a_d, drive->d.value, 0.0)
-                   : fail(message, "d moves from %.9g m to %.9g m in the step: with vibration.a_d = %.9g m the "
-                                   "separation must stay above 0 m",
+                   : fail(message,
+                          "d moves from %.9g m to %.9g m in the step: with vibration.a_d = %.9g m the "
+                          "separation must stay above 0 m",
                           drive->d.value, drive->d.value + drive->d.rate * h, a_d);
     }
     if (!(drive_smallest_E(drive, h) > 0.0)) {
-        return fail(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa", drive->E.value,
-                    drive->E.value + drive->E.rate * h, 0.0);
+        return fail(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa",
+                    drive->E.value, drive->E.value + drive->E.rate * h, 0.0);
     }
-    const ContactAtModulus stiffest = contact_at_modulus(&problem->contact, drive_largest_E(drive, h));
-    if (!isfinite(contact_stiffness(&stiffest, d)) || !isfinite(stiffest.area_0)) {
-        return fail(message, "the contact stiffness at d = %.9g m, E = %.9g Pa is beyond the largest number: check d "
-                             "and the parameters contact.*",
+    if (!isfinite(dahl_largest_stiffness(problem, h)) || !isfinite(problem->at_E.area_0)) {
+        return fail(message,
+                    "the contact stiffness at d = %.9g m, E = %.9g Pa is beyond the largest number: check d "
+                    "and the parameters contact.*",
                     d, drive_largest_E(drive, h), 0.0);
     }
     if (!isfinite(drive_largest_speed(drive, h))) {
@@ -57,7 +61,7 @@ static int check_drive(const DahlProblem* problem, double h, Message* message) {
 
 int friction_contact_check(const FrictionContact* contact, Message* message) {
     const double held[INPUT_COUNT] = {0};
-    const Drive drive = drive_from(&contact->state, contact->state.time, held);
+    const Drive drive = drive_from(&contact->state, contact->state.time, contact->state.time_rest, held);
     const DahlProblem problem =
         dahl_problem(&contact->state.variables.contact, &drive, contact->state.variables.F_C);
     return check_drive(&problem, 0.0, message);
@@ -66,6 +70,7 @@ int friction_contact_check(const FrictionContact* contact, Message* message) {
 int friction_contact_initialize(FrictionContact* contact, double start, Message* message) {
     FrictionContact fresh = *contact;
     fresh.state.time = start;
+    fresh.state.time_rest = 0.0;
     if (!friction_contact_check(&fresh, message)) {
         return 0;
     }
@@ -79,7 +84,8 @@ int friction_contact_initialize(FrictionContact* contact, double start, Message*
     friction_contact_update_outputs(&fresh);
     v->F_t_mean = v->F_t;
     if (!isfinite(v->F_t)) {
-        return fail(message, "F_t = sigma delta_0 is beyond the largest number: delta_0 = %.9g m, sigma = %.9g N/m",
+        return fail(message,
+                    "F_t = sigma delta_0 is beyond the largest number: delta_0 = %.9g m, sigma = %.9g N/m",
                     v->delta_0, v->sigma, 0.0);
     }
     if (v->solver.method == METHOD_CVODE && fresh.cvode == NULL) {
@@ -110,19 +116,35 @@ static int step(FrictionContact* contact, const DahlProblem* problem, double h, 
     case METHOD_CVODE:
         return cvode_solver_step(contact->cvode, problem, &options, h, v->delta, result, message);
     default:
-        return fixed_step_step(problem, (SolverMethod)v->solver.method, &options, h, v->delta, result, message);
+        return fixed_step_step(problem, (SolverMethod)v->solver.method, &options, h, v->delta, result,
+                               message);
     }
 }
 
+// F_t, Eq. 1, at the deflection delta and the local time t.
+static double force(const Variables* v, const DahlProblem* problem, double t, double sigma, double delta) {
+    return v->friction.model == FRICTION_COULOMB ? coulomb_force(drive_V(&problem->drive, t), v->F_C)
+                                                 : sigma * delta;
+}
+
+// What t + h loses in rounding (Knuth's two-sum).
+static double rounding_of_sum(double t, double h) {
+    const double sum = t + h;
+    const double h_part = sum - t;
+    return (t - (sum - h_part)) + (h - h_part);
+}
+
 int friction_contact_advance(FrictionContact* contact, double t, double h, Message* message) {
-    const Drive drive = drive_from(&contact->state, t, contact->state.next_rate);
-    const DahlProblem problem =
-        dahl_problem(&contact->state.variables.contact, &drive, contact->state.variables.F_C);
+    FrictionState* state = &contact->state;
+    Variables* v = &state->variables;
+    const Drive drive = drive_from(state, t, 0.0, state->next_rate);
+    const DahlProblem problem = dahl_problem(&v->contact, &drive, v->F_C);
     if (!(h >= 0.0) || !isfinite(t + h)) {
-        return fail(message, "the step from t = %.9g s by h = %.9g s: h must be a finite number of at least 0 s", t, h,
+        return fail(message,
+                    "the step from t = %.9g s by h = %.9g s: h must be a finite number of at least 0 s", t, h,
                     0.0);
     }
-    if (!drive_is_constant(&drive) && !check_drive(&problem, h, message)) {
+    if (!check_drive(&problem, h, message)) {
         return 0;
     }
     StepResult result;
@@ -130,40 +152,43 @@ int friction_contact_advance(FrictionContact* contact, double t, double h, Messa
         return 0;
     }
 
-    FrictionState next = contact->state;
-    Variables* v = &next.variables;
-    next.time = t + h;
-    v->V = drive.V.value + drive.V.rate * h;
-    v->d = drive.d.value + drive.d.rate * h;
-    v->E = drive.E.value + drive.E.rate * h;
+    const ContactState end = dahl_contact_state(&problem, h);
+    const double F_t = force(v, &problem, h, end.sigma, result.delta);
+    const double F_t_mean = h > 0.0 ? result.impulse / h : F_t;
+    const double W_f = v->W_f + result.work;
+    if (!isfinite(F_t) || !isfinite(F_t_mean) || !isfinite(W_f) || !isfinite(result.delta)) {
+        return fail(message,
+                    "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
+                    "d = %.9g m",
+                    h, v->V, v->d);
+    }
+    state->time = t + h;
+    state->time_rest = rounding_of_sum(t, h);
+    v->V += drive.V.rate * h;
+    v->d += drive.d.rate * h;
+    v->E += drive.E.rate * h;
+    v->F_t = F_t;
+    v->F_t_mean = F_t_mean;
+    v->W_f = W_f;
+    v->sigma = end.sigma;
+    v->A_r = end.A_r;
     v->delta = result.delta;
-    v->W_f += result.work;
     v->solver.evaluations += result.evaluations;
     for (int i = 0; i < INPUT_COUNT; i++) {
-        next.rate[i] = next.next_rate[i];
-        next.next_rate[i] = 0.0;
+        state->rate[i] = state->next_rate[i];
+        state->next_rate[i] = 0.0;
     }
-    next.next_rate_set = 0;
-    FrictionContact after = {.state = next, .cvode = contact->cvode};
-    friction_contact_update_outputs(&after);
-    v = &after.state.variables;
-    v->F_t_mean = h > 0.0 ? result.impulse / h : v->F_t;
-    if (!isfinite(v->F_t) || !isfinite(v->F_t_mean) || !isfinite(v->W_f) || !isfinite(v->delta)) {
-        return fail(message, "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
-                             "d = %.9g m",
-                    h, drive.V.value, drive.d.value);
-    }
-    *contact = after;
+    state->next_rate_set = 0;
     return 1;
 }
 
 void friction_contact_update_outputs(FrictionContact* contact) {
     Variables* v = &contact->state.variables;
     const DahlProblem problem = problem_now(&contact->state);
-    v->sigma = dahl_stiffness(&problem, 0.0);
-    v->A_r = contact_area(&problem.at_E, drive_d(&problem.drive, 0.0));
-    v->F_t = v->friction.model == FRICTION_COULOMB ? coulomb_force(drive_V(&problem.drive, 0.0), v->F_C)
-                                                   : v->sigma * v->delta;
+    const ContactState now = dahl_contact_state(&problem, 0.0);
+    v->sigma = now.sigma;
+    v->A_r = now.A_r;
+    v->F_t = force(v, &problem, 0.0, now.sigma, v->delta);
 }
 
 double friction_contact_force_rate(const FrictionContact* contact) {
@@ -175,7 +200,8 @@ double friction_contact_force_rate(const FrictionContact* contact) {
     const Drive* drive = &problem.drive;
     const double sigma = dahl_stiffness(&problem, 0.0);
     const double V = drive_V(drive, 0.0);
-    const ContactGradient slope = contact_stiffness_gradient(&v->contact, drive_d(drive, 0.0), drive->E.value);
+    const ContactGradient slope =
+        contact_stiffness_gradient(&v->contact, drive_d(drive, 0.0), drive->E.value);
     const double sigma_rate = slope.by_d * drive_d_rate(drive, 0.0) + slope.by_E * drive->E.rate;
     return sigma * (V - sigma * fabs(V) * v->delta / v->F_C) + sigma_rate * v->delta; // Eq. 1, 2
 }

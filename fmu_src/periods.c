@@ -47,15 +47,16 @@ int periods_step(IntervalMap interval, const DahlProblem* problem, const SolverO
     }
 
     if (periods > PERIODS_WITH_MOVING_INPUTS) {
-        snprintf(message->text, sizeof message->text,
-                 "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
-                 "at most %.9g periods are computed one by one: the largest step is %.9g s",
-                 h, periods, PERIODS_WITH_MOVING_INPUTS, PERIODS_WITH_MOVING_INPUTS / f);
+        snprintf(
+            message->text, sizeof message->text,
+            "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
+            "at most %.9g periods are computed one by one: the largest step is %.9g s",
+            h, periods, PERIODS_WITH_MOVING_INPUTS, PERIODS_WITH_MOVING_INPUTS / f);
         return 0;
     }
     for (double k = 0.0; k <= periods; k += 1.0) {
         const Drive now = periods_later(drive, k / f);
-        const DahlProblem part = dahl_problem(&problem->contact, &now, problem->F_C);
+        const DahlProblem part = dahl_problem(problem->contact, &now, problem->F_C);
         const DahlMap map =
             interval(&part, options, k < periods ? 1.0 / f : rest, total.delta, &total.evaluations);
         apply(&map, &total);

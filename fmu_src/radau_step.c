@@ -19,7 +19,8 @@ static void evaluate(const DahlProblem* problem, double t, double h, double sign
 }
 
 // Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative.
-static void solve_two(double matrix[RADAU_STAGES][RADAU_STAGES], double x[RADAU_STAGES], double y[RADAU_STAGES]) {
+static void solve_two(double matrix[RADAU_STAGES][RADAU_STAGES], double x[RADAU_STAGES],
+                      double y[RADAU_STAGES]) {
     for (int k = 0; k < RADAU_STAGES; k++) {
         const double pivot = 1.0 / matrix[k][k];
         matrix[k][k] = pivot;

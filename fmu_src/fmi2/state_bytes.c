@@ -6,7 +6,7 @@
 //     12      4     size of all the bytes
 //     16      38    guid of the FMU
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
-//                   time, rates of the last step, rates of the next step: 8 bytes each; whether the latter were
+//                   time and its rounding, rates of the last step, rates of the next step: 8 bytes each; whether the latter were
 //                   set: 4
 //                   state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
 //                   8
@@ -33,7 +33,7 @@ enum {
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FrictionState) == sizeof(Variables) + (2 + 2 * INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FrictionState) == sizeof(Variables) + (3 + 2 * INPUT_COUNT) * sizeof(double),
                "a new member of FrictionState must be added to transfer_state");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
@@ -95,6 +95,7 @@ static void transfer_state(Cursor* cursor, SavedState* saved) {
         }
     }
     transfer_real(cursor, &friction->time);
+    transfer_real(cursor, &friction->time_rest);
     for (int input = 0; input < INPUT_COUNT; input++) {
         transfer_real(cursor, &friction->rate[input]);
     }
@@ -224,8 +225,9 @@ static const char* unsound_part(SavedState* saved) {
         }
     }
     const FrictionState* friction = &saved->friction;
-    if (!isfinite(friction->time) || !all_finite(friction->rate, INPUT_COUNT) ||
-        !all_finite(friction->next_rate, INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
+    if (!isfinite(friction->time) || !isfinite(friction->time_rest) ||
+        !all_finite(friction->rate, INPUT_COUNT) || !all_finite(friction->next_rate, INPUT_COUNT) ||
+        !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
     return machine_is_sound(&saved->machine) ? NULL : "the state of the instance";

@@ -1,4 +1,4 @@
-"""Two references of different kind agree to 1e-12 before either grades a solver; in truth they do to 1e-16."""
+"""Two references of different kind agree to 1e-12 before either grades a solver; in truth to 1e-16."""
 
 from __future__ import annotations
 
