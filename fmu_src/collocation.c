@@ -11,6 +11,7 @@
 // steps cross any number of decades. The resolution is what the error control moves: an error per step of at most
 // tolerance F_C times the fraction that relaxes in the step, which bounds the error after any number of steps.
 #include <math.h>
+#include <stdio.h>
 
 #include "periods.h"
 #include "radau_step.h"
@@ -26,6 +27,10 @@ static const double SMALLEST_RESOLUTION = 0.05;
 static const double LARGEST_RESOLUTION = 3.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
+// In one communication step: some 10 s of computing. Only inputs that move over many orders of magnitude need more.
+#ifndef FC_MOST_EVALUATIONS
+#define FC_MOST_EVALUATIONS 1e8
+#endif
 
 // Where the two trajectories of the interval's map are: P started from 1 and Q started from 0.
 typedef struct {
@@ -34,7 +39,7 @@ typedef struct {
     double smooth_time;     // s
     double delta_scale;     // m, size of the deflection at the start
     double delta_tolerance; // m, error allowed in the deflection
-    double evaluations;
+    double evaluations;     // in the communication step so far
 } Progress;
 
 // Time [s] in which the bristle relaxes by 1 from t on, V moving linearly: solves g x + g' x^2 / 2 = 1.
@@ -118,7 +123,7 @@ static void cross(Progress* progress, const DahlProblem* problem, const Stretch*
     const double sign = V_middle > 0.0 ? 1.0 : V_middle < 0.0 ? -1.0 : 0.0;
     const DahlMap before = progress->map;
     double t = start;
-    while (t < end) {
+    while (t < end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const double h = graded_step(progress, stretch, t);
         RadauStep step;
         radau_step(problem, t, h, sign, &step);
@@ -163,9 +168,10 @@ static DahlMap collocation_interval(const DahlProblem* problem, const SolverOpti
         .smooth_time = smooth_time(problem, duration),
         .delta_scale = fmax(fabs(delta_0), problem->F_C / dahl_stiffness(problem, 0.0)),
         .delta_tolerance = options->tolerance * saturated,
+        .evaluations = *evaluations,
     };
     Stretch stretch = {.w_a = relaxation_layer(problem, 0.0)};
-    while (stretch.start < duration) {
+    while (stretch.start < duration && progress.evaluations <= FC_MOST_EVALUATIONS) {
         // An event farther beyond the end than the end is from here does not shape the steps.
         const double horizon = duration + (duration - stretch.start);
         const DriveEvent event = drive_next_event(drive, stretch.start, horizon);
@@ -179,7 +185,7 @@ static DahlMap collocation_interval(const DahlProblem* problem, const SolverOpti
         stretch.start = stretch.end;
         stretch.w_a = stretch.w_b;
     }
-    *evaluations += progress.evaluations;
+    *evaluations = progress.evaluations;
     return progress.map;
 }
 
@@ -187,7 +193,20 @@ int collocation_step(const DahlProblem* problem, const SolverOptions* options, d
                      StepResult* result, Message* message) {
     const Drive* drive = &problem->drive;
     if (!drive_is_constant(drive)) {
-        return periods_step(collocation_interval, problem, options, h, delta_0, result, message);
+        StepResult moving;
+        if (!periods_step(collocation_interval, problem, options, h, delta_0, &moving, message)) {
+            return 0;
+        }
+        if (moving.evaluations > FC_MOST_EVALUATIONS) {
+            snprintf(message->text, sizeof message->text,
+                     "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves "
+                     "over too "
+                     "many orders of magnitude in it; use smaller steps, or cut the motion",
+                     h, FC_MOST_EVALUATIONS);
+            return 0;
+        }
+        *result = moving;
+        return 1;
     }
     const DahlMap map = dahl_constant_map(drive->V.value, dahl_stiffness(problem, 0.0), problem->F_C, h);
     *result = (StepResult){
