@@ -1,0 +1,182 @@
+"""Runs jobs of the C drivers in bench/: communication steps through the FMI functions, timed without Python.
+
+A job is a scene with its communication steps; a result is its outputs, cost, or the reason why it failed.
+"""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from frictionlab.build import ROOT, BuildError, build_fmu
+from frictionlab.simulate import FrictionFmu, Value
+
+REPORT = ROOT / "build" / "report"
+TIME_LIMIT = 120.0  # s of wall time for one job
+PLAIN = ("V", "d", "F_C", "sigma", "d_ref", "decay", "f", "V_1", "a_d", "phase_d", "tolerance", "delta_0")
+
+
+@dataclass(frozen=True)
+class Job:
+    """count steps of the length step [s] from the time start [s]."""
+
+    start_values: Mapping[str, Value]
+    step: float
+    count: int = 1
+    start: float = 0.0
+    inputs: Mapping[str, np.ndarray] = field(default_factory=dict)  # count + 1 samples each
+    linear: bool = False  # inputs move linearly between their samples; else held over a step
+    budget: float = 0.02  # s of CPU time for repetitions
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one job gave; F and F_mean [N] at the end of and over each step."""
+
+    F: np.ndarray
+    F_mean: np.ndarray
+    wall: float  # s per step
+    cpu: float  # s per step
+    evaluations: float  # per step
+    failure: str = ""
+
+
+def failed(reason: str) -> Outcome:
+    return Outcome(np.empty(0), np.empty(0), np.nan, np.nan, np.nan, reason)
+
+
+class Bench:
+    """The built FMU with the programs that drive it."""
+
+    def __init__(self, fmu: FrictionFmu, programs: Path) -> None:
+        self.fmu = fmu
+        self.programs = programs
+        identifier = fmu.description.coSimulation.modelIdentifier
+        libraries = [*(fmu.directory / "binaries").glob(f"*/{identifier}.so")]
+        if not libraries:
+            raise BuildError("the FMU holds no .so: the benchmark driver runs on Linux only")
+        self.library = libraries[0]
+
+    def run(self, job: Job) -> Outcome:
+        """The FMU through its FMI functions."""
+        numbers = {name: variable.valueReference for name, variable in self.fmu.variables.items()}
+        lines = _steps(job)
+        for name, value in job.start_values.items():
+            variable = self.fmu.variables[name]
+            if isinstance(value, str):
+                value = {item.name: int(item.value) for item in variable.declaredType.items}[value]
+            kind = "real" if variable.type == "Real" else "integer"
+            lines.append(f"{kind} {variable.valueReference} {value!r}")
+        lines += _inputs(job, numbers)
+        lines += [f"output {numbers['F_t']}", f"output {numbers['F_t_mean']}"]
+        lines.append(f"evaluations {numbers['solver.evaluations']}")
+        resources = (self.fmu.directory / "resources").as_uri()
+        return self.call("fmu_driver", [self.library, self.fmu.description.guid, resources], lines, job)
+
+    def run_plain_cvode(self, job: Job, values: Mapping[str, float]) -> Outcome:
+        """CVODE with its defaults; values under the names of PLAIN."""
+        lines = _steps(job)
+        lines += [f"real {PLAIN.index(name)} {value!r}" for name, value in values.items()]
+        lines += _inputs(job, {"V": 0, "d": 1})
+        return self.call("plain_cvode", [], [*lines, "output 0", "output 1"], job)
+
+    def call(self, program: str, arguments: list, lines: list[str], job: Job) -> Outcome:
+        command = [str(self.programs / program), *map(str, arguments)]
+        try:
+            done = subprocess.run(
+                command, input="\n".join(lines), capture_output=True, text=True, timeout=TIME_LIMIT, check=False
+            )
+        except subprocess.TimeoutExpired:
+            return failed(f"not finished after {TIME_LIMIT:.0f} s")
+        if done.returncode:
+            return failed(done.stderr.strip() or f"ended with the code {done.returncode}")
+        return _parse(done.stdout, job)
+
+
+def _steps(job: Job) -> list[str]:
+    return [
+        f"start {job.start!r}",
+        f"step {job.step!r}",
+        f"count {job.count}",
+        f"budget {job.budget!r}",
+        f"linear {int(job.linear)}",
+    ]
+
+
+def _inputs(job: Job, numbers: Mapping[str, int]) -> list[str]:
+    return [
+        f"input {numbers[name]} {len(samples)} " + " ".join(repr(float(sample)) for sample in samples)
+        for name, samples in job.inputs.items()
+    ]
+
+
+def _parse(text: str, job: Job) -> Outcome:
+    numbers: dict[str, float] = {}
+    rows = []
+    for line in text.splitlines():
+        keyword, _, rest = line.partition(" ")
+        if keyword == "failed":
+            return failed(rest.partition(" ")[2])
+        if keyword == "row":
+            rows.append([float(word) for word in rest.split()])
+        else:
+            numbers[keyword] = float(rest)
+    F, F_mean = np.array(rows).reshape(-1, 2).T
+    return Outcome(F, F_mean, *(numbers[name] / job.count for name in ("wall", "cpu", "evaluations")))
+
+
+def open_bench(fmu: FrictionFmu, programs: Path | None = None) -> Bench:
+    """Builds the programs in build/, unless a folder that holds them is given."""
+    if programs is None:
+        command = [sys.executable, "-m", "cmake", "--build", str(ROOT / "build"), "--target", "bench"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise BuildError(f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}")
+        programs = ROOT / "build" / "bench"
+    return Bench(fmu, programs)
+
+
+def build_all(progress: object = None) -> tuple[Path, Path]:
+    """The FMU and the folder of the benchmark programs."""
+    path = build_fmu(progress=progress)  # type: ignore[arg-type]
+    return path, ROOT / "build" / "bench"
+
+
+def machine() -> dict[str, str]:
+    """What a measurement depends on besides the code."""
+    import fmpy
+    import scipy
+
+    cpu = platform.processor()
+    info = Path("/proc/cpuinfo")
+    if info.is_file():
+        models = [line.partition(":")[2].strip() for line in info.read_text().splitlines() if "model name" in line]
+        cpu = f"{models[0]} x {len(models)}" if models else cpu
+    compiler = "unknown"
+    cache = ROOT / "build" / "CMakeCache.txt"
+    if cache.is_file():
+        for line in cache.read_text().splitlines():
+            if line.startswith("CMAKE_C_COMPILER:"):
+                done = subprocess.run(
+                    [line.partition("=")[2], "--version"], capture_output=True, text=True, check=False
+                )
+                compiler = done.stdout.splitlines()[0] if done.stdout else compiler
+    revision = subprocess.run(
+        ["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True, check=False
+    ).stdout.strip()
+    return {
+        "cpu": cpu,
+        "system": f"{platform.system()} {platform.release()}",
+        "compiler": compiler,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "fmpy": fmpy.__version__,
+        "revision": revision or "unknown",
+    }
