@@ -27,10 +27,6 @@ static const double SMALLEST_RESOLUTION = 0.05;
 static const double LARGEST_RESOLUTION = 3.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
-// In one communication step: some 10 s of computing. Only inputs that move over many orders of magnitude need more.
-#ifndef FC_MOST_EVALUATIONS
-#define FC_MOST_EVALUATIONS 1e8
-#endif
 
 // Where the two trajectories of the interval's map are: P started from 1 and Q started from 0.
 typedef struct {

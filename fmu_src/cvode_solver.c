@@ -29,7 +29,6 @@
 #define LARGEST_LOCAL_ERROR 1e-3
 
 #define MOST_PERIODS 1e5     // vibration periods in one communication step: minutes of computing
-#define MOST_STEPS 10000000  // of CVODE between two reversals
 #define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
 #define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
 
@@ -204,9 +203,9 @@ static int integrate_piece(CvodeSolver* solver, double duration, double local_er
         return failed(solver, 0.0, h, solver->reason, message);
     }
     double tau = 0.0;
-    for (long steps = 0; tau < duration; ++steps) {
-        if (steps == MOST_STEPS) {
-            return failed(solver, tau, h, "too many internal steps", message);
+    while (tau < duration) {
+        if (solver->evaluations > FC_MOST_EVALUATIONS) {
+            return failed(solver, tau, h, "too many evaluations in one step", message);
         }
         double tau_next = tau;
         if (CVode(cvode, duration, solver->y, &tau_next, CV_ONE_STEP) < 0) {

@@ -26,6 +26,12 @@ typedef struct {
     double evaluations; // 1    evaluations of a(t), b(t)
 } StepResult;
 
+// Evaluations in one communication step, some 10 s of computing: a step that needs more is refused, so that none
+// seems to hang. Only inputs that move over many orders of magnitude get there.
+#ifndef FC_MOST_EVALUATIONS
+#define FC_MOST_EVALUATIONS 1e8
+#endif
+
 // Each of these returns 1 and fills *result, or returns 0, fills *message and leaves *result alone.
 // h [s] >= 0; delta_0 [m] the deflection at the start of the step.
 int collocation_step(const DahlProblem* problem, const SolverOptions* options, double h, double delta_0,

@@ -180,8 +180,9 @@ def offsets(library: Library) -> dict[str, int]:
         places[variable.name] = at
         at += 8 if variable.kind == "Real" else 4
     places["time"] = at
-    places["next_rate of V"] = at + 8 * 4
-    places["next_rate_set"] = at + 8 * 7
+    places["time_rest"] = at + 8
+    places["next_rate of V"] = at + 8 * 5
+    places["next_rate_set"] = at + 8 * 8
     places["state"] = places["next_rate_set"] + 4
     places["outputs_stale"] = places["state"] + 4
     places["start_time"] = places["state"] + 16
@@ -213,6 +214,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
         ("friction.model", struct.pack("<i", 3), "friction.model"),
         ("solver.method", struct.pack("<i", -1), "solver.method"),
         ("time", struct.pack("<d", float("nan")), "time"),
+        ("time_rest", struct.pack("<d", float("inf")), "time"),
         ("next_rate of V", struct.pack("<d", float("inf")), "rate"),
         ("next_rate_set", struct.pack("<i", 2), "rate"),
         ("state", struct.pack("<i", 1 << 4), "state"),
