@@ -1,0 +1,109 @@
+"""scripts/run: the table it prints and the files it writes."""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+from pathlib import Path
+
+import matplotlib.image
+import pytest
+from frictionlab import reference
+from frictionlab.scenarios import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
+from frictionlab.scenes import scene_of
+from frictionlab.table2 import CSV_COLUMNS
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [str(ROOT / "scripts" / "run"), *map(str, arguments)]
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=300, cwd=ROOT, env={**os.environ, "COLUMNS": "100"}
+    )
+
+
+def exact_mean(number: int, parameters: ParameterSet) -> float:
+    scene = scene_of(start_values(TABLE_2[number - 1], parameters))
+    return float(reference.periodic_mean(scene))
+
+
+@pytest.fixture(scope="module")
+def written(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """The folder that a whole run wrote to, and what it printed."""
+    folder = tmp_path_factory.mktemp("run")
+    finished = run("--fmu", fmu_path, "--output", folder)
+    assert finished.returncode == 0, finished.stderr
+    return folder, finished.stdout
+
+
+def read_table(folder: Path) -> list[dict[str, float]]:
+    with (folder / "table2.csv").open(newline="") as file:
+        return [{name: float(value) for name, value in line.items()} for line in csv.DictReader(file)]
+
+
+def test_csv_holds_the_means_of_the_reference(written: tuple[Path, str]) -> None:
+    table = read_table(written[0])
+    assert [line["row"] for line in table] == [1, 2, 3, 4, 5, 6]
+    assert tuple(table[0]) == CSV_COLUMNS
+    for line, row in zip(table, TABLE_2, strict=True):
+        for name, parameters in {"exact": PRINTED, "identified": IDENTIFIED}.items():
+            mean = exact_mean(row.number, parameters)
+            assert line[f"{name}_N"] == pytest.approx(mean, abs=55e-6)  # solver.tolerance times F_C
+            assert line[f"{name}_reduction_percent"] == pytest.approx(100 * (1 - mean / 55.0), abs=2e-4)
+
+
+def test_csv_holds_the_numbers_of_the_paper(written: tuple[Path, str]) -> None:
+    table = read_table(written[0])
+    assert [line["paper_N"] for line in table] == [55, 21, 27, 48, 54, 28]
+    assert [line["paper_reduction_percent"] for line in table] == [0, 62, 51, 12, 1, 49]
+
+
+def test_print_shows_every_number_and_claims_no_validation(written: tuple[Path, str]) -> None:
+    text = written[1]
+    for line in read_table(written[0]):
+        assert f"{line['exact_N']:.4f}" in text
+        assert f"{line['identified_N']:.2f}" in text
+    assert "identified" in text and "fitted to three informative rows" in text
+    assert "valid" not in text.lower()
+
+
+def test_picture_shows_all_three_sources(written: tuple[Path, str]) -> None:
+    from frictionlab import style
+
+    pixels = matplotlib.image.imread(written[0] / "table2.png")[..., :3]
+    assert pixels.shape[0] > 1000 and pixels.shape[1] > 1000
+    for colour in style.SOURCE.values():
+        wanted = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        assert (abs(pixels - wanted).max(axis=2) < 0.01).sum() > 5000, colour
+
+
+def test_quick_writes_the_table_without_the_picture(fmu_path: Path, tmp_path: Path) -> None:
+    finished = run("--quick", "--fmu", fmu_path, "--output", tmp_path / "new")
+    assert finished.returncode == 0, finished.stderr
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["table2.csv"]
+
+
+def test_help_names_the_options() -> None:
+    finished = run("--help")
+    assert finished.returncode == 0
+    assert all(option in finished.stdout for option in ("--quick", "--fmu", "--output"))
+
+
+@pytest.mark.parametrize("case", ["missing FMU", "not an FMU", "output is a file"])
+def test_bad_input_is_one_clear_line(fmu_path: Path, tmp_path: Path, case: str) -> None:
+    fmu, output = fmu_path, tmp_path
+    if case == "missing FMU":
+        fmu = wrong = tmp_path / "absent.fmu"
+    elif case == "not an FMU":
+        fmu = wrong = tmp_path / "text.fmu"
+        fmu.write_text("not a zip archive")
+    else:
+        output = wrong = tmp_path / "file"
+        output.write_text("kept")
+    finished = run("--quick", "--fmu", fmu, "--output", output)
+    assert finished.returncode == 1
+    assert finished.stderr.startswith("error: ") and finished.stderr.count("\n") == 1
+    assert str(wrong) in finished.stderr
+    assert not (output / "table2.csv").exists()
