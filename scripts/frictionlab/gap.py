@@ -24,8 +24,8 @@ examples:
   scripts/gap --separation 14e-6           load at 14 um
   scripts/gap --load 40 120 240 --R_q 4e-6 --heights gaussian
 
-At Table 1's surfaces the stiffness of Eq. 3 changes by a factor of 3 per micrometre: a load known to 5 % fixes
-d to 0.1 um, and sigma to 13 %. Where that matters, fit contact.stiffnessScale with scripts/identify."""
+At Table 1's surfaces the stiffness of Eq. 3 changes by a factor of 3 per micrometre: a load known to 5 %
+fixes d to 0.1 um, and sigma to 13 %. Where that matters, fit contact.stiffnessScale with scripts/identify."""
 
 HEIGHTS = {
     "exponential": "c exp(-lambda s), elastic-plastic: the paper's and the FMU's",

@@ -20,9 +20,8 @@ def main() -> None:
     from ContactMechanics.ReferenceSolutions.GreenwoodTripp import Fn
 
     with PATH.open("w", newline="", encoding="utf-8") as file:
-        file.write(
-            f"# F_n(h) of a normal height density, by GreenwoodTripp.Fn of ContactMechanics {version('ContactMechanics')}\n"
-        )
+        package = f"ContactMechanics {version('ContactMechanics')}"
+        file.write(f"# F_n(h) of a normal height density, by GreenwoodTripp.Fn of {package}\n")
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["h", "F_0", "F_1", "F_1.5"])
         for h in np.arange(0.0, 4.01, 0.25):
