@@ -23,7 +23,7 @@ if(FC_SANITIZE)
 endif()
 if(FC_FUZZ)
     # Work that is refused is refused soon, so that a fuzzer can tell a hang.
-    target_compile_options(fc_options INTERFACE -fsanitize=fuzzer-no-link -DFC_MOST_EVALUATIONS=1e4)
+    target_compile_options(fc_options INTERFACE -fsanitize=fuzzer-no-link -DFC_MOST_EVALUATIONS=2e3)
 endif()
 if(FC_COVERAGE)
     target_compile_options(fc_options INTERFACE --coverage -O0 -g)

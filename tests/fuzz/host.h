@@ -86,9 +86,9 @@ static int is_short_work(fmi2Component c, double h) {
     const int vibrates = value[1] != 0.0 || value[2] != 0.0;
     const double periods = vibrates ? h * value[0] : 0.0;
     if (method >= METHOD_BACKWARD_EULER) {
-        return !(h / value[3] > 2000.0) && !(periods > 2000.0);
+        return !(h / value[3] > 200.0) && !(periods > 200.0);
     }
-    return !(periods > (method == METHOD_CVODE ? 5.0 : 30.0));
+    return !(periods > (method == METHOD_CVODE ? 1.0 : 3.0));
 }
 
 static void check_outputs(fmi2Component c) {
