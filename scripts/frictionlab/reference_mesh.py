@@ -1,7 +1,7 @@
 """Pieces of time on which the deflection is smooth: none holds a reversal, and they shrink toward each layer.
 
-A layer lies after the start, and on both sides of every reversal and dip of |V|. Pieces grow
-geometrically from it; the smallest relaxes by e^-0.1 at most.
+A layer lies after the start, and on both sides of every reversal and dip of |V|. Pieces grow geometrically
+from it; the smallest relaxes by e^-0.1 at most. The end is treated like one: a reversal may lie just beyond.
 """
 
 from __future__ import annotations
@@ -15,17 +15,14 @@ from .reference_scene import Drive, Scene, events
 def graded_mesh(scene: Scene, t0: Any, h: Any, ratio: float = 2.0) -> list:
     """Increasing local times from 0 to h, in multiprecision; near a layer neighbours differ by ratio."""
     drive = Drive(scene, t0, MULTIPRECISION)
-    layers = [MP.mpf(0), *events(drive, h)]
+    layers = [MP.mpf(0), *events(drive, h), h]
     times = [MP.mpf(0)]
-    for i, left in enumerate(layers):
-        last = i + 1 == len(layers)
-        right = h if last else layers[i + 1]
+    for left, right in zip(layers[:-1], layers[1:], strict=True):
         if right - left <= MP.mpf(10) ** (8 - MP.dps) * (right + abs(left)):
             continue
-        middle = right if last else (left + right) / 2
+        middle = (left + right) / 2
         pieces = _from_layer(drive, left, middle, ratio)
-        if not last:
-            pieces += _from_layer(drive, right, middle, ratio)[-2::-1] + [right]
+        pieces += _from_layer(drive, right, middle, ratio)[-2::-1] + [right]
         longest = _longest_piece(scene, drive, left, right)
         for end in pieces:
             count = int(MP.ceil((end - times[-1]) / longest))

@@ -26,6 +26,9 @@ SCENES = {
         V=0.2, V_rate=-9e3, d_rate=0.03, E_rate=2e14, V_1=0.7, a_d=3e-7, phase_d=4.0, contact=MEDIUM
     ),
     "only the separation vibrates": Scene(V=0.005, a_d=1.1e-6),
+    "reversal just beyond the end": Scene(
+        V=-0.05, V_rate=-3e5, E_rate=-1.8e14, f=2639.0, V_1=2.8, a_d=2.1e-6, phase_d=5.4, F_C=1.66
+    ),
     "at rest": Scene(V=0.0, d_rate=0.01),
 }
 

@@ -1,0 +1,272 @@
+"""What holds for every scene: the cycle identity, splitting, rate independence, odd symmetry, the bound F_C.
+
+Values come from wide logarithmic ranges and from their ends: nothing moves, hardly anything moves,
+contacts from softer to stiffer than any real one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from frictionlab.simulate import OUTPUTS, FrictionFmu
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+TOLERANCE = 1e-8
+# A power of two: its period, and any number of them, are exact in time.
+FREQUENCY = 16384.0
+PERIOD = 1.0 / FREQUENCY
+
+every_scene = settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+
+
+def logarithmic(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(math.log10(low), math.log10(high)).map(lambda x: 10.0**x)
+
+
+def signed(values: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
+    return st.tuples(values, st.sampled_from([-1.0, 1.0])).map(lambda pair: pair[0] * pair[1])
+
+
+@st.composite
+def scenes(
+    draw: st.DrawFn, constant: bool | None = None, vibrating: bool | None = None
+) -> dict[str, float | str]:
+    """FMU start values."""
+    V_1 = draw(st.just(0.0) | logarithmic(1e-9, 1e2))
+    near = signed(st.sampled_from([1.0, 1.0 - 1e-9, 1.0 + 1e-9, 1.0 - 1e-3]).map(lambda x: x * V_1))
+    V = draw(st.sampled_from([0.0, 1e-300, -1e-300]) | signed(logarithmic(1e-9, 1e2)) | near)
+    d = draw(st.floats(8e-6, 20e-6))
+    a_d = draw(st.sampled_from([0.0, 1e-300, 1e-18]) | logarithmic(1e-12, 3e-6))
+    is_constant = draw(st.booleans()) if constant is None else constant
+    F_C = draw(logarithmic(1e-3, 1e4))
+    values: dict[str, float | str] = {
+        "V": V,
+        "d": d,
+        "E": draw(logarithmic(1e9, 1e12)),
+        "F_C": F_C,
+        "contact.model": "Constant" if is_constant else "Asperities",
+        "contact.sigma": draw(logarithmic(1e2, 1e14)),
+        "contact.stiffnessScale": draw(logarithmic(1e-10, 1e2)),
+        "vibration.f": FREQUENCY,
+        "vibration.V_1": V_1,
+        "vibration.a_d": a_d,
+        "vibration.phase_d": draw(st.floats(-10.0, 10.0)),
+        "solver.tolerance": TOLERANCE,
+    }
+    if vibrating is False:
+        values |= {"vibration.V_1": 0.0, "vibration.a_d": 0.0}
+    return values
+
+
+durations = logarithmic(1e-4, 1e3).map(lambda periods: periods * PERIOD)
+fractions = st.floats(-1.0, 1.0)
+
+
+@st.composite
+def ramps(draw: st.DrawFn, values: dict[str, Any], h: float) -> dict[str, float]:
+    """Input derivatives, such that the inputs move by their own size over h; none in half the scenes."""
+    if draw(st.booleans()) or h * FREQUENCY > 20:
+        return {}
+    speed = max(abs(values["V"]), values["vibration.V_1"])
+    return {
+        "V": draw(st.floats(-2.0, 2.0)) * speed / h,
+        "d": draw(st.floats(-1e-6, 1e-6)) / h,
+        "E": draw(st.floats(-0.4, 0.4)) * values["E"] / h,
+    }
+
+
+def run(
+    fmu: FrictionFmu,
+    values: dict[str, Any],
+    deflection: float,
+    steps: list[float],
+    rates: dict[str, float] | None = None,
+    start: float = 0.0,
+) -> dict[str, float]:
+    """Outputs after the steps; F_t_mean over all of them. The deflection is over F_C / sigma at the start."""
+    with fmu.session(values, start) as session:
+        delta_0 = deflection * values["F_C"] / session.get("sigma")
+    impulse, inputs = 0.0, {name: values[name] for name in rates or {}}
+    with fmu.session(values | {"delta_0": delta_0}, start) as session:
+        for h in steps:
+            if rates:
+                for name, value in inputs.items():
+                    session.set(name, value)
+                session.set_rates(**rates)
+            session.step(h)
+            impulse += h * session.get("F_t_mean")
+            inputs = {name: value + h * rates[name] for name, value in inputs.items()} if rates else {}
+        outputs = dict(zip(OUTPUTS, session.read(), strict=True))
+    outputs["F_t_mean"] = impulse / sum(steps)
+    outputs["delta_0"] = delta_0
+    return outputs
+
+
+def force_scale(outputs: dict[str, float], values: dict[str, Any]) -> float:
+    """F_C, or the force where a moving separation has carried it beyond."""
+    return max(values["F_C"], abs(outputs["F_t"]), abs(outputs["F_t_mean"]))
+
+
+def assert_same(
+    one: dict[str, float],
+    other: dict[str, float],
+    values: dict[str, Any],
+    sign: float = 1.0,
+    bound: float = 2.0,
+) -> None:
+    scale = bound * TOLERANCE * force_scale(one, values)
+    assert sign * other["F_t"] == pytest.approx(one["F_t"], abs=scale)
+    assert sign * other["F_t_mean"] == pytest.approx(one["F_t_mean"], abs=scale)
+
+
+@every_scene
+@given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
+def test_cycle_identity_where_the_velocity_keeps_its_sign(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
+) -> None:
+    """W = F_C (path - s (delta_1 - delta_0)), whatever sigma(t) does."""
+    values["V"] = math.copysign(abs(values["V"]) + values["vibration.V_1"], values["V"])
+    rates = data.draw(ramps(values, h))
+    if rates:
+        rates["V"] = abs(rates["V"]) * math.copysign(1.0, values["V"])
+    out = run(fmu, values, deflection, [h], rates)
+    theta = 2 * math.pi * math.fmod(FREQUENCY * h, 1.0)
+    displacement = values["V"] * h + values["vibration.V_1"] * math.sin(theta) / (2 * math.pi * FREQUENCY)
+    displacement += 0.5 * rates.get("V", 0.0) * h * h
+    s = math.copysign(1.0, values["V"])
+    expected = values["F_C"] * (abs(displacement) - s * (out["delta"] - out["delta_0"]))
+    scale = values["F_C"] * max(abs(displacement), abs(out["delta"]), abs(out["delta_0"]), 1e-280)
+    assert out["W_f"] == pytest.approx(expected, abs=1e-11 * scale)
+
+
+@every_scene
+@given(data=st.data(), values=scenes(), h=durations, deflection=fractions, share=st.floats(0.001, 0.999))
+def test_a_step_in_two_parts(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float, share: float
+) -> None:
+    rates = data.draw(ramps(values, h))
+    whole = run(fmu, values, deflection, [h], rates)
+    parts = run(fmu, values, deflection, [share * h, h - share * h], rates)
+    assert_same(whole, parts, values)
+
+
+@every_scene
+@given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
+def test_a_step_in_a_hundred_parts(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
+) -> None:
+    rates = data.draw(ramps(values, h))
+    whole = run(fmu, values, deflection, [h], rates)
+    parts = run(fmu, values, deflection, [h / 100] * 100, rates)
+    assert_same(whole, parts, values)
+
+
+@every_scene
+@given(data=st.data(), values=scenes(), h=durations, deflection=fractions, k=logarithmic(1e-3, 1e3))
+def test_rate_independence(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float, k: float
+) -> None:
+    """V(t), d(t), E(t) -> k V(k t), d(k t), E(k t) leaves the force over the path unchanged."""
+    rates = data.draw(ramps(values, h))
+    slow = run(fmu, values, deflection, [h], rates)
+    faster = values | {
+        "V": k * values["V"],
+        "vibration.V_1": k * values["vibration.V_1"],
+        "vibration.f": k * values["vibration.f"],
+    }
+    fast_rates = {name: rate * (k * k if name == "V" else k) for name, rate in rates.items()}
+    fast = run(fmu, faster, deflection, [h / k], fast_rates)
+    assert_same(slow, fast, values)
+    assert fast["delta"] == pytest.approx(
+        slow["delta"], abs=2 * TOLERANCE * max(values["F_C"], abs(slow["F_t"])) / slow["sigma"]
+    )
+
+
+@every_scene
+@given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
+def test_odd_symmetry(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
+) -> None:
+    """V(t) -> -V(t), the vibration half a period later, gives -F."""
+    rates = data.draw(ramps(values, h))
+    forth = run(fmu, values, deflection, [h], rates)
+    mirrored = values | {
+        "V": -values["V"],
+        "vibration.phase_d": values["vibration.phase_d"] + math.pi,
+    }
+    back_rates = {name: -rate if name == "V" else rate for name, rate in rates.items()}
+    back = run(fmu, mirrored, -deflection, [h], back_rates, start=PERIOD / 2)
+    assert_same(forth, back, values, sign=-1.0)
+    assert back["W_f"] == pytest.approx(forth["W_f"], rel=1e-6, abs=1e-6 * values["F_C"] * PERIOD)
+
+
+@every_scene
+@given(data=st.data(), values=scenes(constant=True), deflection=fractions, part=logarithmic(1e-3, 30.0))
+def test_the_force_stays_within_coulomb_friction_at_constant_stiffness(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, deflection: float, part: float
+) -> None:
+    rates = data.draw(ramps(values, 20 * part * PERIOD))
+    F_C = values["F_C"]
+    values = values | {"delta_0": deflection * F_C / values["contact.sigma"]}
+    with fmu.session(values) as session:
+        for k in range(20):
+            if rates and k == 0:
+                session.set_rates(**rates)
+            session.step(part * PERIOD)
+            assert abs(session.get("F_t")) <= F_C * (1 + TOLERANCE)
+            assert abs(session.get("F_t_mean")) <= F_C * (1 + TOLERANCE)
+
+
+def test_the_force_passes_coulomb_friction_when_the_separation_moves(fmu: FrictionFmu) -> None:
+    """The model, not an error: delta lags while sigma rises."""
+    values = {"V": 0.005, "vibration.a_d": 1.1e-6, "contact.stiffnessScale": 1e-6}
+    with fmu.session(values) as session:
+        session.step(1e4 / 20e3)
+        largest = 0.0
+        for _ in range(200):
+            session.step(1 / 20e3 / 200)
+            largest = max(largest, session.get("F_t"))
+    assert largest > 2 * 55.0
+
+
+@every_scene
+@given(
+    values=scenes(),
+    h=durations,
+    deflection=fractions,
+    periods=st.integers(0, 2**30),
+)
+def test_independence_of_the_start_time(
+    fmu: FrictionFmu, values: dict, h: float, deflection: float, periods: int
+) -> None:
+    """A run that starts whole periods later gives the same bits: local time keeps even a late step exact.
+
+    The duration is a multiple of 2^-36 s, so that no end of a step is rounded.
+    """
+    h = math.ceil(h * 2.0**36) / 2.0**36
+    now = run(fmu, values, deflection, [h])
+    later = run(fmu, values, deflection, [h], start=periods * PERIOD)
+    assert later == now
+
+
+@every_scene
+@given(values=scenes(), deflection=fractions)
+def test_a_step_of_no_duration_changes_nothing(fmu: FrictionFmu, values: dict, deflection: float) -> None:
+    with fmu.session(values) as session:
+        delta_0 = deflection * values["F_C"] / session.get("sigma")
+    with fmu.session(values | {"delta_0": delta_0}) as session:
+        before = session.read()
+        session.step(0.0)
+        after = dict(zip(OUTPUTS, session.read(), strict=True))
+        assert after["delta"] == delta_0 and after["W_f"] == 0.0
+        assert after["F_t"] == dict(zip(OUTPUTS, before, strict=True))["F_t"]
+        assume(math.isfinite(after["F_t_mean"]))
+        assert after["F_t_mean"] == pytest.approx(after["F_t"])

@@ -1,0 +1,120 @@
+"""Mean friction of the periodic state, by the FMU, against closed forms and the reference.
+
+The FMU takes one step over a million periods, then one over a single period whose F_t_mean is read.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from frictionlab import reference, reference_constant
+from frictionlab.reference import MP
+from frictionlab.scenarios import IDENTIFIED, IDENTIFIED_ABSOLUTE, PRINTED, TABLE_2, Row, start_values
+from frictionlab.scenes import scene_of
+from frictionlab.simulate import FrictionFmu, periodic_mean
+
+ACCURATE = {"solver.tolerance": 1e-11}
+
+
+def constant_stiffness(kappa: float, zeta: float) -> dict[str, float | str]:
+    V_1, f, F_C = 1.0, 20e3, 55.0
+    return {
+        "contact.model": "Constant",
+        "contact.sigma": kappa * 2 * np.pi * f * F_C / V_1,
+        "V": zeta * V_1,
+        "vibration.V_1": V_1,
+        **ACCURATE,
+    }
+
+
+@pytest.mark.parametrize(
+    ("kappa", "zeta", "printed"),
+    [(1.0, 0.1, 0.122328249), (2.0, 0.25, 0.227294259), (5.0, 0.5, 0.379341496)],
+)
+def test_mean_at_constant_stiffness(fmu: FrictionFmu, kappa: float, zeta: float, printed: float) -> None:
+    start = constant_stiffness(kappa, zeta)
+    mean = periodic_mean(fmu, start) / 55.0
+    assert mean == pytest.approx(printed, abs=1e-8)
+    exact = reference_constant.periodic_mean(start["contact.sigma"], 55.0, zeta, 1.0, 20e3) / 55
+    assert mean == pytest.approx(float(exact), abs=1e-10)
+
+
+@pytest.mark.parametrize("zeta", [-0.9, 0.05, 0.3, 0.999])
+def test_stiff_limit_is_coulomb(fmu: FrictionFmu, zeta: float) -> None:
+    expected = 2 / np.pi * np.arcsin(zeta)
+    assert periodic_mean(fmu, constant_stiffness(1e12, zeta)) / 55.0 == pytest.approx(expected, abs=1e-6)
+    coulomb = constant_stiffness(1.0, zeta) | {"friction.model": "Coulomb"}
+    assert periodic_mean(fmu, coulomb) / 55.0 == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("zeta", [-0.9, 0.05, 0.3, 0.999])
+def test_soft_limit(fmu: FrictionFmu, zeta: float) -> None:
+    turn = MP.acos(-MP.mpf(zeta))
+    mean_speed = MP.quad(lambda x: abs(zeta + MP.cos(x)), [0, turn, 2 * MP.pi - turn, 2 * MP.pi])
+    expected = float(zeta * 2 * MP.pi / mean_speed)
+    mean = periodic_mean(fmu, constant_stiffness(1e-5, zeta), settle=1e8)
+    assert mean / 55.0 == pytest.approx(expected, abs=1e-8)
+
+
+PRINTED_MEANS = [55.0, 0.1216, 0.1216, 55.0, 55.0, 0.1523]
+IDENTIFIED_MEANS = {1: 55.00, 2: 21.56, 3: 26.44, 6: 27.44}
+IDENTIFIED_ABSOLUTE_MEANS = {1: 55.00, 2: 21.05, 3: 27.05, 6: 27.95}
+
+
+@pytest.mark.parametrize(("row", "printed"), list(zip(TABLE_2, PRINTED_MEANS, strict=True)))
+def test_table_2_at_the_printed_parameters(fmu: FrictionFmu, row: Row, printed: float) -> None:
+    start = start_values(row, PRINTED) | ACCURATE
+    mean = periodic_mean(fmu, start)
+    assert mean == pytest.approx(printed, abs=5e-5)
+    assert mean == pytest.approx(float(reference.periodic_mean(scene_of(start))), rel=1e-6)
+
+
+@pytest.mark.parametrize("number", IDENTIFIED_MEANS)
+def test_table_2_identified(fmu: FrictionFmu, number: int) -> None:
+    start = start_values(TABLE_2[number - 1], IDENTIFIED) | ACCURATE
+    mean = periodic_mean(fmu, start)
+    assert mean == pytest.approx(IDENTIFIED_MEANS[number], abs=0.005)
+    assert mean == pytest.approx(float(reference.periodic_mean(scene_of(start))), rel=1e-6)
+
+
+@pytest.mark.parametrize("number", IDENTIFIED_ABSOLUTE_MEANS)
+def test_table_2_identified_by_the_mean_of_the_absolute_force(fmu: FrictionFmu, number: int) -> None:
+    points = 4000
+    period = 1.0 / 20e3
+    start = start_values(TABLE_2[number - 1], IDENTIFIED_ABSOLUTE) | ACCURATE
+    with fmu.session(start) as session:
+        session.step(1e6 * period)
+        force = np.empty(points)
+        for k in range(points):
+            session.step(period / points)
+            force[k] = session.get("F_t")
+    assert np.abs(force).mean() == pytest.approx(IDENTIFIED_ABSOLUTE_MEANS[number], abs=0.0055)
+
+
+@pytest.mark.parametrize("parameters", [PRINTED, IDENTIFIED])
+@pytest.mark.parametrize("number", [4, 5])
+def test_constant_velocity_means_the_coulomb_force(fmu: FrictionFmu, parameters: object, number: int) -> None:
+    mean = periodic_mean(fmu, start_values(TABLE_2[number - 1], parameters) | ACCURATE)
+    assert mean == pytest.approx(55.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("V", [0.5, 1.0, 1.5, -2.0])
+def test_velocity_weighted_mean_is_the_coulomb_force_times_mean_over_mean_speed(
+    fmu: FrictionFmu, V: float
+) -> None:
+    """Over a period of the periodic state, integral F |V| dt = F_C integral V dt, whatever sigma(t) does.
+
+    Where V keeps its sign that integral is the work.
+    """
+    start = start_values(TABLE_2[1], IDENTIFIED) | ACCURATE | {"V": V}
+    scene, period = scene_of(start), 1.0 / 20e3
+    with fmu.session(start) as session:
+        session.step(1e6 * period)
+        delta, W_f = session.get("delta"), session.get("W_f")
+        session.step(period)
+        assert session.get("delta") == pytest.approx(delta, rel=1e-9)
+        work = session.get("W_f") - W_f
+    expected = reference.solve(scene, 0, scene.period, reference.periodic_deflection(scene))[2]
+    assert work == pytest.approx(float(expected), rel=1e-9, abs=1e-12 * abs(W_f))
+    if abs(V) > scene.V_1:
+        assert work == pytest.approx(55.0 * abs(V) * period, rel=1e-9, abs=1e-12 * abs(W_f))

@@ -1,0 +1,56 @@
+"""solver.method = cvode against the reference, whose promise it shares: errors at most tolerance times F_C."""
+
+from __future__ import annotations
+
+import pytest
+from data.sweep import SWEEP
+from frictionlab import reference
+from frictionlab.reference import MP
+from frictionlab.reference_arithmetic import multiprecision
+from frictionlab.scenes import scene_of
+from frictionlab.simulate import FrictionFmu
+
+PERIOD = 1.0 / 20e3
+FLOOR = 1e-10
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize("scale", [1e-8, 1e-6, 1e-4, 1e-2, 1.0])
+def test_error_follows_the_tolerance(fmu: FrictionFmu, scale: float, tolerance: float) -> None:
+    start = {
+        "V": 0.5,
+        "vibration.V_1": 1.44,
+        "vibration.a_d": 1.1e-6,
+        "vibration.phase_d": 1.0,
+        "contact.stiffnessScale": scale,
+        "solver.method": "cvode",
+        "solver.tolerance": tolerance,
+    }
+    scene = scene_of(start)
+    h = 0.9 * PERIOD
+    delta, impulse, work = reference.solve(scene, 0, MP.mpf(h), 0)
+    with fmu.session(start) as session:
+        session.step(h)
+        F_t, F_t_mean, W_f = session.read(("F_t", "F_t_mean", "W_f"))
+    bound = max(tolerance, FLOOR)
+    assert F_t == pytest.approx(float(reference.force(scene, h, delta)), abs=bound * 55)
+    assert F_t_mean == pytest.approx(float(multiprecision(impulse) / MP.mpf(h)), abs=bound * 55)
+    assert W_f == pytest.approx(float(work), rel=bound)
+
+
+def test_short_scenes_of_the_sweep(fmu: FrictionFmu) -> None:
+    missed = []
+    for row in SWEEP:
+        if row.h * row.scene.f > 3:
+            continue
+        start = row.start_values | {"solver.method": "cvode", "solver.tolerance": 1e-8}
+        with fmu.session(start, start=row.scene.start) as session:
+            if row.rates:
+                session.set_rates(**row.rates)
+            session.step(row.h)
+            F_t, F_t_mean = session.get("F_t"), session.get("F_t_mean")
+        F_C = row.scene.F_C
+        error = max(abs(F_t - row.F_t), abs(F_t_mean - row.F_t_mean)) / F_C
+        if not error <= 1e-8:
+            missed.append(f"row {row.number}: {error:.2e}")
+    assert not missed, "errors over F_C:\n" + "\n".join(missed)
