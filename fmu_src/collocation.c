@@ -28,7 +28,8 @@ static const double LARGEST_RESOLUTION = 3.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
 
-// Where the two trajectories of the interval's map are: P started from 1 and Q started from 0.
+// Where the two trajectories of the interval's map are: P started from 1 and Q started from 0. For one start alone
+// P is 0 from the beginning and Q starts from there.
 typedef struct {
     DahlMap map;
     double resolution;
@@ -52,6 +53,18 @@ static double dip_layer(const DahlProblem* problem, double t) {
     const double curvature = drive->vibration.V_1 * drive->omega * drive->omega;
     const double per_speed = dahl_stiffness(problem, t) / problem->F_C;
     return fmax(sqrt(2.0 * fabs(drive_V(drive, t)) / curvature), cbrt(6.0 / (per_speed * curvature)));
+}
+
+// Layer [s] at the start of a communication step: none if delta_0 is where the bristle has settled, to first order in
+// the time it takes to relax, so that it only follows V and sigma on their own scales.
+static double start_layer(const DahlProblem* problem, double delta_0, double tolerance) {
+    const DahlCoefficients now = dahl_coefficients(problem, 0.0);
+    const double g = now.sigma * fabs(now.V) / problem->F_C;
+    const double settled = copysign(1.0, now.V) * (1.0 + dahl_log_stiffness_rate(problem, 0.0) / g);
+    if (fabs(now.sigma * delta_0 / problem->F_C - settled) <= SAFETY * tolerance) {
+        return fabs(now.V / drive_V_rate(&problem->drive, 0.0)); // distance of the reversal behind
+    }
+    return relaxation_layer(problem, 0.0);
 }
 
 // Time [s] over which the phase or ln(sigma) moves by 1, at the least.
@@ -93,9 +106,12 @@ static double graded_step(const Progress* progress, const Stretch* stretch, doub
 // Estimated error over what the step is allowed, for the map's two trajectories.
 static double relative_error(const Progress* progress, const RadauStep* step, double F_C) {
     const double P = 1.0 - progress->map.relaxation;
-    const RadauTail homogeneous = radau_tail_homogeneous(step, P * progress->delta_scale);
     const RadauTail full = radau_tail_full(step, progress->map.offset);
-    const double error = radau_error(&homogeneous, step->z_mean) + radau_error(&full, step->z_mean);
+    double error = radau_error(&full, step->z_mean);
+    if (P != 0.0) {
+        const RadauTail homogeneous = radau_tail_homogeneous(step, P * progress->delta_scale);
+        error += radau_error(&homogeneous, step->z_mean);
+    }
     const double rounding = ROUNDING * F_C / step->sigma[RADAU_STAGES - 1];
     const double allowed = fmax(SAFETY * progress->delta_tolerance, rounding) * fmin(1.0, step->z_mean);
     return error > 0.0 ? error / allowed : 0.0;
@@ -152,7 +168,7 @@ static DahlMap slack_map(const DahlProblem* problem, double h) {
 }
 
 static DahlMap collocation_interval(const DahlProblem* problem, const SolverOptions* options, double duration,
-                                    double delta_0, double* evaluations) {
+                                    double delta_0, MapScope scope, double* evaluations) {
     const Drive* drive = &problem->drive;
     const double saturated = problem->F_C / dahl_largest_stiffness(problem, duration);
     if (!isfinite(saturated)) {
@@ -166,7 +182,14 @@ static DahlMap collocation_interval(const DahlProblem* problem, const SolverOpti
         .delta_tolerance = options->tolerance * saturated,
         .evaluations = *evaluations,
     };
-    Stretch stretch = {.w_a = relaxation_layer(problem, 0.0)};
+    Stretch stretch = {0};
+    if (scope == MAP_THIS_START) {
+        progress.map.relaxation = 1.0;
+        progress.map.offset = delta_0;
+        stretch.w_a = start_layer(problem, delta_0, options->tolerance);
+    } else {
+        stretch.w_a = relaxation_layer(problem, 0.0);
+    }
     while (stretch.start < duration && progress.evaluations <= FC_MOST_EVALUATIONS) {
         // An event farther beyond the end than the end is from here does not shape the steps.
         const double horizon = duration + (duration - stretch.start);

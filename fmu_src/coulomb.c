@@ -5,7 +5,8 @@
 double coulomb_force(double V, double F_C) { return V > 0.0 ? F_C : V < 0.0 ? -F_C : 0.0; }
 
 static DahlMap coulomb_interval(const DahlProblem* problem, const SolverOptions* options, double duration,
-                                double delta_0, double* evaluations) {
+                                double delta_0, MapScope scope, double* evaluations) {
+    (void)scope;
     (void)options;
     (void)delta_0;
     DahlMap map = dahl_identity();

@@ -7,6 +7,7 @@ DahlProblem dahl_problem(const ContactParameters* contact, const Drive* drive, d
         .contact = contact, .at_E = contact_at_modulus(contact, drive->E.value), .drive = *drive, .F_C = F_C};
 }
 
+// The contact at the modulus of the time t.
 static ContactAtModulus contact_at(const DahlProblem* problem, double t) {
     const Drive* drive = &problem->drive;
     return drive->E.rate == 0.0 ? problem->at_E : contact_at_modulus(problem->contact, drive_E(drive, t));
@@ -17,12 +18,24 @@ ContactState dahl_contact_state(const DahlProblem* problem, double t) {
     return contact_state(&at_E, drive_d(&problem->drive, t));
 }
 
-double dahl_stiffness(const DahlProblem* problem, double t) {
+DahlCoefficients dahl_coefficients(const DahlProblem* problem, double t) {
+    const DriveValues now = drive_values(&problem->drive, t);
     if (problem->at_E.constant) {
-        return problem->at_E.stiffness_0;
+        return (DahlCoefficients){.V = now.V, .sigma = problem->at_E.stiffness_0};
     }
     const ContactAtModulus at_E = contact_at(problem, t);
-    return contact_stiffness(&at_E, drive_d(&problem->drive, t));
+    return (DahlCoefficients){.V = now.V, .sigma = contact_stiffness(&at_E, now.d)};
+}
+
+double dahl_stiffness(const DahlProblem* problem, double t) { return dahl_coefficients(problem, t).sigma; }
+
+double dahl_log_stiffness_rate(const DahlProblem* problem, double t) {
+    const Drive* drive = &problem->drive;
+    const double d = drive_d(drive, t);
+    const double E = drive_E(drive, t);
+    const double sigma = dahl_stiffness(problem, t);
+    const ContactGradient slope = contact_stiffness_gradient(problem->contact, d, E);
+    return sigma > 0.0 ? (slope.by_d * drive_d_rate(drive, t) + slope.by_E * drive->E.rate) / sigma : 0.0;
 }
 
 double dahl_largest_stiffness(const DahlProblem* problem, double h) {

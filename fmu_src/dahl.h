@@ -23,6 +23,12 @@ DahlProblem dahl_problem(const ContactParameters* contact, const Drive* drive, d
 // sigma and A_r at the local time t [s]; sigma [N/m] alone; an upper bound of sigma [N/m] over [0, h].
 ContactState dahl_contact_state(const DahlProblem* problem, double t);
 double dahl_stiffness(const DahlProblem* problem, double t);
+typedef struct {
+    double V;     // m/s
+    double sigma; // N/m
+} DahlCoefficients;
+DahlCoefficients dahl_coefficients(const DahlProblem* problem, double t);
+double dahl_log_stiffness_rate(const DahlProblem* problem, double t); // d ln(sigma) / dt [1/s]
 double dahl_largest_stiffness(const DahlProblem* problem, double h);
 
 typedef struct {

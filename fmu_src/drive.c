@@ -21,6 +21,8 @@ Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibratio
     Drive drive = {.V = V, .d = d, .E = E, .vibration = vibration};
     if (drive_vibrates(&drive)) {
         drive.omega = FC_TWO_PI * vibration.f;
+        drive.cos_phase_d = cos(vibration.phase_d);
+        drive.sin_phase_d = sin(vibration.phase_d);
         drive.theta_0 = FC_TWO_PI * (phase_in_cycles(vibration.f, start) + vibration.f * rest);
     }
     return drive;
@@ -38,17 +40,25 @@ static double theta(const Drive* drive, double t) { return drive->theta_0 + driv
 
 static double linear(LinearInput input, double t) { return input.value + input.rate * t; }
 
+DriveValues drive_values(const Drive* drive, double t) {
+    DriveValues now = {.V = linear(drive->V, t), .d = linear(drive->d, t)};
+    if (drive->omega != 0.0) {
+        const double angle = theta(drive, t);
+        const double c = cos(angle);
+        now.V += drive->vibration.V_1 * c;
+        if (drive->vibration.a_d != 0.0) {
+            now.d += drive->vibration.a_d * (c * drive->cos_phase_d - sin(angle) * drive->sin_phase_d);
+        }
+    }
+    return now;
+}
+
 double drive_V(const Drive* drive, double t) {
     const double V = linear(drive->V, t);
     return drive->vibration.V_1 != 0.0 ? V + drive->vibration.V_1 * cos(theta(drive, t)) : V;
 }
 
-double drive_d(const Drive* drive, double t) {
-    const double d = linear(drive->d, t);
-    return drive->vibration.a_d != 0.0
-               ? d + drive->vibration.a_d * cos(theta(drive, t) + drive->vibration.phase_d)
-               : d;
-}
+double drive_d(const Drive* drive, double t) { return drive_values(drive, t).d; }
 
 double drive_E(const Drive* drive, double t) { return linear(drive->E, t); }
 

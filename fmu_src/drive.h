@@ -26,6 +26,7 @@ typedef struct {
     LinearInput d; // m
     LinearInput E; // Pa
     Vibration vibration;
+    double cos_phase_d, sin_phase_d;
     double omega;   // rad/s
     double theta_0; // rad, phase at local time 0
 } Drive;
@@ -36,6 +37,12 @@ Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibratio
 int drive_vibrates(const Drive* drive);  // an amplitude is not zero
 int drive_is_linear(const Drive* drive); // a rate is not zero
 int drive_is_constant(const Drive* drive);
+
+typedef struct {
+    double V; // m/s
+    double d; // m
+} DriveValues;
+DriveValues drive_values(const Drive* drive, double t); // both for the price of one angle
 
 double drive_V(const Drive* drive, double t);             // m/s
 double drive_d(const Drive* drive, double t);             // m

@@ -29,7 +29,7 @@ int periods_step(IntervalMap interval, const DahlProblem* problem, const SolverO
     const double periods = drive_vibrates(drive) ? floor(h * f) : 0.0;
 
     if (periods < 2.0) {
-        const DahlMap map = interval(problem, options, h, total.delta, &total.evaluations);
+        const DahlMap map = interval(problem, options, h, total.delta, MAP_THIS_START, &total.evaluations);
         apply(&map, &total);
         *result = total;
         return 1;
@@ -37,10 +37,12 @@ int periods_step(IntervalMap interval, const DahlProblem* problem, const SolverO
 
     const double rest = fmax(0.0, fma(h, f, -periods) / f);
     if (!drive_is_linear(drive)) {
-        const DahlMap one = interval(problem, options, 1.0 / f, total.delta, &total.evaluations);
+        const DahlMap one =
+            interval(problem, options, 1.0 / f, total.delta, MAP_ANY_START, &total.evaluations);
         const DahlMap all = dahl_power(&one, periods);
         apply(&all, &total);
-        const DahlMap last = interval(problem, options, rest, total.delta, &total.evaluations);
+        const DahlMap last =
+            interval(problem, options, rest, total.delta, MAP_THIS_START, &total.evaluations);
         apply(&last, &total);
         *result = total;
         return 1;
@@ -57,8 +59,9 @@ int periods_step(IntervalMap interval, const DahlProblem* problem, const SolverO
     for (double k = 0.0; k <= periods; k += 1.0) {
         const Drive now = periods_later(drive, k / f);
         const DahlProblem part = dahl_problem(problem->contact, &now, problem->F_C);
+        const double duration = k < periods ? 1.0 / f : rest;
         const DahlMap map =
-            interval(&part, options, k < periods ? 1.0 / f : rest, total.delta, &total.evaluations);
+            interval(&part, options, duration, total.delta, MAP_THIS_START, &total.evaluations);
         apply(&map, &total);
     }
     *result = total;

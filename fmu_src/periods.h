@@ -9,10 +9,12 @@
 #include "message.h"
 #include "solver.h"
 
-// Integrates the problem over [0, duration]. delta_0 [m] only scales the errors; the map holds for any. Adds what it
-// spends to *evaluations.
+// What a map must hold for: the deflection delta_0 at the start alone, which is cheaper, or any.
+typedef enum { MAP_THIS_START, MAP_ANY_START } MapScope;
+
+// Integrates the problem over [0, duration] from delta_0 [m]. Adds what it spends to *evaluations.
 typedef DahlMap (*IntervalMap)(const DahlProblem* problem, const SolverOptions* options, double duration,
-                               double delta_0, double* evaluations);
+                               double delta_0, MapScope scope, double* evaluations);
 
 // More periods than this with moving inputs are refused: they would take minutes.
 extern const double PERIODS_WITH_MOVING_INPUTS;

@@ -7,13 +7,13 @@
 
 static void evaluate(const DahlProblem* problem, double t, double h, double sign, RadauStep* step) {
     step->z_mean = 0.0;
+    const double sign_over_F_C = sign / problem->F_C;
     for (int i = 0; i < RADAU_STAGES; i++) {
-        const double t_i = t + RADAU_NODES[i] * h;
-        const double V = drive_V(&problem->drive, t_i);
-        step->sigma[i] = dahl_stiffness(problem, t_i);
-        step->shift[i] = h * V;
+        const DahlCoefficients at = dahl_coefficients(problem, t + RADAU_NODES[i] * h);
+        step->sigma[i] = at.sigma;
+        step->shift[i] = h * at.V;
         // sign V and not |V|: V may be a rounding error past its reversal, and g must stay smooth there.
-        step->z[i] = sign * step->shift[i] * step->sigma[i] / problem->F_C;
+        step->z[i] = step->shift[i] * at.sigma * sign_over_F_C;
         step->z_mean += RADAU_WEIGHTS[i] * step->z[i];
     }
 }
