@@ -71,6 +71,7 @@ int friction_contact_initialize(FrictionContact* contact, double start, Message*
     FrictionContact fresh = *contact;
     fresh.state.time = start;
     fresh.state.time_rest = 0.0;
+    fresh.state.W_f_rest = 0.0;
     if (!friction_contact_check(&fresh, message)) {
         return 0;
     }
@@ -127,11 +128,11 @@ static double force(const Variables* v, const DahlProblem* problem, double t, do
                                                  : sigma * delta;
 }
 
-// What t + h loses in rounding (Knuth's two-sum).
-static double rounding_of_sum(double t, double h) {
-    const double sum = t + h;
-    const double h_part = sum - t;
-    return (t - (sum - h_part)) + (h - h_part);
+// What a + b loses in rounding (Knuth's two-sum).
+static double rounding_of_sum(double a, double b) {
+    const double sum = a + b;
+    const double b_part = sum - a;
+    return (a - (sum - b_part)) + (b - b_part);
 }
 
 int friction_contact_advance(FrictionContact* contact, double t, double h, Message* message) {
@@ -155,7 +156,8 @@ int friction_contact_advance(FrictionContact* contact, double t, double h, Messa
     const ContactState end = dahl_contact_state(&problem, h);
     const double F_t = force(v, &problem, h, end.sigma, result.delta);
     const double F_t_mean = h > 0.0 ? result.impulse / h : F_t;
-    const double W_f = v->W_f + result.work;
+    const double work = result.work + state->W_f_rest;
+    const double W_f = v->W_f + work;
     if (!isfinite(F_t) || !isfinite(F_t_mean) || !isfinite(W_f) || !isfinite(result.delta)) {
         return fail(message,
                     "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
@@ -164,6 +166,7 @@ int friction_contact_advance(FrictionContact* contact, double t, double h, Messa
     }
     state->time = t + h;
     state->time_rest = rounding_of_sum(t, h);
+    state->W_f_rest = rounding_of_sum(v->W_f, work);
     v->V += drive.V.rate * h;
     v->d += drive.d.rate * h;
     v->E += drive.E.rate * h;

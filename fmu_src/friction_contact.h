@@ -44,6 +44,7 @@ typedef struct {
     Variables variables;
     double time;                   // s, the communication point reached
     double time_rest;              // s, what rounding cut off when time was computed as t + h
+    double W_f_rest;               // J, what rounding cut off the sum W_f
     double rate[INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero

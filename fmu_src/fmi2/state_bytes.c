@@ -6,8 +6,8 @@
 //     12      4     size of all the bytes
 //     16      38    guid of the FMU
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
-//                   time and its rounding, rates of the last step, rates of the next step: 8 bytes each; whether the latter were
-//                   set: 4
+//                   time and its rounding, rounding of W_f, rates of the last step, rates of the next step:
+//                   8 bytes each; whether the latter were set: 4
 //                   state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
 //                   8
 //     end - 8 8     FNV-1a hash of all the bytes before it
@@ -33,7 +33,7 @@ enum {
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FrictionState) == sizeof(Variables) + (3 + 2 * INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FrictionState) == sizeof(Variables) + (4 + 2 * INPUT_COUNT) * sizeof(double),
                "a new member of FrictionState must be added to transfer_state");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
@@ -96,6 +96,7 @@ static void transfer_state(Cursor* cursor, SavedState* saved) {
     }
     transfer_real(cursor, &friction->time);
     transfer_real(cursor, &friction->time_rest);
+    transfer_real(cursor, &friction->W_f_rest);
     for (int input = 0; input < INPUT_COUNT; input++) {
         transfer_real(cursor, &friction->rate[input]);
     }
@@ -225,7 +226,7 @@ static const char* unsound_part(SavedState* saved) {
         }
     }
     const FrictionState* friction = &saved->friction;
-    if (!isfinite(friction->time) || !isfinite(friction->time_rest) ||
+    if (!isfinite(friction->time) || !isfinite(friction->time_rest) || !isfinite(friction->W_f_rest) ||
         !all_finite(friction->rate, INPUT_COUNT) || !all_finite(friction->next_rate, INPUT_COUNT) ||
         !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";

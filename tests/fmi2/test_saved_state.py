@@ -181,8 +181,8 @@ def offsets(library: Library) -> dict[str, int]:
         at += 8 if variable.kind == "Real" else 4
     places["time"] = at
     places["time_rest"] = at + 8
-    places["next_rate of V"] = at + 8 * 5
-    places["next_rate_set"] = at + 8 * 8
+    places["next_rate of V"] = at + 8 * 6
+    places["next_rate_set"] = at + 8 * 9
     places["state"] = places["next_rate_set"] + 4
     places["outputs_stale"] = places["state"] + 4
     places["start_time"] = places["state"] + 16

@@ -80,7 +80,8 @@ static int is_short_work(fmi2Component c, double h) {
     const fmi2ValueReference method_reference = reference_of(offsetof(Variables, solver.method));
     double value[4];
     int method;
-    if (fmi2GetReal(c, reals, 4, value) != fmi2OK || fmi2GetInteger(c, &method_reference, 1, &method) != fmi2OK) {
+    if (fmi2GetReal(c, reals, 4, value) != fmi2OK ||
+        fmi2GetInteger(c, &method_reference, 1, &method) != fmi2OK) {
         return 1;
     }
     const int vibrates = value[1] != 0.0 || value[2] != 0.0;

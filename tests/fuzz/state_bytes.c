@@ -51,7 +51,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         return 0;
     }
     fmi2Component c = instantiate();
-    HOLD(fmi2EnterInitializationMode(c) == fmi2OK && fmi2ExitInitializationMode(c) == fmi2OK, "it initializes");
+    HOLD(fmi2EnterInitializationMode(c) == fmi2OK && fmi2ExitInitializationMode(c) == fmi2OK,
+         "it initializes");
     const StateBytes before = state_of(c);
     const StateBytes made = data[0] % 2 ? sealed(c, data + 1, size - 1) : (StateBytes){0};
     const char* bytes = data[0] % 2 ? made.bytes : (const char*)data + 1;
