@@ -23,6 +23,9 @@ DahlCoefficients dahl_coefficients(const DahlProblem* problem, double t) {
     if (problem->at_E.constant) {
         return (DahlCoefficients){.V = now.V, .sigma = problem->at_E.stiffness_0};
     }
+    if (problem->drive.E.rate == 0.0) {
+        return (DahlCoefficients){.V = now.V, .sigma = contact_stiffness(&problem->at_E, now.d)};
+    }
     const ContactAtModulus at_E = contact_at(problem, t);
     return (DahlCoefficients){.V = now.V, .sigma = contact_stiffness(&at_E, now.d)};
 }
