@@ -2,8 +2,8 @@
 
     fmu_documentation.py index.html        writes the page
 
-The page is docs/fmu/page.html with the plots of docs/fmu/ and a table of the variables of modelDescription.xml put in.
-Nothing but Python's own library is needed: the build makes the page.
+The page is docs/fmu/page.html with the plots of docs/fmu/ and tables of the variables of
+modelDescription.xml put in. Nothing but Python's own library is needed: the build makes the page.
 """
 
 from __future__ import annotations

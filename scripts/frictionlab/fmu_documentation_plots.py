@@ -2,8 +2,8 @@
 
     python -m frictionlab.fmu_documentation_plots
 
-They are simulated with build/FrictionContact.fmu. The colours are CSS variables of the page that shows them, so that
-they follow its light or dark scheme; by itself a picture has those of the light one.
+They are simulated with build/FrictionContact.fmu. The colours are CSS variables of the page that shows them,
+so that they follow its light or dark scheme; by itself a picture has those of the light one.
 """
 
 from __future__ import annotations
@@ -57,9 +57,7 @@ class Chart:
         )
 
     def text(self, x: float, y: float, text: str, colour: str, anchor: str = "start") -> None:
-        self.body.append(
-            f'<text x="{self.x(x):.1f}" y="{self.y(y):.1f}" fill="{colour}" text-anchor="{anchor}">{text}</text>'
-        )
+        self.body.append(_label(self.x(x), self.y(y), text, colour, anchor))
 
     def svg(self) -> str:
         lines = [
@@ -70,24 +68,20 @@ class Chart:
         for tick in self.x_ticks:
             x = f"{self.x(tick):.1f}"
             lines.append(f'<path d="M{x} {TOP}V{HEIGHT - BOTTOM}" stroke="{GRID}"/>')
-            lines.append(
-                f'<text x="{x}" y="{HEIGHT - BOTTOM + 18}" text-anchor="middle" fill="{INK}">{_number(tick)}</text>'
-            )
+            lines.append(_label(self.x(tick), HEIGHT - BOTTOM + 18, _number(tick), INK, "middle"))
         for tick in self.y_ticks:
             y = self.y(tick)
             lines.append(f'<path d="M{LEFT} {y:.1f}H{WIDTH - RIGHT}" stroke="{GRID}"/>')
-            lines.append(
-                f'<text x="{LEFT - 6}" y="{y + 5:.1f}" text-anchor="end" fill="{INK}">{_number(tick)}</text>'
-            )
-        middle = (LEFT + WIDTH - RIGHT) / 2
-        lines.append(
-            f'<text x="{middle}" y="{HEIGHT - 12}" text-anchor="middle" fill="{INK}">{self.x_label}</text>'
-        )
+            lines.append(_label(LEFT - 6, y + 5, _number(tick), INK, "end"))
+        lines.append(_label((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 12, self.x_label, INK, "middle"))
         middle = (TOP + HEIGHT - BOTTOM) / 2
-        lines.append(
-            f'<text transform="translate(15 {middle}) rotate(-90)" text-anchor="middle" fill="{INK}">{self.y_label}</text>'
-        )
+        turned = _label(0, 0, self.y_label, INK, "middle")
+        lines.append(f'<g transform="translate(15 {middle}) rotate(-90)">{turned}</g>')
         return "\n".join([*lines, *self.body, "</svg>"]) + "\n"
+
+
+def _label(x: float, y: float, text: str, colour: str, anchor: str) -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}" text-anchor="{anchor}">{text}</text>'
 
 
 def _number(value: float) -> str:

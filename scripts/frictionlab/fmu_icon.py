@@ -2,7 +2,7 @@
 
     python -m frictionlab.fmu_icon
 
-Two rough surfaces that touch at their asperities, the arrow of the sliding velocity, and the wave of the vibration.
+Two rough surfaces that touch at their asperities, the arrow of the velocity, the wave of the vibration.
 """
 
 from __future__ import annotations
