@@ -5,17 +5,23 @@ A job is a scene with its communication steps; a result is its outputs, cost, or
 
 from __future__ import annotations
 
+import argparse
+import csv
+import json
 import platform
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from frictionlab.build import ROOT, BuildError, build_fmu
-from frictionlab.simulate import FrictionFmu, Value
+from frictionlab.simulate import FrictionError, FrictionFmu, Value
 
 REPORT = ROOT / "build" / "report"
 TIME_LIMIT = 120.0  # s of wall time for one job
@@ -90,7 +96,12 @@ class Bench:
         command = [str(self.programs / program), *map(str, arguments)]
         try:
             done = subprocess.run(
-                command, input="\n".join(lines), capture_output=True, text=True, timeout=TIME_LIMIT, check=False
+                command,
+                input="\n".join(lines),
+                capture_output=True,
+                text=True,
+                timeout=TIME_LIMIT,
+                check=False,
             )
         except subprocess.TimeoutExpired:
             return failed(f"not finished after {TIME_LIMIT:.0f} s")
@@ -131,21 +142,71 @@ def _parse(text: str, job: Job) -> Outcome:
     return Outcome(F, F_mean, *(numbers[name] / job.count for name in ("wall", "cpu", "evaluations")))
 
 
-def open_bench(fmu: FrictionFmu, programs: Path | None = None) -> Bench:
-    """Builds the programs in build/, unless a folder that holds them is given."""
-    if programs is None:
-        command = [sys.executable, "-m", "cmake", "--build", str(ROOT / "build"), "--target", "bench"]
+@contextmanager
+def open_bench(build_dir: Path | None = None, progress: Progress | None = None) -> Iterator[Bench]:
+    """Builds the FMU and the programs in build/; takes them as they are from a folder given."""
+    if build_dir is None:
+        build_dir = build_fmu(progress=progress).parent
+        command = [sys.executable, "-m", "cmake", "--build", str(build_dir), "--target", "bench"]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise BuildError(f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}")
-        programs = ROOT / "build" / "bench"
-    return Bench(fmu, programs)
+            raise BuildError(
+                f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}"
+            )
+    with FrictionFmu(build_dir / "FrictionContact.fmu") as fmu:
+        yield Bench(fmu, build_dir / "bench")
 
 
-def build_all(progress: object = None) -> tuple[Path, Path]:
-    """The FMU and the folder of the benchmark programs."""
-    path = build_fmu(progress=progress)  # type: ignore[arg-type]
-    return path, ROOT / "build" / "bench"
+def command_line(name: str, description: str) -> argparse.ArgumentParser:
+    """The options that all benchmark commands have."""
+    parser = argparse.ArgumentParser(
+        prog=f"scripts/{name}", description=description, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--quick", action="store_true", help="fewer scenes, methods and repetitions")
+    parser.add_argument("--output", type=Path, default=REPORT, help="folder to write to (build/report)")
+    parser.add_argument(
+        "--build-dir",
+        type=Path,
+        help="take the FMU and the programs from this build instead of building them",
+    )
+    return parser
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    console = Console(stderr=True)
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        yield progress
+
+
+def guarded(run: Callable[[], None]) -> None:
+    """Runs a command; what a user can mend becomes one line."""
+    try:
+        run()
+    except (BuildError, FrictionError) as error:
+        sys.exit(f"error: {error}")
+    except OSError as error:
+        sys.exit(f"error: {error.filename or ''}: {error.strerror or error}")
+
+
+def write_csv(rows: Sequence[Mapping[str, object]], path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    return path
+
+
+def write_machine(path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(machine(), indent=2) + "\n")
+    return path
+
+
+def shown(path: Path) -> str:
+    return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
 
 
 def machine() -> dict[str, str]:
@@ -156,7 +217,9 @@ def machine() -> dict[str, str]:
     cpu = platform.processor()
     info = Path("/proc/cpuinfo")
     if info.is_file():
-        models = [line.partition(":")[2].strip() for line in info.read_text().splitlines() if "model name" in line]
+        models = [
+            line.partition(":")[2].strip() for line in info.read_text().splitlines() if "model name" in line
+        ]
         cpu = f"{models[0]} x {len(models)}" if models else cpu
     compiler = "unknown"
     cache = ROOT / "build" / "CMakeCache.txt"
