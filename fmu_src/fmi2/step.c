@@ -5,6 +5,7 @@
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
+#include "fmi2/values.h"
 
 // Hosts keep time in their own way, adding steps or multiplying them; what is a rounding of time to them must
 // not stop a run. There is no absolute allowance: steps of 1e-12 s are as good as steps of 1e9 s.
@@ -35,6 +36,27 @@ static int check_step(const Instance* instance, double t, double h) {
     return 1;
 }
 
+// An input that moves must end where it could also have been set.
+static int check_moving_inputs(const Instance* instance, double h) {
+    const FrictionState* state = &instance->contact.state;
+    for (unsigned vr = 0; state->next_rate_set && vr < variables_count; vr++) {
+        const VariableInfo* info = &variables_table[vr];
+        if (info->causality != CAUSALITY_INPUT) {
+            continue;
+        }
+        const double value = *variable_real((Variables*)&state->variables, info); // only read
+        const double end = value + state->next_rate[variable_input(info)] * h;
+        if (!variable_allows(info, end)) {
+            const int has_min = info->min > -DBL_MAX;
+            refuse(instance, CALL_DO_STEP, "%s moves from %s to %s in the step: it must stay finite%s%s",
+                   info->name, quantity_text(value, info->unit).text, quantity_text(end, info->unit).text,
+                   has_min ? " and at least " : "", has_min ? quantity_text(info->min, info->unit).text : "");
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static void tell_undersampling(Instance* instance, double h) {
     const double f = instance->contact.state.variables.vibration.f;
     log_text(
@@ -49,7 +71,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
                       fmi2Boolean noSetFMUStatePriorToCurrentPoint) {
     (void)noSetFMUStatePriorToCurrentPoint; // a saved state is a copy: nothing is kept for going back
     Instance* instance = instance_enter(c, CALL_DO_STEP);
-    if (!instance || !check_step(instance, currentCommunicationPoint, communicationStepSize)) {
+    if (!instance || !check_step(instance, currentCommunicationPoint, communicationStepSize) ||
+        !check_moving_inputs(instance, communicationStepSize)) {
         return fmi2Error;
     }
     Message message;

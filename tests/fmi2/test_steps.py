@@ -153,3 +153,32 @@ def test_results_do_not_depend_on_when_the_run_starts_without_vibration(
         results.append(instance.get(*OUTPUTS))
     assert results[0] == results[1]
     assert not math.isclose(results[0][0], 55.0, rel_tol=1e-6)
+
+
+@pytest.mark.parametrize("contact_model", [1, 2])
+@pytest.mark.parametrize(
+    ("rates", "told"),
+    [
+        (
+            {"d": -1.0},
+            "d moves from 1.4e-05 m to -8.6e-05 m in the step: it must stay finite and at least 1e-12 m",
+        ),
+        ({"d": 1.7e308}, "d moves from"),
+        ({"E": -1e15}, "E moves from 58556936170 Pa to -41443063830 Pa in the step"),
+        ({"V": 1.0, "E": 1.7e308}, "E moves from"),
+        ({"V": -1.7e308}, "V moves from"),
+    ],
+)
+def test_an_input_can_not_be_driven_out_of_its_bounds(
+    instance: Instance, rates: dict[str, float], told: str, contact_model: int
+) -> None:
+    h = 1e-4 if abs(min(rates.values(), key=lambda rate: -abs(rate))) < 1e300 else 1e4
+    assert instance.choose({"contact.model": contact_model}) == OK
+    instance.initialize()
+    assert instance.set_input_rates(rates) == OK
+    before = instance.fingerprint()
+    assert instance.step(0.0, h) == ERROR
+    assert told in instance.last_message.text
+    assert instance.fingerprint() == before
+    assert instance.set_input_rates(dict.fromkeys(rates, 0.0)) == OK
+    assert instance.step(0.0, h) == OK
