@@ -1,4 +1,4 @@
-"""solver.method = cvode against the reference, whose promise it shares: errors at most tolerance times F_C."""
+"""solver.method = cvode, which shares the default's promise: errors at most tolerance times F_C."""
 
 from __future__ import annotations
 
