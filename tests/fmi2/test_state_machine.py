@@ -1,0 +1,226 @@
+"""Any sequence of calls, against a model of what an instance remembers: a few lines of Python, no physics.
+
+The model knows the place in the call order, the time, the inputs and their rates, the parameters and saved
+states. It foretells each status, and what can be read; a refused call must change nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from copy import deepcopy
+from ctypes import c_double, c_void_p
+from dataclasses import dataclass, field
+
+import pytest
+from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, WARNING, Instance, Library
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, rule, run_state_machine_as_test
+
+FIXED = {"delta_0": 0.0, "contact.R_q": 6e-6, "solver.stepSize": 1e-8}
+TUNABLE = {"F_C": 55.0, "contact.stiffnessScale": 1.0, "vibration.V_1": 0.0}
+INPUTS = {"V": 0.005, "d": 14e-6, "E": 58.556936170e9}
+LEAST = {"d": 1e-12, "E": 1.0, "F_C": 1e-12, "contact.stiffnessScale": 1e-15, "vibration.V_1": 0.0}
+LEAST |= {"contact.R_q": 1e-12, "solver.stepSize": 1e-15}
+
+GOOD = {
+    "V": st.floats(-1, 1),
+    "d": st.floats(10e-6, 20e-6),
+    "E": st.floats(1e9, 1e12),
+    "F_C": st.floats(0.1, 1e3),
+    "contact.stiffnessScale": st.floats(1e-6, 2),
+    "vibration.V_1": st.sampled_from([0.0, 0.01, 0.7]),
+    "delta_0": st.floats(-1e-9, 1e-9),
+    "contact.R_q": st.floats(3e-6, 9e-6),
+    "solver.stepSize": st.floats(1e-9, 1e-7),
+}
+BAD = st.sampled_from([math.nan, math.inf, -math.inf, -1e-3, 0.0])
+REAL_VALUES = st.sampled_from(sorted(GOOD)).flatmap(
+    lambda name: st.tuples(st.just(name), st.one_of(GOOD[name], GOOD[name], BAD))
+)
+STEPS = st.sampled_from([0.0, 1e-9, 1.7e-6, 5e-5, 1e-3, 1e6, -1e-6, math.nan, math.inf])
+RATES = st.sampled_from([("V", 10.0), ("V", -3.0), ("V", 0.0), ("d", 1e-2), ("E", 1e14), ("E", -1e16)])
+
+
+@dataclass
+class Model:
+    state: str = "instantiated"
+    start: float = 0.0
+    stop: float | None = None
+    time: float = 0.0
+    values: dict[str, float] = field(default_factory=lambda: {**INPUTS, **TUNABLE, **FIXED})
+    rates: dict[str, float] = field(default_factory=dict)
+
+    def can_set(self, name: str) -> bool:
+        between_steps = self.state == "step complete" and name not in FIXED
+        return self.state in ("instantiated", "initialization") or between_steps
+
+    def allows(self, name: str, value: float) -> bool:
+        return math.isfinite(value) and value >= LEAST.get(name, -math.inf)
+
+    def after_rates(self, h: float) -> dict[str, float]:
+        return {name: self.values[name] + rate * h for name, rate in self.rates.items()}
+
+    def step_is_legal(self, t: float, h: float) -> bool:
+        if self.state != "step complete" or not (math.isfinite(h) and h >= 0 and t == self.time):
+            return False
+        if self.stop is not None and t + h > self.stop * (1 + 1e-6):
+            return False
+        return all(self.allows(name, value) for name, value in self.after_rates(h).items())
+
+
+class Machine(RuleBasedStateMachine):
+    library: Library  # set by the test
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.instance = Instance(self.library)
+        self.model = Model()
+        self.saved: list[tuple[c_void_p, Model]] = []
+
+    def teardown(self) -> None:
+        for handle, _ in self.saved:
+            assert self.instance.drop(handle) == OK
+        self.instance.free()
+
+    def expect(self, legal: bool, function: str, *arguments: object) -> bool:
+        """Calls; the status must be the foretold one, and a refusal says why and changes nothing."""
+        before = self.instance.fingerprint()
+        self.instance.messages.clear()
+        status = self.instance.call(function, *arguments)
+        assert status == (OK if legal else ERROR), (function, self.model, self.instance.messages)
+        errors = [message for message in self.instance.messages if message.status == ERROR]
+        assert len(errors) == (0 if legal else 1)
+        if not legal:
+            assert self.instance.fingerprint() == before
+        return legal
+
+    @rule(start=st.sampled_from([0.0, -5.0, 1e3, math.nan]), length=st.sampled_from([None, 1.0, 1e-4, -1.0]))
+    def set_up(self, start: float, length: float | None) -> None:
+        stop = None if length is None else start + length
+        legal = self.model.state == "instantiated" and math.isfinite(start) and (length or 0) >= 0
+        arguments = (0, 0.0, start, int(stop is not None), stop or 0.0)
+        if self.expect(legal, "fmi2SetupExperiment", *arguments):
+            self.model.start, self.model.stop = start, stop
+
+    @rule()
+    def enter_initialization(self) -> None:
+        if self.expect(self.model.state == "instantiated", "fmi2EnterInitializationMode"):
+            self.model.state, self.model.time = "initialization", self.model.start
+
+    @rule()
+    def exit_initialization(self) -> None:
+        if self.expect(self.model.state == "initialization", "fmi2ExitInitializationMode"):
+            self.model.state = "step complete"
+
+    @rule()
+    def terminate(self) -> None:
+        if self.expect(self.model.state == "step complete", "fmi2Terminate"):
+            self.model.state = "terminated"
+
+    @rule()
+    def reset(self) -> None:
+        self.expect(True, "fmi2Reset")
+        self.model = Model()
+
+    @rule(choice=REAL_VALUES)
+    def set_real(self, choice: tuple[str, float]) -> None:
+        name, value = choice
+        legal = self.model.can_set(name) and self.model.allows(name, value)
+        if self.expect(legal, "fmi2SetReal", self.instance.references([name]), 1, (c_double * 1)(value)):
+            self.model.values[name] = value
+
+    @rule(first=REAL_VALUES, second=REAL_VALUES)
+    def set_two_reals(self, first: tuple[str, float], second: tuple[str, float]) -> None:
+        legal = all(self.model.can_set(n) and self.model.allows(n, v) for n, v in (first, second))
+        references = self.instance.references([first[0], second[0]])
+        if self.expect(legal, "fmi2SetReal", references, 2, (c_double * 2)(first[1], second[1])):
+            self.model.values.update([first, second])
+
+    @rule(choice=RATES)
+    def set_rate(self, choice: tuple[str, float]) -> None:
+        before = self.instance.fingerprint()
+        legal = self.model.state not in ("terminated",)
+        assert self.instance.set_input_rates(dict([choice])) == (OK if legal else ERROR)
+        if legal:
+            self.model.rates.update([choice])
+        else:
+            assert self.instance.fingerprint() == before
+
+    @rule(h=STEPS, late=st.sampled_from([0.0, 0.0, 0.0, 7.0]))
+    def step(self, h: float, late: float) -> None:
+        t = self.model.time + late
+        shakes = self.model.values["vibration.V_1"] > 0 and any(self.model.rates.values())
+        if shakes and h > 1e-3:
+            return  # work in proportion to the periods
+        if self.expect(self.model.step_is_legal(t, h), "fmi2DoStep", t, h, 1):
+            self.model.values.update(self.model.after_rates(h))
+            self.model.rates.clear()
+            self.model.time = t + h
+
+    @rule()
+    def save(self) -> None:
+        self.saved.append((self.instance.save(), deepcopy(self.model)))
+
+    @rule(data=st.data())
+    def restore(self, data: st.DataObject) -> None:
+        if self.saved:
+            handle, model = data.draw(st.sampled_from(self.saved))
+            assert self.instance.restore(handle) == OK
+            self.model = deepcopy(model)
+
+    @rule(data=st.data())
+    def move_to_a_new_instance(self, data: st.DataObject) -> None:
+        """The rest of the run happens in another instance, from the bytes."""
+        bytes_before = self.instance.fingerprint()
+        old, self.instance = self.instance, Instance(self.library)
+        status, state = self.instance.deserialize(bytes_before)
+        assert status == OK
+        assert self.instance.restore(state) == OK
+        assert self.instance.drop(state) == OK
+        assert self.instance.fingerprint() == bytes_before
+        old.free()
+
+    @invariant()
+    def what_can_be_read_is_what_was_set(self) -> None:
+        model, names = self.model, list(self.model.values)
+        values = (c_double * len(names))()
+        status = self.instance.call("fmi2GetReal", self.instance.references(names), len(names), values)
+        assert status == (ERROR if model.state == "instantiated" else OK)
+        if status == OK:
+            assert dict(zip(names, values, strict=True)) == model.values
+            assert all(map(math.isfinite, self.instance.get("F_t", "F_t_mean", "W_f", "sigma", "delta")))
+
+    @invariant()
+    def the_time_is_the_end_of_the_last_step(self) -> None:
+        reached = (c_double * 1)()
+        known = self.model.state in ("step complete", "terminated")
+        status = self.instance.call("fmi2GetRealStatus", LAST_SUCCESSFUL_TIME, reached)
+        assert status == (OK if known else ERROR)
+        assert not known or reached[0] == self.model.time
+
+    @invariant()
+    def only_the_known_statuses_are_logged(self) -> None:
+        assert all(message.status in (OK, WARNING, ERROR) for message in self.instance.messages)
+
+
+def run(library: Library, examples: int, length: int) -> None:
+    Machine.library = library
+    how = settings(
+        max_examples=examples,
+        stateful_step_count=length,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    run_state_machine_as_test(Machine, settings=how)
+
+
+def test_calls_in_any_order(library: Library) -> None:
+    run(library, examples=100, length=40)
+
+
+@pytest.mark.slow
+def test_many_more_calls_in_any_order(library: Library) -> None:
+    run(library, examples=1500, length=60)
