@@ -1,0 +1,78 @@
+"""What the documents say: links lead somewhere, tables and commands agree with the project."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from frictionlab.simulate import FrictionFmu
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md")])
+USING = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
+ROWS = [
+    [cell.strip() for cell in line.strip()[1:-1].split("|")]
+    for line in USING.splitlines()
+    if line.startswith("|")
+]
+EXAMPLES = [
+    pytest.param(code, id=f"{path.name}-{number}")
+    for path in DOCUMENTS
+    for number, code in enumerate(
+        re.findall(r"^```python\n(.*?)^```", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    )
+]
+
+
+def anchor(heading: str) -> str:
+    """The name that a heading gets on the usual hosts of Markdown."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_links_lead_to_files_and_headings(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if re.match(r"https?://|mailto:", target):
+            continue
+        name, _, heading = target.partition("#")
+        path = document.parent / name if name else document
+        assert path.exists(), target
+        if heading:
+            headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+            assert heading in map(anchor, headings), target
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_commands_exist(document: Path) -> None:
+    for name in re.findall(r"\bscripts/([a-z-]+)\b(?!/|\.)", document.read_text(encoding="utf-8")):
+        assert (ROOT / "scripts" / name).exists(), f"scripts/{name}"
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_python_examples_run(fmu_path: Path, code: str) -> None:
+    if "libcosimpy" in code:
+        pytest.importorskip("libcosimpy")
+    command = [sys.executable, "-W", "error", "-c", code]
+    finished = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert finished.returncode == 0, finished.stderr
+
+
+def test_every_variable_is_explained_with_its_unit_and_start(fmu: FrictionFmu) -> None:
+    rows = {row[0].strip("`"): row for row in ROWS if row[0].startswith("`")}
+    for name, variable in fmu.variables.items():
+        assert name in rows, f"{name} is not explained in docs/using.md"
+        row = rows[name]
+        assert row[1] == (variable.unit or variable.declaredType.unit or "") or variable.type == "Enumeration"
+        if variable.type == "Enumeration":
+            items = {int(item.value): item.name for item in variable.declaredType.items}
+            start = int(variable.start)
+            assert row[2] == f"{start} {items[start]}"
+            assert all(f"{number} {item}" in row[4] for number, item in items.items())
+        elif variable.start is not None:
+            assert float(row[2]) == float(variable.start)
+        if variable.causality == "parameter":
+            assert row[3] == variable.variability
