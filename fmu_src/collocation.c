@@ -24,7 +24,7 @@ static const double ORDER = 12.0;
 static const double SMOOTH_STEP = 2.0;
 static const double SMALLEST_RESOLUTION = 0.05;
 // sigma itself must stay resolved where nothing relaxes and no error is seen.
-static const double LARGEST_RESOLUTION = 3.0;
+static const double LARGEST_RESOLUTION = 2.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
 
@@ -39,18 +39,21 @@ typedef struct {
     double evaluations;     // in the communication step so far
 } Progress;
 
-// Time [s] in which the bristle relaxes by 1 from t on, V moving linearly: solves g x + g' x^2 / 2 = 1.
+// Time [s] in which the bristle relaxes by 1 from t on: about the least root of g x + g' x^2 / 2 = 1
+// and g'' x^3 / 6 = 1. The last one counts where V only touches zero.
 static double relaxation_layer(const DahlProblem* problem, double t) {
+    const Drive* drive = &problem->drive;
     const double per_speed = dahl_stiffness(problem, t) / problem->F_C;
-    const double g = per_speed * fabs(drive_V(&problem->drive, t));
-    const double g_rate = per_speed * fabs(drive_V_rate(&problem->drive, t));
-    return 2.0 / (g + sqrt(g * g + 2.0 * g_rate));
+    const double g = per_speed * fabs(drive_V(drive, t));
+    const double g_rate = per_speed * fabs(drive_V_rate(drive, t));
+    const double g_curvature = per_speed * fabs(drive_V_curvature(drive, t));
+    return fmin(2.0 / (g + sqrt(g * g + 2.0 * g_rate)), cbrt(6.0 / g_curvature));
 }
 
 // Width [s] of a dip of |V| at t that does not reach zero: that of the parabola, or the time to relax by 1 in it.
 static double dip_layer(const DahlProblem* problem, double t) {
     const Drive* drive = &problem->drive;
-    const double curvature = drive->vibration.V_1 * drive->omega * drive->omega;
+    const double curvature = fabs(drive_V_curvature(drive, t));
     const double per_speed = dahl_stiffness(problem, t) / problem->F_C;
     return fmax(sqrt(2.0 * fabs(drive_V(drive, t)) / curvature), cbrt(6.0 / (per_speed * curvature)));
 }
@@ -62,7 +65,9 @@ static double start_layer(const DahlProblem* problem, double delta_0, double tol
     const double g = now.sigma * fabs(now.V) / problem->F_C;
     const double settled = copysign(1.0, now.V) * (1.0 + dahl_log_stiffness_rate(problem, 0.0) / g);
     if (fabs(now.sigma * delta_0 / problem->F_C - settled) <= SAFETY * tolerance) {
-        return fabs(now.V / drive_V_rate(&problem->drive, 0.0)); // distance of the reversal behind
+        const Drive* drive = &problem->drive; // distance of the reversal behind, width of the dip
+        return fmin(fabs(now.V / drive_V_rate(drive, 0.0)),
+                    sqrt(2.0 * fabs(now.V / drive_V_curvature(drive, 0.0))));
     }
     return relaxation_layer(problem, 0.0);
 }

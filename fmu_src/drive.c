@@ -66,6 +66,10 @@ double drive_V_rate(const Drive* drive, double t) {
     return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
 }
 
+double drive_V_curvature(const Drive* drive, double t) {
+    return -drive->vibration.V_1 * drive->omega * drive->omega * cos(theta(drive, t));
+}
+
 double drive_d_rate(const Drive* drive, double t) {
     return drive->d.rate -
            drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);
@@ -131,8 +135,8 @@ static double root_of_V(const Drive* drive, double t0, double t1) {
 // A dip shallower than this is smooth enough to be stepped over.
 static int is_dip(const Drive* drive, double t) {
     const double V = drive_V(drive, t);
-    const double curvature = -drive->vibration.V_1 * cos(theta(drive, t));
-    return V * curvature >= 0.0 && fabs(V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
+    return V * drive_V_curvature(drive, t) >= 0.0 &&
+           fabs(V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
 static DriveEvent first_of_held_vibration(const Drive* drive, double t, double end) {

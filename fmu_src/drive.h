@@ -48,6 +48,7 @@ double drive_V(const Drive* drive, double t);             // m/s
 double drive_d(const Drive* drive, double t);             // m
 double drive_E(const Drive* drive, double t);             // Pa
 double drive_V_rate(const Drive* drive, double t);        // m/s2
+double drive_V_curvature(const Drive* drive, double t);   // m/s3
 double drive_d_rate(const Drive* drive, double t);        // m/s
 double drive_smallest_d(const Drive* drive, double h);    // lower bound of d over [0, h]
 double drive_smallest_E(const Drive* drive, double h);    // lower bound of E over [0, h]
