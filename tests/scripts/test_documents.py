@@ -7,8 +7,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
-from frictionlab.simulate import FrictionFmu
+from frictionlab import table2
+from frictionlab.pictures import SCENE
+from frictionlab.run import percent
+from frictionlab.simulate import OUTPUTS, FrictionFmu, simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md")])
@@ -59,6 +63,35 @@ def test_python_examples_run(fmu_path: Path, code: str) -> None:
     command = [sys.executable, "-W", "error", "-c", code]
     finished = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert finished.returncode == 0, finished.stderr
+
+
+def test_fmpy_example_of_the_readme_runs_the_scene_of_its_picture(fmu: FrictionFmu, tmp_path: Path) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8").replace("\\\n", " ")
+    command = re.search(r"^    \.venv/bin/fmpy (simulate .*)$", text, re.MULTILINE)
+    words = [word for word in command[1].split() if word != "--show-plot"]
+    result = tmp_path / "result.csv"
+    words[words.index("--output-file") + 1] = str(result)
+    subprocess.run(
+        [sys.executable, "-m", "fmpy", *words],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        timeout=60,
+    )
+    rows = np.genfromtxt(result, delimiter=",", names=True)
+    drawn = simulate(fmu, SCENE, 5e-7, 400)
+    for name in OUTPUTS:
+        assert np.abs(rows[name] - drawn[name]).max() < 2e-4 * np.abs(drawn[name]).max(), name
+
+
+def test_table_2_of_the_readme_is_what_the_run_prints(fmu: FrictionFmu) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for result in table2.results(fmu):
+        row = result.row
+        line = re.search(rf"^\| {row.number} \|.*$", text, re.MULTILINE)[0]
+        assert f"| {row.paper_force:.0f} ({row.paper_reduction:.0f} %) |" in line
+        assert f"| {result.exact:.4f} ({percent(result.exact, 55.0)} %) |" in line
+        assert f"| {result.identified:.2f} ({percent(result.identified, 55.0)} %) |" in line
 
 
 def test_every_variable_is_explained_with_its_unit_and_start(fmu: FrictionFmu) -> None:
