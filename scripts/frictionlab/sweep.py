@@ -26,6 +26,7 @@ from frictionlab.build import ROOT, BuildError, build_fmu
 from frictionlab.sweep_cluster import ClusterError, Numbered
 from frictionlab.sweep_plan import PlanError, Variables
 from frictionlab.sweep_scenario import RESULTS, Sampling
+from frictionlab.sweep_shipping import shipped
 from frictionlab.sweep_store import Store, digest, opened
 
 DESCRIPTION = """\
@@ -155,7 +156,7 @@ def _run(
         with sweep_cluster.connected(options.scheduler, options.workers) as client:
             cores = sum(client.nthreads().values())
             begin = time.perf_counter()
-            for rows in sweep_cluster.run(client, content, chunks, sampling):
+            for rows in sweep_cluster.run(client, shipped(sampling), content, chunks):
                 store.keep(rows)
                 failed += sum("reason" in row for row in rows)
                 seconds += sum(row.get("seconds", 0.0) for row in rows)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import operator
 from collections.abc import Iterator, Mapping, Sequence
 
 import cloudpickle
@@ -17,9 +18,7 @@ from distributed.client import FutureCancelledError
 from distributed.comm import CommClosedError
 from distributed.scheduler import KilledWorker
 
-from frictionlab import simulate, sweep_scenario
 from frictionlab.sweep_plan import PlanError, Value
-from frictionlab.sweep_scenario import Sampling, run_chunk
 
 CONNECT_SECONDS = 5.0
 Rows = list[dict[str, Value]]
@@ -36,8 +35,6 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     for name in ("distributed.worker", "distributed.nanny", "distributed.scheduler", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    for module in (simulate, sweep_scenario):
-        cloudpickle.register_pickle_by_value(module)
     dask.config.set({"distributed.comm.timeouts.connect": CONNECT_SECONDS})
     if scheduler is None:
         cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
@@ -55,11 +52,16 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
         yield client
 
 
-def run(client: Client, content: bytes, chunks: Sequence[Numbered], sampling: Sampling) -> Iterator[Rows]:
-    """Rows of the chunks as they come."""
-    # The bytes are a task of their own: lost with a worker, they are made again.
+def run(client: Client, function: bytes, content: bytes, chunks: Sequence[Numbered]) -> Iterator[Rows]:
+    """Rows of the chunks as they come: of a pickled function of the FMU's bytes and a chunk."""
+    # Function and FMU are tasks of their own: what is lost with a worker is made again.
+    work = client.submit(cloudpickle.loads, function, pure=True)
     fmu = client.submit(bytes, content, pure=True)
-    submitted = {client.submit(run_chunk, fmu, chunk, sampling, pure=False): chunk for chunk in chunks}
+
+    def submit(chunk: Numbered) -> Future:
+        return client.submit(operator.call, work, fmu, chunk, pure=False)
+
+    submitted = {submit(chunk): chunk for chunk in chunks}
     suspects: Numbered = []
     for future in as_completed(list(submitted), raise_errors=False):
         chunk = submitted.pop(future)  # lets the cluster forget it
@@ -69,7 +71,7 @@ def run(client: Client, content: bytes, chunks: Sequence[Numbered], sampling: Sa
         else:
             yield rows
     for index, values in suspects:
-        rows = _result(client.submit(run_chunk, fmu, [(index, values)], sampling, pure=False))
+        rows = _result(submit([(index, values)]))
         yield rows or [{"scenario": index, **values, "reason": "every worker that ran this scenario died"}]
 
 

@@ -1,6 +1,7 @@
 """One scenario of a sweep: the FMU brought to its periodic state and sampled over one period of vibration.
 
-This module and `simulate` travel to the workers of a cluster with the work; fmpy and numpy must be there.
+This module and `simulate` travel to the workers of a cluster with the work (see `sweep_shipping`); Python 3.11
+or newer, fmpy and numpy must be there.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from frictionlab.simulate import FrictionError, FrictionFmu, Value
+from .simulate import FrictionError, FrictionFmu, Value
 
 # Column of the results -> unit and meaning.
 RESULTS = {

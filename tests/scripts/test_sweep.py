@@ -1,0 +1,338 @@
+"""scripts/sweep: right numbers, nothing lost or done twice, one clear line for what can't be done."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from frictionlab import sweep, sweep_cluster
+from frictionlab.scenarios import IDENTIFIED, TABLE_2, start_values
+from frictionlab.simulate import FrictionFmu
+from frictionlab.sweep_scenario import RESULTS, Sampling, evaluate
+from frictionlab.sweep_shipping import pickled
+from scipy.integrate import quad
+
+ROOT = Path(__file__).resolve().parents[2]
+GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
+
+
+def command(fmu: Path, output: Path, *arguments: str) -> list[str]:
+    return [sys.executable, "-m", "frictionlab.sweep", "--fmu", str(fmu), "--output", str(output), *arguments]
+
+
+def environment(with_project: bool = True) -> dict[str, str]:
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return {**kept, "PYTHONPATH": str(ROOT / "scripts")} if with_project else kept
+
+
+def run(fmu: Path, output: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(fmu, output, *arguments), capture_output=True, text=True, timeout=120, env=environment()
+    )
+
+
+def wait_for(condition: Callable[[], object], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+def kept_rows(output: Path) -> int:
+    return sum(len(pd.read_parquet(part)) for part in (output / "parts").glob("*.parquet"))
+
+
+def check_grid(output: Path, fmu: FrictionFmu) -> None:
+    """All 1000 rows once and in order, with the numbers that the FMU gives in this process."""
+    table = pd.read_parquet(output / "results.parquet")
+    assert list(table["scenario"]) == list(range(1000))
+    assert not table.isna().any().any()
+    V, V_1 = np.geomspace(0.005, 0.5, 40), np.linspace(0, 1.44, 25)
+    assert np.array_equal(table["V"], np.repeat(V, 25))
+    assert np.array_equal(table["vibration.V_1"], np.tile(V_1, 40))
+    for k in (0, 24, 500, 999):
+        row = table.iloc[k]
+        here = evaluate(fmu, {name: row[name] for name in ("V", "vibration.V_1")}, Sampling(1e6, 16))
+        for name in set(RESULTS) - {"seconds"}:
+            assert row[name] == here[name], name
+
+
+@pytest.fixture
+def started() -> Iterator[Callable[..., subprocess.Popen]]:
+    """Starts processes in groups of their own, and ends what is left of them."""
+    processes: list[subprocess.Popen] = []
+
+    def start(arguments: list[str], **options: object) -> subprocess.Popen:
+        processes.append(subprocess.Popen(arguments, start_new_session=True, **options))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+
+class TestScenario:
+    """One scenario against formulas."""
+
+    @pytest.mark.parametrize("V", [0.1, 0.5])
+    def test_stiff_contact_gives_the_coulomb_limit(self, fmu: FrictionFmu, V: float) -> None:
+        row = evaluate(fmu, {"V": V, "vibration.V_1": 1.44}, Sampling(1e6, 64))
+        mean = 55.0 * 2 / np.pi * np.arcsin(V / 1.44)
+        path = quad(
+            lambda t: abs(V + 1.44 * np.cos(2 * np.pi * t)), 0, 1, points=[np.arccos(-V / 1.44) / 2 / np.pi]
+        )
+        assert row["F_mean"] == pytest.approx(mean, rel=1e-5)
+        assert row["reduction"] == pytest.approx(100 * (1 - mean / 55.0), rel=1e-5)
+        assert (row["F_min"], row["F_max"]) == pytest.approx((-55.0, 55.0), rel=1e-6)
+        assert row["sigma_mean"] == pytest.approx(5.743065402e12, rel=1e-9)
+        assert row["A_r_mean"] == pytest.approx(5.187698908e-7, rel=1e-9)
+        # Sliding dissipates F_C times the path, but for the two reversals.
+        assert row["W_period"] == pytest.approx(55.0 * path[0] / 20e3, rel=1e-3)
+
+    def test_moving_separation(self, fmu: FrictionFmu) -> None:
+        """Row 2 of Table 2, identified; the mean stiffness is 1.5068 times that at rest."""
+        start = start_values(TABLE_2[1], IDENTIFIED)
+        row = evaluate(fmu, start, Sampling(1e6, 64))
+        assert row["F_mean"] == pytest.approx(21.56, abs=0.01)
+        at_rest = evaluate(fmu, {**start, "vibration.a_d": 0.0}, Sampling(1e6, 4))["sigma_mean"]
+        assert row["sigma_mean"] / at_rest == pytest.approx(1.506797919, rel=1e-8)
+        assert row["F_min"] < row["F_mean"] < row["F_max"]
+
+    def test_number_of_samples_leaves_the_mean(self, fmu: FrictionFmu) -> None:
+        start = start_values(TABLE_2[1], IDENTIFIED)
+        means = [evaluate(fmu, start, Sampling(1e6, samples))["F_mean"] for samples in (1, 7, 64)]
+        assert means == pytest.approx([means[0]] * 3, abs=55e-6)
+
+
+class TestPlan:
+    def scenarios(self, fmu_path: Path, *arguments: str) -> pd.DataFrame:
+        return sweep.scenarios_of(sweep.arguments(list(arguments)), fmu_path)
+
+    def test_grid(self, fmu_path: Path) -> None:
+        table = self.scenarios(
+            fmu_path, "--vary", "V=1:100:3:log", "--vary", "friction.model=Dahl,Coulomb", "--set", "d=15e-6"
+        )
+        assert table.to_dict("list") == {
+            "V": pytest.approx([1, 1, 10, 10, 100, 100]),
+            "friction.model": ["Dahl", "Coulomb"] * 3,
+            "d": [15e-6] * 6,
+        }
+
+    def test_random_is_repeatable_and_within_bounds(self, fmu_path: Path) -> None:
+        arguments = "--random", "500", "--vary", "V=1e-3:1:log", "--vary", "d=10e-6:18e-6"
+        table = self.scenarios(fmu_path, *arguments, "--seed", "1")
+        pd.testing.assert_frame_equal(table, self.scenarios(fmu_path, *arguments, "--seed", "1"))
+        assert not table.equals(self.scenarios(fmu_path, *arguments, "--seed", "2"))
+        assert table["V"].between(1e-3, 1).all()
+        assert table["d"].between(10e-6, 18e-6).all()
+        assert 0.4 < (table["V"] < 10**-1.5).mean() < 0.6  # evenly over the decades
+
+    def test_csv(self, fmu_path: Path, tmp_path: Path) -> None:
+        path = tmp_path / "scenarios.csv"
+        path.write_text("V, solver.method\n0.1, cvode\n\n0.2,rk4\n")
+        table = self.scenarios(fmu_path, "--csv", str(path))
+        assert table.to_dict("list") == {"V": [0.1, 0.2], "solver.method": ["cvode", "rk4"]}
+
+    @pytest.mark.parametrize(
+        ("content", "message"),
+        [
+            ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
+            ("V,d\n0.1,\n", "row 2, column d: '' is not a number"),
+            ("V\nnan\n", "row 2, column V: 'nan' is not a finite number"),
+            ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
+            ("V,V\n1,2\n", "row 1, column 2: V is there twice"),
+            ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
+            ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
+            ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
+            ("V\n", "has no row below the header"),
+            ("", "is empty; row 1 must name the variables"),
+            ('V\n"0.1\n', "is not a CSV file"),
+        ],
+    )  # fmt: skip
+    def test_malformed_csv_names_row_and_column(
+        self, fmu_path: Path, tmp_path: Path, content: str, message: str
+    ) -> None:
+        path = tmp_path / "scenarios.csv"
+        path.write_text(content)
+        with pytest.raises(sweep.PlanError, match=re.escape(f"{path}: {message}")):
+            self.scenarios(fmu_path, "--csv", str(path))
+
+    @pytest.mark.parametrize(
+        ("arguments", "message"),
+        [
+            ([], "nothing to sweep"),
+            (["--vary", "v=1"], "--vary v: v is no variable of the FMU; did you mean V?"),
+            (["--vary", "V"], "--vary V: is not of the form NAME=VALUE"),
+            (["--vary", "V=1:2"], "'1:2' is neither low:high:count"),
+            (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
+            (["--vary", "V=0:1:3:log"], "must begin above 0"),
+            (["--vary", "V=0:1:-3"], "the count '-3' is not a whole number"),
+            (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
+            (["--vary", "V=1", "--set", "V=2"], "--set V: is given twice"),
+            (["--vary", "V=0:1:100000", "--vary", "d=1:2:1000"], "the most that a sweep runs is 10000000"),
+            (["--vary", "V=1", "--workers", "0"], "--workers 0: must be at least 1"),
+            (["--vary", "V=1", "--settle", "nan"], "--settle nan: must be at least 0"),
+            (["--random", "3", "--vary", "V=0:1:3"], "'0:1:3' is neither low:high"),
+            (["--csv", "none.csv", "--vary", "V=1"], "--csv does not go with --vary"),
+        ],
+    )
+    def test_wrong_arguments(self, fmu_path: Path, arguments: list[str], message: str) -> None:
+        with pytest.raises(sweep.PlanError, match=re.escape(message)):
+            self.scenarios(fmu_path, *arguments)
+
+
+class TestRuns:
+    def test_refused_scenarios_are_kept_apart(self, fmu_path: Path, tmp_path: Path) -> None:
+        output = tmp_path / "sweep"
+        done = run(fmu_path, output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--workers", "1")
+        assert done.returncode == 0, done.stderr
+        assert "2 failed scenarios" in done.stdout
+        good, bad = pd.read_parquet(output / "results.parquet"), pd.read_parquet(output / "failed.parquet")
+        assert list(good["scenario"]) == [2, 3]
+        assert list(bad["scenario"]) == [0, 1]
+        assert all("d = -1e-06 m" in reason for reason in bad["reason"])
+        assert len(pd.read_csv(output / "failed.csv")) == 2
+        again = run(fmu_path, output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2")
+        assert again.returncode == 0
+        assert "nothing to do" in again.stdout
+        other = run(fmu_path, output, "--vary", "V=0.1,0.3")
+        assert other.returncode != 0
+        assert other.stderr.startswith("error: ") and "holds another sweep" in other.stderr
+
+    def test_goes_on_after_a_kill(
+        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
+    ) -> None:
+        output = tmp_path / "sweep"
+        arguments = (*GRID, "--chunk", "10", "--workers", "2", "--samples", "16")
+        first = started(command(fmu_path, output, *arguments), env=environment())
+        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 3)
+        os.killpg(first.pid, signal.SIGKILL)
+        first.wait()
+        kept = kept_rows(output)
+        assert 30 <= kept < 1000
+        assert not (output / "results.parquet").exists()
+        second = run(fmu_path, output, *arguments)
+        assert second.returncode == 0, second.stderr
+        assert f"{kept} scenarios were there from an earlier run" in second.stdout
+        assert f"\n{1000 - kept} scenarios in" in second.stdout
+        check_grid(output, fmu)
+        assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
+
+    def test_dask_cluster_that_loses_a_worker(
+        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
+    ) -> None:
+        """Workers know nothing of this project: its code and the FMU come with the work."""
+        dask, contact = Path(sys.executable).parent / "dask", tmp_path / "scheduler.json"
+        quiet = {"env": environment(False), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
+        started([dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                 "--scheduler-file", contact], **quiet)  # fmt: skip
+        wait_for(contact.exists)
+        workers = [
+            started([dask, "worker", "--scheduler-file", contact, "--host", "127.0.0.1", "--nthreads", "1",
+                     "--no-nanny", "--no-dashboard", "--name", name], **quiet)
+            for name in ("one", "two")
+        ]  # fmt: skip
+        address = pd.read_json(contact, typ="series")["address"]
+        with sweep_cluster.Client(address, timeout=10) as client:
+            client.wait_for_workers(2, timeout=60)
+        output = tmp_path / "sweep"
+        arguments = (*GRID, "--chunk", "10", "--scheduler", address, "--samples", "16")
+        sweeping = started(
+            command(fmu_path, output, *arguments), env=environment(), stdout=subprocess.PIPE, text=True
+        )
+        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 6)
+        workers[0].kill()
+        assert kept_rows(output) < 900
+        printed, _ = sweeping.communicate(timeout=120)
+        assert sweeping.returncode == 0
+        assert "1000 scenarios in" in printed and "on 2 workers" in printed
+        assert workers[1].poll() is None
+        check_grid(output, fmu)
+
+    @pytest.mark.slow
+    def test_scheduler_that_goes_away(
+        self, fmu_path: Path, tmp_path: Path, started: Callable[..., subprocess.Popen]
+    ) -> None:
+        contact = tmp_path / "scheduler.json"
+        quiet = {"env": environment(False), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
+        dask = Path(sys.executable).parent / "dask"
+        scheduler = started([dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                             "--scheduler-file", contact], **quiet)  # fmt: skip
+        wait_for(contact.exists)
+        started([dask, "worker", "--scheduler-file", contact, "--nthreads", "1", "--no-nanny",
+                 "--no-dashboard"], **quiet)  # fmt: skip
+        address = pd.read_json(contact, typ="series")["address"]
+        with sweep_cluster.Client(address, timeout=10) as client:
+            client.wait_for_workers(1, timeout=60)
+        output = tmp_path / "sweep"
+        arguments = (*GRID, "--chunk", "10", "--scheduler", address, "--samples", "16")
+        sweeping = started(
+            command(fmu_path, output, *arguments), env=environment(), stderr=subprocess.PIPE, text=True
+        )
+        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 3)
+        scheduler.kill()
+        _, said = sweeping.communicate(timeout=120)
+        assert sweeping.returncode == 1
+        assert len(said.strip().splitlines()) == 1, said
+        assert said.startswith(
+            "error: the connection to the scheduler was lost; what was computed is kept in"
+        )
+        kept = kept_rows(output)
+        assert kept >= 30
+        rest = run(fmu_path, output, *GRID, "--samples", "16", "--workers", "2")
+        assert f"{kept} scenarios were there from an earlier run" in rest.stdout, rest.stderr
+
+    def test_scenario_that_kills_its_worker(self) -> None:
+        """It alone is given up."""
+
+        def deadly(content: bytes, numbered: list) -> list:
+            if any(index == 3 for index, _ in numbered):
+                os._exit(1)
+            return [{"scenario": index} for index, _ in numbered]
+
+        chunks = [[(k, {}), (k + 1, {})] for k in range(0, 8, 2)]
+        with sweep_cluster.connected(None, 1) as client:
+            rows = [row for rows in sweep_cluster.run(client, pickled(deadly), b"", chunks) for row in rows]
+        assert sorted(row["scenario"] for row in rows) == list(range(8))
+        assert [row["scenario"] for row in rows if "reason" in row] == [3]
+
+
+class TestNothingHalfWritten:
+    @pytest.mark.parametrize(
+        ("arguments", "message"),
+        [
+            (["--scheduler", "tcp://127.0.0.1:1"], "--scheduler tcp://127.0.0.1:1: nothing answers there"),
+            (["--scheduler", "rubbish"], "--scheduler rubbish: missing port number"),
+            (["--set", "vibration.v_1=1"], "did you mean vibration.V_1?"),
+        ],
+    )
+    def test_one_line_and_no_files(
+        self, fmu_path: Path, tmp_path: Path, arguments: list[str], message: str
+    ) -> None:
+        done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", *arguments)
+        assert done.returncode == 1
+        assert done.stdout == ""
+        assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+        assert done.stderr.startswith("error: ") and message in done.stderr
+        assert list(tmp_path.iterdir()) == []
+
+    def test_unwritable_output(self, fmu_path: Path, tmp_path: Path) -> None:
+        (tmp_path / "file").write_text("in the way")
+        done = run(fmu_path, tmp_path / "file" / "sweep", "--vary", "V=0.1,0.2")
+        assert done.returncode == 1
+        assert (
+            done.stderr.strip()
+            == f"error: {tmp_path / 'file' / 'sweep'}: can't be written to: Not a directory"
+        )
+        assert (tmp_path / "file").read_text() == "in the way"
