@@ -330,14 +330,13 @@ def _large(p: Parameter, value: float) -> float:
 
 
 def _stiffness_warnings(result: Fit, rows: Measurements) -> list[str]:
-    reversing = [
-        k
-        for k, condition in enumerate(rows.conditions)
-        if abs(float(condition.get("V", 0.0))) < float(condition.get("vibration.V_1", 0.0))
-    ]
+    reversing = [k for k, condition in enumerate(rows.conditions) if _moves(condition)]
     fitted = {p.name for p in result.parameters}
-    if not reversing and "vibration.V_1" not in fitted and "V" not in fitted:
-        return ["no row has V < V_1: without reversals the mean is F_C and tells nothing else"]
+    if not reversing and not fitted & {"V", "vibration.V_1", "vibration.a_d"}:
+        return [
+            "no row has V < V_1, nor both V_1 and a_d: the means are F_C, and tell nothing about anything "
+            "else"
+        ]
     stiff = [p.name for p in result.parameters if p.name in STIFFNESS_LIKE]
     if stiff and reversing and min(result.kappa[reversing]) > STIFF:
         least = min(result.kappa[reversing])
@@ -346,3 +345,9 @@ def _stiffness_warnings(result: Fit, rows: Measurements) -> list[str]:
             f"says nearly nothing about {', '.join(stiff)}"
         ]
     return []
+
+
+def _moves(condition: Mapping[str, Any]) -> bool:
+    """Whether the mean can differ from F_C: V reverses, or it varies while the stiffness does."""
+    V_1 = float(condition.get("vibration.V_1", 0.0))
+    return abs(float(condition.get("V", 0.0))) < V_1 or V_1 * float(condition.get("vibration.a_d", 0.0)) > 0.0
