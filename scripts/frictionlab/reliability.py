@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from frictionlab.build import ROOT, BuildError, build_fmu, presets
+from frictionlab.reliability_bad_input import write_page
 from frictionlab.reliability_mutations import check_mutations
 
 FUZZERS = {"call_sequence": 100, "state_bytes": 420}  # name: longest input in bytes
@@ -179,6 +180,11 @@ def check_mutants(extent: Extent) -> None:
         raise CheckError(f"no test notices: {', '.join(unnoticed)}")
 
 
+def write_bad_input(extent: Extent) -> None:
+    """Writes docs/bad-input.md anew from the tests' bad calls."""
+    write_page()
+
+
 CHECKS: dict[str, Callable[[Extent], None]] = {
     "sanitize": check_sanitize,
     "threads": check_threads,
@@ -187,6 +193,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "leaks": check_leaks,
     "coverage": check_coverage,
     "mutants": check_mutants,
+    "bad-input": write_bad_input,
 }
 IN_CI = ("sanitize", "fuzz")
 

@@ -12,12 +12,19 @@ from fmi_library import Instance
 NAN, INF = math.nan, math.inf
 
 
+def _nothing(_instance: Instance) -> None:
+    pass
+
+
 @dataclass(frozen=True)
 class BadCall:
     title: str
     state: str  # where it is tried
     call: Callable[[Instance], int]
     told: tuple[str, ...]  # parts of the message
+    setup: Callable[[Instance], object] = _nothing  # when instantiated
+    prepare: Callable[[Instance], object] = _nothing  # in the state where it is tried
+    mend: Callable[[Instance], object] = _nothing  # before the run goes on
 
 
 def _set(name: str, value: float, *told: str, state: str = "step complete") -> BadCall:
@@ -346,14 +353,92 @@ OTHERS = [
     ),
 ]
 
-BAD_CALLS = [
-    *NOT_FINITE,
-    *OUT_OF_BOUNDS,
-    *NOT_SETTABLE,
-    *WRONG_REFERENCE,
-    *NULL_POINTERS,
-    *BAD_STEPS,
-    *BAD_EXPERIMENTS,
-    *BAD_DERIVATIVES,
-    *OTHERS,
+
+def _driven(name: str, rate: float, h: float, *told: str) -> BadCall:
+    return BadCall(
+        f"step of {h:g} s with the derivative {rate:g} of {name}",
+        "step complete",
+        lambda i: i.step(0.0, h),
+        ("fmi2DoStep: ", *told),
+        prepare=lambda i: i.set_input_rates({name: rate}),
+        mend=lambda i: i.set_input_rates({name: 0.0}),
+    )
+
+
+def _slow_method(title: str, method: int, values: dict[str, float], h: float, *told: str) -> BadCall:
+    return BadCall(
+        title,
+        "step complete",
+        lambda i: i.step(0.0, h),
+        ("fmi2DoStep: ", *told),
+        setup=lambda i: i.choose({"solver.method": method}),
+        prepare=lambda i: i.set(values),
+        mend=lambda i: i.set({"contact.stiffnessScale": 1e-4}),
+    )
+
+
+COMBINATIONS = [
+    *(
+        BadCall(
+            f"{title} while vibration.a_d = 20e-6 m exceeds d = 14e-6 m",
+            "step complete",
+            call,
+            (function, "vibration.a_d = 2e-05 m must be below d = 1.4e-05 m"),
+            prepare=lambda i: i.set({"vibration.a_d": 20e-6}),
+            mend=lambda i: i.set({"vibration.a_d": 0.0}),
+        )
+        for title, function, call in (
+            ("a step", "fmi2DoStep: ", lambda i: i.step(0.0, 1e-5)),
+            (
+                "reading an output",
+                "fmi2GetReal: ",
+                lambda i: i.call("fmi2GetReal", i.references(["F_t"]), 1, (c_double * 1)()),
+            ),
+        )
+    ),
+    BadCall(
+        "leaving initialization mode while vibration.a_d = 20e-6 m exceeds d = 14e-6 m",
+        "initialization",
+        lambda i: i.call("fmi2ExitInitializationMode"),
+        ("fmi2ExitInitializationMode: vibration.a_d = 2e-05 m must be below d = 1.4e-05 m",),
+        prepare=lambda i: i.set({"vibration.a_d": 20e-6}),
+        mend=lambda i: i.set({"vibration.a_d": 0.0}),
+    ),
+    _driven("d", -1.0, 1e-4, "d moves from 1.4e-05 m to -8.6e-05 m", "at least 1e-12 m"),
+    _driven("E", -1e15, 1e-4, "E moves from 58556936170 Pa", "at least 1 Pa"),
+    _driven("V", 1e308, 1e3, "V moves from 0.005 m/s to inf m/s", "must stay finite"),
+    BadCall(
+        "a step of 2e6 vibration periods while V moves",
+        "step complete",
+        lambda i: i.step(0.0, 100.0),
+        ("fmi2DoStep: ", "2000000 vibration periods while an input moves", "the largest step is 50 s"),
+        prepare=lambda i: (i.set({"vibration.V_1": 0.4}), i.set_input_rates({"V": 1e-6})),
+        mend=lambda i: i.set_input_rates({"V": 0.0}),
+    ),
+    _slow_method(
+        "explicitEuler beyond its stability limit",
+        6,
+        {"V": 0.01},
+        1e-6,
+        "solver.method = explicitEuler",
+        "the largest usable step is",
+    ),
+    _slow_method("rk4 beyond its stability limit", 5, {"V": 0.01}, 1e-6, "solver.method = rk4"),
+    _slow_method(
+        "backwardEuler with 1e11 internal steps", 3, {"V": 0.1}, 1e3, "into 1e+11 steps; at most 1e+08"
+    ),
 ]
+
+GROUPS = {
+    "Values that are not finite": NOT_FINITE,
+    "Values out of bounds": OUT_OF_BOUNDS,
+    "Variables that can't be set, or not now": NOT_SETTABLE,
+    "Wrong value references and types": WRONG_REFERENCE,
+    "Missing pointers": NULL_POINTERS,
+    "Steps": BAD_STEPS,
+    "The experiment": BAD_EXPERIMENTS,
+    "Derivatives": BAD_DERIVATIVES,
+    "Values that do not go together, and work without end": COMBINATIONS,
+    "States, log and status": OTHERS,
+}
+BAD_CALLS = [bad for group in GROUPS.values() for bad in group]

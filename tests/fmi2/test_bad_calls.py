@@ -28,8 +28,11 @@ def test_bad_call(
     new_instance: Callable[..., Instance], capfd: pytest.CaptureFixture[str], bad: BadCall
 ) -> None:
     touched, twin = new_instance(), new_instance()
-    touched.bring_to(bad.state)
-    twin.bring_to(bad.state)
+    for each in (touched, twin):
+        bad.setup(each)
+        each.bring_to(bad.state)
+        bad.prepare(each)
+    assert touched.messages == []
     assert bad.call(touched) == ERROR
     assert len(touched.messages) == 1
     message = touched.last_message
@@ -37,6 +40,8 @@ def test_bad_call(
     for part in bad.told:
         assert part in message.text
     assert touched.fingerprint() == twin.fingerprint()
+    bad.mend(touched)
+    bad.mend(twin)
     assert continue_run(touched, bad.state) == continue_run(twin, bad.state)
     assert capfd.readouterr() == ("", "")
 

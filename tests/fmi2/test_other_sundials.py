@@ -34,7 +34,8 @@ def host_is_right():
 library = Library(Path(sys.argv[1]))
 with Instance(library) as instance, Instance(library) as reference:
     for each in (instance, reference):
-        assert each.set({"contact.stiffnessScale": 1e-3, "vibration.V_1": 0.4, "solver.tolerance": 1e-9}) == OK
+        scene = {"contact.stiffnessScale": 1e-3, "vibration.V_1": 0.4, "solver.tolerance": 1e-9}
+        assert each.set(scene) == OK
     assert instance.choose({"solver.method": 2}) == OK
     for each in (instance, reference):
         assert each.call("fmi2EnterInitializationMode") == OK
