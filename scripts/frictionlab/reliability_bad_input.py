@@ -23,8 +23,8 @@ reached the logger, in the category `logStatusError`. Written by `scripts/check 
 page to what the FMU does.
 
 The state afterwards is in every row the state before, to the last bit: the test compares the serialized state
-with that of an instance that was never called wrongly, and lets both run on to equal results. The instance stays
-usable. No call returns `fmi2Discard` or `fmi2Fatal`, and nothing is written to stdout or stderr.
+with that of an instance that was never called wrongly, and lets both run on to equal results. The instance
+stays usable. No call returns `fmi2Discard` or `fmi2Fatal`, and nothing is written to stdout or stderr.
 """
 
 ORDER = """
