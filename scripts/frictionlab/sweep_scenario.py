@@ -1,6 +1,6 @@
 """One scenario of a sweep: the FMU brought to its periodic state and sampled over one period of vibration.
 
-This module and `simulate` travel to the workers of a cluster with the work (see `sweep_shipping`); Python 3.11
+This module and `simulate` travel to the workers of a cluster with the work (`sweep_shipping`); Python 3.11
 or newer, fmpy and numpy must be there.
 """
 

@@ -1,7 +1,7 @@
 """The code of a scenario as a function that a machine without this project can run.
 
-The function carries the sources of `simulate` and `sweep_scenario`. A worker writes them to a folder of its own,
-under a package name with their hash, so that sweeps of different versions meet on one cluster without harm.
+The function carries the sources of `simulate` and `sweep_scenario`. A worker writes them to a folder of its
+own, under a package name with their hash, so that sweeps of different versions can meet on one cluster.
 """
 
 from __future__ import annotations
