@@ -1,5 +1,7 @@
 #include "fmi2/instance.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "fmi2/log.h"
@@ -62,6 +64,14 @@ int instance_refresh_outputs(Instance* instance, Message* message) {
             return 0;
         }
         friction_contact_update_outputs(contact);
+        const Variables* v = &contact->state.variables;
+        if (!isfinite(v->F_t) || !isfinite(v->A_r)) {
+            snprintf(
+                message->text, sizeof message->text,
+                "F_t = sigma delta or A_r is beyond the largest number: sigma = %.9g N/m, delta = %.9g m",
+                v->sigma, v->delta);
+            return 0;
+        }
     }
     instance->machine.outputs_stale = 0;
     return 1;
