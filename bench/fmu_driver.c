@@ -1,6 +1,7 @@
 // Times an FMI 2.0 co-simulation FMU as a host in C drives it: SetReal, SetRealInputDerivatives, DoStep, GetReal.
 //
 //     fmu_driver LIBRARY GUID RESOURCES < job        see job.h
+#define _GNU_SOURCE // RTLD_DEFAULT
 #include <dlfcn.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -38,6 +39,13 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fm
     va_end(arguments);
 }
 
+// Puts the library's function of this name, or NULL, into the function pointer at target. ISO C has no conversion.
+static int function(void* library, const char* name, void* target) {
+    void* address = dlsym(library, name);
+    memcpy(target, &address, sizeof address);
+    return address != NULL;
+}
+
 static void load(const char* path) {
     void* library = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
     if (!library) {
@@ -46,22 +54,21 @@ static void load(const char* path) {
     }
     const struct {
         const char* name;
-        void** function;
+        void* target;
     } wanted[] = {
-        {"fmi2Instantiate", (void**)&fmu.instantiate},
-        {"fmi2SetupExperiment", (void**)&fmu.setup_experiment},
-        {"fmi2EnterInitializationMode", (void**)&fmu.enter_initialization},
-        {"fmi2ExitInitializationMode", (void**)&fmu.exit_initialization},
-        {"fmi2SetReal", (void**)&fmu.set_real},
-        {"fmi2SetInteger", (void**)&fmu.set_integer},
-        {"fmi2SetRealInputDerivatives", (void**)&fmu.set_rates},
-        {"fmi2GetReal", (void**)&fmu.get_real},
-        {"fmi2DoStep", (void**)&fmu.do_step},
-        {"fmi2FreeInstance", (void**)&fmu.free_instance},
+        {"fmi2Instantiate", &fmu.instantiate},
+        {"fmi2SetupExperiment", &fmu.setup_experiment},
+        {"fmi2EnterInitializationMode", &fmu.enter_initialization},
+        {"fmi2ExitInitializationMode", &fmu.exit_initialization},
+        {"fmi2SetReal", &fmu.set_real},
+        {"fmi2SetInteger", &fmu.set_integer},
+        {"fmi2SetRealInputDerivatives", &fmu.set_rates},
+        {"fmi2GetReal", &fmu.get_real},
+        {"fmi2DoStep", &fmu.do_step},
+        {"fmi2FreeInstance", &fmu.free_instance},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
-        *wanted[i].function = dlsym(library, wanted[i].name);
-        if (!*wanted[i].function) {
+        if (!function(library, wanted[i].name, wanted[i].target)) {
             fprintf(stderr, "error: the FMU's library lacks %s\n", wanted[i].name);
             exit(2);
         }
@@ -120,7 +127,17 @@ static fmi2Status step(fmi2Component c, const Job* job, const fmi2ValueReference
     return worst;
 }
 
+// Counted by count_allocations.c where that is preloaded.
+static long allocations(void) {
+    static long (*counted)(void);
+    if (!counted) {
+        function(RTLD_DEFAULT, "allocations_counted", &counted);
+    }
+    return counted ? counted() : -1;
+}
+
 static void run_job(const Job* job, Run* run) {
+    const long at_first = allocations();
     const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
     fmu.said[0] = '\0';
     fmi2Component c =
@@ -132,6 +149,7 @@ static void run_job(const Job* job, Run* run) {
         for (int i = 0; i < job->inputs; i++) {
             reference[i] = job->input[i].reference;
         }
+        const long at_start = allocations();
         const double cpu = cpu_seconds();
         const double wall = wall_seconds();
         for (int k = 0; k < job->count; k++) {
@@ -142,6 +160,10 @@ static void run_job(const Job* job, Run* run) {
         }
         run->wall = wall_seconds() - wall;
         run->cpu = cpu_seconds() - cpu;
+        if (at_start >= 0) {
+            run->allocations = allocations() - at_start;
+            run->allocations_to_start = at_start - at_first;
+        }
         if (job->counts_evaluations && run->failed_at < 0) {
             fmu.get_real(c, &job->evaluations, 1, &run->evaluations);
         }

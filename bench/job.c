@@ -123,7 +123,7 @@ static void print_rows(const Job* job, const Run* run) {
 void job_measure(const Job* job, RunJob run_job) {
     static double wall[MOST_RUNS];
     static double cpu[MOST_RUNS];
-    Run run = {.failed_at = -1};
+    Run run = {.failed_at = -1, .allocations = -1};
     run.row = allocate((size_t)job->count * (size_t)job->outputs, sizeof *run.row);
     int runs = 0;
     double spent = 0.0;
@@ -143,6 +143,9 @@ void job_measure(const Job* job, RunJob run_job) {
     }
     printf("wall %.9g\ncpu %.9g\nevaluations %.17g\n", median(wall, runs), median(cpu, runs),
            run.evaluations);
+    if (run.allocations >= 0) {
+        printf("allocations %ld\nallocations_to_start %ld\n", run.allocations, run.allocations_to_start);
+    }
     print_rows(job, &run);
     free(run.row);
 }

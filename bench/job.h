@@ -11,8 +11,9 @@
 //     input 0 4 1 2 3 4   value reference, number of samples, samples; taken in turn, again from the first
 //     evaluations 30      value reference of the count of right-hand sides, read at the end
 //
-// Printed: "wall" and "cpu", the median seconds of a run; "evaluations"; "row" with the outputs of every step; or
-// "failed" with the number of the step and the reason.
+// Printed: "wall" and "cpu", the median seconds of a run; "evaluations"; "allocations" in the last run's steps and
+// "allocations_to_start" where count_allocations.c is preloaded; "row" with the outputs of every step; or "failed"
+// with the number of the step and the reason.
 #ifndef BENCH_JOB_H
 #define BENCH_JOB_H
 
@@ -51,11 +52,13 @@ double job_sample(const Input* input, int k);
 
 // One run of a job: its own set-up, then the steps between two looks at the clocks.
 typedef struct {
-    double wall;        // s
-    double cpu;         // s
-    double evaluations; // of the right-hand side
-    double* row;        // outputs of all steps, count by outputs; owned by the job's measurement
-    int failed_at;      // number of the step, or -1
+    double wall;               // s
+    double cpu;                // s
+    double evaluations;        // of the right-hand side
+    long allocations;          // heap allocations in the steps; -1 where nobody counts them
+    long allocations_to_start; // the same in the set-up
+    double* row;               // outputs of all steps, count by outputs; owned by the job's measurement
+    int failed_at;             // number of the step, or -1
     char reason[400];
 } Run;
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import csv
 import json
+import os
 import platform
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from rich.console import Console
@@ -51,6 +53,8 @@ class Outcome:
     cpu: float  # s per step
     evaluations: float  # per step
     failure: str = ""
+    allocations: int = -1  # in all steps of a run; -1: not counted
+    allocations_to_start: int = -1
 
 
 def failed(reason: str) -> Outcome:
@@ -69,7 +73,7 @@ class Bench:
             raise BuildError("the FMU holds no .so: the benchmark driver runs on Linux only")
         self.library = libraries[0]
 
-    def run(self, job: Job) -> Outcome:
+    def run(self, job: Job, count_allocations: bool = False) -> Outcome:
         """The FMU through its FMI functions."""
         numbers = {name: variable.valueReference for name, variable in self.fmu.variables.items()}
         lines = _steps(job)
@@ -83,7 +87,9 @@ class Bench:
         lines += [f"output {numbers['F_t']}", f"output {numbers['F_t_mean']}"]
         lines.append(f"evaluations {numbers['solver.evaluations']}")
         resources = (self.fmu.directory / "resources").as_uri()
-        return self.call("fmu_driver", [self.library, self.fmu.description.guid, resources], lines, job)
+        preload = {"LD_PRELOAD": str(self.programs / "count_allocations.so")} if count_allocations else {}
+        arguments = [self.library, self.fmu.description.guid, resources]
+        return self.call("fmu_driver", arguments, lines, job, preload)
 
     def run_plain_cvode(self, job: Job, values: Mapping[str, float]) -> Outcome:
         """CVODE with its defaults; values under the names of PLAIN."""
@@ -92,7 +98,14 @@ class Bench:
         lines += _inputs(job, {"V": 0, "d": 1})
         return self.call("plain_cvode", [], [*lines, "output 0", "output 1"], job)
 
-    def call(self, program: str, arguments: list, lines: list[str], job: Job) -> Outcome:
+    def call(
+        self,
+        program: str,
+        arguments: list,
+        lines: list[str],
+        job: Job,
+        environment: Mapping[str, str] = MappingProxyType({}),
+    ) -> Outcome:
         command = [str(self.programs / program), *map(str, arguments)]
         try:
             done = subprocess.run(
@@ -101,6 +114,7 @@ class Bench:
                 capture_output=True,
                 text=True,
                 timeout=TIME_LIMIT,
+                env={**os.environ, **environment},
                 check=False,
             )
         except subprocess.TimeoutExpired:
@@ -139,7 +153,18 @@ def _parse(text: str, job: Job) -> Outcome:
         else:
             numbers[keyword] = float(rest)
     F, F_mean = np.array(rows).reshape(-1, 2).T
-    return Outcome(F, F_mean, *(numbers[name] / job.count for name in ("wall", "cpu", "evaluations")))
+    costs = (numbers[name] / job.count for name in ("wall", "cpu", "evaluations"))
+    counted = {
+        name: int(numbers[name]) for name in ("allocations", "allocations_to_start") if name in numbers
+    }
+    return Outcome(F, F_mean, *costs, **counted)
+
+
+def build_programs(build_dir: Path) -> None:
+    command = [sys.executable, "-m", "cmake", "--build", str(build_dir), "--target", "bench"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise BuildError(f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}")
 
 
 @contextmanager
@@ -147,12 +172,7 @@ def open_bench(build_dir: Path | None = None, progress: Progress | None = None) 
     """Builds the FMU and the programs in build/; takes them as they are from a folder given."""
     if build_dir is None:
         build_dir = build_fmu(progress=progress).parent
-        command = [sys.executable, "-m", "cmake", "--build", str(build_dir), "--target", "bench"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise BuildError(
-                f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}"
-            )
+        build_programs(build_dir)
     with FrictionFmu(build_dir / "FrictionContact.fmu") as fmu:
         yield Bench(fmu, build_dir / "bench")
 

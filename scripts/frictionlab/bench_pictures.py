@@ -131,3 +131,37 @@ def _save(figure: object, folder: Path, name: str) -> list[Path]:
     paths = [folder / f"{name}.svg", folder / f"{name}.png"]
     style.save(figure, *paths)  # type: ignore[arg-type]
     return paths
+
+
+def levels(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folder: Path) -> list[Path]:
+    """Cost against error to the full model: the law and the contact are the marker, the method the colour."""
+    columns = min(3, len(titles))
+    count = -(-len(titles) // columns)
+    figure, axes = style.subplots(count, columns, size=(4.6 * columns, 3.2 * count + 0.6), squeeze=False)
+    for panel, name in zip(axes.flat, titles, strict=False):
+        own = [row for row in rows if row["case"] == name and not row["failure"]]
+        for kind in dict.fromkeys(str(row["kind"]) for row in own):
+            chosen = [row for row in own if row["kind"] == kind]
+            method = kind.rpartition(", ")[2]
+            panel.loglog(
+                [max(row["error_F_t"], row["error_F_t_mean"], SMALLEST_ERROR) for row in chosen],  # type: ignore[type-var]
+                [1e6 * float(row["cpu_s_per_period"]) for row in chosen],  # type: ignore[arg-type]
+                linestyle="" if kind == "Coulomb" else "--" if "Constant" in kind else "-",
+                marker="*" if kind == "Coulomb" else "x" if "Constant" in kind else "o",
+                markersize=9 if kind == "Coulomb" else 4,
+                color=style.BLACK if kind == "Coulomb" else COLOUR[method],
+                label=kind,
+            )
+        for accuracy in (1e-2, 1e-3, 1e-6):
+            panel.axvline(accuracy, color=style.LIGHT, linewidth=0.8)
+        panel.set_xlim(SMALLEST_ERROR / 3, 30)
+        panel.set_title(titles[name])
+        panel.set_xlabel("error to the full model over $F_C$")
+        panel.set_ylabel("CPU time per 50 µs [µs]")
+    for panel in axes.flat[len(titles) :]:
+        panel.set_visible(False)
+    handles = {}
+    for panel in axes.flat:
+        handles.update(zip(*reversed(panel.get_legend_handles_labels()), strict=True))
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3, fontsize=8)
+    return _save(figure, folder, "levels")

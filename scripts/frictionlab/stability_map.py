@@ -90,7 +90,7 @@ def classify(fmu: FrictionFmu, method: str, z: float) -> str:
     if overshoots:
         return "rings"
     falls = (np.diff(size)[seen[1:]] < 0).all()
-    return "monotone" if falls and not (error < 0).any() else "stable"
+    return "monotone" if falls and not (error < -ROUNDING).any() else "stable"
 
 
 def measured_edge(fmu: FrictionFmu, method: str, before: str, theory: float) -> float:

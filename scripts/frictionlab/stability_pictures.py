@@ -39,6 +39,7 @@ def draw_map(
                 axes.plot([edge["theory_z"]] * 2, [i - 0.48, i + 0.48], color=style.BLACK, linewidth=1.4)
                 axes.plot(edge["measured_z"], i, "x", color=style.BLACK, markersize=5)
     axes.set_xscale("log")
+    axes.set_xlim(z[0] / half, z[-1] * half)
     axes.set_yticks(range(len(methods)), methods)
     axes.invert_yaxis()
     axes.grid(False)
@@ -66,7 +67,7 @@ def draw_coupled(
     motion.plot(1e3 * t, F / belt.F_C, color=style.BLACK, label=r"$F_t / F_C$")
     motion.plot(1e3 * t, belt.k * x / belt.F_C, color=style.GREEN, label=r"$k x / F_C$")
     motion.set_xlabel("time [ms]")
-    motion.set_title("Mass on a belt, solved as one system")
+    motion.set_title("Mass on a belt that goes to and fro, solved as one system")
     motion.legend()
     for coupling, colour in COUPLING.items():
         own = [row for row in errors if row["coupling"] == coupling]
@@ -75,7 +76,13 @@ def draw_coupled(
             [row["H"] for row in good], [row["error_F_t"] for row in good], "o-", color=colour, label=coupling
         )
         bad = [row["H"] for row in own if row["failure"]]
-        panel.plot(bad, [3.0] * len(bad), "x", color=colour, label=f"{coupling}: diverges" if bad else None)
+        panel.plot(
+            bad,
+            [2.0] * len(bad),
+            "x",
+            color=colour,
+            label=f"{coupling}: chatters".replace("F_t", "$F_t$") if bad else None,
+        )
         for edge in edges:
             if edge["coupling"] == coupling and np.isfinite(float(edge["theory_H"])):  # type: ignore[arg-type]
                 panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)

@@ -1,0 +1,57 @@
+"""scripts/work-precision: what it computes from its measurements, and that the whole runs."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from frictionlab import stability, work_precision
+from frictionlab.bench import Bench
+from frictionlab.work_precision import Point, cost_at, step_size_points
+
+
+def made(error: float, cpu: float, failure: str = "") -> Point:
+    return Point("case", "method", 0.0, error, error, cpu, cpu, 1.0, failure)
+
+
+def test_the_cost_at_an_error_is_interpolated() -> None:
+    points = [made(1e-4, 1.0), made(1e-8, 100.0)]
+    assert cost_at(points, 1e-6) == pytest.approx(10.0)
+    assert cost_at(points, 1e-3) == 1.0  # loosest setting is better than asked
+    assert math.isnan(cost_at(points, 1e-9))  # never reached
+
+
+def test_settings_that_cost_more_for_less_do_not_count() -> None:
+    points = [made(1e-4, 50.0), made(1e-6, 10.0), made(1e-8, 20.0)]
+    assert cost_at(points, 1e-5) == 10.0
+
+
+def test_failures_do_not_count() -> None:
+    assert math.isnan(cost_at([made(1e-9, 1.0, "refused")], 1e-6))
+
+
+def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> None:
+    rows = step_size_points(bench, quick=True)
+    for kind, order in (("held", 1), ("linear", 2)):
+        coarse, fine = (row for row in rows if row["inputs"] == kind and row["samples_per_period"] != 5)
+        for key in ("error_F_t", "error_F_t_mean"):
+            slope = math.log(coarse[key] / fine[key]) / math.log(5)  # type: ignore[operator]
+            assert slope == pytest.approx(order, abs=0.15)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("bench")
+def test_both_commands_run_whole_with_quick(fmu_path: Path, tmp_path: Path) -> None:
+    options = ["--quick", "--build-dir", str(fmu_path.parent), "--output", str(tmp_path)]
+    work_precision.main(options)
+    stability.main(options)
+    names = ["work-precision", "work-precision-ratios", "step-size", "periods", "stability", "coupled-errors"]
+    for name in names:
+        with (tmp_path / f"{name}.csv").open(newline="") as file:
+            assert len(list(csv.DictReader(file))) > 2
+    for name in ("work-precision", "step-size", "periods", "stability", "coupled"):
+        assert (tmp_path / f"{name}.svg").stat().st_size > 1000
+        assert (tmp_path / f"{name}.png").stat().st_size > 1000
+    assert "scipy" in (tmp_path / "machine.json").read_text()
