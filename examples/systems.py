@@ -1,7 +1,7 @@
 """A system of FMUs as one .ssp file, and its runs by two importers: libcosim and fmpy.
 
-Both are Jacobi masters: in every step all FMUs advance by themselves with the inputs held, then the outputs are
-passed on. Times of libcosim are whole nanoseconds.
+Both are Jacobi masters: in every step all FMUs advance by themselves with the inputs held, then the outputs
+are passed on. Times of libcosim are whole nanoseconds.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class _Value:
 
 
 def run_fmpy(ssp: Path, step: float, count: int, signals: Sequence[Signal]) -> dict[Signal, np.ndarray]:
-    """The same by fmpy, which leaves the start values of the .ssd to its caller and starts all inputs at 0."""
+    """The same by fmpy, which leaves the start values of the .ssd to its caller, and inputs at 0 at first."""
     with zipfile.ZipFile(ssp) as archive:
         values = parameters(archive.read("SystemStructure.ssd").decode())
     result = simulate_ssp(

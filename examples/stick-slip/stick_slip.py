@@ -1,7 +1,7 @@
 """A mass on a belt: an SSP of two FMUs run by libcosim and fmpy, against the whole system solved at once.
 
-The reference shares nothing with the FMUs: scipy's Radau on position, velocity and bristle deflection together,
-with the contact's stiffness from the formulas.
+The reference shares nothing with the FMUs: scipy's Radau on position, velocity and bristle deflection
+together, with the contact's stiffness from the formulas.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def draw(ssp: Path, rows: list[dict[str, float]], output: Path) -> None:
     figure, axes = style.subplots(3, 1, size=(8.5, 9.0), gridspec_kw={"height_ratios": [1, 1, 1.3]})
     p = parameters((HERE / "SystemStructure.ssd").read_text())
     times = np.linspace(0.0, DURATION, 4001)
-    x, v, F = reference(times)
+    _, v, F = reference(times)
     _shade_sticking(axes[:2], times, np.abs(F) < 0.98 * p["contact", "F_C"])
     axes[0].plot(times, 1e3 * belt_velocity(times, p), color=style.GREY, lw=1.0, label="belt")
     axes[0].plot(times, 1e3 * v, color=style.BLUE, label="mass, one system")
