@@ -40,6 +40,8 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
         cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
         with cluster, Client(cluster) as client:
             yield client
+            with contextlib.suppress(TimeoutError):  # closing amid a worker's restart can fail
+                client.wait_for_workers(workers, timeout=30)
         return
     try:
         client = Client(scheduler, timeout=CONNECT_SECONDS)
