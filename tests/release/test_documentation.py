@@ -1,0 +1,105 @@
+"""The page inside the FMU: whole, offline, and within the window from phone to desktop."""
+
+from __future__ import annotations
+
+import html
+import re
+import shutil
+import subprocess
+import zipfile
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from frictionlab import fmu_documentation
+
+ROOT = Path(__file__).resolve().parents[2]
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+VOID = {"meta", "link", "br", "img", "input", "hr"}
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    return fmu_documentation.page(ROOT / "modelDescription.xml")
+
+
+def test_the_fmu_holds_this_page(fmu_path: Path, page: str) -> None:
+    with zipfile.ZipFile(fmu_path) as archive:
+        assert archive.read("documentation/index.html").decode() == page
+        names = archive.namelist()
+    for link in re.findall(r'href="(licenses/[^"]+)"', page):
+        assert f"documentation/{link}" in names
+
+
+def test_every_variable_is_described(page: str) -> None:
+    variables = ElementTree.parse(ROOT / "modelDescription.xml").findall("ModelVariables/ScalarVariable")
+    assert len(variables) > 30
+    for variable in variables:
+        assert f"<code>{variable.attrib['name']}</code></th>" in page
+        assert html.escape(variable.attrib["description"]) in page
+
+
+def test_starts_are_given_in_display_units(page: str) -> None:
+    row = re.search(r"<code>d</code></th>(.*)</tr>", page)
+    assert row is not None
+    assert ">14 µm<" in row[1] and ">≥ 1e-12<" in row[1]
+    row = re.search(r"<code>solver.method</code></th>(.*)", page)
+    assert row is not None
+    assert ">collocation<" in row[1] and ">1 … 6<" in row[1]
+
+
+def test_tags_are_balanced(page: str) -> None:
+    open_tags: list[str] = []
+
+    class Balance(HTMLParser):
+        def handle_starttag(self, tag: str, attrs: object) -> None:
+            if tag not in VOID:
+                open_tags.append(tag)
+
+        def handle_endtag(self, tag: str) -> None:
+            assert open_tags.pop() == tag, self.getpos()
+
+        def handle_startendtag(self, tag: str, attrs: object) -> None:
+            pass
+
+    Balance().feed(page)
+    assert open_tags == []
+
+
+def test_nothing_is_loaded_from_elsewhere(page: str) -> None:
+    assert not re.search(r"""(src|href|url)\s*[=(]\s*["']?\s*(https?:|//)""", page)
+    assert "<script" not in page and "@import" not in page
+    assert page.count("<math") > 10 and page.count("<svg") == 2
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is missing (Debian: chromium)")
+@pytest.mark.parametrize("width", [340, 768, 1280])
+def test_page_fits_the_window(page: str, tmp_path: Path, width: int) -> None:
+    """No sideways scrolling of the page, and a readable amount of text in it."""
+    frame = html.escape(page, quote=True)
+    measure = (
+        "const d = document.querySelector('iframe').contentDocument;"
+        "document.body.dataset.widths = d.documentElement.scrollWidth + ' ' + d.documentElement.clientWidth;"
+        "document.body.dataset.formulas = Array.from(d.querySelectorAll('math')).filter("
+        "m => m.getBoundingClientRect().height > 5).length;"
+    )
+    outer = tmp_path / "outer.html"
+    outer.write_text(
+        f'<body><iframe srcdoc="{frame}" style="width:{width}px;height:800px;border:0"></iframe>'
+        f'<script>onload = () => {{ {measure} document.querySelector("iframe").remove(); }}</script></body>',
+        encoding="utf-8",
+    )
+    options = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --hide-scrollbars".split()
+    options += ["--disable-background-networking", "--disable-component-update"]
+    done = subprocess.run(
+        [str(CHROMIUM), *options, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", outer.as_uri()],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    found = re.search(r'data-widths="(\d+) (\d+)" data-formulas="(\d+)"', done.stdout)
+    assert found, done.stderr[-500:]
+    scroll, client, formulas = map(int, found.groups())
+    assert client == width and scroll <= client
+    assert formulas == page.count("<math")

@@ -1,0 +1,161 @@
+"""scripts/release: a valid file that importers run, or one line that says why not and nothing left behind."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from fmpy.validation import validate_fmu
+from frictionlab import release, release_sundials, release_targets
+from frictionlab.release_sundials import SundialsSource
+from frictionlab.release_targets import ReleaseError
+from rich.progress import Progress
+
+QUIET = {"transient": True, "disable": True}
+
+
+@pytest.fixture(scope="module")
+def released(tmp_path_factory: pytest.TempPathFactory, sundials: SundialsSource) -> Path:
+    output = tmp_path_factory.mktemp("released") / "FrictionContact.fmu"
+    with Progress(**QUIET) as progress:
+        release.make_release(output, ["linux64"], progress)
+    return output
+
+
+def test_file_is_valid_and_alone(released: Path) -> None:
+    assert validate_fmu(str(released)) == []
+    assert [path.name for path in released.parent.iterdir()] == ["FrictionContact.fmu"]
+
+
+def test_contents(released: Path) -> None:
+    with zipfile.ZipFile(released) as archive:
+        names = set(archive.namelist())
+        assert b"Redistribution and use" in archive.read("documentation/licenses/license.txt")
+        assert b"Lawrence Livermore" in archive.read("documentation/licenses/sundials-license.txt")
+        assert b"DE-AC52-07NA27344" in archive.read("documentation/licenses/sundials-notice.txt")
+        assert archive.read("model.png").startswith(b"\x89PNG")
+    assert {
+        "modelDescription.xml",
+        "binaries/linux64/FrictionContact.so",
+        "documentation/index.html",
+    } <= names
+    assert {"sources/friction_contact.c", "sources/fmi2/step.c", "sources/fmi2Functions.h"} <= names
+
+
+def test_cvode_is_inside_and_agrees(released: Path) -> None:
+    runs = [
+        simulate_fmu(
+            str(released),
+            start_values={
+                "V": 0.5,
+                "vibration.V_1": 1.44,
+                "contact.stiffnessScale": 4.4e-7,
+                "solver.method": method,
+            },
+            output=["F_t"],
+        )["F_t"]
+        for method in (1, 2)  # collocation, cvode
+    ]
+    assert np.abs(runs[0]).max() > 40.0
+    assert np.abs(runs[0] - runs[1]).max() < 55.0 * 2e-6
+
+
+def test_libcosim_runs_it(released: Path) -> None:
+    execution_module = pytest.importorskip("libcosimpy.CosimExecution", reason="libcosimpy is not installed")
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    execution = execution_module.CosimExecution.from_step_size(step_size=500)
+    index = execution.add_local_slave(local_slave=CosimLocalSlave(fmu_path=str(released), instance_name="c"))
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    for _ in range(100):
+        assert execution.step()
+    assert observer.last_real_values(slave_index=index, variable_references=[3])[0] == pytest.approx(55.0)
+
+
+def refuse(output: Path) -> str:
+    with Progress(**QUIET) as progress, pytest.raises(ReleaseError) as refusal:
+        release.make_release(output, ["linux64"], progress)
+    text = str(refusal.value)
+    assert "\n" not in text
+    return text
+
+
+def test_missing_toolchain(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(release_targets.importlib.util, "find_spec", lambda name: None)
+    output = tmp_path / "new" / "FrictionContact.fmu"
+    assert "cross compiler is missing" in refuse(output)
+    assert not output.parent.exists()
+
+
+def test_missing_toolchain_from_the_command_line(tmp_path: Path) -> None:
+    """One line on stderr and a failing exit status."""
+    (tmp_path / "ziglang").mkdir()
+    (tmp_path / "ziglang" / "__init__.py").touch()
+    search = os.pathsep.join([str(tmp_path), str(release.ROOT / "scripts")])
+    run = subprocess.run(
+        [sys.executable, "-m", "frictionlab.release", "-o", str(tmp_path / "a.fmu")],
+        env={**os.environ, "PYTHONPATH": search},
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 1 and run.stdout == ""
+    assert run.stderr.startswith("error: the cross compiler is missing") and run.stderr.count("\n") == 1
+    assert not (tmp_path / "a.fmu").exists()
+
+
+def test_output_that_is_a_folder(tmp_path: Path) -> None:
+    assert "it is a folder" in refuse(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_output_below_a_file(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    assert "can't be written" in refuse(tmp_path / "file" / "FrictionContact.fmu")
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere")
+def test_output_in_a_read_only_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "locked"
+    folder.mkdir(mode=0o500)
+    assert "Permission denied" in refuse(folder / "FrictionContact.fmu")
+
+
+@pytest.mark.skipif(not Path("/proc/version").exists(), reason="there is no read-only file system at hand")
+def test_output_on_a_read_only_file_system() -> None:
+    assert "can't be written" in refuse(Path("/proc/FrictionContact.fmu"))
+
+
+def test_code_that_does_not_compile(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sundials: SundialsSource, released: Path
+) -> None:
+    """The compiler's first error in one line; an older release stays as it was."""
+    broken = tmp_path / "broken"
+    for name in ("fmu_src", "cmake"):
+        shutil.copytree(release.ROOT / name, broken / name)
+    shutil.copy(release.ROOT / "modelDescription.xml", broken)
+    (broken / "fmu_src" / "contact.c").write_text("int contact(void) { return surprise; }\n")
+    work = tmp_path / "work"
+    work.mkdir()
+    with pytest.raises(ReleaseError, match=r"zig cc fails: .*contact\.c:1:.*surprise"):
+        release.compile_platforms(["linux64"], work, sundials, root=broken)
+    before = released.read_bytes()
+    monkeypatch.setattr(release, "validate_fmu", lambda path: ["a made-up problem\nof two lines"])
+    assert refuse(released) == "the validator finds: a made-up problem of two lines"
+    assert released.read_bytes() == before
+    assert [path.name for path in released.parent.iterdir()] == ["FrictionContact.fmu"]
+
+
+def test_sundials_can_not_be_fetched(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(release_sundials.shutil, "which", lambda name: None)
+    with pytest.raises(ReleaseError, match="apt-get is missing"):
+        release_sundials.fetched(tmp_path / "sundials-source")
+    assert list(tmp_path.iterdir()) == []
