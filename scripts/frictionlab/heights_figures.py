@@ -62,7 +62,7 @@ def areas(points: int = 61) -> Picture:
     caption = (
         "The exponential stands in for the upper tail of a Gaussian. At the paper's d / R_q = 2.33 it "
         "gives 0.52 of the Gaussian's area and 0.27 of its stiffness; the area is within a factor of 2 "
-        "between d / R_q of 1.2 and 4.2 or so, and useless near zero. Nearly all touching asperities yield "
+        "for d / R_q from 0.55 to 4.1, and useless near zero. Nearly all touching asperities yield "
         "here, which doubles the elastic area."
     )
     return Picture("heights", "What the exponential height density costs", caption, panels, 3, (14.0, 4.8))

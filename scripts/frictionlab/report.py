@@ -1,4 +1,4 @@
-"""The paper's figures, its tables and claims from the FMU, the regimes and the identification: one web page."""
+"""The paper's figures, tables and claims from the FMU, the regimes and the identification on one page."""
 
 from __future__ import annotations
 
@@ -31,9 +31,10 @@ from frictionlab.simulate import FrictionError, FrictionFmu
 from frictionlab.table2 import results
 
 DESCRIPTION = """\
-Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the equations
-give, the height statistics, the regimes and sensitivities of the mean friction, and the identification. Writes
-build/report/index.html, one page that needs no network, and each picture as SVG and PNG beside it."""
+Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the
+equations give, the height statistics, the regimes and sensitivities of the mean friction, and the
+identification. Writes build/report/index.html, one page that needs no network, and each picture as SVG and
+PNG beside it."""
 
 # Pictures that the README and the documents show, and their names there.
 IN_DOCS = ("fig-04", "fig-13", "heights", "mean", "regimes", "reduction", "sensitivity-cuts", "recovery")
@@ -125,8 +126,8 @@ def _write(path: Path, sections: Sequence[Section], quick: bool) -> None:
     made = ", ".join(f"{name} {version(name)}" for name in ("FMPy", "numpy", "scipy", "plotly"))
     command = "scripts/report --quick" if quick else "scripts/report"
     footer = (
-        f"Made by <code>{command}</code> with FrictionContact.fmu; Python {platform.python_version()}, {made}; "
-        f"{platform.system()} {platform.machine()}."
+        f"Made by <code>{command}</code> with FrictionContact.fmu; Python {platform.python_version()}, "
+        f"{made}; {platform.system()} {platform.machine()}."
     )
     partial = path.with_suffix(".part")
     partial.write_text(page(report_text.TITLE, report_text.LEDE, sections, footer), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The report page in headless Chromium, by its DevTools protocol: screenshots, and what a reader would trip over."""
+"""The report page in headless Chromium, by its DevTools protocol: screenshots, and what is wrong with it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def find_browser() -> str | None:
 def visit(
     page: Path, width: int, dark: bool, screenshot: Path | None = None, tall: int | None = None
 ) -> Visit:
-    """Opens the page at a width [px] and light or dark; a screenshot is of the whole page or its first tall px."""
+    """Opens the page at a width [px]; a screenshot is of the whole page or of its first tall px."""
     browser = find_browser()
     if browser is None:
         raise BrowserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")

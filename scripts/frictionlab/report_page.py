@@ -55,7 +55,7 @@ def page(title: str, lede: str, sections: Sequence[Section], footer: str) -> str
         "PLOTLY": get_plotlyjs(),
     }
     for name, value in filled.items():  # plotly last: no name can stand in its text by chance
-        template = template.replace("{{" + name + "}}", value, 1)
+        template = template.replace("{{" + name + "}}", value)
     return template
 
 

@@ -46,20 +46,25 @@ def panel_data(panel: Panel) -> dict[str, Any]:
                 traces += _map(item)
             case Classes():
                 traces += _classes(item)
+    drawn = [item for item in panel.items if isinstance(item, Line | Map | Classes)]
     layout = {
         "title": text(panel.title),
-        "xaxis": _axis(panel.x_label, panel.x_log, panel.x_range),
-        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range),
+        "xaxis": _axis(panel.x_label, panel.x_log, panel.x_range, [item.x for item in drawn]),
+        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, [item.y for item in drawn]),
         "shapes": shapes,
         "showlegend": panel.legend and any(trace.get("showlegend") for trace in traces),
     }
     return {"traces": traces, "layout": layout}
 
 
-def _axis(label: str, logarithmic: bool, limits: tuple[float, float] | None) -> dict[str, Any]:
+def _axis(
+    label: str, logarithmic: bool, limits: tuple[float, float] | None, values: list[Any]
+) -> dict[str, Any]:
     axis: dict[str, Any] = {"title": {"text": text(label)}, "type": "log" if logarithmic else "linear"}
     if logarithmic:
-        axis |= {"exponentformat": "power", "dtick": 1}
+        every = np.concatenate([np.asarray(v, dtype=float).ravel() for v in values])
+        low, high = limits or (np.nanmin(every), np.nanmax(every))
+        axis |= {"exponentformat": "power", "dtick": max(1, round(float(np.log10(high / low)) / 5.0))}
     if limits:
         axis["range"] = [float(np.log10(v)) if logarithmic else float(v) for v in limits]
     return axis

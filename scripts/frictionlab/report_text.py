@@ -15,19 +15,19 @@ from frictionlab.table2 import Result, conditions, reduction, wave
 
 TITLE = "Friction under ultrasonic vibration: a paper reproduced and corrected"
 
-LAW = """<p><math display="block"><mfrac><mrow><mi>d</mi><mi>δ</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>
-<mo>=</mo><mi>V</mi><mo>−</mo><mfrac><mrow><mi>σ</mi><mo>|</mo><mi>V</mi><mo>|</mo></mrow><msub><mi>F</mi><mi>C</mi></msub>
-</mfrac><mi>δ</mi><mo>,</mo><mspace width="1.5em"/><msub><mi>F</mi><mi>t</mi></msub><mo>=</mo><mi>σ</mi><mi>δ</mi><mo>,</mo>
-<mspace width="1.5em"/><mi>σ</mi><mo>=</mo><mfrac><mrow><mi>E</mi><msubsup><mi>A</mi><mi>r</mi><mn>2</mn></msubsup></mrow>
-<msup><mi>d</mi><mn>3</mn></msup></mfrac></math></p>"""
+LAW = """<div class="law">
+<math><mfrac><mrow><mi>d</mi><mi>δ</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac><mo>=</mo><mi>V</mi>
+<mo>−</mo><mfrac><mrow><mi>σ</mi><mo>|</mo><mi>V</mi><mo>|</mo></mrow><msub><mi>F</mi><mi>C</mi></msub></mfrac>
+<mi>δ</mi></math>
+<math><msub><mi>F</mi><mi>t</mi></msub><mo>=</mo><mi>σ</mi><mi>δ</mi></math>
+<math><mi>σ</mi><mo>=</mo><mfrac><mrow><mi>E</mi><msubsup><mi>A</mi><mi>r</mi><mn>2</mn></msubsup></mrow>
+<msup><mi>d</mi><mn>3</mn></msup></mfrac></math></div>"""
 
-LEDE = (
-    """<p>A. Fattahi Avati and M. R. Karafi, <cite>Theoretical Study of Effective Parameters in the Friction
-Reduction by Ultrasonic Vibrations in Solid Surfaces</cite> (Iranian Journal of Mechanical Engineering, 2022,
-doi 10.30506/JMEE.2022.552079.1288), combines Dahl's friction law with an elastic-plastic contact of asperities.
-FrictionContact.fmu computes that model. This page sets what the equations give beside what the paper prints.</p>"""
-    + LAW
-)
+LEDE = f"""<p>A. Fattahi Avati and M. R. Karafi, <cite>Theoretical Study of Effective Parameters in the
+Friction Reduction by Ultrasonic Vibrations in Solid Surfaces</cite> (Iranian Journal of Mechanical
+Engineering, 2022, doi 10.30506/JMEE.2022.552079.1288), combines Dahl's friction law with an elastic-plastic contact of
+asperities. FrictionContact.fmu computes that model. This page sets what the equations give beside what the
+paper prints.</p>{LAW}"""
 
 
 def sections(
@@ -62,35 +62,35 @@ def sections(
     ]
 
 
-CLAIMS_INTRO = """<p>Changes in percent as the abstract and the conclusion state them, at the printed parameters
-(σ = 5.743e12 N/m, V = 5 mm/s, phase 0), and with the identified stiffness, phase and velocity. The proofs are
-in docs/errata.md.</p>"""
+CLAIMS_INTRO = """<p>Changes in percent as the abstract and the conclusion state them, at the printed
+parameters (σ = 5.743e12 N/m, V = 5 mm/s, phase 0), and with the identified stiffness, phase and velocity.
+The proofs are in docs/errata.md.</p>"""
 
-TABLE_2_INTRO = f"""<p>Mean friction force of the six rows. <b>Exact</b> is what Eq. 1–2 give as periodic means at the
-printed parameters. <b>Identified</b> uses the velocity of Figures 3 and 4, {IDENTIFIED.V} m/s, and two numbers chosen so
-that rows 2, 3 and 6 are missed by the same 0.56 N: a stiffness of {IDENTIFIED.stiffness / 1e6:.4f} MN/m at 14 µm and a
-phase of {IDENTIFIED.phase_d}° between the separation's and the velocity's vibration. Two numbers for three informative
-rows: an identification, not a validation. Rows 4 and 5 can't be reached: V is constant there, and the mean is
-F<sub>C</sub>.</p>"""
+TABLE_2_INTRO = f"""<p>Mean friction force of the six rows. <b>Exact</b> is what Eq. 1–2 give as periodic
+means at the printed parameters. <b>Identified</b> uses the velocity of Figures 3 and 4, {IDENTIFIED.V} m/s,
+and two numbers chosen so that rows 2, 3 and 6 are missed by the same 0.56 N: a stiffness of
+{IDENTIFIED.stiffness / 1e6:.4f} MN/m at 14 µm and a phase of {IDENTIFIED.phase_d}° between the separation's
+and the velocity's vibration. Two numbers for three informative rows: an identification, not a validation.
+Rows 4 and 5 can't be reached: V is constant there, and the mean is F<sub>C</sub>.</p>"""
 
-FIGURES_INTRO = """<p>Each from the FMU, at the printed parameters and at the identified stiffness of 2.5366 MN/m. Figures
-1, 7 and 14 of the paper are sketches and a measurement by others.</p>"""
+FIGURES_INTRO = """<p>Each from the FMU, at the printed parameters and at the identified stiffness of 2.5366
+MN/m. Figures 1, 7 and 14 of the paper are sketches and a measurement by others.</p>"""
 
-HEIGHTS_INTRO = """<p>Eq. 17 replaces the Gaussian density of asperity heights by an exponential, so that areas have a
-closed form. The FMU keeps it. The Gaussian integrals here are by quadrature, checked against the package
-ContactMechanics.</p>"""
+HEIGHTS_INTRO = """<p>Eq. 17 replaces the Gaussian density of asperity heights by an exponential, so that
+areas have a closed form. The FMU keeps it. The Gaussian integrals here are by quadrature, checked against
+the package ContactMechanics.</p>"""
 
-REGIMES_INTRO = """<p>Three numbers place a vibrating contact: κ = σ V<sub>1</sub> / (2π f F<sub>C</sub>), how far the
-vibration moves the contact in units of the deflection at which it slips; ζ = V / V<sub>1</sub>; and
-a<sub>d</sub> / R<sub>q</sub>, how much the separation moves.</p>"""
+REGIMES_INTRO = """<p>Three numbers place a vibrating contact: κ = σ V<sub>1</sub> / (2π f F<sub>C</sub>),
+how far the vibration moves the contact in units of the deflection at which it slips; ζ = V / V<sub>1</sub>;
+and a<sub>d</sub> / R<sub>q</sub>, how much the separation moves.</p>"""
 
 SENSITIVITY_INTRO = """<p>By central differences of the FMU's F_t_mean in the periodic state.</p>"""
 
-IDENTIFY_INTRO = """<p><code>scripts/identify</code> fits any parameters to measured mean friction. On rows 2, 3 and 6 of
-Table 2 least squares gives 2.383 MN/m and 224.7°, with residuals of 0.65, −0.36 and −0.58 N. With one degree of
-freedom its 95 % intervals are so wide (a factor of 40 either way in stiffness, ± 65° in phase) that the table does
-not determine either number; a second minimum at 127° lies within them. With enough data the method does
-recover what made them:</p>"""
+IDENTIFY_INTRO = """<p><code>scripts/identify</code> fits any parameters to measured mean friction. On rows
+2, 3 and 6 of Table 2 least squares gives 2.383 MN/m and 224.7°, with residuals of 0.65, −0.36 and −0.58 N.
+With one degree of freedom its 95 % intervals are so wide (a factor of 40 either way in stiffness, ± 65° in
+phase) that the table does not determine either number; a second minimum at 127° lies within them. With
+enough data the method does recover what made them:</p>"""
 
 
 def _claims(made: Sequence[Claim]) -> Table:
@@ -127,13 +127,17 @@ def _table_2(table: Sequence[Result]) -> Table:
                 f"{row.paper_force:.0f}",
                 f"{row.paper_reduction:.0f} %",
                 f"{result.exact:.4f}",
-                f"{reduction(result.exact, first.exact):.2f} %",
+                _reduced(result.exact, first.exact, 2),
                 f"{result.identified:.2f}",
-                f"{reduction(result.identified, first.identified):.1f} %",
+                _reduced(result.identified, first.identified, 1),
             ]
         )
     heading = ("Row", "paper, N", "less by", "exact, N", "less by", "identified, N", "less by")
     return Table(heading, rows)
+
+
+def _reduced(mean: float, without: float, digits: int) -> str:
+    return f"{round(reduction(mean, without), digits) + 0.0:.{digits}f} %"
 
 
 def _html_conditions(row: object) -> str:
@@ -151,7 +155,8 @@ def table_2_waves(fmu: FrictionFmu) -> Picture:
             items.append(Line(1e6 * one.time, one.force, label, colour))
         items.append(Level(row.paper_force, "paper's mean", INK, "dot"))
         title = f"Row {row.number}: " + conditions(row).replace("$", "")
-        panels.append(Panel(title, "time in the periodic state [µs]", "F_t [N]", items))
+        limits = (0.0, 150.0) if row.number == 4 else (-62.0, 62.0)
+        panels.append(Panel(title, "time in the periodic state [µs]", "F_t [N]", items, y_range=limits))
     caption = (
         "The friction force over two periods of the periodic state. In row 4 the force at the identified "
         "stiffness passes 2 F_C: while the separation shrinks the contact stiffens faster than its "

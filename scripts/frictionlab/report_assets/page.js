@@ -33,9 +33,17 @@ function coloured(trace, palette) {
 
 function axis(given, palette) {
   return {
-    ...given, gridcolor: palette.line, linecolor: palette.grey, zerolinecolor: palette.line, ticks: "outside",
-    tickcolor: palette.grey, automargin: true, title: { ...given.title, standoff: 8 },
+    ...given, tickangle: 0, gridcolor: palette.line, linecolor: palette.grey, zerolinecolor: palette.line, ticks: "outside",
+    tickcolor: palette.grey, automargin: "height+width", title: { ...given.title, standoff: 8 },
   };
+}
+
+// Plotly sets a horizontal legend in columns as wide as its longest entry; the plot keeps its height above it.
+function legendRows(traces, width) {
+  const names = traces.filter((trace) => trace.showlegend).map((trace) => trace.name.replace(/<[^>]*>/g, ""));
+  if (!names.length) return 0;
+  const column = 52 + 6.4 * Math.max(...names.map((name) => name.length));
+  return Math.ceil(names.length / Math.max(1, Math.floor((width - 62) / column)));
 }
 
 function draw(box) {
@@ -43,12 +51,15 @@ function draw(box) {
   const palette = palettes[root.dataset.theme];
   const shapes = layout.shapes.map((shape) => ({ ...shape, fillcolor: palette[shape.role] }));
   const narrow = box.clientWidth < 420;
+  const rows = layout.showlegend ? legendRows(traces, box.clientWidth) : 0;
+  const plot = narrow ? 210 : 250, bottom = 52 + 20 * rows;
+  box.style.height = `${plot + bottom + 8}px`;
   Plotly.react(box, traces.map((trace) => coloured(trace, palette)), {
     xaxis: axis(layout.xaxis, palette), yaxis: axis(layout.yaxis, palette), shapes, showlegend: layout.showlegend,
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
     font: { color: palette.text, size: narrow ? 11 : 12, family: "system-ui, DejaVu Sans, sans-serif" },
-    margin: { l: 50, r: 12, t: 8, b: 40 }, hovermode: "closest",
-    legend: { orientation: "h", y: -0.22, yanchor: "top", x: 0, font: { size: narrow ? 10.5 : 11.5 } },
+    margin: { l: 50, r: 12, t: 8, b: bottom }, hovermode: "closest",
+    legend: { orientation: "h", y: -48 / plot, yanchor: "top", x: 0, font: { size: narrow ? 10.5 : 11.5 } },
   }, { responsive: true, displaylogo: false, displayModeBar: false });
   box.dataset.drawn = root.dataset.theme;
 }

@@ -1,0 +1,268 @@
+"""Each entry of docs/errata.md, computed; and that the number stands there."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+from frictionlab.heights import Surfaces, area, closed_form_area, load, stiffness
+from frictionlab.identify import EXAMPLE
+from frictionlab.identify_data import read
+from frictionlab.identify_fit import Experiment, fit, parameter
+from frictionlab.paper_claims import mean_changes
+from frictionlab.paper_equations import (
+    area_eq_20,
+    force_eq_23,
+    force_eq_25,
+    mean_over_cycle,
+    residual_eq_25,
+    yield_pressure_ratio,
+)
+from frictionlab.scenarios import (
+    COULOMB_FORCE,
+    E_FULL,
+    E_REDUCED,
+    FREQUENCY,
+    IDENTIFIED,
+    PERIOD,
+    PRINTED,
+    SEPARATION,
+    STIFFNESS_PRINTED,
+    TABLE_2,
+    start_values,
+)
+from frictionlab.sensitivity import coulomb_limit, soft_limit
+from frictionlab.simulate import FrictionFmu, periodic_mean
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import i0
+
+TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
+SURFACES = Surfaces()
+A_D = 1.1e-6
+
+
+def entry(number: int) -> str:
+    """The text of one entry, with its line breaks as spaces."""
+    begin = TEXT.index(f"### {number}. ")
+    end = TEXT.find("\n##", begin)
+    return " ".join(TEXT[begin : end if end > 0 else None].split())
+
+
+def stated(number: int, *forms: str) -> None:
+    for form in forms:
+        assert form in entry(number), f"entry {number} does not state {form}"
+
+
+def test_1_constants_are_swapped() -> None:
+    swapped = area_eq_20(SURFACES, SEPARATION, E_FULL, swapped=True, positive_exponent=False)
+    right = closed_form_area(SURFACES, SEPARATION)
+    assert swapped < 1e-20  # m2, an atom's cross-section
+    stated(1, f"{swapped:.3g} m²", f"{right:.4g} m²")
+
+
+def test_2_sign_in_eq_20() -> None:
+    x = SURFACES.lambda_ * SURFACES.critical_interference(E_FULL) / SURFACES.R_q
+    right, printed = 1.0 - (1.0 + x) * math.exp(-x), 1.0 - (1.0 + x) * math.exp(x)
+    integral = quad(lambda u: u * math.exp(-u), 0.0, x, epsabs=0.0, epsrel=1e-12)[0]
+    assert right == pytest.approx(integral, rel=1e-6)
+    assert all(1.0 - (1.0 + y) * math.exp(y) < 0.0 for y in np.geomspace(1e-6, 10.0, 50))
+    stated(2, f"x = {x:.3e}", f"{printed:.3e}", f"{right:.3e}")
+
+
+def test_3_eq_10_needs_the_modulus_itself_in_eq_9() -> None:
+    R, omega = SURFACES.R, 1e-9
+    peak = 2.0 * E_FULL / math.pi * math.sqrt(omega / R)  # Eq. 10
+    for power, agrees in ((1.0, True), (0.5, False)):
+        P = 4.0 / 3.0 * E_FULL**power * math.sqrt(R) * omega**1.5
+        assert (1.5 * P / (math.pi * R * omega) == pytest.approx(peak, rel=1e-12)) is agrees
+
+
+def test_4_lengths_are_over_R_q() -> None:
+    in_um = area_eq_20(SURFACES, SEPARATION, E_FULL, False, False, lengths_over_R_q=False)
+    stated(4, f"{in_um:.3g} m²")
+
+
+def test_5_factor_counted_twice() -> None:
+    ratio, C_v = yield_pressure_ratio(0.33), 1.234 + 1.256 * 0.33
+    assert ratio == pytest.approx(C_v, rel=1e-3)
+    factor = (1.0 - 0.33**2) ** -2
+    x = SURFACES.lambda_ * SURFACES.critical_interference(E_FULL) / SURFACES.R_q
+    change = (1.0 + math.exp(-factor * x)) / (1.0 + math.exp(-x)) - 1.0
+    more_load = 1.0 / (1.0 - 0.33**2) - 1.0
+    stated(
+        5,
+        f"{ratio:.3f} Y",
+        f"{C_v:.3f}",
+        f"{factor:.3f}",
+        f"{-100 * change:.3f} %",
+        f"{100 * more_load:.1f} %",
+    )
+
+
+def test_5_load_is_proportional_to_the_yield_pressure() -> None:
+    """To a ten-thousandth: what little is elastic does not follow."""
+    stronger = Surfaces(Y=SURFACES.Y * 1.1)
+    assert load(stronger, SEPARATION) / load(SURFACES, SEPARATION) == pytest.approx(1.1, rel=1e-4)
+
+
+def test_6_load_jumps_at_the_critical_interference() -> None:
+    omega_c = SURFACES.critical_interference(E_FULL)
+    elastic = 4.0 / 3.0 * E_FULL * math.sqrt(SURFACES.R) * omega_c**1.5
+    plastic = math.pi * SURFACES.R * omega_c * SURFACES.yield_pressure
+    assert elastic / plastic == pytest.approx(2.0 / 3.0, rel=1e-12)
+    stated(6, f"{omega_c / SURFACES.R_q:.1e} R_q")
+
+
+def test_7_no_variant_gives_the_printed_area() -> None:
+    variants = [
+        area_eq_20(SURFACES, SEPARATION, E_FULL, *flags) for flags in product((False, True), repeat=3)
+    ]
+    nearest = min(variants, key=lambda value: abs(math.log(value / 1.397e-7)))
+    assert abs(math.log(nearest / 1.397e-7)) > 1.0
+    at = brentq(lambda d: closed_form_area(SURFACES, d) - 1.397e-7, 14e-6, 18e-6)
+    stated(7, f"{nearest:.4g} m²", f"{nearest / 1.397e-7:.2f} times", f"{1e6 * at:.2f} µm")
+
+
+def test_8_printed_stiffness_is_at_17_um() -> None:
+    at_17, at_14 = (E_FULL * 1.397e-7**2 / d**3 for d in (17e-6, 14e-6))
+    assert at_17 == pytest.approx(2.326e11, rel=5e-4)
+    stated(8, f"{at_17:.4g} N/m", f"{at_14:.4g} N/m", f"{stiffness(SURFACES, SEPARATION):.4g} N/m")
+
+
+def test_9_exponent_of_the_mean_stiffness() -> None:
+    assert 2.07e11 / 2.326e11 - 1.0 == pytest.approx(-0.11, abs=5e-4)
+
+
+def test_10_means_rise(fmu: FrictionFmu) -> None:
+    by_fmu = mean_changes(fmu)
+    for model in ("exponential", "gaussian"):
+        changes = [
+            100.0
+            * (
+                mean_over_cycle(lambda d, f=f, model=model: f(SURFACES, d, model=model), SEPARATION, A_D)
+                / f(SURFACES, SEPARATION, model=model)
+                - 1.0
+            )
+            for f in (area, stiffness)
+        ]
+        stated(10, *(f"{change:+.2f} %" for change in changes))
+        if model == "exponential":
+            assert changes == pytest.approx(by_fmu, rel=1e-7)
+            assert changes[0] == pytest.approx(100.0 * (i0(0.55) - 1.0), rel=1e-9)
+
+
+@pytest.mark.parametrize("quantity", [area, stiffness])
+@pytest.mark.parametrize("model", ["exponential", "gaussian"])
+def test_10_area_and_stiffness_are_convex(quantity: object, model: str) -> None:
+    gaps = np.linspace(6e-6, 24e-6, 40)
+    values = np.array([quantity(SURFACES, d, model=model) for d in gaps])  # type: ignore[operator]
+    assert np.all(np.diff(values, 2) > 0.0)
+
+
+def test_11_percentages() -> None:
+    stated(11, f"{100 * (1 - 48 / 55):.1f} %", f"{100 * (1 - 54 / 55):.1f} %")
+
+
+@pytest.mark.parametrize("t", [0.4e-5, 1.3e-5, 6.1e-5, 3.3e-4])
+def test_12_eq_25_fails_eq_2(t: float) -> None:
+    """The residual by finite differences of Eq. 25 is the one in closed form, and not zero."""
+    sigma, V, V_1 = 2.5366e6, 0.5, 1.44
+    h = 1e-10
+    before, at, after = force_eq_25(COULOMB_FORCE, sigma, V, V_1, FREQUENCY, np.array([t - h, t, t + h]))
+    V_now = V + V_1 * math.cos(2.0 * math.pi * FREQUENCY * t)
+    residual = (after - before) / (2.0 * h) - sigma * (V_now - abs(V_now) * at / COULOMB_FORCE)
+    expected = sigma * V_1 * residual_eq_25(COULOMB_FORCE, sigma, V, V_1, FREQUENCY, t)
+    assert residual == pytest.approx(expected, rel=1e-5, abs=1e-3 * sigma)
+    assert abs(residual_eq_25(COULOMB_FORCE, sigma, V, V_1, FREQUENCY, 1.3e-5)) > 0.1
+
+
+def test_12_mean_of_eq_25_drifts_to_coulomb(fmu: FrictionFmu) -> None:
+    row = TABLE_2[2]
+    drive = IDENTIFIED.stiffness, IDENTIFIED.V, row.V_1, FREQUENCY
+    means = []
+    for n in (1, 2, 10, 1000):
+        t = PERIOD * (n - 1 + (np.arange(400_000) + 0.5) / 400_000)
+        means.append(float(np.mean(force_eq_25(COULOMB_FORCE, *drive, t))))
+    coulomb = COULOMB_FORCE * coulomb_limit(IDENTIFIED.V / row.V_1)
+    assert means[-1] == pytest.approx(coulomb, abs=1e-3)
+    exact = periodic_mean(fmu, start_values(row, IDENTIFIED))
+    stated(12, f"{means[0]:.2f}, {means[1]:.2f} and {means[2]:.2f} N", f"{coulomb:.2f} N", f"{exact:.2f} N")
+
+
+def test_13_constant_velocity_means_coulomb_friction(fmu: FrictionFmu) -> None:
+    for row in (TABLE_2[3], TABLE_2[4]):
+        for parameters in (PRINTED, IDENTIFIED):
+            assert periodic_mean(fmu, start_values(row, parameters)) == pytest.approx(55.0, abs=1e-6)
+    stated(13, "55.000000 N")
+
+
+def test_14_where_the_printed_means_come_from() -> None:
+    def frozen(d: float, E: float) -> float:
+        relative = stiffness(SURFACES, d, E) / stiffness(SURFACES, SEPARATION, E_FULL)
+        return float(force_eq_23(COULOMB_FORCE, 5.1 * relative, 1.0, COULOMB_FORCE))
+
+    row_1, row_5 = frozen(SEPARATION, E_FULL), frozen(SEPARATION, E_REDUCED)
+    row_4 = 0.5 * (frozen(SEPARATION - A_D, E_FULL) + frozen(SEPARATION + A_D, E_FULL))
+    assert [round(force) for force in (row_1, row_4, row_5)] == [55, 48, 54]
+    mean = mean_over_cycle(lambda d: frozen(d, E_FULL), SEPARATION, A_D)
+    stated(14, f"{row_1:.2f}, {row_4:.2f} and {row_5:.2f} N", f"{mean:.2f} N")
+
+
+def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:
+    rows = [TABLE_2[k] for k in (1, 2, 5)]
+    printed = [periodic_mean(fmu, start_values(row, PRINTED)) for row in rows]
+    identified = [periodic_mean(fmu, start_values(row, IDENTIFIED)) for row in rows]
+    zeta = PRINTED.V / TABLE_2[2].V_1
+    coulomb, soft = COULOMB_FORCE * coulomb_limit(zeta), COULOMB_FORCE * soft_limit(zeta)
+    assert coulomb <= printed[1] * (1.0 + 1e-5) <= soft
+    slowest = 1.44 * brentq(lambda z: soft_limit(z) - 27 / 55, 0.01, 0.99)
+    fastest = 1.44 * math.sin(0.5 * math.pi * 27 / 55)
+    stated(
+        15,
+        "{:.4f}, {:.4f} and {:.4f} N".format(*printed),
+        "{:.2f}, {:.2f} and {:.2f} N".format(*identified),
+        f"= {coulomb:.4f} N",
+        f"{soft:.4f} N",
+        f"{100 * (1 - soft / COULOMB_FORCE):.2f} %",
+        f"between {slowest:.3f} and {fastest:.3f} m/s",
+    )
+
+
+def test_15_least_squares_through_the_same_rows(fmu: FrictionFmu) -> None:
+    rows = read(EXAMPLE, fmu, {})
+    named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
+    with Experiment(fmu, rows, named) as experiment:
+        result = fit(experiment)
+    stiff = [1e-6 * STIFFNESS_PRINTED * scale for scale in (result.values[0], *result.interval(0))]
+    phase = [math.degrees(angle) for angle in (result.values[1], *result.interval(1))]
+    stated(
+        15,
+        f"{stiff[0]:.3f} MN/m and {phase[0]:.2f}°",
+        f"from {stiff[1]:.3f} to {stiff[2]:.0f} MN/m",
+        f"from {phase[1]:.0f}° to {phase[2]:.0f}°",
+    )
+    (other,) = (text for text in result.warnings if "another minimum" in text)
+    stated(15, f"second minimum at {math.degrees(float(other.rsplit(' ', 1)[1])):.0f}°")
+
+
+def test_16_modulus() -> None:
+    E = 1.0 - E_REDUCED / E_FULL
+    sigma = 1.0 - stiffness(SURFACES, SEPARATION, E_REDUCED) / stiffness(SURFACES, SEPARATION)
+    A_r = 1.0 - closed_form_area(SURFACES, SEPARATION, E_REDUCED) / closed_form_area(SURFACES, SEPARATION)
+    index = math.sqrt(SURFACES.R_q / SURFACES.critical_interference(E_FULL))
+    stated(16, f"{100 * E:.2f} %", f"{100 * sigma:.2f} %", f"{100 * A_r:.3f} %", f"index is {index:.0f}")
+
+
+def test_17_exponential_against_gaussian() -> None:
+    def ratio(h: float) -> float:
+        d = h * SURFACES.R_q
+        return area(SURFACES, d) / area(SURFACES, d, model="gaussian")
+
+    low, high = brentq(lambda h: ratio(h) - 2.0, 0.1, 1.0), brentq(lambda h: ratio(h) - 2.0, 3.0, 5.0)
+    assert min(ratio(h) for h in np.linspace(low, high, 60)) > 0.5
+    at = ratio(14 / 6)
+    stated(17, f"{at:.3f} of the Gaussian's", f"{at**2:.3f} of it", f"{low:.2f} and {high:.2f}")
