@@ -4,7 +4,7 @@
 add_library(fc_options INTERFACE)
 target_compile_options(fc_options INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${FC_WERROR}>:-Werror>
-    -ffp-contract=off $<$<CONFIG:Release>:-O3>)
+    -ffp-contract=off -fno-math-errno $<$<CONFIG:Release>:-O3>)
 
 add_library(fc_shared INTERFACE)
 if(APPLE)

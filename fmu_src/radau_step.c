@@ -129,8 +129,8 @@ static double weight_of_the_defect(double z) {
     }
     const double x_2 = x * x;
     const double x_4 = x_2 * x_2;
-    const double small = x < 40.0 ? x_4 * x_4 * exp(-x) / double_factorial * (1.0 + x_2 / (4 * N + 6)) : 0.0;
-    const double large = exp(-N * (N + 1) / (2.0 * x)) / (2.0 * x);
+    const double small = x < 20.0 ? x_4 * x_4 * exp(-x) / double_factorial * (1.0 + x_2 / (4 * N + 6)) : 0.0;
+    const double large = x > 2.0 ? exp(-N * (N + 1) / (2.0 * x)) / (2.0 * x) : 0.0;
     return fmax(small, large);
 }
 
@@ -140,10 +140,16 @@ static double weight_of_the_defect(double z) {
 double radau_error(const RadauTail* tail, double z_mean) {
     const double none = 1e-300;
     const double* c = tail->coefficient;
-    const double one_degree = c[0] / (c[1] + none);
-    const double two_degrees = sqrt(fmax(c[0] / (c[2] + none), c[1] / (c[3] + none)));
-    const double three_degrees = cbrt(c[0] / (c[3] + none));
-    const double decay = fmin(1.0, fmax(one_degree, fmax(two_degrees, three_degrees)));
+    double decay = c[0] / (c[1] + none); // the slowest fall over one, two and three degrees
+    const double two_degrees = fmax(c[0] / (c[2] + none), c[1] / (c[3] + none));
+    if (two_degrees > decay * decay) {
+        decay = sqrt(two_degrees);
+    }
+    const double three_degrees = c[0] / (c[3] + none);
+    if (three_degrees > decay * decay * decay) {
+        decay = cbrt(three_degrees);
+    }
+    decay = fmin(decay, 1.0);
     const double defect = decay * fmax(c[0], decay * fmax(c[1], decay * c[2]));
     const double decay_2 = decay * decay;
     const double decay_4 = decay_2 * decay_2;
