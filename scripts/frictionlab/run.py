@@ -54,6 +54,8 @@ def run(options: argparse.Namespace) -> None:
         path = options.fmu or build_fmu(progress=progress)
         written = [options.output / "table2.csv"]
         with FrictionFmu(path) as fmu:
+            if fmu.description.modelName != "FrictionContact":
+                sys.exit(f"error: {path} is another FMU: {fmu.description.modelName}")
             task = progress.add_task("Simulating Table 2", total=len(TABLE_2) + 1)
             table = []
             for result in results(fmu):
