@@ -1,18 +1,21 @@
-# Programs that scripts/check builds and runs: the soak, and with FC_FUZZ the fuzzers.
+# Programs that scripts/check builds and runs: the soak, the fuzzers' inputs given once, and with FC_FUZZ the fuzzers.
 add_executable(soak EXCLUDE_FROM_ALL tests/soak/soak.c "${variable_table}")
 target_include_directories(soak SYSTEM PRIVATE "${FMI_HEADERS}")
 target_include_directories(soak PRIVATE fmu_src)
 target_link_libraries(soak PRIVATE FrictionContact fc_options m)
 
-if(FC_FUZZ)
-    if(NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
-        message(FATAL_ERROR "FC_FUZZ needs clang, which libFuzzer is part of (Debian: clang libclang-rt-14-dev); "
-                            "name it with CC=clang")
-    endif()
-    foreach(name call_sequence state_bytes)
-        add_executable(fuzz_${name} EXCLUDE_FROM_ALL tests/fuzz/${name}.c ${fmi_sources} "${variable_table}")
-        target_include_directories(fuzz_${name} SYSTEM PRIVATE "${FMI_HEADERS}")
-        target_link_libraries(fuzz_${name} PRIVATE friction_core fc_options)
-        target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
-    endforeach()
+if(FC_FUZZ AND NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "FC_FUZZ needs clang, which libFuzzer is part of (Debian: clang libclang-rt-14-dev); "
+                        "name it with CC=clang")
 endif()
+foreach(name call_sequence state_bytes)
+    foreach(kind replay fuzz)
+        set(program ${kind}_${name})
+        add_executable(${program} EXCLUDE_FROM_ALL tests/fuzz/${name}.c ${fmi_sources} "${variable_table}")
+        target_include_directories(${program} SYSTEM PRIVATE "${FMI_HEADERS}")
+        target_link_libraries(${program} PRIVATE friction_core fc_options)
+        add_dependencies(${program} FrictionContact) # which generates the variable table
+    endforeach()
+    target_sources(replay_${name} PRIVATE tests/fuzz/replay.c)
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+endforeach()
