@@ -20,6 +20,7 @@ from frictionlab.bench import (
     guarded,
     open_bench,
     progress_bar,
+    renew_docs,
     shown,
     write_csv,
     write_machine,
@@ -199,6 +200,8 @@ def table_of_scenes(bench: Bench, options: argparse.Namespace, progress: Progres
         write_machine(options.output / "machine.json"),
         *bench_pictures.levels(rows, {case.name: case.title for case in cases}, options.output),
     ]
+    if options.docs:
+        written += renew_docs(written)
     progress.stop()
     table = Table(
         title="Cheapest level within 1 %, 0.1 % and 1e-6 of F_C: error, CPU time per 50 us simulated; "

@@ -10,6 +10,7 @@ import csv
 import json
 import os
 import platform
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,6 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
+import fmpy
 import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -68,10 +70,9 @@ class Bench:
         self.fmu = fmu
         self.programs = programs
         identifier = fmu.description.coSimulation.modelIdentifier
-        libraries = [*(fmu.directory / "binaries").glob(f"*/{identifier}.so")]
-        if not libraries:
-            raise BuildError("the FMU holds no .so: the benchmark driver runs on Linux only")
-        self.library = libraries[0]
+        self.library = fmu.directory / "binaries" / fmpy.platform / f"{identifier}.so"
+        if not self.library.is_file():
+            raise BuildError("the FMU holds no .so for this machine: the benchmarks run on Linux only")
 
     def run(self, job: Job, count_allocations: bool = False) -> Outcome:
         """The FMU through its FMI functions."""
@@ -106,6 +107,8 @@ class Bench:
         job: Job,
         environment: Mapping[str, str] = MappingProxyType({}),
     ) -> Outcome:
+        if program == "plain_cvode" and not (self.programs / program).is_file():
+            return failed("not in this build (built without SUNDIALS)")
         command = [str(self.programs / program), *map(str, arguments)]
         try:
             done = subprocess.run(
@@ -189,7 +192,18 @@ def command_line(name: str, description: str) -> argparse.ArgumentParser:
         type=Path,
         help="take the FMU and the programs from this build instead of building them",
     )
+    parser.add_argument("--docs", action="store_true", help="renew the pictures of docs/numerics.md too")
     return parser
+
+
+def renew_docs(pictures: Sequence[Path]) -> list[Path]:
+    """Copies the PNG pictures to where docs/numerics.md shows them."""
+    copies = []
+    for picture in pictures:
+        if picture.suffix == ".png":
+            copies.append(ROOT / "docs" / "pictures" / f"numerics-{picture.name}")
+            shutil.copyfile(picture, copies[-1])
+    return copies
 
 
 @contextmanager
@@ -231,7 +245,6 @@ def shown(path: Path) -> str:
 
 def machine() -> dict[str, str]:
     """What a measurement depends on besides the code."""
-    import fmpy
     import scipy
 
     cpu = platform.processor()

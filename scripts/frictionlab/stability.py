@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -16,6 +16,7 @@ from frictionlab.bench import (
     guarded,
     open_bench,
     progress_bar,
+    renew_docs,
     shown,
     write_csv,
     write_machine,
@@ -38,7 +39,7 @@ friction held over a step or moving at its derivative, against a monolithic refe
 
 
 def stability_map(fmu: FrictionFmu, quick: bool) -> list[dict[str, object]]:
-    exponents = np.linspace(-3, 8, 23 if quick else 89)
+    exponents = np.linspace(-3, 8, 45 if quick else 177)
     return [
         {"method": method, "z": float(z), "behaviour": classify(fmu, method, float(z))}
         for method in METHODS
@@ -67,10 +68,11 @@ def edges(fmu: FrictionFmu) -> list[dict[str, object]]:
 def main(argv: Sequence[str] | None = None) -> None:
     options = command_line("stability", DESCRIPTION).parse_args(argv)
     with progress_bar() as progress:
-        guarded(lambda: run(options.output, options.quick, options.build_dir, progress))
+        guarded(lambda: run(options, progress))
 
 
-def run(output: Path, quick: bool, build_dir: Path | None, progress: Progress) -> None:
+def run(options: argparse.Namespace, progress: Progress) -> None:
+    output, quick, build_dir = options.output, options.quick, options.build_dir
     belt = Belt()
     with open_bench(build_dir, progress) as bench:
         task = progress.add_task("Mapping z against method", total=4)
@@ -99,6 +101,8 @@ def run(output: Path, quick: bool, build_dir: Path | None, progress: Progress) -
     ]
     written += stability_pictures.draw_map(behaviours, found, output)
     written += stability_pictures.draw_coupled(errors, coupled, reference, belt, output)
+    if options.docs:
+        written += renew_docs(written)
     progress.stop()
     console = Console()
     console.print(_table("Edges in z = sigma |V| h / F_C", found))

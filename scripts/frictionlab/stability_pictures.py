@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import NullFormatter
 
 from frictionlab import style
 from frictionlab.stability_coupled import Belt, Trajectory
@@ -72,8 +73,9 @@ def draw_coupled(
     for coupling, colour in COUPLING.items():
         own = [row for row in errors if row["coupling"] == coupling]
         good = [row for row in own if not row["failure"]]
+        name = coupling.replace("F_t", "$F_t$")
         panel.loglog(
-            [row["H"] for row in good], [row["error_F_t"] for row in good], "o-", color=colour, label=coupling
+            [row["H"] for row in good], [row["error_F_t"] for row in good], "o-", color=colour, label=name
         )
         bad = [row["H"] for row in own if row["failure"]]
         panel.plot(
@@ -81,15 +83,16 @@ def draw_coupled(
             [2.0] * len(bad),
             "x",
             color=colour,
-            label=f"{coupling}: chatters".replace("F_t", "$F_t$") if bad else None,
+            label=f"{name}: chatters" if bad else None,
         )
         for edge in edges:
             if edge["coupling"] == coupling and np.isfinite(float(edge["theory_H"])):  # type: ignore[arg-type]
                 panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)
                 panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
+    panel.xaxis.set_minor_formatter(NullFormatter())
     panel.set_xlabel("communication step H [s]")
     panel.set_ylabel("largest error of $F_t$ over $F_C$")
-    panel.set_title("Jacobi master; dashed: stable up to here in stick")
+    panel.set_title("Jacobi master; dashed: stable in stick up to here")
     panel.legend()
     return _save(figure, folder, "coupled")
 

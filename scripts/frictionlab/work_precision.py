@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -21,6 +21,7 @@ from frictionlab.bench import (
     guarded,
     open_bench,
     progress_bar,
+    renew_docs,
     shown,
     write_csv,
     write_machine,
@@ -110,10 +111,10 @@ class Effort:
 
 FULL = Effort(
     [10.0**-k for k in range(2, 13)],
-    [10.0**-k for k in range(3, 11)],
+    [1e-3, 1e-4, 1e-6, 1e-8, 1e-10],
     [4**k for k in range(9)],
-    0.05,
-    60_000,
+    0.01,
+    15_000,
     SCIPY,
 )
 QUICK = Effort([1e-3, 1e-6, 1e-9, 1e-12], [1e-3, 1e-6], [1, 16, 256, 4096], 0.004, 1500, ("Radau", "LSODA"))
@@ -284,10 +285,11 @@ def _cheapest(row: dict[str, object], names: Sequence[str]) -> str:
 def main(argv: Sequence[str] | None = None) -> None:
     options = command_line("work-precision", DESCRIPTION).parse_args(argv)
     with progress_bar() as progress:
-        guarded(lambda: run(options.output, options.quick, options.build_dir, progress))
+        guarded(lambda: run(options, progress))
 
 
-def run(output: Path, quick: bool, build_dir: Path | None, progress: Progress) -> None:
+def run(options: argparse.Namespace, progress: Progress) -> None:
+    output, quick, build_dir = options.output, options.quick, options.build_dir
     effort = QUICK if quick else FULL
     chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
     output.mkdir(parents=True, exist_ok=True)
@@ -316,6 +318,8 @@ def run(output: Path, quick: bool, build_dir: Path | None, progress: Progress) -
     written += bench_pictures.work_precision(points, titles, output)
     written += bench_pictures.step_sizes(step_sizes, output)
     written += bench_pictures.periods(periods, output)
+    if options.docs:
+        written += renew_docs(written)
     progress.stop()
     Console().print(ratio_table(compared))
     one, many = (
