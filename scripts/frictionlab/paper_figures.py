@@ -272,11 +272,11 @@ def _over_time(
         Line(1e6 * run["time"], run[name] / still, "FMU", MODEL, width=2.4),
         Level(mean, f"FMU, mean ({change:+.1f} %)", MEAN, "dash"),
         Level(1.0, "without vibration", GREY, "dot"),
-        Level(printed, f"paper, mean ({printed_change:+.0f} %)", PAPER, "dash"),
+        Level(printed, f"paper, mean (−{-printed_change:.0f} %)", PAPER, "dash"),
     ]
     caption = (
         f"d = 14 µm ± 1.1 µm at 20 kHz. The {words} is convex in d, so by Jensen's inequality its mean over "
-        f"a symmetric oscillation rises: {change:+.2f} %. The paper has it fall: {printed_change:+.0f} %."
+        f"a symmetric oscillation rises: {change:+.2f} %. The paper has it fall by {-printed_change:.0f} %."
     )
     panel = Panel(f"Oscillating {words}", "time [µs]", f"{symbol} over its value at 14 µm", items)
     return Picture(key, f"Figure {number}: {words} over time", caption, [panel], 1, (6.4, 4.6))

@@ -71,7 +71,7 @@ def _section(section: Section, panels: dict[str, object]) -> str:
 def _table(table: Table) -> str:
     def cells(row: Sequence[str], tag: str) -> str:
         return "".join(
-            f"<{tag}{'' if k in table.words else ' class=number'}>{cell}</{tag}>"
+            f"<{tag} class={'words' if k in table.words else 'number'}>{cell}</{tag}>"
             for k, cell in enumerate(row)
         )
 

@@ -16,18 +16,20 @@ from frictionlab.table2 import Result, conditions, reduction, wave
 TITLE = "Friction under ultrasonic vibration: a paper reproduced and corrected"
 
 LAW = """<div class="law">
-<math><mfrac><mrow><mi>d</mi><mi>δ</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac><mo>=</mo><mi>V</mi>
+<math displaystyle="true">
+<mfrac><mrow><mi>d</mi><mi>δ</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac><mo>=</mo><mi>V</mi>
 <mo>−</mo><mfrac><mrow><mi>σ</mi><mo>|</mo><mi>V</mi><mo>|</mo></mrow><msub><mi>F</mi><mi>C</mi></msub></mfrac>
 <mi>δ</mi></math>
-<math><msub><mi>F</mi><mi>t</mi></msub><mo>=</mo><mi>σ</mi><mi>δ</mi></math>
-<math><mi>σ</mi><mo>=</mo><mfrac><mrow><mi>E</mi><msubsup><mi>A</mi><mi>r</mi><mn>2</mn></msubsup></mrow>
+<math displaystyle="true"><msub><mi>F</mi><mi>t</mi></msub><mo>=</mo><mi>σ</mi><mi>δ</mi></math>
+<math displaystyle="true">
+<mi>σ</mi><mo>=</mo><mfrac><mrow><mi>E</mi><msubsup><mi>A</mi><mi>r</mi><mn>2</mn></msubsup></mrow>
 <msup><mi>d</mi><mn>3</mn></msup></mfrac></math></div>"""
 
 LEDE = f"""<p>A. Fattahi Avati and M. R. Karafi, <cite>Theoretical Study of Effective Parameters in the
 Friction Reduction by Ultrasonic Vibrations in Solid Surfaces</cite> (Iranian Journal of Mechanical
-Engineering, 2022, doi 10.30506/JMEE.2022.552079.1288), combines Dahl's friction law with an elastic-plastic contact of
-asperities. FrictionContact.fmu computes that model. This page sets what the equations give beside what the
-paper prints.</p>{LAW}"""
+Engineering, 2022, doi 10.30506/JMEE.2022.552079.1288), combines Dahl's friction law with an elastic-plastic
+contact of asperities. FrictionContact.fmu computes that model. This page sets what the equations give beside
+what the paper prints.</p>{LAW}"""
 
 
 def sections(

@@ -84,9 +84,10 @@ def means(probe: Probe, quick: bool) -> Picture:
         Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)),
     ]
     caption = (
-        "Mean friction in the periodic state. Stiff contacts (κ above 100) behave as Coulomb's; soft ones "
-        "(κ below 0.1) hold a nearly constant deflection and have a limit of their own, π²/4 times "
-        "Coulomb's mean at small ζ. Beyond ζ = 1 nothing reverses and, with d constant, the mean is F_C."
+        "Mean friction in the periodic state. Stiff contacts behave as Coulomb's, for κ above 100 with d "
+        "constant and above 3000 with d moving this much. Soft ones, below 0.1, hold a nearly constant "
+        "deflection and have a limit of their own: π²/4 times Coulomb's mean at small ζ. Beyond ζ = 1 "
+        "nothing reverses and, with d constant, the mean is F_C."
     )
     return Picture("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
 

@@ -10,46 +10,12 @@ import pytest
 from frictionlab import identify
 from frictionlab.identify_data import DataError, Measurements, read
 from frictionlab.identify_fit import Experiment, Fit, fit, parameter
+from frictionlab.identify_recovery import NOISE, TRUTH, fits, held, measurements, true_forces
 from frictionlab.scenarios import STIFFNESS_PRINTED
 from frictionlab.simulate import FrictionFmu
 from scipy import stats
 
-TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
-NOISE = 0.5  # N
 SEEDS = 100
-
-
-def conditions() -> list[dict[str, float]]:
-    """Twelve rows as a person would measure them: some with, some without normal vibration."""
-    return [
-        {"V": V, "vibration.V_1": V_1, "vibration.a_d": a_d}
-        for V in (0.2, 0.6)
-        for V_1 in (0.5, 1.0, 1.5)
-        for a_d in (0.0, 1e-6)
-    ]
-
-
-def measurements(force: np.ndarray, uncertainty: list[float] | None = None) -> Measurements:
-    return Measurements(("V", "vibration.V_1", "vibration.a_d"), conditions(), list(force), uncertainty)
-
-
-def true_forces(fmu: FrictionFmu) -> np.ndarray:
-    with Experiment(fmu, measurements(np.zeros(12)), _parameters(fmu)) as experiment:
-        return experiment.means([p.to_coordinate(p.start) for p in experiment.parameters])
-
-
-def _parameters(fmu: FrictionFmu) -> list:
-    return [parameter(fmu, name, value, None, {}) for name, value in TRUTH.items()]
-
-
-def _fits(fmu: FrictionFmu, uncertainty: list[float] | None) -> list[Fit]:
-    forces = true_forces(fmu)
-    found = []
-    for seed in range(SEEDS):
-        noisy = forces + NOISE * np.random.default_rng(seed).standard_normal(forces.size)
-        with Experiment(fmu, measurements(noisy, uncertainty), _parameters(fmu)) as experiment:
-            found.append(fit(experiment))
-    return found
 
 
 @pytest.mark.parametrize("uncertainty", [None, [NOISE] * 12], ids=["scatter estimated", "uncertainty stated"])
@@ -57,11 +23,10 @@ def test_intervals_hold_the_truth_in_about_95_of_100_seeds(
     fmu: FrictionFmu, uncertainty: list[float] | None
 ) -> None:
     """Of 100 intervals of 95 %, 87 to 100 hold the truth with a probability of 99.9 %."""
-    fits = _fits(fmu, uncertainty)
-    for k, (name, true) in enumerate(TRUTH.items()):
-        held = sum(low <= true <= high for low, high in (one.interval(k) for one in fits))
-        assert 87 <= held <= SEEDS, f"{name}: {held} of {SEEDS}"
-    joint = sum(_inside_joint_region(one, uncertainty is not None) for one in fits)
+    found = list(fits(fmu, SEEDS, uncertainty))
+    for name in TRUTH:
+        assert 87 <= held(found, name) <= SEEDS, name
+    joint = sum(_inside_joint_region(one, uncertainty is not None) for one in found)
     assert 87 <= joint <= SEEDS
 
 
