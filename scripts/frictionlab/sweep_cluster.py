@@ -37,7 +37,8 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     dask.config.set({"distributed.comm.timeouts.connect": CONNECT_SECONDS})
     if scheduler is None:
-        # One death makes a chunk suspect: a worker that dies again and again as it starts can stall its nanny.
+        # One death makes a chunk suspect: a worker that dies again and again as it starts can stall its
+        # nanny.
         dask.config.set({"distributed.scheduler.allowed-failures": 0})
         cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
         with cluster, Client(cluster) as client:
