@@ -18,7 +18,11 @@ from scipy import stats
 SEEDS = 100
 
 
-@pytest.mark.parametrize("uncertainty", [None, [NOISE] * 12], ids=["scatter estimated", "uncertainty stated"])
+@pytest.mark.parametrize(
+    "uncertainty",
+    [None, pytest.param([NOISE] * 12, marks=pytest.mark.slow)],
+    ids=["scatter estimated", "uncertainty stated"],
+)
 def test_intervals_hold_the_truth_in_about_95_of_100_seeds(
     fmu: FrictionFmu, uncertainty: list[float] | None
 ) -> None:

@@ -72,7 +72,14 @@ def test_page_loads_nothing(body: str) -> None:
     assert "url(" not in body
 
 
-@pytest.mark.parametrize(("width", "dark"), [(360, True), (820, False), (1440, False)])
+@pytest.mark.parametrize(
+    ("width", "dark"),
+    [
+        (360, True),
+        pytest.param(820, False, marks=pytest.mark.slow),
+        pytest.param(1440, False, marks=pytest.mark.slow),
+    ],
+)
 def test_browser_draws_it_all(index: Path, width: int, dark: bool) -> None:
     if report_browser.find_browser() is None:
         pytest.skip("no Chromium on this machine: the report page is not looked at")
