@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
@@ -22,6 +21,7 @@ from frictionlab.bench import (
     progress_bar,
     renew_docs,
     shown,
+    wide_console,
     write_csv,
     write_machine,
 )
@@ -141,7 +141,7 @@ def advise(bench: Bench, options: argparse.Namespace, progress: Progress) -> Non
     per_step = case.step / 50e-6  # costs are kept per 50 us simulated
     for g in sorted(best_of_each_kind(graded, output).values(), key=lambda g: g.error(output)):
         table.add_row(str(g.level), f"{g.error(output):.1e}", f"{1e6 * g.point.cpu * per_step:.3g}")
-    Console().print(table)
+    wide_console().print(table)
     best = cheapest(graded, options.accuracy, output)
     if best is None:
         raise AdviceError(
@@ -212,7 +212,7 @@ def table_of_scenes(bench: Bench, options: argparse.Namespace, progress: Progres
         table.add_column(heading)
     for summary in names:
         table.add_row(*map(str, summary.values()))
-    Console().print(table)
+    wide_console().print(table)
     print("Written:", ", ".join(map(shown, written)))
 
 

@@ -214,6 +214,12 @@ def progress_bar() -> Iterator[Progress]:
         yield progress
 
 
+def wide_console() -> Console:
+    """For tables: not cut to 80 columns where the output is no terminal."""
+    console = Console()
+    return console if console.is_terminal else Console(width=120)
+
+
 def guarded(run: Callable[[], None]) -> None:
     """Runs a command; what a user can mend becomes one line."""
     try:

@@ -6,7 +6,6 @@ import argparse
 from collections.abc import Sequence
 
 import numpy as np
-from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
@@ -18,6 +17,7 @@ from frictionlab.bench import (
     progress_bar,
     renew_docs,
     shown,
+    wide_console,
     write_csv,
     write_machine,
 )
@@ -104,7 +104,7 @@ def run(options: argparse.Namespace, progress: Progress) -> None:
     if options.docs:
         written += renew_docs(written)
     progress.stop()
-    console = Console()
+    console = wide_console()
     console.print(_table("Edges in z = sigma |V| h / F_C", found))
     console.print(_table("Mass on a belt: largest stable communication step [s] in stick", coupled))
     print("Written:", ", ".join(shown(path) for path in written))
@@ -115,7 +115,7 @@ def _table(title: str, rows: Sequence[dict[str, object]]) -> Table:
     for heading in rows[0]:
         table.add_column(heading, no_wrap=True)
     for row in rows:
-        table.add_row(*(f"{value:.5g}" if isinstance(value, float) else str(value) for value in row.values()))
+        table.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value) for value in row.values()))
     return table
 
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
@@ -23,6 +22,7 @@ from frictionlab.bench import (
     progress_bar,
     renew_docs,
     shown,
+    wide_console,
     write_csv,
     write_machine,
 )
@@ -321,7 +321,7 @@ def run(options: argparse.Namespace, progress: Progress) -> None:
     if options.docs:
         written += renew_docs(written)
     progress.stop()
-    Console().print(ratio_table(compared))
+    wide_console().print(ratio_table(compared))
     one, many = (
         row["cpu_s_per_step"]
         for row in periods
