@@ -89,6 +89,8 @@ def run(options: argparse.Namespace) -> None:
         if options.screenshots:
             written += _screenshots(index, progress)
     print(f"Written: {index} and {len(written) - 1} pictures")
+    if report_browser.find_browser() is None:
+        print("No Chromium on this machine: the page was not looked at in a browser.")
 
 
 def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Picture]]:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from markdown_it import MarkdownIt
+
+from frictionlab.build import ROOT
 from frictionlab.paper_claims import Claim
 from frictionlab.report_page import Section, Table
 from frictionlab.report_picture import BLUE, INK, ORANGE, Level, Line, Panel, Picture
@@ -60,13 +63,23 @@ def sections(
             SENSITIVITY_INTRO,
             [pictures["sensitivity-cuts"], pictures["sensitivity"]],
         ),
+        Section("errata", "Errata", errata(), []),
         Section("identification", "Identification", IDENTIFY_INTRO, [pictures["recovery"]]),
     ]
 
 
+def errata() -> str:
+    """docs/errata.md as a part of the page, without its title, links and pictures."""
+    text = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+    text = text[text.index("The FMU computes") :]
+    text = re.sub(r"!\[[^\]]*\]\([^)]*\)\n", "", text)
+    text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"docs/\1", text).replace("docs/tests/", "tests/")
+    return MarkdownIt().render(re.sub(r"(?m)^##", "###", text))
+
+
 CLAIMS_INTRO = """<p>Changes in percent as the abstract and the conclusion state them, at the printed
 parameters (σ = 5.743e12 N/m, V = 5 mm/s, phase 0), and with the identified stiffness, phase and velocity.
-The proofs are in docs/errata.md.</p>"""
+The proofs are under <a href="#errata">Errata</a>.</p>"""
 
 TABLE_2_INTRO = f"""<p>Mean friction force of the six rows. <b>Exact</b> is what Eq. 1–2 give as periodic
 means at the printed parameters. <b>Identified</b> uses the velocity of Figures 3 and 4, {IDENTIFIED.V} m/s,

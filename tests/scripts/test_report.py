@@ -16,6 +16,7 @@ SECTIONS = (
     "heights-and-load",
     "regimes-and-limits",
     "sensitivities",
+    "errata",
     "identification",
 )
 
@@ -64,6 +65,13 @@ def test_claims_have_what_the_equations_give(body: str) -> None:
         re.findall(r"<td[^>]*>(.*?)</td>", row)[2] for row in re.findall(r"<tr>(.*?)</tr>", table, re.S)[1:]
     ]
     assert exact == ["−99.78", "−99.78", "0", "0", "+7.71", "+50.68"]
+
+
+def test_errata_are_all_there(body: str) -> None:
+    text = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
+    assert body.count("<h4>", body.index('id="errata"'), body.index('id="identification"')) == text.count(
+        "\n### "
+    )
 
 
 def test_page_loads_nothing(body: str) -> None:
