@@ -187,6 +187,8 @@ def main() -> None:
     try:
         with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
             sundials = make_release(output, platforms, progress)
+    except KeyboardInterrupt:
+        sys.exit("error: interrupted; nothing was written")
     except ReleaseError as error:
         sys.exit(f"error: {error}")
     except OSError as error:
@@ -194,7 +196,8 @@ def main() -> None:
     print(size_table(output))
     print(f"SUNDIALS {sundials.version} (sha256 {sundials.sha256})")
     print(f"zig {importlib.metadata.version('ziglang')}")
-    print(f"{output} (sha256 {hashlib.sha256(output.read_bytes()).hexdigest()}); fmpy validate finds nothing")
+    shown = output.relative_to(ROOT) if output.is_relative_to(ROOT) else output
+    print(f"{shown} (sha256 {hashlib.sha256(output.read_bytes()).hexdigest()})")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ COMPILE = (
     "-ffunction-sections",
     "-fdata-sections",
 )
-LINUX = ("-Wl,-z,defs", "-Wl,--gc-sections", f"-Wl,-soname,{IDENTIFIER}.so", "-lm")
+LINUX = ("-flto", "-Wl,-z,defs", "-Wl,--gc-sections", f"-Wl,-soname,{IDENTIFIER}.so", "-lm")
 MACOS = ("-Wl,-dead_strip", f"-Wl,-install_name,@rpath/{IDENTIFIER}.dylib")
 
 
@@ -39,7 +39,7 @@ class Target:
     platform: str  # folder under binaries/
     triple: str  # as zig takes it
     suffix: str
-    link: tuple[str, ...]
+    link: tuple[str, ...]  # and -flto, which zig's linkers for the other formats do not take
 
 
 TARGETS = {
