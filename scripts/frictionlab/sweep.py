@@ -171,7 +171,7 @@ def _run(
     if new:
         lines.append(
             f"{new} scenarios in {elapsed:.1f} s on {cores} workers: {new / elapsed:.0f} per second, "
-            f"{new / elapsed / cores:.0f} per worker; {1e3 * seconds / new:.2f} ms of work each"
+            f"{new / elapsed / cores:.0f} per worker; {1e3 * seconds / new:.2f} ms of processor time each"
         )
     return "\n".join(lines)
 

@@ -28,7 +28,7 @@ RESULTS = {
     "A_r_mean": "m2, mean sample of the real contact area",
     "W_period": "J, work against friction in the period",
     "evaluations": "1, evaluations of the right-hand side",
-    "seconds": "s, time that the scenario took on its worker",
+    "seconds": "s, processor time that the scenario took on its worker",
 }
 
 
@@ -61,7 +61,7 @@ def load(content: bytes) -> FrictionFmu:
 
 def evaluate(fmu: FrictionFmu, values: Mapping[str, Value], sampling: Sampling) -> dict[str, float]:
     """The columns of RESULTS for one scenario. FrictionError if the FMU refuses it."""
-    begin = time.perf_counter()
+    begin = time.process_time()
     with fmu.session(values) as session:
         period, F_C = 1.0 / session.get("vibration.f"), session.get("F_C")
         session.step(sampling.settle * period)
@@ -82,7 +82,7 @@ def evaluate(fmu: FrictionFmu, values: Mapping[str, Value], sampling: Sampling) 
         "A_r_mean": float(rows[:, 3].mean()),
         "W_period": work,
         "evaluations": evaluations,
-        "seconds": time.perf_counter() - begin,
+        "seconds": time.process_time() - begin,
     }
 
 
