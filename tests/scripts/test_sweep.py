@@ -15,7 +15,9 @@ import numpy as np
 import pandas as pd
 import pytest
 from frictionlab import sweep, sweep_cluster
+from frictionlab.reference import periodic_mean
 from frictionlab.scenarios import IDENTIFIED, TABLE_2, start_values
+from frictionlab.scenes import scene_of
 from frictionlab.simulate import FrictionFmu
 from frictionlab.sweep_scenario import RESULTS, Sampling, evaluate
 from frictionlab.sweep_shipping import pickled
@@ -108,6 +110,20 @@ class TestScenario:
         at_rest = evaluate(fmu, {**start, "vibration.a_d": 0.0}, Sampling(1e6, 4))["sigma_mean"]
         assert row["sigma_mean"] / at_rest == pytest.approx(1.506797919, rel=1e-8)
         assert row["F_min"] < row["F_mean"] < row["F_max"]
+
+    @pytest.mark.parametrize(
+        "values",
+        [
+            {"V": 0.3, "vibration.V_1": 0.9, "vibration.a_d": 0.8e-6, "contact.stiffnessScale": 1e-6},
+            {"V": -0.02, "vibration.V_1": 1.1, "vibration.phase_d": 2.0, "vibration.a_d": 0.4e-6},
+            # V > 0 throughout, yet the mean is 1.2 F_C: V and the stiffness vary together.
+            {"V": 0.013, "vibration.V_1": 0.0091, "d": 16.7e-6, "vibration.a_d": 0.5e-6,
+             "contact.stiffnessScale": 1e-3},
+        ],
+    )  # fmt: skip
+    def test_mean_of_the_reference(self, fmu: FrictionFmu, values: dict[str, float]) -> None:
+        mean = float(periodic_mean(scene_of(values)))
+        assert evaluate(fmu, values, Sampling(1e6, 8))["F_mean"] == pytest.approx(mean, abs=55e-6)
 
     def test_number_of_samples_leaves_the_mean(self, fmu: FrictionFmu) -> None:
         start = start_values(TABLE_2[1], IDENTIFIED)
