@@ -122,6 +122,7 @@ static double relative_error(const Progress* progress, const RadauStep* step, do
     return error > 0.0 ? error / allowed : 0.0;
 }
 
+// Adds the step to the map.
 static void accept(Progress* progress, const RadauStep* step, double h) {
     DahlMap* map = &progress->map;
     const double P = 1.0 - map->relaxation;
@@ -133,6 +134,7 @@ static void accept(Progress* progress, const RadauStep* step, double h) {
     map->offset += Q * step->relaxed[RADAU_STAGES - 1] + step->driven[RADAU_STAGES - 1];
 }
 
+// Goes through a stretch.
 static void cross(Progress* progress, const DahlProblem* problem, const Stretch* stretch) {
     const double start = stretch->start;
     const double end = stretch->end;
@@ -223,11 +225,11 @@ int collocation_step(const DahlProblem* problem, const SolverOptions* options, d
             return 0;
         }
         if (moving.evaluations > FC_MOST_EVALUATIONS) {
-            snprintf(message->text, sizeof message->text,
-                     "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves "
-                     "over too "
-                     "many orders of magnitude in it; use smaller steps, or cut the motion",
-                     h, FC_MOST_EVALUATIONS);
+            snprintf(
+                message->text, sizeof message->text,
+                "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves over "
+                "too many orders of magnitude in it; use smaller steps, or cut the motion",
+                h, FC_MOST_EVALUATIONS);
             return 0;
         }
         *result = moving;

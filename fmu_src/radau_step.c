@@ -26,7 +26,7 @@ static void evaluate(const DahlProblem* problem, double t, double h, double sign
 #endif
 
 // The linear system of the stages with its two right-hand sides, which come first in each row.
-enum { RELAXED, DRIVEN, MATRIX, WIDTH = MATRIX + RADAU_STAGES };
+enum { RELAXED = 0, DRIVEN = 1, MATRIX = 2, WIDTH = MATRIX + RADAU_STAGES };
 typedef double StageSystem[RADAU_STAGES][WIDTH];
 
 // Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative.
