@@ -69,7 +69,9 @@ def _run(command: list[str], progress: Progress, task: int) -> None:
 def _reason(lines: list[str]) -> str:
     """CMake's own error message as one line, or else the compiler's output."""
     text = "".join(lines)
-    if match := re.search(r"CMake Error at [^\n]*\(message\):\n(.*?)(?:Call Stack|-- Configuring|\Z)", text, re.DOTALL):
+    if match := re.search(
+        r"CMake Error at [^\n]*\(message\):\n(.*?)(?:Call Stack|-- Configuring|\Z)", text, re.DOTALL
+    ):
         return " ".join(match[1].split())
     return "".join(line for line in lines if not PERCENT.match(line))[-6000:].strip()
 
