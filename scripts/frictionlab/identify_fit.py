@@ -206,7 +206,7 @@ def fit(experiment: Experiment, samples: int = 256, starts: int = 4) -> Fit:
             values = ", ".join(
                 f"{p.name} {p.to_value(value):.4g}" for p, value in zip(parameters, x, strict=True)
             )
-            result.warnings.append(f"another minimum lies within the 95 % region: {values}")
+            result.warnings.append(f"another solution lies within the 95 % region: {values}")
             break
     return result
 

@@ -77,7 +77,7 @@ def picture(fmu: FrictionFmu, seeds: int) -> Picture:
         ]
         if missed[0]:
             items.insert(1, Line(*missed, "misses it", ORANGE, width=2.4))
-        panels.append(Panel(name, "seed", f"95 % interval [{unit}]", items))
+        panels.append(Panel(name, "seed", f"95 % interval [{unit}]", items, x_range=(-1.0, seeds)))
     caption = (
         f"Twelve synthetic mean forces with normal noise of {NOISE:g} N, fitted for three parameters, with "
         f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should hold the truth."

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-SUBSCRIPT = re.compile(r"(?<![A-Za-z])([A-Za-zσκζδαφλ])_([A-Za-z0-9]+)")
+SUBSCRIPT = re.compile(r"(?<![A-Za-z])([A-Za-zσκζδαφλω])_([A-Za-z0-9]+)")
 
 # Roles; each renderer has a colour for each, and the page one for light and one for dark.
 INK, GREY, BLUE, ORANGE, GREEN, PINK, SKY, AMBER = (

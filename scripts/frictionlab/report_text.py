@@ -11,7 +11,7 @@ from frictionlab.build import ROOT
 from frictionlab.paper_claims import Claim
 from frictionlab.report_page import Section, Table
 from frictionlab.report_picture import BLUE, INK, ORANGE, Level, Line, Panel, Picture
-from frictionlab.report_plotly import text
+from frictionlab.report_plotly import text as as_html
 from frictionlab.scenarios import IDENTIFIED, PRINTED, TABLE_2
 from frictionlab.simulate import FrictionFmu
 from frictionlab.table2 import Result, conditions, reduction, wave
@@ -74,7 +74,9 @@ def errata() -> str:
     text = text[text.index("The FMU computes") :]
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)\n", "", text)
     text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"docs/\1", text).replace("docs/tests/", "tests/")
-    return MarkdownIt().render(re.sub(r"(?m)^##", "###", text))
+    made = MarkdownIt().render(re.sub(r"(?m)^##", "###", text))
+    parts = re.split(r"(<code>.*?</code>)", made, flags=re.DOTALL)
+    return "".join(part if part.startswith("<code>") else as_html(part) for part in parts)
 
 
 CLAIMS_INTRO = """<p>Changes in percent as the abstract and the conclusion state them, at the printed
@@ -118,7 +120,7 @@ def _claims(made: Sequence[Claim]) -> Table:
                 f"{claim.printed:+.0f}".replace("-", "−"),
                 _percent(claim.exact),
                 identified,
-                text(claim.why),
+                as_html(claim.why),
             ]
         )
     heading = ("Change of the mean, in %", "paper", "exact", "identified", "why")
