@@ -182,3 +182,13 @@ def test_an_input_can_not_be_driven_out_of_its_bounds(
     assert instance.fingerprint() == before
     assert instance.set_input_rates(dict.fromkeys(rates, 0.0)) == OK
     assert instance.step(0.0, h) == OK
+
+
+@pytest.mark.slow
+def test_a_step_that_would_compute_without_end_is_refused(instance: Instance) -> None:
+    instance.initialize()
+    assert instance.set_input_rates({"d": 1.0}) == OK
+    before = instance.fingerprint()
+    assert instance.step(0.0, 1e3) == ERROR  # d moves over eight orders of magnitude
+    assert "needs more than 1e+08 evaluations" in instance.last_message.text
+    assert instance.fingerprint() == before
