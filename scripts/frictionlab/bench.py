@@ -10,7 +10,6 @@ import csv
 import json
 import os
 import platform
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,6 +20,7 @@ from types import MappingProxyType
 
 import fmpy
 import numpy as np
+from PIL import Image
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -197,12 +197,12 @@ def command_line(name: str, description: str) -> argparse.ArgumentParser:
 
 
 def renew_docs(pictures: Sequence[Path]) -> list[Path]:
-    """Copies the PNG pictures to where docs/numerics.md shows them."""
+    """Puts the PNG pictures, in few colours, where docs/numerics.md shows them."""
     copies = []
     for picture in pictures:
         if picture.suffix == ".png":
             copies.append(ROOT / "docs" / "pictures" / f"numerics-{picture.name}")
-            shutil.copyfile(picture, copies[-1])
+            Image.open(picture).convert("RGB").quantize(96).save(copies[-1], optimize=True)
     return copies
 
 
