@@ -43,6 +43,9 @@ double dahl_log_stiffness_rate(const DahlProblem* problem, double t) {
 
 double dahl_largest_stiffness(const DahlProblem* problem, double h) {
     const Drive* drive = &problem->drive;
+    if (drive->E.rate == 0.0) {
+        return contact_stiffness(&problem->at_E, drive_smallest_d(drive, h));
+    }
     const ContactAtModulus stiffest = contact_at_modulus(problem->contact, drive_largest_E(drive, h));
     return contact_stiffness(&stiffest, drive_smallest_d(drive, h));
 }

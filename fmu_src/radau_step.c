@@ -3,17 +3,21 @@
 #include <math.h>
 #include <string.h>
 
+#include "nodes.h"
 #include "radau_tables.h"
+
+_Static_assert((int)RADAU_STAGES == (int)NODE_COUNT, "the coefficients are computed at the stages' nodes");
 
 static void evaluate(const DahlProblem* problem, double t, double h, double sign, RadauStep* step) {
     step->z_mean = 0.0;
     const double sign_over_F_C = sign / problem->F_C;
+    NodeCoefficients at;
+    node_coefficients(problem, t, h, RADAU_NODES, &at);
     for (int i = 0; i < RADAU_STAGES; i++) {
-        const DahlCoefficients at = dahl_coefficients(problem, t + RADAU_NODES[i] * h);
-        step->sigma[i] = at.sigma;
-        step->shift[i] = h * at.V;
+        step->sigma[i] = at.sigma[i];
+        step->shift[i] = h * at.V[i];
         // sign V and not |V|: V may be a rounding error past its reversal, and g must stay smooth there.
-        step->z[i] = step->shift[i] * at.sigma * sign_over_F_C;
+        step->z[i] = step->shift[i] * at.sigma[i] * sign_over_F_C;
         step->z_mean += RADAU_WEIGHTS[i] * step->z[i];
     }
 }
