@@ -11,6 +11,14 @@ static int fail(Message* message, const char* format, double a, double b, double
     return 0;
 }
 
+static int fail_stiffness(Message* message, double d, double E) {
+    return fail(
+        message,
+        "the contact stiffness at d = %.9g m, E = %.9g Pa is beyond the largest number: check d and the "
+        "parameters contact.*",
+        d, E, 0.0);
+}
+
 // The drive from the absolute time start + rest on, the inputs moving at these rates.
 static Drive drive_from(const FrictionState* state, double start, double rest,
                         const double rate[INPUT_COUNT]) {
@@ -47,10 +55,7 @@ static int check_drive(const DahlProblem* problem, double h, Message* message) {
                     drive->E.value, drive->E.value + drive->E.rate * h, 0.0);
     }
     if (!isfinite(dahl_largest_stiffness(problem, h)) || !isfinite(problem->at_E.area_0)) {
-        return fail(message,
-                    "the contact stiffness at d = %.9g m, E = %.9g Pa is beyond the largest number: check d "
-                    "and the parameters contact.*",
-                    d, drive_largest_E(drive, h), 0.0);
+        return fail_stiffness(message, d, drive_largest_E(drive, h));
     }
     if (!isfinite(drive_largest_speed(drive, h))) {
         return fail(message, "V moves from %.9g m/s to %.9g m/s in the step: it must stay a finite number",
@@ -154,6 +159,9 @@ int friction_contact_advance(FrictionContact* contact, double t, double h, Messa
     }
 
     const ContactState end = dahl_contact_state(&problem, h);
+    if (!isfinite(end.sigma) || !isfinite(end.A_r)) {
+        return fail_stiffness(message, v->d, v->E);
+    }
     const double F_t = force(v, &problem, h, end.sigma, result.delta);
     const double F_t_mean = h > 0.0 ? result.impulse / h : F_t;
     const double work = result.work + state->W_f_rest;
