@@ -28,17 +28,6 @@ static const double LARGEST_RESOLUTION = 2.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
 
-// Where the two trajectories of the interval's map are: P started from 1 and Q started from 0. For one start alone
-// P is 0 from the beginning and Q starts from there.
-typedef struct {
-    DahlMap map;
-    double resolution;
-    double smooth_time;     // s
-    double delta_scale;     // m, size of the deflection at the start
-    double delta_tolerance; // m, error allowed in the deflection
-    double evaluations;     // in the communication step so far
-} Progress;
-
 // Time [s] in which the bristle relaxes by 1 from t on: about the least root of g x + g' x^2 / 2 = 1
 // and g'' x^3 / 6 = 1. The last one counts where V only touches zero.
 static double relaxation_layer(const DahlProblem* problem, double t) {
@@ -72,17 +61,55 @@ static double start_layer(const DahlProblem* problem, double delta_0, double tol
     return relaxation_layer(problem, 0.0);
 }
 
-// Time [s] over which the phase or ln(sigma) moves by 1, at the least.
-static double smooth_time(const DahlProblem* problem, double h) {
+// How fast the phase and ln(sigma) move at the most, and whether the surfaces come so close, or the modulus moves so
+// far, that 1/d^3 and E have to be followed instead of bounded.
+typedef struct {
+    double rate; // 1/s
+    int follows_d_and_E;
+} Smoothness;
+
+static Smoothness smoothness(const DahlProblem* problem, double h) {
     const Drive* drive = &problem->drive;
-    double rate = drive_vibrates(drive) ? drive->omega : 0.0;
-    if (!problem->at_E.constant) {
-        const double log_slope = 2.0 * problem->at_E.decay + 3.0 / drive_smallest_d(drive, h);
-        rate += log_slope * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
-        rate += fabs(drive->E.rate) / drive_smallest_E(drive, h);
+    Smoothness smooth = {.rate = drive_vibrates(drive) ? drive->omega : 0.0};
+    if (problem->at_E.constant) {
+        return smooth;
     }
-    return 1.0 / rate;
+    const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
+    const double by_nearness = 3.0 / drive_smallest_d(drive, h);
+    const double E = drive_smallest_E(drive, h);
+    smooth.rate += 2.0 * problem->at_E.decay * d_rate;
+    smooth.follows_d_and_E =
+        (d_rate > 0.0 && by_nearness > 2.0 * problem->at_E.decay) || drive_largest_E(drive, h) > 100.0 * E;
+    if (!smooth.follows_d_and_E) {
+        smooth.rate += by_nearness * d_rate + fabs(drive->E.rate) / E;
+    }
+    return smooth;
 }
+
+// Time [s] from t on over which the phase or ln(sigma) moves by 1, at the least.
+static double smooth_time(const DahlProblem* problem, const Smoothness* smooth, double t) {
+    if (!smooth->follows_d_and_E) {
+        return 1.0 / smooth->rate;
+    }
+    const Drive* drive = &problem->drive;
+    // Twice the rates at t: they rise while the step goes on.
+    const double by_nearness = 2.0 * 3.0 / drive_d(drive, t);
+    const double by_E = 2.0 * fabs(drive->E.rate) / drive_E(drive, t);
+    const double rate = smooth->rate + by_nearness * fabs(drive_d_rate(drive, t)) + by_E;
+    const double curvature = by_nearness * drive->vibration.a_d * drive->omega * drive->omega;
+    return 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)); // rate x + curvature x^2 / 2 = 1
+}
+
+// Where the two trajectories of the interval's map are: P started from 1 and Q started from 0. For one start alone
+// P is 0 from the beginning and Q starts from there.
+typedef struct {
+    DahlMap map;
+    double resolution;
+    Smoothness smooth;
+    double delta_scale;     // m, size of the deflection at the start
+    double delta_tolerance; // m, error allowed in the deflection
+    double evaluations;     // in the communication step so far
+} Progress;
 
 // A stretch of time on which V keeps its sign, and the events on both sides that its steps are graded towards. The
 // event ahead may lie beyond the end.
@@ -93,15 +120,16 @@ typedef struct {
 } Stretch;
 
 // Length [s] of the step at t.
-static double graded_step(const Progress* progress, const Stretch* stretch, double t) {
+static double graded_step(const Progress* progress, const DahlProblem* problem, const Stretch* stretch,
+                          double t) {
     const double resolution = progress->resolution;
     const double end = stretch->end;
     const double left = end - t;
     const double after = resolution * (t - stretch->start + stretch->w_a);
     const double before = resolution / (1.0 + resolution) * (stretch->event - t + stretch->w_b);
+    const double smooth = resolution * SMOOTH_STEP * smooth_time(problem, &progress->smooth, t);
     const double smallest = 4e-16 * end; // below this t + h would not move
-    const double h =
-        fmax(smallest, fmin(resolution * SMOOTH_STEP * progress->smooth_time, fmin(after, before)));
+    const double h = fmax(smallest, fmin(smooth, fmin(after, before)));
     if (h >= left / 1.1) {
         return left;
     }
@@ -143,7 +171,7 @@ static void cross(Progress* progress, const DahlProblem* problem, const Stretch*
     const DahlMap before = progress->map;
     double t = start;
     while (t < end && progress->evaluations <= FC_MOST_EVALUATIONS) {
-        const double h = graded_step(progress, stretch, t);
+        const double h = graded_step(progress, problem, stretch, t);
         RadauStep step;
         radau_step(problem, t, h, sign, &step);
         progress->evaluations += RADAU_STAGES;
@@ -185,7 +213,7 @@ static DahlMap collocation_interval(const DahlProblem* problem, const SolverOpti
     Progress progress = {
         .map = dahl_identity(),
         .resolution = 1.5 * pow(options->tolerance, 1.0 / (2 * RADAU_STAGES)),
-        .smooth_time = smooth_time(problem, duration),
+        .smooth = smoothness(problem, duration),
         .delta_scale = fmax(fabs(delta_0), problem->F_C / dahl_stiffness(problem, 0.0)),
         .delta_tolerance = options->tolerance * saturated,
         .evaluations = *evaluations,
