@@ -79,8 +79,12 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (!instance_refresh_outputs(instance, &message)) {
         return refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
+    const double rate = friction_contact_force_rate(&instance->contact);
+    if (!isfinite(rate)) {
+        return refuse(instance, call, "the time derivative of F_t is beyond the largest number");
+    }
     for (size_t i = 0; i < nvr; i++) {
-        value[i] = friction_contact_force_rate(&instance->contact);
+        value[i] = rate;
     }
     return fmi2OK;
 }
@@ -101,6 +105,15 @@ static const double* gradient_row(const OutputGradient* gradient, const Variable
     default:
         return NULL;
     }
+}
+
+// Derivative of the output along the direction of the inputs.
+static double along(const double* gradient_row, const double direction[INPUT_COUNT]) {
+    double derivative = 0.0;
+    for (int input = 0; gradient_row && input < INPUT_COUNT; input++) {
+        derivative += gradient_row[input] * direction[input];
+    }
+    return derivative;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
@@ -138,11 +151,14 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     const OutputGradient gradient = friction_contact_output_gradient(&instance->contact);
     const int initializing = instance->machine.state == INITIALIZATION_MODE;
     for (size_t u = 0; u < nUnknown; u++) {
-        const double* row = gradient_row(&gradient, &variables_table[vUnknown_ref[u]], initializing);
-        dvUnknown[u] = 0.0;
-        for (int input = 0; row && input < INPUT_COUNT; input++) {
-            dvUnknown[u] += row[input] * direction[input];
+        const VariableInfo* info = &variables_table[vUnknown_ref[u]];
+        if (!isfinite(along(gradient_row(&gradient, info, initializing), direction))) {
+            return refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
         }
+    }
+    for (size_t u = 0; u < nUnknown; u++) {
+        const VariableInfo* info = &variables_table[vUnknown_ref[u]];
+        dvUnknown[u] = along(gradient_row(&gradient, info, initializing), direction);
     }
     return fmi2OK;
 }
