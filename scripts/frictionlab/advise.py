@@ -18,7 +18,6 @@ from frictionlab.bench import (
     command_line,
     guarded,
     open_bench,
-    progress_bar,
     renew_docs,
     shown,
     wide_console,
@@ -27,6 +26,7 @@ from frictionlab.bench import (
 )
 from frictionlab.bench_cases import Case
 from frictionlab.levels import ACCURACIES, OUTPUTS, Graded, best_of_each_kind, cheapest, grade, scenes
+from frictionlab.progress import progress_bar
 from frictionlab.reference_scene import Scene
 from frictionlab.scenes import scene_of, start_values_of
 from frictionlab.simulate import INPUTS, FrictionError, FrictionFmu, Value

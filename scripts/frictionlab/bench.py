@@ -22,7 +22,7 @@ import fmpy
 import numpy as np
 from PIL import Image
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import Progress
 
 from frictionlab.build import ROOT, BuildError, build_fmu
 from frictionlab.simulate import FrictionError, FrictionFmu, Value
@@ -204,14 +204,6 @@ def renew_docs(pictures: Sequence[Path]) -> list[Path]:
             copies.append(ROOT / "docs" / "pictures" / f"numerics-{picture.name}")
             Image.open(picture).convert("RGB").quantize(96).save(copies[-1], optimize=True)
     return copies
-
-
-@contextmanager
-def progress_bar() -> Iterator[Progress]:
-    console = Console(stderr=True)
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        yield progress
 
 
 def wide_console() -> Console:

@@ -52,7 +52,7 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
     for panel in axes.flat:
         handles.update(zip(*reversed(panel.get_legend_handles_labels()), strict=True))
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=6)
-    return _save(figure, folder, "work-precision")
+    return style.save_both(figure, folder, "work-precision")
 
 
 def _diagram(axes: Axes, points: Sequence[Point]) -> None:
@@ -111,7 +111,7 @@ def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]
         panel.set_xlabel("communication step over vibration period")
         panel.set_ylabel("largest error over $F_C$")
         panel.legend()
-    return _save(figure, folder, "step-size")
+    return style.save_both(figure, folder, "step-size")
 
 
 def periods(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
@@ -124,13 +124,7 @@ def periods(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
     axes.set_xlabel("vibration periods in the step")
     axes.set_ylabel("CPU time of the step [µs]")
     axes.legend()
-    return _save(figure, folder, "periods")
-
-
-def _save(figure: object, folder: Path, name: str) -> list[Path]:
-    paths = [folder / f"{name}.svg", folder / f"{name}.png"]
-    style.save(figure, *paths)  # type: ignore[arg-type]
-    return paths
+    return style.save_both(figure, folder, "periods")
 
 
 def levels(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folder: Path) -> list[Path]:
@@ -164,4 +158,4 @@ def levels(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], fold
     for panel in axes.flat:
         handles.update(zip(*reversed(panel.get_legend_handles_labels()), strict=True))
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3, fontsize=8)
-    return _save(figure, folder, "levels")
+    return style.save_both(figure, folder, "levels")

@@ -14,8 +14,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import Progress
+
+from frictionlab.progress import progress_bar
 
 ROOT = Path(__file__).resolve().parents[2]
 PERCENT = re.compile(r"^\[\s*(\d+)%\] (.*)")
@@ -37,9 +38,7 @@ def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path
     Shows a bar in the given progress, or in one of its own.
     """
     if progress is None:
-        columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-        console = Console(stderr=True)
-        with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as own:
+        with progress_bar() as own:
             return build_fmu(preset, own)
     folder = presets()[preset]
     task = progress.add_task("Configuring", total=100)

@@ -18,8 +18,7 @@ from pathlib import Path
 
 import fmpy
 from fmpy.validation import validate_fmu
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "cmake"))
@@ -29,6 +28,7 @@ import model_description  # noqa: E402
 import package_fmu  # noqa: E402
 
 from frictionlab import fmu_documentation, release_inspect  # noqa: E402
+from frictionlab.progress import progress_bar  # noqa: E402
 from frictionlab.release_sundials import SundialsSource, fetched  # noqa: E402
 from frictionlab.release_targets import TARGETS, ReleaseError, compile_library, zig  # noqa: E402
 from frictionlab.release_universal import universal  # noqa: E402
@@ -182,10 +182,8 @@ def main() -> None:
         or ROOT / "build" / ("release-quick" if arguments.quick else "release") / "FrictionContact.fmu"
     )
     platforms = arguments.platforms or (QUICK if arguments.quick else list(TARGETS))
-    console = Console(stderr=True)
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     try:
-        with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        with progress_bar() as progress:
             sundials = make_release(output, platforms, progress)
     except KeyboardInterrupt:
         sys.exit("error: interrupted; nothing was written")

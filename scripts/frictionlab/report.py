@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import Progress
 
 from frictionlab import (
     heights_figures,
@@ -24,6 +23,7 @@ from frictionlab import (
 )
 from frictionlab.build import ROOT, BuildError, build_fmu
 from frictionlab.paper_claims import claims
+from frictionlab.progress import progress_bar
 from frictionlab.report_page import Section, page
 from frictionlab.report_picture import Picture
 from frictionlab.sensitivity import Probe
@@ -73,10 +73,8 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    console = Console(stderr=True)
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     options.output.mkdir(parents=True, exist_ok=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    with progress_bar() as progress:
         path = options.fmu or build_fmu(progress=progress)
         with FrictionFmu(path) as fmu:
             pictures = _pictures(fmu, options.quick, progress)

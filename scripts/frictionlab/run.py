@@ -9,10 +9,10 @@ from pathlib import Path
 from zipfile import BadZipFile
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from frictionlab.build import ROOT, BuildError, build_fmu
+from frictionlab.progress import progress_bar
 from frictionlab.scenarios import IDENTIFIED, PRINTED, STIFFNESS_PRINTED, TABLE_2
 from frictionlab.simulate import FrictionError, FrictionFmu
 from frictionlab.table2 import Result, reduction, results, write_csv
@@ -47,10 +47,8 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    console = Console(stderr=True)
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     options.output.mkdir(parents=True, exist_ok=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    with progress_bar() as progress:
         path = options.fmu or build_fmu(progress=progress)
         written = [options.output / "table2.csv"]
         with FrictionFmu(path) as fmu:

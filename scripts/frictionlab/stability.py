@@ -14,13 +14,13 @@ from frictionlab.bench import (
     command_line,
     guarded,
     open_bench,
-    progress_bar,
     renew_docs,
     shown,
     wide_console,
     write_csv,
     write_machine,
 )
+from frictionlab.progress import progress_bar
 from frictionlab.simulate import FrictionFmu
 from frictionlab.stability_coupled import (
     COUPLINGS,

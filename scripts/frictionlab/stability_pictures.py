@@ -52,7 +52,7 @@ def draw_map(
         Line2D([], [], color=style.BLACK, marker="x", linestyle="", label="measured"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=7)
-    return _save(figure, folder, "stability")
+    return style.save_both(figure, folder, "stability")
 
 
 def draw_coupled(
@@ -94,10 +94,4 @@ def draw_coupled(
     panel.set_ylabel("largest error of $F_t$ over $F_C$")
     panel.set_title("Jacobi master; dashed: stable in stick up to here")
     panel.legend()
-    return _save(figure, folder, "coupled")
-
-
-def _save(figure: object, folder: Path, name: str) -> list[Path]:
-    paths = [folder / f"{name}.svg", folder / f"{name}.png"]
-    style.save(figure, *paths)  # type: ignore[arg-type]
-    return paths
+    return style.save_both(figure, folder, "coupled")

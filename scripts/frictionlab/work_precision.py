@@ -19,7 +19,6 @@ from frictionlab.bench import (
     command_line,
     guarded,
     open_bench,
-    progress_bar,
     renew_docs,
     shown,
     wide_console,
@@ -28,6 +27,7 @@ from frictionlab.bench import (
 )
 from frictionlab.bench_cases import SIGMAS, Case, cases, expected, sampled, vibrating
 from frictionlab.bench_peers import SCIPY, PythonFmu, plain_cvode, python_fmu, scipy_solver
+from frictionlab.progress import progress_bar
 from frictionlab.scenarios import PERIOD
 from frictionlab.simulate import Value
 
