@@ -20,13 +20,13 @@ def table(description: ModelDescription) -> str:
         "",
         "#include <float.h>",
         "",
-        f"const char variables_guid[] = {_string(description.guid)};",
-        f"const char variables_model_identifier[] = {_string(description.model_identifier)};",
+        f"const char fc_guid[] = {_string(description.guid)};",
+        f"const char fc_model_identifier[] = {_string(description.model_identifier)};",
         "",
-        "const char* const variables_log_categories[] = {",
+        "const char* const fc_log_categories[] = {",
         *(f"    {_string(name)}," for name in description.log_categories),
         "};",
-        f"const unsigned variables_log_categories_count = {len(description.log_categories)};",
+        f"const unsigned fc_log_categories_count = {len(description.log_categories)};",
         "",
     ]
     for name, literals in description.enumerations.items():
@@ -34,10 +34,10 @@ def table(description: ModelDescription) -> str:
         lines.append(f"static const char* const literals_of_{name}[] = {{{names}}};")
     lines += ["", *(_type_check(variable) for variable in description.variables), ""]
     lines += [
-        "const VariableInfo variables_table[] = {",
+        "const FcVariableInfo fc_variables[] = {",
         *(_row(variable) for variable in description.variables),
         "};",
-        f"const unsigned variables_count = {len(description.variables)};",
+        f"const unsigned fc_variables_count = {len(description.variables)};",
     ]
     return "\n".join(lines) + "\n"
 
@@ -45,7 +45,7 @@ def table(description: ModelDescription) -> str:
 def _type_check(variable: Variable) -> str:
     c_type = "double" if variable.kind == "Real" else "int"
     return (
-        f"_Static_assert(_Generic(((Variables*)0)->{variable.name}, {c_type}: 1, default: 0),"
+        f"_Static_assert(_Generic(((FcVariables*)0)->{variable.name}, {c_type}: 1, default: 0),"
         f' "{variable.name} must be of type {c_type}");'
     )
 
@@ -54,15 +54,15 @@ def _row(variable: Variable) -> str:
     cells = [
         _string(variable.name),
         _string(variable.unit),
-        f"TYPE_{variable.kind.upper()}",
-        f"CAUSALITY_{variable.causality.upper()}",
-        f"VARIABILITY_{variable.variability.upper()}",
+        f"FC_TYPE_{variable.kind.upper()}",
+        f"FC_CAUSALITY_{variable.causality.upper()}",
+        f"FC_VARIABILITY_{variable.variability.upper()}",
         "0" if variable.start is None else "1",
         _double(variable.start, "0.0"),
         _double(variable.min, "-DBL_MAX"),
         _double(variable.max, "DBL_MAX"),
         f"literals_of_{variable.declared_type}" if variable.declared_type else "NULL",
-        f"offsetof(Variables, {variable.name})",
+        f"offsetof(FcVariables, {variable.name})",
     ]
     return "    {" + ", ".join(cells) + "},"
 

@@ -1,16 +1,17 @@
 // One vibrating contact: its variables, its state, and how it advances. The only header that FMI sees.
 //
-// Variables carries every variable of modelDescription.xml under its own name: contact.R_q is the C expression
+// FcVariables carries every variable of modelDescription.xml under its own name: contact.R_q is the C expression
 // contact.R_q. The table that FMI uses is generated from the XML and finds them by offsetof.
 #ifndef FC_FRICTION_CONTACT_H
 #define FC_FRICTION_CONTACT_H
 
-#include "contact.h"
-#include "drive.h"
-#include "message.h"
-#include "solver.h"
+#include <stdbool.h>
 
-typedef enum { FRICTION_DAHL = 1, FRICTION_COULOMB = 2 } FrictionModel;
+#include "message.h"
+#include "model/contact.h"
+#include "model/drive.h"
+
+typedef enum { FC_FRICTION_DAHL = 1, FC_FRICTION_COULOMB = 2 } FcFrictionModel;
 
 typedef struct {
     double V;        // m/s  input
@@ -25,66 +26,68 @@ typedef struct {
     double delta_0;  // m
     double F_C;      // N
     struct {
-        int model; // FrictionModel
+        int model; // FcFrictionModel
     } friction;
-    ContactParameters contact;
-    Vibration vibration;
+    FcContactParameters contact;
+    FcVibration vibration;
     struct {
-        int method;         // SolverMethod
+        int method;         // FcMethod
         double tolerance;   // 1
         double stepSize;    // s
         double evaluations; // 1, evaluations of a(t), b(t) since the start
     } solver;
-} Variables;
+} FcVariables;
 
-typedef enum { INPUT_V, INPUT_D, INPUT_E, INPUT_COUNT } Input;
+typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_COUNT } FcInput;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
-    Variables variables;
-    double time;                   // s, the communication point reached
-    double time_rest;              // s, what rounding cut off when time was computed as t + h
-    double W_f_rest;               // J, what rounding cut off the sum W_f
-    double rate[INPUT_COUNT];      // time derivatives of the inputs over the last step
-    double next_rate[INPUT_COUNT]; // the same for the next step; zero again after it
+    FcVariables variables;
+    double time;                      // s, the communication point reached
+    double time_rest;                 // s, what rounding cut off when time was computed as t + h
+    double W_f_rest;                  // J, what rounding cut off the sum W_f
+    double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
+    double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
-} FrictionState;
+} FcFrictionState;
 
 typedef struct {
-    FrictionState state;
-    CvodeSolver* cvode; // only when solver.method = cvode
-} FrictionContact;
+    FcFrictionState state;
+    struct FcCvode* cvode; // only when solver.method = cvode
+} FcFrictionContact;
 
-// Functions that return int return 1, or 0 with *message filled and the contact unchanged.
+// Functions that return bool return true, or false with *message filled and the contact unchanged.
 
 // After all start values and parameters are set: checks their combination, starts the state from delta_0 at time
 // start [s], computes the outputs.
-int friction_contact_initialize(FrictionContact* contact, double start, Message* message);
-void friction_contact_free(FrictionContact* contact); // frees what initialize allocated
+bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message);
+// Allocates what the method (one FcMethod) needs for stepping, unless it is there. A saved state does not carry it.
+bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message);
+void fc_friction_contact_free(FcFrictionContact* contact); // frees what the two above allocated
 
 // Checks what single bounds can't: the separation stays positive under vibration, the stiffness is a finite number.
-int friction_contact_check(const FrictionContact* contact, Message* message);
+bool fc_friction_contact_check(const FcFrictionContact* contact, FcMessage* message);
 
 // Advances from t to t + h [s], h >= 0. The inputs move at next_rate and stay where they end.
-int friction_contact_advance(FrictionContact* contact, double t, double h, Message* message);
+bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
 
 // Recomputes F_t, sigma, A_r from the state and the present inputs and parameters (delta, F_t_mean and W_f are what
 // the last step left). Call after an input or a tunable parameter changed and before an output is read.
-void friction_contact_update_outputs(FrictionContact* contact);
+void fc_friction_contact_update_outputs(FcFrictionContact* contact);
 
 // Time derivative of F_t at the present time [N/s], with the inputs moving at the rates of the last step or, where
 // new ones have been set, of the next.
-double friction_contact_force_rate(const FrictionContact* contact);
+double fc_friction_contact_force_rate(const FcFrictionContact* contact);
 
 // Partial derivatives of the outputs with respect to the inputs at the present time and deflection.
 typedef struct {
-    double F_t[INPUT_COUNT];
-    double sigma[INPUT_COUNT];
-    double A_r[INPUT_COUNT];
-} OutputGradient; // delta, F_t_mean and W_f do not depend on the present inputs
-OutputGradient friction_contact_output_gradient(const FrictionContact* contact);
+    double F_t[FC_INPUT_COUNT];
+    double sigma[FC_INPUT_COUNT];
+    double A_r[FC_INPUT_COUNT];
+} FcOutputGradient; // delta, F_t_mean and W_f do not depend on the present inputs
+FcOutputGradient fc_friction_contact_output_gradient(const FcFrictionContact* contact);
 
 // The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to use.
-int friction_contact_undersamples(const FrictionContact* contact, double h);
+bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);
 
 #endif

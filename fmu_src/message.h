@@ -3,8 +3,19 @@
 #ifndef FC_MESSAGE_H
 #define FC_MESSAGE_H
 
+#include <stdbool.h>
+
+#if defined __GNUC__
+#define FC_PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
+#else
+#define FC_PRINTF_LIKE(text, first)
+#endif
+
 typedef struct {
     char text[320];
-} Message;
+} FcMessage;
+
+// Writes the text, cut off where it is too long. Returns false, so that a function that fails can return the call.
+bool fc_message_set(FcMessage* message, const char* format, ...) FC_PRINTF_LIKE(2, 3);
 
 #endif

@@ -6,16 +6,17 @@
 #include "fmi2/values.h"
 
 // The variable of the reference if it has the causality; NULL after logging why not.
-static const VariableInfo* expect(const Instance* instance, Call call, fmi2ValueReference vr,
-                                  Causality causality) {
-    if (vr >= variables_count) {
-        refuse(instance, call, "value reference %u is unknown; the largest is %u", vr, variables_count - 1);
+static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
+                                    FcCausality causality) {
+    if (vr >= fc_variables_count) {
+        fc_refuse(instance, call, "value reference %u is unknown; the largest is %u", vr,
+                  fc_variables_count - 1);
         return NULL;
     }
-    const VariableInfo* info = &variables_table[vr];
+    const FcVariableInfo* info = &fc_variables[vr];
     if (info->causality != causality) {
-        refuse(instance, call, "%s (value reference %u) is not an %s", info->name, vr,
-               causality == CAUSALITY_INPUT ? "input" : "output");
+        fc_refuse(instance, call, "%s (value reference %u) is not an %s", info->name, vr,
+                  causality == FC_CAUSALITY_INPUT ? "input" : "output");
         return NULL;
     }
     return info;
@@ -23,30 +24,30 @@ static const VariableInfo* expect(const Instance* instance, Call call, fmi2Value
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[]) {
-    const Call call = CALL_SET_REAL_INPUT_DERIVATIVES;
-    Instance* instance = instance_enter(c, call);
+    const FcCall call = FC_CALL_SET_REAL_INPUT_DERIVATIVES;
+    FcInstance* instance = fc_instance_enter(c, call);
     if (!instance) {
         return fmi2Error;
     }
     if (nvr > 0 && (!vr || !order || !value)) {
-        return refuse(instance, call, "vr, order or value is NULL");
+        return fc_refuse(instance, call, "vr, order or value is NULL");
     }
     for (size_t i = 0; i < nvr; i++) {
-        const VariableInfo* info = expect(instance, call, vr[i], CAUSALITY_INPUT);
+        const FcVariableInfo* info = expect(instance, call, vr[i], FC_CAUSALITY_INPUT);
         if (!info) {
             return fmi2Error;
         }
         if (order[i] != 1) {
-            return refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
-                          info->name);
+            return fc_refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
+                             info->name);
         }
         if (!isfinite(value[i])) {
-            return refuse(instance, call, "derivative of %s = %s per s is not a finite number", info->name,
-                          quantity_text(value[i], info->unit).text);
+            return fc_refuse(instance, call, "derivative of %s = %s per s is not a finite number", info->name,
+                             fc_quantity_text(value[i], info->unit).text);
         }
     }
     for (size_t i = 0; i < nvr; i++) {
-        instance->contact.state.next_rate[variable_input(&variables_table[vr[i]])] = value[i];
+        instance->contact.state.next_rate[fc_variable_input(&fc_variables[vr[i]])] = value[i];
         instance->contact.state.next_rate_set = 1;
     }
     return fmi2OK;
@@ -54,34 +55,34 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                         const fmi2Integer order[], fmi2Real value[]) {
-    const Call call = CALL_GET_REAL_OUTPUT_DERIVATIVES;
-    Instance* instance = instance_enter(c, call);
+    const FcCall call = FC_CALL_GET_REAL_OUTPUT_DERIVATIVES;
+    FcInstance* instance = fc_instance_enter(c, call);
     if (!instance) {
         return fmi2Error;
     }
     if (nvr > 0 && (!vr || !order || !value)) {
-        return refuse(instance, call, "vr, order or value is NULL");
+        return fc_refuse(instance, call, "vr, order or value is NULL");
     }
     for (size_t i = 0; i < nvr; i++) {
-        const VariableInfo* info = expect(instance, call, vr[i], CAUSALITY_OUTPUT);
+        const FcVariableInfo* info = expect(instance, call, vr[i], FC_CAUSALITY_OUTPUT);
         if (!info) {
             return fmi2Error;
         }
-        if (info->offset != offsetof(Variables, F_t)) {
-            return refuse(instance, call, "%s has no derivative in time here: only F_t has", info->name);
+        if (info->offset != offsetof(FcVariables, F_t)) {
+            return fc_refuse(instance, call, "%s has no derivative in time here: only F_t has", info->name);
         }
         if (order[i] != 1) {
-            return refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
-                          info->name);
+            return fc_refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
+                             info->name);
         }
     }
-    Message message;
-    if (!instance_refresh_outputs(instance, &message)) {
-        return refuse(instance, call, "the outputs can't be computed: %s", message.text);
+    FcMessage message;
+    if (!fc_instance_refresh_outputs(instance, &message)) {
+        return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    const double rate = friction_contact_force_rate(&instance->contact);
+    const double rate = fc_friction_contact_force_rate(&instance->contact);
     if (!isfinite(rate)) {
-        return refuse(instance, call, "the time derivative of F_t is beyond the largest number");
+        return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
     }
     for (size_t i = 0; i < nvr; i++) {
         value[i] = rate;
@@ -91,16 +92,16 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 
 // Row of the gradient that belongs to the output; NULL for an output that does not depend on the present inputs.
 // Before the first step F_t_mean is F_t.
-static const double* gradient_row(const OutputGradient* gradient, const VariableInfo* output,
+static const double* gradient_row(const FcOutputGradient* gradient, const FcVariableInfo* output,
                                   int initializing) {
     switch (output->offset) {
-    case offsetof(Variables, F_t):
+    case offsetof(FcVariables, F_t):
         return gradient->F_t;
-    case offsetof(Variables, sigma):
+    case offsetof(FcVariables, sigma):
         return gradient->sigma;
-    case offsetof(Variables, A_r):
+    case offsetof(FcVariables, A_r):
         return gradient->A_r;
-    case offsetof(Variables, F_t_mean):
+    case offsetof(FcVariables, F_t_mean):
         return initializing ? gradient->F_t : NULL;
     default:
         return NULL;
@@ -108,9 +109,9 @@ static const double* gradient_row(const OutputGradient* gradient, const Variable
 }
 
 // Derivative of the output along the direction of the inputs.
-static double along(const double* gradient_row, const double direction[INPUT_COUNT]) {
+static double along(const double* gradient_row, const double direction[FC_INPUT_COUNT]) {
     double derivative = 0.0;
-    for (int input = 0; gradient_row && input < INPUT_COUNT; input++) {
+    for (int input = 0; gradient_row && input < FC_INPUT_COUNT; input++) {
         derivative += gradient_row[input] * direction[input];
     }
     return derivative;
@@ -119,45 +120,45 @@ static double along(const double* gradient_row, const double direction[INPUT_COU
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
                                         size_t nUnknown, const fmi2ValueReference vKnown_ref[], size_t nKnown,
                                         const fmi2Real dvKnown[], fmi2Real dvUnknown[]) {
-    const Call call = CALL_GET_DIRECTIONAL_DERIVATIVE;
-    Instance* instance = instance_enter(c, call);
+    const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
+    FcInstance* instance = fc_instance_enter(c, call);
     if (!instance) {
         return fmi2Error;
     }
     if ((nUnknown > 0 && (!vUnknown_ref || !dvUnknown)) || (nKnown > 0 && (!vKnown_ref || !dvKnown))) {
-        return refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
+        return fc_refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
     }
-    double direction[INPUT_COUNT] = {0.0};
+    double direction[FC_INPUT_COUNT] = {0.0};
     for (size_t k = 0; k < nKnown; k++) {
-        const VariableInfo* info = expect(instance, call, vKnown_ref[k], CAUSALITY_INPUT);
+        const FcVariableInfo* info = expect(instance, call, vKnown_ref[k], FC_CAUSALITY_INPUT);
         if (!info) {
             return fmi2Error;
         }
         if (!isfinite(dvKnown[k])) {
-            return refuse(instance, call, "direction of %s = %s is not a finite number", info->name,
-                          quantity_text(dvKnown[k], info->unit).text);
+            return fc_refuse(instance, call, "direction of %s = %s is not a finite number", info->name,
+                             fc_quantity_text(dvKnown[k], info->unit).text);
         }
-        direction[variable_input(info)] += dvKnown[k];
+        direction[fc_variable_input(info)] += dvKnown[k];
     }
     for (size_t u = 0; u < nUnknown; u++) {
-        if (!expect(instance, call, vUnknown_ref[u], CAUSALITY_OUTPUT)) {
+        if (!expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
             return fmi2Error;
         }
     }
-    Message message;
-    if (!instance_refresh_outputs(instance, &message)) {
-        return refuse(instance, call, "the outputs can't be computed: %s", message.text);
+    FcMessage message;
+    if (!fc_instance_refresh_outputs(instance, &message)) {
+        return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    const OutputGradient gradient = friction_contact_output_gradient(&instance->contact);
-    const int initializing = instance->machine.state == INITIALIZATION_MODE;
+    const FcOutputGradient gradient = fc_friction_contact_output_gradient(&instance->contact);
+    const bool initializing = instance->experiment.mode == FC_INITIALIZATION_MODE;
     for (size_t u = 0; u < nUnknown; u++) {
-        const VariableInfo* info = &variables_table[vUnknown_ref[u]];
+        const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
         if (!isfinite(along(gradient_row(&gradient, info, initializing), direction))) {
-            return refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
+            return fc_refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
         }
     }
     for (size_t u = 0; u < nUnknown; u++) {
-        const VariableInfo* info = &variables_table[vUnknown_ref[u]];
+        const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
         dvUnknown[u] = along(gradient_row(&gradient, info, initializing), direction);
     }
     return fmi2OK;

@@ -20,167 +20,168 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
         return NULL;
     }
     if (!instanceName || instanceName[0] == '\0') {
-        log_refused_instance(functions, NULL, "the instance name is missing");
+        fc_log_refused_instance(functions, NULL, "the instance name is missing");
         return NULL;
     }
     if (fmuType != fmi2CoSimulation) {
-        log_refused_instance(functions, instanceName, "fmuType = %d: only fmi2CoSimulation (%d) is supported",
-                             (int)fmuType, (int)fmi2CoSimulation);
+        fc_log_refused_instance(functions, instanceName,
+                                "fmuType = %d: only fmi2CoSimulation (%d) is supported", (int)fmuType,
+                                (int)fmi2CoSimulation);
         return NULL;
     }
-    if (!fmuGUID || strcmp(fmuGUID, variables_guid) != 0) {
-        log_refused_instance(functions, instanceName, "the guid is %.100s, that of this FMU is %s",
-                             fmuGUID ? fmuGUID : "missing", variables_guid);
+    if (!fmuGUID || strcmp(fmuGUID, fc_guid) != 0) {
+        fc_log_refused_instance(functions, instanceName, "the guid is %.100s, that of this FMU is %s",
+                                fmuGUID ? fmuGUID : "missing", fc_guid);
         return NULL;
     }
     const size_t name_size = strlen(instanceName) + 1;
-    Instance* instance = calloc(1, sizeof *instance + name_size);
+    FcInstance* instance = calloc(1, sizeof *instance + name_size);
     if (!instance) {
-        log_refused_instance(functions, instanceName, "out of memory");
+        fc_log_refused_instance(functions, instanceName, "out of memory");
         return NULL;
     }
     memcpy(instance->name, instanceName, name_size);
     instance->callbacks = *functions;
-    instance->log_mask = loggingOn ? log_mask_all() : log_mask_quiet();
-    instance_set_start_values(instance);
-    log_text(instance, CALL_INSTANTIATE, fmi2OK, LOG_EVENTS, "instantiated");
+    instance->log_mask = loggingOn ? fc_log_mask_all() : fc_log_mask_quiet();
+    fc_instance_set_start_values(instance);
+    fc_log(instance, FC_CALL_INSTANTIATE, fmi2OK, FC_LOG_EVENTS, "instantiated");
     return instance;
 }
 
 void fmi2FreeInstance(fmi2Component c) {
-    Instance* instance = instance_enter(c, CALL_FREE_INSTANCE);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_FREE_INSTANCE);
     if (instance) {
-        friction_contact_free(&instance->contact);
+        fc_friction_contact_free(&instance->contact);
         free(instance);
     }
 }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
                                const fmi2String categories[]) {
-    Instance* instance = instance_enter(c, CALL_SET_DEBUG_LOGGING);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_SET_DEBUG_LOGGING);
     if (!instance) {
         return fmi2Error;
     }
     if (nCategories > 0 && !categories) {
-        return refuse(instance, CALL_SET_DEBUG_LOGGING, "categories is NULL");
+        return fc_refuse(instance, FC_CALL_SET_DEBUG_LOGGING, "categories is NULL");
     }
     unsigned asked = 0;
     for (size_t i = 0; i < nCategories; i++) {
-        const unsigned bit = log_category_bit(categories[i]);
+        const unsigned bit = fc_log_category_bit(categories[i]);
         if (!bit) {
-            return refuse(instance, CALL_SET_DEBUG_LOGGING, "log category '%.100s' is unknown",
-                          categories[i] ? categories[i] : "NULL");
+            return fc_refuse(instance, FC_CALL_SET_DEBUG_LOGGING, "log category '%.100s' is unknown",
+                             categories[i] ? categories[i] : "NULL");
         }
         asked |= bit;
     }
     if (!loggingOn) {
-        instance->log_mask = log_mask_quiet();
+        instance->log_mask = fc_log_mask_quiet();
     } else {
-        instance->log_mask = nCategories > 0 ? asked : log_mask_all();
+        instance->log_mask = nCategories > 0 ? asked : fc_log_mask_all();
     }
     return fmi2OK;
 }
 
-static const VariableInfo* tolerance_variable(void) {
-    const VariableInfo* info = variables_table;
-    while (info->offset != offsetof(Variables, solver.tolerance)) {
+static const FcVariableInfo* tolerance_variable(void) {
+    const FcVariableInfo* info = fc_variables;
+    while (info->offset != offsetof(FcVariables, solver.tolerance)) {
         info++;
     }
     return info;
 }
 
-static fmi2Status use_tolerance(Instance* instance, double tolerance) {
-    const VariableInfo* info = tolerance_variable();
+static fmi2Status use_tolerance(FcInstance* instance, double tolerance) {
+    const FcVariableInfo* info = tolerance_variable();
     const double used = fmin(fmax(tolerance, info->min), info->max);
     instance->contact.state.variables.solver.tolerance = used;
     if (used == tolerance) {
         return fmi2OK;
     }
-    log_text(instance, CALL_SETUP_EXPERIMENT, fmi2Warning, LOG_STATUS_WARNING,
-             "tolerance = %s is outside %s to %s: %s = %s is used", quantity_text(tolerance, "1").text,
-             quantity_text(info->min, "1").text, quantity_text(info->max, "1").text, info->name,
-             quantity_text(used, "1").text);
+    fc_log(instance, FC_CALL_SETUP_EXPERIMENT, fmi2Warning, FC_LOG_STATUS_WARNING,
+           "tolerance = %s is outside %s to %s: %s = %s is used", fc_quantity_text(tolerance, "1").text,
+           fc_quantity_text(info->min, "1").text, fc_quantity_text(info->max, "1").text, info->name,
+           fc_quantity_text(used, "1").text);
     return fmi2Warning;
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
                                fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime) {
-    Instance* instance = instance_enter(c, CALL_SETUP_EXPERIMENT);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_SETUP_EXPERIMENT);
     if (!instance) {
         return fmi2Error;
     }
     if (toleranceDefined && isnan(tolerance)) {
-        return refuse(instance, CALL_SETUP_EXPERIMENT, "tolerance = nan is not a number");
+        return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "tolerance = nan is not a number");
     }
     if (!isfinite(startTime)) {
-        return refuse(instance, CALL_SETUP_EXPERIMENT, "startTime = %s is not a finite number",
-                      quantity_text(startTime, "s").text);
+        return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "startTime = %s is not a finite number",
+                         fc_quantity_text(startTime, "s").text);
     }
     if (stopTimeDefined && !isfinite(stopTime)) {
-        return refuse(instance, CALL_SETUP_EXPERIMENT, "stopTime = %s is not a finite number",
-                      quantity_text(stopTime, "s").text);
+        return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "stopTime = %s is not a finite number",
+                         fc_quantity_text(stopTime, "s").text);
     }
     if (stopTimeDefined && stopTime < startTime) {
-        return refuse(instance, CALL_SETUP_EXPERIMENT, "stopTime = %s is before startTime = %s",
-                      quantity_text(stopTime, "s").text, quantity_text(startTime, "s").text);
+        return fc_refuse(instance, FC_CALL_SETUP_EXPERIMENT, "stopTime = %s is before startTime = %s",
+                         fc_quantity_text(stopTime, "s").text, fc_quantity_text(startTime, "s").text);
     }
-    Machine* machine = &instance->machine;
-    machine->start_time = startTime;
-    machine->has_stop_time = stopTimeDefined ? 1 : 0;
-    machine->stop_time = stopTimeDefined ? stopTime : 0.0;
-    if (machine->tolerance_is_set) {
+    FcExperiment* experiment = &instance->experiment;
+    experiment->start_time = startTime;
+    experiment->has_stop_time = stopTimeDefined ? 1 : 0;
+    experiment->stop_time = stopTimeDefined ? stopTime : 0.0;
+    if (experiment->tolerance_is_set) {
         return fmi2OK;
     }
     return use_tolerance(instance, toleranceDefined ? tolerance : tolerance_variable()->start);
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    Instance* instance = instance_enter(c, CALL_ENTER_INITIALIZATION_MODE);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_ENTER_INITIALIZATION_MODE);
     if (!instance) {
         return fmi2Error;
     }
-    instance->machine.state = INITIALIZATION_MODE;
-    instance->contact.state.time = instance->machine.start_time;
+    instance->experiment.mode = FC_INITIALIZATION_MODE;
+    instance->contact.state.time = instance->experiment.start_time;
     return fmi2OK;
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    Instance* instance = instance_enter(c, CALL_EXIT_INITIALIZATION_MODE);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_EXIT_INITIALIZATION_MODE);
     if (!instance) {
         return fmi2Error;
     }
-    Message message;
-    friction_contact_free(&instance->contact);
-    if (!friction_contact_initialize(&instance->contact, instance->machine.start_time, &message)) {
-        return refuse(instance, CALL_EXIT_INITIALIZATION_MODE, "%s", message.text);
+    FcMessage message;
+    fc_friction_contact_free(&instance->contact);
+    if (!fc_friction_contact_initialize(&instance->contact, instance->experiment.start_time, &message)) {
+        return fc_refuse(instance, FC_CALL_EXIT_INITIALIZATION_MODE, "%s", message.text);
     }
-    instance->machine.state = STEP_COMPLETE;
-    instance->machine.outputs_stale = 0;
-    log_text(instance, CALL_EXIT_INITIALIZATION_MODE, fmi2OK, LOG_EVENTS, "initialized at %s",
-             quantity_text(instance->machine.start_time, "s").text);
+    instance->experiment.mode = FC_STEP_COMPLETE;
+    instance->experiment.outputs_stale = 0;
+    fc_log(instance, FC_CALL_EXIT_INITIALIZATION_MODE, fmi2OK, FC_LOG_EVENTS, "initialized at %s",
+           fc_quantity_text(instance->experiment.start_time, "s").text);
     return fmi2OK;
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-    Instance* instance = instance_enter(c, CALL_TERMINATE);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_TERMINATE);
     if (!instance) {
         return fmi2Error;
     }
-    instance->machine.state = TERMINATED;
-    log_text(instance, CALL_TERMINATE, fmi2OK, LOG_EVENTS, "terminated at %s",
-             quantity_text(instance->contact.state.time, "s").text);
-    log_text(instance, CALL_TERMINATE, fmi2OK, LOG_SOLVER, "%s evaluations since the start",
-             quantity_text(instance->contact.state.variables.solver.evaluations, "1").text);
+    instance->experiment.mode = FC_TERMINATED;
+    fc_log(instance, FC_CALL_TERMINATE, fmi2OK, FC_LOG_EVENTS, "terminated at %s",
+           fc_quantity_text(instance->contact.state.time, "s").text);
+    fc_log(instance, FC_CALL_TERMINATE, fmi2OK, FC_LOG_SOLVER, "%s evaluations since the start",
+           fc_quantity_text(instance->contact.state.variables.solver.evaluations, "1").text);
     return fmi2OK;
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-    Instance* instance = instance_enter(c, CALL_RESET);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_RESET);
     if (!instance) {
         return fmi2Error;
     }
-    friction_contact_free(&instance->contact);
-    instance_set_start_values(instance);
-    log_text(instance, CALL_RESET, fmi2OK, LOG_EVENTS, "reset to the start values");
+    fc_friction_contact_free(&instance->contact);
+    fc_instance_set_start_values(instance);
+    fc_log(instance, FC_CALL_RESET, fmi2OK, FC_LOG_EVENTS, "reset to the start values");
     return fmi2OK;
 }

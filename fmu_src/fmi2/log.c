@@ -6,22 +6,22 @@
 
 enum { TEXT_SIZE = 512 };
 
-unsigned log_category_bit(fmi2String category) {
-    for (unsigned i = 0; category && i < variables_log_categories_count; i++) {
-        if (strcmp(category, variables_log_categories[i]) == 0) {
+unsigned fc_log_category_bit(fmi2String category) {
+    for (unsigned i = 0; category && i < fc_log_categories_count; i++) {
+        if (strcmp(category, fc_log_categories[i]) == 0) {
             return 1u << i;
         }
     }
     return 0;
 }
 
-unsigned log_mask_quiet(void) {
-    return log_category_bit(LOG_STATUS_ERROR) | log_category_bit(LOG_STATUS_WARNING);
+unsigned fc_log_mask_quiet(void) {
+    return fc_log_category_bit(FC_LOG_STATUS_ERROR) | fc_log_category_bit(FC_LOG_STATUS_WARNING);
 }
 
-unsigned log_mask_all(void) { return (1u << variables_log_categories_count) - 1u; }
+unsigned fc_log_mask_all(void) { return (1u << fc_log_categories_count) - 1u; }
 
-static int is_digit(char c) { return c >= '0' && c <= '9'; }
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The host's locale may have put a separator of one or more bytes where the decimal point belongs.
 static void restore_decimal_points(char* text) {
@@ -33,7 +33,7 @@ static void restore_decimal_points(char* text) {
     }
     char* to = text;
     for (const char* from = text; *from; to++) {
-        const int is_separator =
+        const bool is_separator =
             from > text && is_digit(from[-1]) && strncmp(from, half + 1, width) == 0 && is_digit(from[width]);
         *to = is_separator ? '.' : *from;
         from += is_separator ? width : 1;
@@ -60,41 +60,42 @@ static void send_text(const fmi2CallbackFunctions* callbacks, fmi2String name, f
     callbacks->logger(callbacks->componentEnvironment, name, status, category, escaped);
 }
 
-fmi2Status refuse(const Instance* instance, Call call, const char* format, ...) {
+fmi2Status fc_refuse(const FcInstance* instance, FcCall call, const char* format, ...) {
     if (instance->callbacks.logger) {
         va_list arguments;
         va_start(arguments, format);
-        send_text(&instance->callbacks, instance->name, fmi2Error, LOG_STATUS_ERROR,
-                  call_table[call].function, format, arguments);
+        send_text(&instance->callbacks, instance->name, fmi2Error, FC_LOG_STATUS_ERROR,
+                  fc_call_table[call].function, format, arguments);
         va_end(arguments);
     }
     return fmi2Error;
 }
 
-void log_text(const Instance* instance, Call call, fmi2Status status, const char* category,
-              const char* format, ...) {
-    if (instance->callbacks.logger && (instance->log_mask & log_category_bit(category))) {
+void fc_log(const FcInstance* instance, FcCall call, fmi2Status status, const char* category,
+            const char* format, ...) {
+    if (instance->callbacks.logger && (instance->log_mask & fc_log_category_bit(category))) {
         va_list arguments;
         va_start(arguments, format);
-        send_text(&instance->callbacks, instance->name, status, category, call_table[call].function, format,
-                  arguments);
+        send_text(&instance->callbacks, instance->name, status, category, fc_call_table[call].function,
+                  format, arguments);
         va_end(arguments);
     }
 }
 
-void log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String name, const char* format, ...) {
+void fc_log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String name, const char* format,
+                             ...) {
     if (callbacks && callbacks->logger) {
         va_list arguments;
         va_start(arguments, format);
-        send_text(callbacks, name ? name : "", fmi2Error, LOG_STATUS_ERROR,
-                  call_table[CALL_INSTANTIATE].function, format, arguments);
+        send_text(callbacks, name ? name : "", fmi2Error, FC_LOG_STATUS_ERROR,
+                  fc_call_table[FC_CALL_INSTANTIATE].function, format, arguments);
         va_end(arguments);
     }
 }
 
-QuantityText quantity_text(double value, const char* unit) {
-    const int without_unit = unit[0] == '\0' || strcmp(unit, "1") == 0;
-    QuantityText quantity;
+FcQuantityText fc_quantity_text(double value, const char* unit) {
+    const bool without_unit = unit[0] == '\0' || strcmp(unit, "1") == 0;
+    FcQuantityText quantity;
     snprintf(quantity.text, sizeof quantity.text, "%.15g%s%s", value, without_unit ? "" : " ",
              without_unit ? "" : unit);
     return quantity;

@@ -5,40 +5,34 @@
 // fmi2SetDebugLogging turns them on. The logger gets the finished text as its format, with '%' and '#'
 // doubled as FMI 2.0 asks: hosts that format and hosts that print the format as it is show the same. Numbers
 // have a decimal point in every locale. Nothing goes to stdout or stderr.
-#ifndef FC_LOG_H
-#define FC_LOG_H
+#ifndef FC_FMI2_LOG_H
+#define FC_FMI2_LOG_H
 
 #include "fmi2/instance.h"
 #include "fmi2/variables.h"
 
-#if defined __GNUC__
-#define FC_PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
-#else
-#define FC_PRINTF_LIKE(text, first)
-#endif
-
 // Logs "<function>: <text>" as an error and returns fmi2Error.
-fmi2Status refuse(const Instance* instance, Call call, const char* format, ...) FC_PRINTF_LIKE(3, 4);
+fmi2Status fc_refuse(const FcInstance* instance, FcCall call, const char* format, ...) FC_PRINTF_LIKE(3, 4);
 
 // Logs "<function>: <text>" in the category, with the status that the function will return or a milder one.
-void log_text(const Instance* instance, Call call, fmi2Status status, const char* category,
-              const char* format, ...) FC_PRINTF_LIKE(5, 6);
+void fc_log(const FcInstance* instance, FcCall call, fmi2Status status, const char* category,
+            const char* format, ...) FC_PRINTF_LIKE(5, 6);
 
 // The same before there is an instance.
-void log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String name, const char* format, ...)
+void fc_log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String name, const char* format, ...)
     FC_PRINTF_LIKE(3, 4);
 
 // log_mask with debug logging off (errors and warnings) and on (everything).
-unsigned log_mask_quiet(void);
-unsigned log_mask_all(void);
+unsigned fc_log_mask_quiet(void);
+unsigned fc_log_mask_all(void);
 
 // The bit of the category in log_mask; 0 if there is no such category or it is NULL.
-unsigned log_category_bit(fmi2String category);
+unsigned fc_log_category_bit(fmi2String category);
 
 // A value with 15 significant digits and its unit, unless that is "" or "1".
 typedef struct {
     char text[48];
-} QuantityText;
-QuantityText quantity_text(double value, const char* unit);
+} FcQuantityText;
+FcQuantityText fc_quantity_text(double value, const char* unit);
 
 #endif

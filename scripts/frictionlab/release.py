@@ -59,8 +59,7 @@ def compile_platforms(
     table = folder / "variables.c"
     table.write_text(generate_variables.table(model_description.read(root / "modelDescription.xml")))
     sources = [
-        *sorted((root / "fmu_src").glob("*.c")),
-        *sorted((root / "fmu_src" / "fmi2").glob("*.c")),
+        *sorted((root / "fmu_src").rglob("*.c")),
         table,
     ]
     includes = [root / "fmu_src", fmi_headers(), *sundials.includes]

@@ -70,23 +70,29 @@ MUTANTS = (
     Mutant(
         "canBeInstantiatedOnlyOncePerProcess",
         "fmi2/lifecycle.c",
-        "Instance* instance = calloc(1, sizeof *instance + name_size);",
-        "static Instance* instance; if (!instance) instance = calloc(1, sizeof *instance + 1000000);",
+        "FcInstance* instance = calloc(1, sizeof *instance + name_size);",
+        "static FcInstance* instance; if (!instance) instance = calloc(1, sizeof *instance + 1000000);",
         "tests/fmi2/test_instances.py",
     ),
     Mutant(
         "canNotUseMemoryManagementFunctions",
         "fmi2/lifecycle.c",
-        "Instance* instance = calloc(",
-        "Instance* instance = functions->allocateMemory(",
+        "FcInstance* instance = calloc(",
+        "FcInstance* instance = functions->allocateMemory(",
         "tests/fmi2/test_instances.py",
     ),
     *(
-        Mutant("canGetAndSetFMUstate", "fmi2/state.c", function, None, "tests/fmi2/test_saved_state.py")
+        Mutant("canGetAndSetFMUstate", "fmi2/saved_state.c", function, None, "tests/fmi2/test_saved_state.py")
         for function in ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
     ),
     *(
-        Mutant("canSerializeFMUstate", "fmi2/state_bytes.c", function, None, "tests/fmi2/test_saved_state.py")
+        Mutant(
+            "canSerializeFMUstate",
+            "fmi2/saved_state_bytes.c",
+            function,
+            None,
+            "tests/fmi2/test_saved_state.py",
+        )
         for function in ("fmi2SerializedFMUstateSize", "fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate")
     ),
     Mutant(

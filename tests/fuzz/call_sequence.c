@@ -48,7 +48,7 @@ static double next_real(Bytes* input) {
 
 static fmi2ValueReference next_reference(Bytes* input) {
     const unsigned byte = next_byte(input);
-    return byte < 250 ? byte % variables_count : byte == 250 ? 4294967295u : byte;
+    return byte < 250 ? byte % fc_variables_count : byte == 250 ? 4294967295u : byte;
 }
 
 typedef struct {
@@ -157,7 +157,7 @@ static fmi2Status call(Bytes* input, Bench* bench, fmi2Component* place) {
         integer = (int)next_byte(input) - 2;
         return fmi2SetInteger(c, &vr, 1, &integer);
     case 9:
-        vr = reference_of(offsetof(Variables, solver.method));
+        vr = reference_of(offsetof(FcVariables, solver.method));
         integer = (int)(next_byte(input) % 8);
         return fmi2SetInteger(c, &vr, 1, &integer);
     case 10:

@@ -12,6 +12,7 @@
 #include "fmi2/variables.h"
 #include "fmi2Functions.h"
 #include "friction_contact.h"
+#include "solver/solver.h"
 
 #define STATE_SIZE_MOST 1024
 
@@ -42,7 +43,7 @@ static const fmi2CallbackFunctions callbacks = {count_message, calloc, free, NUL
 
 static fmi2Component instantiate(void) {
     fmi2Component c =
-        fmi2Instantiate("fuzzed", fmi2CoSimulation, variables_guid, NULL, &callbacks, fmi2False, fmi2True);
+        fmi2Instantiate("fuzzed", fmi2CoSimulation, fc_guid, NULL, &callbacks, fmi2False, fmi2True);
     HOLD(c, "instantiation succeeds");
     return c;
 }
@@ -65,7 +66,7 @@ static int same_state(const StateBytes* a, const StateBytes* b) {
 
 static fmi2ValueReference reference_of(size_t offset) {
     fmi2ValueReference vr = 0;
-    while (variables_table[vr].offset != offset) {
+    while (fc_variables[vr].offset != offset) {
         vr++;
     }
     return vr;
@@ -75,9 +76,9 @@ static fmi2ValueReference reference_of(size_t offset) {
 // A step that is refused anyway is.
 static int is_short_work(fmi2Component c, double h) {
     const fmi2ValueReference reals[] = {
-        reference_of(offsetof(Variables, vibration.f)), reference_of(offsetof(Variables, vibration.V_1)),
-        reference_of(offsetof(Variables, vibration.a_d)), reference_of(offsetof(Variables, solver.stepSize))};
-    const fmi2ValueReference method_reference = reference_of(offsetof(Variables, solver.method));
+        reference_of(offsetof(FcVariables, vibration.f)), reference_of(offsetof(FcVariables, vibration.V_1)),
+        reference_of(offsetof(FcVariables, vibration.a_d)), reference_of(offsetof(FcVariables, solver.stepSize))};
+    const fmi2ValueReference method_reference = reference_of(offsetof(FcVariables, solver.method));
     double value[4];
     int method;
     if (fmi2GetReal(c, reals, 4, value) != fmi2OK ||
@@ -86,18 +87,18 @@ static int is_short_work(fmi2Component c, double h) {
     }
     const int vibrates = value[1] != 0.0 || value[2] != 0.0;
     const double periods = vibrates ? h * value[0] : 0.0;
-    if (method >= METHOD_BACKWARD_EULER) {
+    if (method >= FC_METHOD_BACKWARD_EULER) {
         return !(h / value[3] > 200.0) && !(periods > 200.0);
     }
-    return !(periods > (method == METHOD_CVODE ? 1.0 : 3.0));
+    return !(periods > (method == FC_METHOD_CVODE ? 1.0 : 3.0));
 }
 
 static void check_outputs(fmi2Component c) {
     fmi2ValueReference vr[64];
     double value[64];
     size_t count = 0;
-    for (unsigned i = 0; i < variables_count && count < 64; i++) {
-        if (variables_table[i].type == TYPE_REAL) {
+    for (unsigned i = 0; i < fc_variables_count && count < 64; i++) {
+        if (fc_variables[i].type == FC_TYPE_REAL) {
             vr[count++] = i;
         }
     }
@@ -105,7 +106,7 @@ static void check_outputs(fmi2Component c) {
         return; // not in this state, or the values set do not go together: the message says so
     }
     for (size_t i = 0; i < count; i++) {
-        HOLD(isfinite(value[i]), variables_table[vr[i]].name);
+        HOLD(isfinite(value[i]), fc_variables[vr[i]].name);
     }
 }
 

@@ -32,7 +32,7 @@ static void use(fmi2Component c) {
     check_outputs(c);
     double t = 0.0;
     double slope = 0.0;
-    const fmi2ValueReference F_t = reference_of(offsetof(Variables, F_t));
+    const fmi2ValueReference F_t = reference_of(offsetof(FcVariables, F_t));
     const fmi2Integer first = 1;
     if (fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &t) == fmi2OK && is_short_work(c, 1e-5)) {
         fmi2DoStep(c, t, 1e-5, fmi2True);

@@ -142,7 +142,7 @@ def test_code_that_does_not_compile(
     for name in ("fmu_src", "cmake"):
         shutil.copytree(release.ROOT / name, broken / name)
     shutil.copy(release.ROOT / "modelDescription.xml", broken)
-    (broken / "fmu_src" / "contact.c").write_text("int contact(void) { return surprise; }\n")
+    (broken / "fmu_src" / "model" / "contact.c").write_text("int contact(void) { return surprise; }\n")
     work = tmp_path / "work"
     work.mkdir()
     with pytest.raises(ReleaseError, match=r"zig cc fails: .*contact\.c:1:.*surprise"):

@@ -39,7 +39,7 @@ static void demand(fmi2Status status, const char* call) {
 
 static fmi2ValueReference reference_of(size_t offset) {
     fmi2ValueReference vr = 0;
-    while (variables_table[vr].offset != offset) {
+    while (fc_variables[vr].offset != offset) {
         vr++;
     }
     return vr;
@@ -61,15 +61,15 @@ static void step(fmi2Component c, double t, double h) { demand(fmi2DoStep(c, t, 
 
 static fmi2Component initialized(double V, double V_1) {
     static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
-    fmi2Component c = fmi2Instantiate("soak", fmi2CoSimulation, variables_guid, NULL, &callbacks, 0, 0);
+    fmi2Component c = fmi2Instantiate("soak", fmi2CoSimulation, fc_guid, NULL, &callbacks, 0, 0);
     if (!c) {
         exit(2);
     }
-    set(c, offsetof(Variables, V), V);
-    set(c, offsetof(Variables, F_C), F_C);
-    set(c, offsetof(Variables, vibration.f), F);
-    set(c, offsetof(Variables, vibration.V_1), V_1);
-    set(c, offsetof(Variables, solver.tolerance), 1e-9);
+    set(c, offsetof(FcVariables, V), V);
+    set(c, offsetof(FcVariables, F_C), F_C);
+    set(c, offsetof(FcVariables, vibration.f), F);
+    set(c, offsetof(FcVariables, vibration.V_1), V_1);
+    set(c, offsetof(FcVariables, solver.tolerance), 1e-9);
     demand(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), "fmi2SetupExperiment");
     demand(fmi2EnterInitializationMode(c), "fmi2EnterInitializationMode");
     demand(fmi2ExitInitializationMode(c), "fmi2ExitInitializationMode");
@@ -111,19 +111,19 @@ static int held(double steps) {
     long double expected = 0.0L;
     for (double done = 0.0; done < steps;) {
         const double V = 0.02 * chance() - 0.01;
-        const double before = get(c, offsetof(Variables, delta));
-        set(c, offsetof(Variables, V), V);
+        const double before = get(c, offsetof(FcVariables, delta));
+        set(c, offsetof(FcVariables, V), V);
         const double many = fmin(1e6, steps - done);
         for (double i = 0.0; i < many; i += 1.0) {
             step(c, t, h);
             t = t + h;
         }
         done += many;
-        const double slipped = get(c, offsetof(Variables, delta)) - before;
+        const double slipped = get(c, offsetof(FcVariables, delta)) - before;
         expected += (long double)F_C * (fabsl((long double)V) * (long double)h * (long double)many -
                                         (V < 0.0 ? -1.0L : 1.0L) * (long double)slipped);
     }
-    const double work = get(c, offsetof(Variables, W_f));
+    const double work = get(c, offsetof(FcVariables, W_f));
     fmi2FreeInstance(c);
     return report("held", steps, began, work, (double)(((long double)work - expected) / expected));
 }
@@ -144,10 +144,10 @@ static int vibrating(double duration) {
     const long double cycles = (long double)F * (long double)t;
     const long double swing =
         (long double)V_1 / (two_pi * (long double)F) * sinl(two_pi * (cycles - floorl(cycles)));
-    const double delta = get(c, offsetof(Variables, delta));
+    const double delta = get(c, offsetof(FcVariables, delta));
     const long double expected =
         (long double)F_C * ((long double)V * (long double)t + swing - (long double)delta);
-    const double work = get(c, offsetof(Variables, W_f));
+    const double work = get(c, offsetof(FcVariables, W_f));
     fmi2FreeInstance(c);
     return report("vibrating", steps, began, work, (double)(((long double)work - expected) / expected));
 }
@@ -166,8 +166,8 @@ static int reversing(double duration) {
         t = t + h;
     }
     step(whole, 0.0, t);
-    const double work = get(c, offsetof(Variables, W_f));
-    const double expected = get(whole, offsetof(Variables, W_f));
+    const double work = get(c, offsetof(FcVariables, W_f));
+    const double expected = get(whole, offsetof(FcVariables, W_f));
     fmi2FreeInstance(c);
     fmi2FreeInstance(whole);
     return report("reversing", steps, began, work, (work - expected) / expected);

@@ -1,8 +1,8 @@
-#include "drive.h"
+#include "model/drive.h"
 
 #include <math.h>
 
-#include "constants.h"
+#include "model/constants.h"
 
 // f t modulo 1, exact to the last bit of t: the product's rounding error is added back.
 static double phase_in_cycles(double f, double t) {
@@ -16,10 +16,10 @@ static double phase_in_cycles(double f, double t) {
     return fraction < 1.0 ? fraction : 0.0;
 }
 
-Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibration, double start,
-                 double rest) {
-    Drive drive = {.V = V, .d = d, .E = E, .vibration = vibration};
-    if (drive_vibrates(&drive)) {
+FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcVibration vibration, double start,
+                      double rest) {
+    FcDrive drive = {.V = V, .d = d, .E = E, .vibration = vibration};
+    if (fc_drive_vibrates(&drive)) {
         drive.omega = FC_TWO_PI * vibration.f;
         drive.cos_phase_d = cos(vibration.phase_d);
         drive.sin_phase_d = sin(vibration.phase_d);
@@ -28,20 +28,24 @@ Drive drive_make(LinearInput V, LinearInput d, LinearInput E, Vibration vibratio
     return drive;
 }
 
-int drive_vibrates(const Drive* drive) { return drive->vibration.V_1 != 0.0 || drive->vibration.a_d != 0.0; }
+bool fc_drive_vibrates(const FcDrive* drive) {
+    return drive->vibration.V_1 != 0.0 || drive->vibration.a_d != 0.0;
+}
 
-int drive_is_linear(const Drive* drive) {
+bool fc_drive_is_linear(const FcDrive* drive) {
     return drive->V.rate != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0;
 }
 
-int drive_is_constant(const Drive* drive) { return !drive_vibrates(drive) && !drive_is_linear(drive); }
+bool fc_drive_is_constant(const FcDrive* drive) {
+    return !fc_drive_vibrates(drive) && !fc_drive_is_linear(drive);
+}
 
-static double theta(const Drive* drive, double t) { return drive->theta_0 + drive->omega * t; }
+static double theta(const FcDrive* drive, double t) { return drive->theta_0 + drive->omega * t; }
 
-static double linear(LinearInput input, double t) { return input.value + input.rate * t; }
+static double linear(FcLinearInput input, double t) { return input.value + input.rate * t; }
 
-DriveValues drive_values(const Drive* drive, double t) {
-    DriveValues now = {.V = linear(drive->V, t), .d = linear(drive->d, t)};
+FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
+    FcDriveValues now = {.V = linear(drive->V, t), .d = linear(drive->d, t)};
     if (drive->omega != 0.0) {
         const double angle = theta(drive, t);
         const double c = cos(angle);
@@ -53,41 +57,45 @@ DriveValues drive_values(const Drive* drive, double t) {
     return now;
 }
 
-double drive_V(const Drive* drive, double t) {
+double fc_drive_V(const FcDrive* drive, double t) {
     const double V = linear(drive->V, t);
     return drive->vibration.V_1 != 0.0 ? V + drive->vibration.V_1 * cos(theta(drive, t)) : V;
 }
 
-double drive_d(const Drive* drive, double t) { return drive_values(drive, t).d; }
+double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }
 
-double drive_E(const Drive* drive, double t) { return linear(drive->E, t); }
+double fc_drive_E(const FcDrive* drive, double t) { return linear(drive->E, t); }
 
-double drive_V_rate(const Drive* drive, double t) {
+double fc_drive_V_rate(const FcDrive* drive, double t) {
     return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
 }
 
-double drive_V_curvature(const Drive* drive, double t) {
+double fc_drive_V_curvature(const FcDrive* drive, double t) {
     return -drive->vibration.V_1 * drive->omega * drive->omega * cos(theta(drive, t));
 }
 
-double drive_d_rate(const Drive* drive, double t) {
+double fc_drive_d_rate(const FcDrive* drive, double t) {
     return drive->d.rate -
            drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);
 }
 
-double drive_smallest_d(const Drive* drive, double h) {
+double fc_drive_smallest_d(const FcDrive* drive, double h) {
     return fmin(drive->d.value, linear(drive->d, h)) - drive->vibration.a_d;
 }
 
-double drive_smallest_E(const Drive* drive, double h) { return fmin(drive->E.value, linear(drive->E, h)); }
+double fc_drive_smallest_E(const FcDrive* drive, double h) {
+    return fmin(drive->E.value, linear(drive->E, h));
+}
 
-double drive_largest_E(const Drive* drive, double h) { return fmax(drive->E.value, linear(drive->E, h)); }
+double fc_drive_largest_E(const FcDrive* drive, double h) {
+    return fmax(drive->E.value, linear(drive->E, h));
+}
 
-double drive_largest_speed(const Drive* drive, double h) {
+double fc_drive_largest_speed(const FcDrive* drive, double h) {
     return fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
 }
 
-double drive_displacement(const Drive* drive, double t0, double t1) {
+double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
     const double duration = t1 - t0;
     const double middle = 0.5 * (t0 + t1);
     double displacement = linear(drive->V, middle) * duration;
@@ -110,17 +118,17 @@ static double next_angle(double now, double target) {
 }
 
 // Root of V in the bracket [t0, t1], on which V is monotone: Newton, kept inside by bisection.
-static double root_of_V(const Drive* drive, double t0, double t1) {
-    const double V_0 = drive_V(drive, t0);
+static double root_of_V(const FcDrive* drive, double t0, double t1) {
+    const double V_0 = fc_drive_V(drive, t0);
     double t = 0.5 * (t0 + t1);
     for (int i = 0; i < 100; i++) {
-        const double V = drive_V(drive, t);
+        const double V = fc_drive_V(drive, t);
         if ((V < 0.0) == (V_0 < 0.0)) {
             t0 = t;
         } else {
             t1 = t;
         }
-        double next = t - V / drive_V_rate(drive, t);
+        double next = t - V / fc_drive_V_rate(drive, t);
         if (!(next > t0 && next < t1)) {
             next = 0.5 * (t0 + t1);
         }
@@ -133,33 +141,33 @@ static double root_of_V(const Drive* drive, double t0, double t1) {
 }
 
 // A dip shallower than this is smooth enough to be stepped over.
-static int is_dip(const Drive* drive, double t) {
-    const double V = drive_V(drive, t);
-    return V * drive_V_curvature(drive, t) >= 0.0 &&
+static bool is_dip(const FcDrive* drive, double t) {
+    const double V = fc_drive_V(drive, t);
+    return V * fc_drive_V_curvature(drive, t) >= 0.0 &&
            fabs(V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
-static DriveEvent first_of_held_vibration(const Drive* drive, double t, double end) {
+static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, double end) {
     const double V_1 = drive->vibration.V_1;
     const double ratio = -drive->V.value / V_1;
     const double now = theta(drive, t);
     double angle;
-    int reversal;
+    bool reversal;
     if (fabs(ratio) < 1.0) {
         angle = fmin(next_angle(now, acos(ratio)), next_angle(now, -acos(ratio)));
-        reversal = 1;
+        reversal = true;
     } else {
         angle = next_angle(now, ratio < 0.0 ? FC_PI : 0.0);
-        reversal = 0;
+        reversal = false;
     }
     const double time = t + (angle - now) / drive->omega;
     if (!(time < end) || (!reversal && !is_dip(drive, time))) {
-        return (DriveEvent){end, 0};
+        return (FcDriveEvent){end, 0};
     }
-    return (DriveEvent){time, reversal};
+    return (FcDriveEvent){time, reversal};
 }
 
-static DriveEvent first_of_linear_vibration(const Drive* drive, double t, double end) {
+static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, double end) {
     // V is monotone between the angles where sin(theta) = V' / (V_1 omega), if there are any.
     const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
     const double skip = SAME_ANGLE / drive->omega;
@@ -171,25 +179,25 @@ static DriveEvent first_of_linear_vibration(const Drive* drive, double t, double
             const double angle = fmin(next_angle(now, asin(slope)), next_angle(now, FC_PI - asin(slope)));
             to = from + (angle - now) / drive->omega;
         }
-        const int stops_at_end = !(to < end);
+        const bool stops_at_end = !(to < end);
         if (stops_at_end) {
             to = end;
         }
-        if ((drive_V(drive, from) < 0.0) != (drive_V(drive, to) < 0.0)) {
-            return (DriveEvent){root_of_V(drive, from, to), 1};
+        if ((fc_drive_V(drive, from) < 0.0) != (fc_drive_V(drive, to) < 0.0)) {
+            return (FcDriveEvent){root_of_V(drive, from, to), 1};
         }
         if (!stops_at_end && is_dip(drive, to)) {
-            return (DriveEvent){to, 0};
+            return (FcDriveEvent){to, 0};
         }
         from = to;
     }
-    return (DriveEvent){end, 0};
+    return (FcDriveEvent){end, 0};
 }
 
-DriveEvent drive_next_event(const Drive* drive, double t, double end) {
+FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     if (drive->vibration.V_1 == 0.0) {
         const double root = -drive->V.value / drive->V.rate; // no root where V' = 0: infinite or NaN
-        return root > t && root < end ? (DriveEvent){root, 1} : (DriveEvent){end, 0};
+        return root > t && root < end ? (FcDriveEvent){root, 1} : (FcDriveEvent){end, 0};
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
                                 : first_of_linear_vibration(drive, t, end);

@@ -2,20 +2,20 @@
 //
 // Over a short step the phase and ln(sigma) move little, so one sine, cosine and exponential at its middle and Taylor
 // series around it give all the nodes, to the rounding of a double and several times faster than a call for each.
-#ifndef FC_NODES_H
-#define FC_NODES_H
+#ifndef FC_SOLVER_NODES_H
+#define FC_SOLVER_NODES_H
 
-#include "dahl.h"
+#include "model/scene.h"
 
-enum { NODE_COUNT = 9 };
+enum { FC_NODE_COUNT = 9 };
 
 typedef struct {
-    double V[NODE_COUNT];     // m/s
-    double sigma[NODE_COUNT]; // N/m
-} NodeCoefficients;
+    double V[FC_NODE_COUNT];     // m/s
+    double sigma[FC_NODE_COUNT]; // N/m
+} FcNodeCoefficients;
 
 // At the times t + node h, node in [0, 1].
-void node_coefficients(const DahlProblem* problem, double t, double h, const double node[NODE_COUNT],
-                       NodeCoefficients* at);
+void fc_node_coefficients(const FcScene* scene, double t, double h, const double node[FC_NODE_COUNT],
+                          FcNodeCoefficients* at);
 
 #endif

@@ -20,7 +20,7 @@
 #include <string.h>
 
 #include "fmi2/log.h"
-#include "fmi2/state.h"
+#include "fmi2/saved_state.h"
 #include "fmi2/values.h"
 
 enum {
@@ -33,7 +33,7 @@ enum {
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FrictionState) == sizeof(Variables) + (4 + 2 * INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FrictionState must be added to transfer_state");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
@@ -84,38 +84,38 @@ static void transfer_real(Cursor* cursor, double* value) {
     memcpy(value, &bits, sizeof bits);
 }
 
-static void transfer_state(Cursor* cursor, SavedState* saved) {
-    FrictionState* friction = &saved->friction;
-    for (unsigned vr = 0; vr < variables_count; vr++) {
-        const VariableInfo* info = &variables_table[vr];
-        if (info->type == TYPE_REAL) {
-            transfer_real(cursor, variable_real(&friction->variables, info));
+static void transfer_state(Cursor* cursor, FcSavedState* saved) {
+    FcFrictionState* friction = &saved->friction;
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        if (info->type == FC_TYPE_REAL) {
+            transfer_real(cursor, fc_variable_real(&friction->variables, info));
         } else {
-            transfer_integer(cursor, variable_integer(&friction->variables, info));
+            transfer_integer(cursor, fc_variable_integer(&friction->variables, info));
         }
     }
     transfer_real(cursor, &friction->time);
     transfer_real(cursor, &friction->time_rest);
     transfer_real(cursor, &friction->W_f_rest);
-    for (int input = 0; input < INPUT_COUNT; input++) {
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
         transfer_real(cursor, &friction->rate[input]);
     }
-    for (int input = 0; input < INPUT_COUNT; input++) {
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
         transfer_real(cursor, &friction->next_rate[input]);
     }
     transfer_integer(cursor, &friction->next_rate_set);
-    Machine* machine = &saved->machine;
-    transfer_integer(cursor, &machine->state);
-    transfer_integer(cursor, &machine->outputs_stale);
-    transfer_integer(cursor, &machine->tolerance_is_set);
-    transfer_integer(cursor, &machine->has_stop_time);
-    transfer_real(cursor, &machine->start_time);
-    transfer_real(cursor, &machine->stop_time);
+    FcExperiment* experiment = &saved->experiment;
+    transfer_integer(cursor, &experiment->mode);
+    transfer_integer(cursor, &experiment->outputs_stale);
+    transfer_integer(cursor, &experiment->tolerance_is_set);
+    transfer_integer(cursor, &experiment->has_stop_time);
+    transfer_real(cursor, &experiment->start_time);
+    transfer_real(cursor, &experiment->stop_time);
 }
 
 static size_t serialized_size(void) {
     Cursor cursor = {MEASURE, NULL, HEADER_SIZE};
-    SavedState none = {0};
+    FcSavedState none = {0};
     transfer_state(&cursor, &none);
     return cursor.at + HASH_SIZE;
 }
@@ -127,19 +127,19 @@ static void write_header(unsigned char* bytes, size_t size) {
     memcpy(bytes, magic, MAGIC_SIZE);
     transfer_bits(&cursor, &version, 4);
     transfer_bits(&cursor, &whole, 4);
-    const size_t guid_length = strlen(variables_guid);
+    const size_t guid_length = strlen(fc_guid);
     memset(bytes + cursor.at, 0, GUID_SIZE);
-    memcpy(bytes + cursor.at, variables_guid, guid_length < GUID_SIZE ? guid_length : GUID_SIZE);
+    memcpy(bytes + cursor.at, fc_guid, guid_length < GUID_SIZE ? guid_length : GUID_SIZE);
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t* size) {
-    const Call call = CALL_SERIALIZED_FMU_STATE_SIZE;
-    const Instance* instance = instance_enter(c, call);
-    if (!instance || !saved_state_of(instance, call, FMUstate)) {
+    const FcCall call = FC_CALL_SERIALIZED_FMU_STATE_SIZE;
+    const FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance || !fc_saved_state_of(instance, call, FMUstate)) {
         return fmi2Error;
     }
     if (!size) {
-        return refuse(instance, call, "size is NULL");
+        return fc_refuse(instance, call, "size is NULL");
     }
     *size = serialized_size();
     return fmi2OK;
@@ -147,22 +147,22 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, si
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
                                  size_t size) {
-    const Call call = CALL_SERIALIZE_FMU_STATE;
-    const Instance* instance = instance_enter(c, call);
-    const SavedState* saved = instance ? saved_state_of(instance, call, FMUstate) : NULL;
+    const FcCall call = FC_CALL_SERIALIZE_FMU_STATE;
+    const FcInstance* instance = fc_instance_enter(c, call);
+    const FcSavedState* saved = instance ? fc_saved_state_of(instance, call, FMUstate) : NULL;
     if (!saved) {
         return fmi2Error;
     }
     const size_t needed = serialized_size();
     if (!serializedState) {
-        return refuse(instance, call, "serializedState is NULL");
+        return fc_refuse(instance, call, "serializedState is NULL");
     }
     if (size < needed) {
-        return refuse(instance, call, "size = %" PRIu64 " is below the %" PRIu64 " bytes of a state",
-                      (uint64_t)size, (uint64_t)needed);
+        return fc_refuse(instance, call, "size = %" PRIu64 " is below the %" PRIu64 " bytes of a state",
+                         (uint64_t)size, (uint64_t)needed);
     }
     unsigned char* bytes = (unsigned char*)serializedState;
-    SavedState copy = *saved;
+    FcSavedState copy = *saved;
     Cursor cursor = {WRITE, bytes, HEADER_SIZE};
     write_header(bytes, needed);
     transfer_state(&cursor, &copy);
@@ -197,66 +197,66 @@ static const char* flaw_of_bytes(const unsigned char* bytes, size_t size) {
     return hash == fnv1a(bytes, expected - HASH_SIZE) ? NULL : "the bytes are damaged: the checksum differs";
 }
 
-static int all_finite(const double* values, size_t count) {
+static bool all_finite(const double* values, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(values[i])) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-static int is_flag(int value) { return value == 0 || value == 1; }
+static bool is_flag(int value) { return value == 0 || value == 1; }
 
-static int machine_is_sound(const Machine* machine) {
-    const int known = machine->state == INSTANTIATED || machine->state == INITIALIZATION_MODE ||
-                      machine->state == STEP_COMPLETE || machine->state == TERMINATED;
-    return known && is_flag(machine->outputs_stale) && is_flag(machine->tolerance_is_set) &&
-           is_flag(machine->has_stop_time) && isfinite(machine->start_time) && isfinite(machine->stop_time);
+static bool experiment_is_sound(const FcExperiment* experiment) {
+    const bool known = experiment->mode == FC_INSTANTIATED || experiment->mode == FC_INITIALIZATION_MODE ||
+                       experiment->mode == FC_STEP_COMPLETE || experiment->mode == FC_TERMINATED;
+    return known && is_flag(experiment->outputs_stale) && is_flag(experiment->tolerance_is_set) &&
+           is_flag(experiment->has_stop_time) && isfinite(experiment->start_time) &&
+           isfinite(experiment->stop_time);
 }
 
 // The name of the first part of the state with a value that it can't have; NULL if there is none.
-static const char* unsound_part(SavedState* saved) {
-    for (unsigned vr = 0; vr < variables_count; vr++) {
-        const VariableInfo* info = &variables_table[vr];
-        const double value = info->type == TYPE_REAL ? *variable_real(&saved->friction.variables, info)
-                                                     : *variable_integer(&saved->friction.variables, info);
-        if (!variable_allows(info, value)) {
+static const char* unsound_part(FcSavedState* saved) {
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double value = fc_variable_value(&saved->friction.variables, info);
+        if (!fc_variable_allows(info, value)) {
             return info->name;
         }
     }
-    const FrictionState* friction = &saved->friction;
+    const FcFrictionState* friction = &saved->friction;
     if (!isfinite(friction->time) || !isfinite(friction->time_rest) || !isfinite(friction->W_f_rest) ||
-        !all_finite(friction->rate, INPUT_COUNT) || !all_finite(friction->next_rate, INPUT_COUNT) ||
+        !all_finite(friction->rate, FC_INPUT_COUNT) || !all_finite(friction->next_rate, FC_INPUT_COUNT) ||
         !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
-    return machine_is_sound(&saved->machine) ? NULL : "the state of the instance";
+    return experiment_is_sound(&saved->experiment) ? NULL : "the state of the instance";
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
                                    fmi2FMUstate* FMUstate) {
-    const Call call = CALL_DESERIALIZE_FMU_STATE;
-    const Instance* instance = instance_enter(c, call);
+    const FcCall call = FC_CALL_DESERIALIZE_FMU_STATE;
+    const FcInstance* instance = fc_instance_enter(c, call);
     if (!instance) {
         return fmi2Error;
     }
     if (!serializedState) {
-        return refuse(instance, call, "serializedState is NULL");
+        return fc_refuse(instance, call, "serializedState is NULL");
     }
     unsigned char* bytes = (unsigned char*)serializedState; // only read
     const char* flaw = flaw_of_bytes(bytes, size);
     if (flaw) {
-        return refuse(instance, call, "%s (%" PRIu64 " bytes)", flaw, (uint64_t)size);
+        return fc_refuse(instance, call, "%s (%" PRIu64 " bytes)", flaw, (uint64_t)size);
     }
-    SavedState read = {.mark = SAVED_STATE_MARK};
+    FcSavedState read = {.mark = FC_SAVED_STATE_MARK};
     Cursor cursor = {READ, bytes, HEADER_SIZE};
     transfer_state(&cursor, &read);
     const char* part = unsound_part(&read);
     if (part) {
-        return refuse(instance, call, "the bytes hold an impossible value of %s", part);
+        return fc_refuse(instance, call, "the bytes hold an impossible value of %s", part);
     }
-    SavedState* saved = saved_state_to_fill(instance, call, FMUstate);
+    FcSavedState* saved = fc_saved_state_to_fill(instance, call, FMUstate);
     if (!saved) {
         return fmi2Error;
     }

@@ -10,7 +10,7 @@
 // and sigma delta V on the dense output.
 #include <stdio.h>
 
-#include "solver.h"
+#include "solver/cvode.h"
 
 #ifdef FC_WITH_SUNDIALS
 
@@ -41,7 +41,7 @@ static const double gauss_weight[GAUSS_POINTS] = {0.23692688505618908751, 0.4786
                                                   0.56888888888888888889, 0.47862867049936646804,
                                                   0.23692688505618908751};
 
-struct CvodeSolver {
+struct FcCvode {
     SUNContext context;
     N_Vector y;
     N_Vector dense;
@@ -49,66 +49,55 @@ struct CvodeSolver {
     SUNLinearSolver linear_solver;
     void* cvode;
     // The piece under way, as the callbacks see it.
-    const DahlProblem* problem;
+    const FcScene* scene;
     double start;       // s, local time at which the piece starts; CVODE's time is 0 there
     double L;           // m
     double evaluations; // of a(t), b(t)
     char reason[160];   // CVODE's last error message
 };
 
-typedef struct {
-    double sigma; // N/m
-    double V;     // m/s
-    double a;     // 1/s
-} Coefficients;
-
-static Coefficients coefficients_at(CvodeSolver* solver, double tau) {
-    const DahlProblem* problem = solver->problem;
-    const double t = solver->start + tau;
-    Coefficients at;
-    at.sigma = dahl_stiffness(problem, t);
-    at.V = drive_V(&problem->drive, t);
-    at.a = -at.sigma * fabs(at.V) / problem->F_C;
+static FcCoefficients coefficients_at(FcCvode* solver, double tau) {
     solver->evaluations += 1.0;
-    return at;
+    return fc_scene_coefficients(solver->scene, solver->start + tau);
 }
 
 static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
-    CvodeSolver* solver = user;
-    const Coefficients at = coefficients_at(solver, tau);
-    NV_Ith_S(slope, 0) = at.a * NV_Ith_S(y, 0) + at.V / solver->L;
+    FcCvode* solver = user;
+    const FcCoefficients at = coefficients_at(solver, tau);
+    NV_Ith_S(slope, 0) = fc_coefficients_rate(&at) * NV_Ith_S(y, 0) + at.V / solver->L;
     return 0;
 }
 
 static int jacobian(realtype tau, N_Vector y, N_Vector slope, SUNMatrix J, void* user, N_Vector t1,
                     N_Vector t2, N_Vector t3) {
     (void)y, (void)slope, (void)t1, (void)t2, (void)t3;
-    SM_ELEMENT_D(J, 0, 0) = coefficients_at(user, tau).a;
+    const FcCoefficients at = coefficients_at(user, tau);
+    SM_ELEMENT_D(J, 0, 0) = fc_coefficients_rate(&at);
     return 0;
 }
 
 static void keep_reason(int code, const char* module, const char* function, char* text, void* user) {
     (void)module, (void)function;
-    CvodeSolver* solver = user;
+    FcCvode* solver = user;
     if (code < 0) {
         snprintf(solver->reason, sizeof solver->reason, "%s", text);
     }
 }
 
-static int set_up(CvodeSolver* solver) {
+static bool set_up(FcCvode* solver) {
     if (SUNContext_Create(NULL, &solver->context) != 0) {
-        return 0;
+        return false;
     }
     solver->y = N_VNew_Serial(1, solver->context);
     solver->dense = N_VNew_Serial(1, solver->context);
     solver->matrix = SUNDenseMatrix(1, 1, solver->context);
     if (!solver->y || !solver->dense || !solver->matrix) {
-        return 0;
+        return false;
     }
     solver->linear_solver = SUNLinSol_Dense(solver->y, solver->matrix, solver->context);
     solver->cvode = CVodeCreate(CV_BDF, solver->context);
     if (!solver->linear_solver || !solver->cvode) {
-        return 0;
+        return false;
     }
     N_VConst(0.0, solver->y);
     void* cvode = solver->cvode;
@@ -125,17 +114,17 @@ static int set_up(CvodeSolver* solver) {
            CVodeSetMaxHnilWarns(cvode, -1) == CV_SUCCESS;
 }
 
-CvodeSolver* cvode_solver_new(Message* message) {
-    CvodeSolver* solver = calloc(1, sizeof *solver);
+FcCvode* fc_cvode_new(FcMessage* message) {
+    FcCvode* solver = calloc(1, sizeof *solver);
     if (solver && set_up(solver)) {
         return solver;
     }
-    cvode_solver_free(solver);
-    snprintf(message->text, sizeof message->text, "solver.method = cvode: no memory for CVODE");
+    fc_cvode_free(solver);
+    fc_message_set(message, "solver.method = cvode: no memory for CVODE");
     return NULL;
 }
 
-void cvode_solver_free(CvodeSolver* solver) {
+void fc_cvode_free(FcCvode* solver) {
     if (!solver) {
         return;
     }
@@ -156,45 +145,45 @@ void cvode_solver_free(CvodeSolver* solver) {
     free(solver);
 }
 
-static int failed(const CvodeSolver* solver, double tau, double h, const char* reason, Message* message) {
-    snprintf(message->text, sizeof message->text,
-             "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s",
-             solver->start + tau, h, reason);
-    return 0;
+static bool failed(const FcCvode* solver, double tau, double h, const char* reason, FcMessage* message) {
+    return fc_message_set(message,
+                          "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s",
+                          solver->start + tau, h, reason);
 }
 
 // The deflection's scale over a step of h [s] from delta_0, see the head of this file.
-static double deflection_scale(const DahlProblem* problem, double h, double delta_0) {
-    const double saturated = problem->F_C / dahl_largest_stiffness(problem, h);
-    const double moved = fabs(delta_0) + drive_largest_speed(&problem->drive, h) * h;
+static double deflection_scale(const FcScene* scene, double h, double delta_0) {
+    const double saturated = scene->F_C / fc_scene_largest_stiffness(scene, h);
+    const double moved = fabs(delta_0) + fc_drive_largest_speed(&scene->drive, h) * h;
     const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
     return isfinite(L) && L > 0.0 ? L : 1.0;
 }
 
 // The errors of as many vibration periods as the bristle remembers, a path of L, add up in its deflection.
-static double local_error_bound(const Drive* drive, double tolerance, double h, double L) {
-    const double memory = fmin(h, L / drive_largest_speed(drive, h));
-    const double periods = drive_vibrates(drive) ? fmax(1.0, memory * drive->vibration.f) : 1.0;
+static double local_error_bound(const FcDrive* drive, double tolerance, double h, double L) {
+    const double memory = fmin(h, L / fc_drive_largest_speed(drive, h));
+    const double periods = fc_drive_vibrates(drive) ? fmax(1.0, memory * drive->vibration.f) : 1.0;
     return fmin(fmax(LOCAL_ERROR_FRACTION * tolerance / periods, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
 }
 
 // First step on a piece: where its layer of width w, sqrt(2 F_C / (sigma |V'|)) after a reversal and
 // F_C / (sigma |V|) elsewhere, lets backward Euler have the asked error.
-static double initial_step(CvodeSolver* solver, double duration, double local_error) {
-    const Coefficients at = coefficients_at(solver, 0.0);
-    const double V_rate = fabs(drive_V_rate(&solver->problem->drive, solver->start));
-    const double ramp = at.sigma * V_rate / (2.0 * solver->problem->F_C);
-    const double inverse_width = fmax(fabs(at.a), sqrt(ramp));
+static double initial_step(FcCvode* solver, double duration, double local_error) {
+    const FcCoefficients at = coefficients_at(solver, 0.0);
+    const double V_rate = fabs(fc_drive_V_rate(&solver->scene->drive, solver->start));
+    const double ramp = at.sigma * V_rate / (2.0 * solver->scene->F_C);
+    const double inverse_width = fmax(fabs(fc_coefficients_rate(&at)), sqrt(ramp));
     return fmin(duration, sqrt(local_error) / fmax(inverse_width, 1.0 / duration));
 }
 
 // Integrates from solver->start for duration [s], between two reversals. y is taken from and left in
 // solver->y.
-static int integrate_piece(CvodeSolver* solver, double duration, double local_error, double h,
-                           StepResult* sum, Message* message) {
+static bool integrate_piece(FcCvode* solver, double duration, double local_error, double h, FcStepResult* sum,
+                            FcMessage* message) {
     void* cvode = solver->cvode;
-    const Drive* drive = &solver->problem->drive;
-    const double longest = drive_vibrates(drive) ? 1.0 / (STEPS_PER_PERIOD * drive->vibration.f) : duration;
+    const FcDrive* drive = &solver->scene->drive;
+    const double longest =
+        fc_drive_vibrates(drive) ? 1.0 / (STEPS_PER_PERIOD * drive->vibration.f) : duration;
     solver->reason[0] = '\0';
     if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSStolerances(cvode, SMALLEST_LOCAL_ERROR, local_error) != CV_SUCCESS ||
@@ -218,54 +207,55 @@ static int integrate_piece(CvodeSolver* solver, double duration, double local_er
             if (CVodeGetDky(cvode, node, 0, solver->dense) != CV_SUCCESS) {
                 return failed(solver, node, h, solver->reason, message);
             }
-            const Coefficients at = coefficients_at(solver, node);
+            const FcCoefficients at = coefficients_at(solver, node);
             const double F = at.sigma * solver->L * NV_Ith_S(solver->dense, 0);
             sum->impulse += half * gauss_weight[i] * F;
             sum->work += half * gauss_weight[i] * F * at.V;
         }
         tau = tau_next;
     }
-    return 1;
+    return true;
 }
 
-int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const SolverOptions* options, double h,
-                      double delta_0, StepResult* result, Message* message) {
-    const Drive* drive = &problem->drive;
-    const double periods = drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
+bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                   double delta_0, FcStepResult* result, FcMessage* message) {
+    const FcDrive* drive = &scene->drive;
+    const double periods = fc_drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
     if (!(periods <= MOST_PERIODS)) {
-        snprintf(message->text, sizeof message->text,
-                 "solver.method = cvode: the communication step of %.5g s holds %.5g periods of vibration.f "
-                 "= %.5g Hz; "
-                 "at most %.0e are allowed; use smaller steps or collocation",
-                 h, periods, drive->vibration.f, MOST_PERIODS);
-        return 0;
+        fc_message_set(
+            message,
+            "solver.method = cvode: the communication step of %.5g s holds %.5g periods of vibration.f "
+            "= %.5g Hz; "
+            "at most %.0e are allowed; use smaller steps or collocation",
+            h, periods, drive->vibration.f, MOST_PERIODS);
+        return false;
     }
     if (h < SHORTEST_STEP) {
-        const double sigma = dahl_stiffness(problem, 0.0);
-        const double V = drive_V(drive, 0.0);
+        const double sigma = fc_scene_stiffness(scene, 0.0);
+        const double V = fc_drive_V(drive, 0.0);
         const double F = sigma * delta_0;
-        *result = (StepResult){.delta = delta_0 + h * (V - fabs(V) * F / problem->F_C),
-                               .impulse = h * F,
-                               .work = h * F * V,
-                               .evaluations = 1.0};
-        return 1;
+        *result = (FcStepResult){.delta = delta_0 + h * (V - fabs(V) * F / scene->F_C),
+                                 .impulse = h * F,
+                                 .work = h * F * V,
+                                 .evaluations = 1.0};
+        return true;
     }
-    solver->problem = problem;
-    solver->L = deflection_scale(problem, h, delta_0);
+    solver->scene = scene;
+    solver->L = deflection_scale(scene, h, delta_0);
     const double local_error = local_error_bound(drive, options->tolerance, h, solver->L);
     solver->evaluations = 0.0;
     N_VConst(delta_0 / solver->L, solver->y);
 
-    StepResult sum = {.delta = delta_0};
+    FcStepResult sum = {.delta = delta_0};
     double t = 0.0;
     while (t < h) {
-        const double t_next = drive_next_event(drive, t, h).time;
+        const double t_next = fc_drive_next_event(drive, t, h).time;
         solver->start = t;
         if (!(t_next > t)) {
             return failed(solver, 0.0, h, "no next reversal found", message);
         }
         if (!integrate_piece(solver, t_next - t, local_error, h, &sum, message)) {
-            return 0;
+            return false;
         }
         t = t_next;
     }
@@ -276,26 +266,25 @@ int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const Sol
                       message);
     }
     *result = sum;
-    return 1;
+    return true;
 }
 
 #else
 
-CvodeSolver* cvode_solver_new(Message* message) {
-    snprintf(message->text, sizeof message->text,
-             "solver.method = cvode is not in this build (built without SUNDIALS); rebuild with "
-             "-DWITH_SUNDIALS=ON "
-             "or use collocation");
+FcCvode* fc_cvode_new(FcMessage* message) {
+    fc_message_set(message,
+                   "solver.method = cvode is not in this build (built without SUNDIALS); rebuild with "
+                   "-DWITH_SUNDIALS=ON "
+                   "or use collocation");
     return NULL;
 }
 
-void cvode_solver_free(CvodeSolver* solver) { (void)solver; }
+void fc_cvode_free(FcCvode* solver) { (void)solver; }
 
-int cvode_solver_step(CvodeSolver* solver, const DahlProblem* problem, const SolverOptions* options, double h,
-                      double delta_0, StepResult* result, Message* message) {
-    (void)solver, (void)problem, (void)options, (void)h, (void)delta_0, (void)result;
-    snprintf(message->text, sizeof message->text, "solver.method = cvode is not in this build");
-    return 0;
+bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                   double delta_0, FcStepResult* result, FcMessage* message) {
+    (void)solver, (void)scene, (void)options, (void)h, (void)delta_0, (void)result;
+    return fc_message_set(message, "solver.method = cvode is not in this build");
 }
 
 #endif

@@ -1,4 +1,4 @@
-#include "nodes.h"
+#include "solver/nodes.h"
 
 #include <math.h>
 
@@ -34,24 +34,24 @@ static inline double series_exp_less_1(double x) {
 }
 
 // Whether the phase and ln(sigma) stay within the range of the series over a step of h [s].
-static int is_short(const DahlProblem* problem, double h) {
-    const Drive* drive = &problem->drive;
+static bool is_short(const FcScene* scene, double h) {
+    const FcDrive* drive = &scene->drive;
     const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
     return drive->E.rate == 0.0 && 0.5 * h * drive->omega <= SERIES_RANGE &&
-           0.5 * h * 2.0 * problem->at_E.decay * d_rate <= SERIES_RANGE;
+           0.5 * h * 2.0 * scene->at_E.decay * d_rate <= SERIES_RANGE;
 }
 
-void node_coefficients(const DahlProblem* problem, double t, double h, const double node[NODE_COUNT],
-                       NodeCoefficients* at) {
-    if (!is_short(problem, h)) {
-        for (int i = 0; i < NODE_COUNT; i++) {
-            const DahlCoefficients now = dahl_coefficients(problem, t + node[i] * h);
+void fc_node_coefficients(const FcScene* scene, double t, double h, const double node[FC_NODE_COUNT],
+                          FcNodeCoefficients* at) {
+    if (!is_short(scene, h)) {
+        for (int i = 0; i < FC_NODE_COUNT; i++) {
+            const FcCoefficients now = fc_scene_coefficients(scene, t + node[i] * h);
             at->V[i] = now.V;
             at->sigma[i] = now.sigma;
         }
         return;
     }
-    const Drive* drive = &problem->drive;
+    const FcDrive* drive = &scene->drive;
     const double middle = t + 0.5 * h;
     const double angle = drive->theta_0 + drive->omega * middle;
     const double c = cos(angle);
@@ -61,9 +61,9 @@ void node_coefficients(const DahlProblem* problem, double t, double h, const dou
     const double c_d = c * drive->cos_phase_d - s * drive->sin_phase_d;
     const double s_d = s * drive->cos_phase_d + c * drive->sin_phase_d;
     const double d_middle = drive->d.value + drive->d.rate * middle + drive->vibration.a_d * c_d;
-    const double two_decay = 2.0 * problem->at_E.decay;
-    const double stiffness = problem->at_E.stiffness_0 * exp(-two_decay * d_middle);
-    for (int i = 0; i < NODE_COUNT; i++) {
+    const double two_decay = 2.0 * scene->at_E.decay;
+    const double stiffness = scene->at_E.stiffness_0 * exp(-two_decay * d_middle);
+    for (int i = 0; i < FC_NODE_COUNT; i++) {
         const double later = (node[i] - 0.5) * h;
         const double sin_later = series_sin(drive->omega * later);
         const double cos_later_less_1 = series_cos_less_1(drive->omega * later);
@@ -74,9 +74,9 @@ void node_coefficients(const DahlProblem* problem, double t, double h, const dou
         const double d = d_middle + d_moved;
         at->sigma[i] = stiffness * (1.0 + series_exp_less_1(-two_decay * d_moved)) / (d * d * d);
     }
-    if (problem->at_E.constant) {
-        for (int i = 0; i < NODE_COUNT; i++) {
-            at->sigma[i] = problem->at_E.stiffness_0;
+    if (scene->at_E.constant) {
+        for (int i = 0; i < FC_NODE_COUNT; i++) {
+            at->sigma[i] = scene->at_E.stiffness_0;
         }
     }
 }

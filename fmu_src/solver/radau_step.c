@@ -1,24 +1,25 @@
-#include "radau_step.h"
+#include "solver/radau_step.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "nodes.h"
-#include "radau_tables.h"
+#include "solver/nodes.h"
+#include "solver/radau_tables.h"
 
-_Static_assert((int)RADAU_STAGES == (int)NODE_COUNT, "the coefficients are computed at the stages' nodes");
+_Static_assert((int)FC_RADAU_STAGES == (int)FC_NODE_COUNT,
+               "the coefficients are computed at the stages' nodes");
 
-static void evaluate(const DahlProblem* problem, double t, double h, double sign, RadauStep* step) {
+static void evaluate(const FcScene* scene, double t, double h, double sign, FcRadauStep* step) {
     step->z_mean = 0.0;
-    const double sign_over_F_C = sign / problem->F_C;
-    NodeCoefficients at;
-    node_coefficients(problem, t, h, RADAU_NODES, &at);
-    for (int i = 0; i < RADAU_STAGES; i++) {
+    const double sign_over_F_C = sign / scene->F_C;
+    FcNodeCoefficients at;
+    fc_node_coefficients(scene, t, h, FC_RADAU_NODES, &at);
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
         step->sigma[i] = at.sigma[i];
         step->shift[i] = h * at.V[i];
         // sign V and not |V|: V may be a rounding error past its reversal, and g must stay smooth there.
         step->z[i] = step->shift[i] * at.sigma[i] * sign_over_F_C;
-        step->z_mean += RADAU_WEIGHTS[i] * step->z[i];
+        step->z_mean += FC_RADAU_WEIGHTS[i] * step->z[i];
     }
 }
 
@@ -30,17 +31,17 @@ static void evaluate(const DahlProblem* problem, double t, double h, double sign
 #endif
 
 // The linear system of the stages with its two right-hand sides, which come first in each row.
-enum { RELAXED = 0, DRIVEN = 1, MATRIX = 2, WIDTH = MATRIX + RADAU_STAGES };
-typedef double StageSystem[RADAU_STAGES][WIDTH];
+enum { RELAXED = 0, DRIVEN = 1, MATRIX = 2, WIDTH = MATRIX + FC_RADAU_STAGES };
+typedef double StageSystem[FC_RADAU_STAGES][WIDTH];
 
 // Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative.
 static void solve(StageSystem row) {
     UNROLL
-    for (int k = 0; k < RADAU_STAGES; k++) {
+    for (int k = 0; k < FC_RADAU_STAGES; k++) {
         const double pivot = 1.0 / row[k][MATRIX + k];
         row[k][MATRIX + k] = pivot;
         UNROLL
-        for (int i = k + 1; i < RADAU_STAGES; i++) {
+        for (int i = k + 1; i < FC_RADAU_STAGES; i++) {
             const double factor = row[i][MATRIX + k] * pivot;
             row[i][RELAXED] -= factor * row[k][RELAXED];
             row[i][DRIVEN] -= factor * row[k][DRIVEN];
@@ -51,7 +52,7 @@ static void solve(StageSystem row) {
         }
     }
     UNROLL
-    for (int k = RADAU_STAGES - 1; k >= 0; k--) {
+    for (int k = FC_RADAU_STAGES - 1; k >= 0; k--) {
         row[k][RELAXED] *= row[k][MATRIX + k];
         row[k][DRIVEN] *= row[k][MATRIX + k];
         UNROLL
@@ -62,61 +63,61 @@ static void solve(StageSystem row) {
     }
 }
 
-void radau_step(const DahlProblem* problem, double t, double h, double sign, RadauStep* step) {
-    evaluate(problem, t, h, sign, step);
+void fc_radau_step(const FcScene* scene, double t, double h, double sign, FcRadauStep* step) {
+    evaluate(scene, t, h, sign, step);
     StageSystem row;
-    for (int i = 0; i < RADAU_STAGES; i++) {
-        memcpy(&row[i][MATRIX], RADAU_INVERSE[i], sizeof RADAU_INVERSE[i]);
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
+        memcpy(&row[i][MATRIX], FC_RADAU_INVERSE[i], sizeof FC_RADAU_INVERSE[i]);
         row[i][MATRIX + i] += step->z[i];
         row[i][RELAXED] = -step->z[i];
         row[i][DRIVEN] = step->shift[i];
     }
     solve(row);
-    for (int i = 0; i < RADAU_STAGES; i++) {
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
         step->relaxed[i] = row[i][RELAXED];
         step->driven[i] = row[i][DRIVEN];
     }
 }
 
-double radau_impulse_relaxed(const RadauStep* step, double h) {
+double fc_radau_impulse_relaxed(const FcRadauStep* step, double h) {
     double sum = 0.0;
-    for (int i = 0; i < RADAU_STAGES; i++) {
-        sum += RADAU_WEIGHTS[i] * step->sigma[i] * (1.0 + step->relaxed[i]);
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
+        sum += FC_RADAU_WEIGHTS[i] * step->sigma[i] * (1.0 + step->relaxed[i]);
     }
     return h * sum;
 }
 
-double radau_impulse_driven(const RadauStep* step, double h) {
+double fc_radau_impulse_driven(const FcRadauStep* step, double h) {
     double sum = 0.0;
-    for (int i = 0; i < RADAU_STAGES; i++) {
-        sum += RADAU_WEIGHTS[i] * step->sigma[i] * step->driven[i];
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
+        sum += FC_RADAU_WEIGHTS[i] * step->sigma[i] * step->driven[i];
     }
     return h * sum;
 }
 
-static RadauTail tail_of(const double slope[RADAU_STAGES]) {
-    RadauTail tail;
-    for (int k = 0; k < RADAU_TAIL; k++) {
+static FcRadauTail tail_of(const double slope[FC_RADAU_STAGES]) {
+    FcRadauTail tail;
+    for (int k = 0; k < FC_RADAU_TAIL; k++) {
         double sum = 0.0;
-        for (int i = 0; i < RADAU_STAGES; i++) {
-            sum += RADAU_LEGENDRE_TAIL[k][i] * slope[i];
+        for (int i = 0; i < FC_RADAU_STAGES; i++) {
+            sum += FC_RADAU_LEGENDRE_TAIL[k][i] * slope[i];
         }
         tail.coefficient[k] = fabs(sum);
     }
     return tail;
 }
 
-RadauTail radau_tail_homogeneous(const RadauStep* step, double u_0) {
-    double slope[RADAU_STAGES];
-    for (int i = 0; i < RADAU_STAGES; i++) {
+FcRadauTail fc_radau_tail_homogeneous(const FcRadauStep* step, double u_0) {
+    double slope[FC_RADAU_STAGES];
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
         slope[i] = -step->z[i] * (1.0 + step->relaxed[i]) * u_0;
     }
     return tail_of(slope);
 }
 
-RadauTail radau_tail_full(const RadauStep* step, double u_0) {
-    double slope[RADAU_STAGES];
-    for (int i = 0; i < RADAU_STAGES; i++) {
+FcRadauTail fc_radau_tail_full(const FcRadauStep* step, double u_0) {
+    double slope[FC_RADAU_STAGES];
+    for (int i = 0; i < FC_RADAU_STAGES; i++) {
         slope[i] = step->shift[i] - step->z[i] * ((1.0 + step->relaxed[i]) * u_0 + step->driven[i]);
     }
     return tail_of(slope);
@@ -125,7 +126,7 @@ RadauTail radau_tail_full(const RadauStep* step, double u_0) {
 // Legendre coefficient of degree 8, over 17, of e^(-z (1 - x)) on [0, 1]: e^(-z/2) i_8(z/2), i_n the modified
 // spherical Bessel function; the larger of its expansions at small and at large z, right within a factor of 2.
 static double weight_of_the_defect(double z) {
-    enum { N = RADAU_STAGES - 1 };
+    enum { N = FC_RADAU_STAGES - 1 };
     const double double_factorial = 34459425.0; // 17!!
     const double x = 0.5 * z;
     if (x <= 0.0) {
@@ -141,7 +142,7 @@ static double weight_of_the_defect(double z) {
 // The collocation polynomial's defect is about (next Legendre coefficient) (P_9 - P_8), which is orthogonal to
 // polynomials of degree 7. The error at the end is the defect weighted with e^-G, G the remaining relaxation: only
 // the parts of e^-G and of the defect's own variation beyond degree 7 count.
-double radau_error(const RadauTail* tail, double z_mean) {
+double fc_radau_error(const FcRadauTail* tail, double z_mean) {
     const double none = 1e-300;
     const double* c = tail->coefficient;
     double decay = c[0] / (c[1] + none); // the slowest fall over one, two and three degrees

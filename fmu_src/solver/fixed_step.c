@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "solver.h"
+#include "solver/fixed_step.h"
 
 #define MOST_STEPS 1e8
 
@@ -30,46 +30,32 @@ typedef struct {
     double work;    // J
 } Integrals;
 
-typedef struct {
-    double sigma; // N/m
-    double V;     // m/s
-    double a;     // 1/s
-} Coefficients;
-
-static Coefficients coefficients_at(const DahlProblem* problem, double t) {
-    Coefficients at;
-    at.sigma = dahl_stiffness(problem, t);
-    at.V = drive_V(&problem->drive, t);
-    at.a = -at.sigma * fabs(at.V) / problem->F_C;
-    return at;
-}
-
-static Integrals slope_at(const Coefficients* at, double delta) {
+static Integrals slope_at(const FcCoefficients* at, double delta) {
     const double F = at->sigma * delta;
-    return (Integrals){at->a * delta + at->V, F, F * at->V};
+    return (Integrals){fc_coefficients_rate(at) * delta + at->V, F, F * at->V};
 }
 
 static Integrals plus(Integrals y, double h, Integrals slope) {
     return (Integrals){y.delta + h * slope.delta, y.impulse + h * slope.impulse, y.work + h * slope.work};
 }
 
-static Integrals explicit_euler(Integrals y, double h, const Coefficients* start) {
+static Integrals explicit_euler(Integrals y, double h, const FcCoefficients* start) {
     return plus(y, h, slope_at(start, y.delta));
 }
 
-static Integrals backward_euler(Integrals y, double h, const Coefficients* end) {
-    const double delta = (y.delta + h * end->V) / (1.0 - h * end->a);
+static Integrals backward_euler(Integrals y, double h, const FcCoefficients* end) {
+    const double delta = (y.delta + h * end->V) / (1.0 - h * fc_coefficients_rate(end));
     const Integrals slope = slope_at(end, delta);
     return (Integrals){delta, y.impulse + h * slope.impulse, y.work + h * slope.work};
 }
 
-static Integrals trapezoid(Integrals y, double h, const Coefficients* start, const Coefficients* end) {
+static Integrals trapezoid(Integrals y, double h, const FcCoefficients* start, const FcCoefficients* end) {
     const Integrals half = plus(y, 0.5 * h, slope_at(start, y.delta));
     return backward_euler(half, 0.5 * h, end);
 }
 
-static Integrals rk4(Integrals y, double h, const Coefficients* start, const Coefficients* middle,
-                     const Coefficients* end) {
+static Integrals rk4(Integrals y, double h, const FcCoefficients* start, const FcCoefficients* middle,
+                     const FcCoefficients* end) {
     const Integrals k1 = slope_at(start, y.delta);
     const Integrals k2 = slope_at(middle, y.delta + 0.5 * h * k1.delta);
     const Integrals k3 = slope_at(middle, y.delta + 0.5 * h * k2.delta);
@@ -78,89 +64,89 @@ static Integrals rk4(Integrals y, double h, const Coefficients* start, const Coe
 }
 
 // sigma(t) |V(t)| over [0, h] is at most this [N/s]: the product of the two largest values.
-static double power_bound(const DahlProblem* problem, double h) {
-    return dahl_largest_stiffness(problem, h) * drive_largest_speed(&problem->drive, h);
+static double power_bound(const FcScene* scene, double h) {
+    return fc_scene_largest_stiffness(scene, h) * fc_drive_largest_speed(&scene->drive, h);
 }
 
 // The largest sigma(t) |V(t)| over [0, h] [N/s], sampled; the bound where that would take too many samples.
-static double largest_stiffness_rate(const DahlProblem* problem, double h) {
-    const Drive* drive = &problem->drive;
-    if (drive_is_constant(drive)) {
-        return dahl_stiffness(problem, 0.0) * fabs(drive_V(drive, 0.0));
+static double largest_stiffness_rate(const FcScene* scene, double h) {
+    const FcDrive* drive = &scene->drive;
+    if (fc_drive_is_constant(drive)) {
+        return fc_scene_stiffness(scene, 0.0) * fabs(fc_drive_V(drive, 0.0));
     }
     double duration = h;
     double periods = 1.0;
-    if (drive_vibrates(drive)) {
-        if (!drive_is_linear(drive)) {
+    if (fc_drive_vibrates(drive)) {
+        if (!fc_drive_is_linear(drive)) {
             duration = fmin(h, 1.0 / drive->vibration.f);
         }
         periods = fmax(1.0, duration * drive->vibration.f);
     }
     const double samples = ceil(SAMPLES_PER_PERIOD * periods);
     if (!(samples <= MOST_SAMPLES)) {
-        return power_bound(problem, h);
+        return power_bound(scene, h);
     }
     double largest = 0.0;
     for (double i = 0.0; i <= samples; i += 1.0) {
         const double t = duration * (i / samples);
-        largest = fmax(largest, dahl_stiffness(problem, t) * fabs(drive_V(drive, t)));
+        largest = fmax(largest, fc_scene_stiffness(scene, t) * fabs(fc_drive_V(drive, t)));
     }
     return largest;
 }
 
 // An explicit method beyond its limit would return numbers that grow without bound: refuse it.
-static int check_stability(const DahlProblem* problem, const char* method, double limit, double step_size,
-                           double step, double h, Message* message) {
-    const double allowed = limit * problem->F_C;
-    if (power_bound(problem, h) * step <= allowed) {
-        return 1;
+static bool check_stability(const FcScene* scene, const char* method, double limit, double step_size,
+                            double step, double h, FcMessage* message) {
+    const double allowed = limit * scene->F_C;
+    if (power_bound(scene, h) * step <= allowed) {
+        return true;
     }
-    const double rate = largest_stiffness_rate(problem, h);
+    const double rate = largest_stiffness_rate(scene, h);
     if (rate * step <= allowed) {
-        return 1;
+        return true;
     }
     // Rounded down, so that the printed step is itself usable.
     const double usable = (1.0 - 1e-4) * allowed / rate;
-    snprintf(
-        message->text, sizeof message->text,
+    fc_message_set(
+        message,
         "solver.stepSize = %.5g s is too long for solver.method = %s: sigma |V| h / F_C = %.5g with the step "
         "h = %.5g s, and the method is stable up to %.5g; the largest usable step is %.5g s",
-        step_size, method, rate * step / problem->F_C, step, limit, usable);
-    return 0;
+        step_size, method, rate * step / scene->F_C, step, limit, usable);
+    return false;
 }
 
-static Integrals integrate(const DahlProblem* problem, SolverMethod method, double step, double steps,
-                           double h, Integrals y, double* evaluations) {
-    const int uses_start = method != METHOD_BACKWARD_EULER;
-    const int uses_middle = method == METHOD_RK4;
-    const int uses_end = method != METHOD_EXPLICIT_EULER;
+static Integrals integrate(const FcScene* scene, FcMethod method, double step, double steps, double h,
+                           Integrals y, double* evaluations) {
+    const bool uses_start = method != FC_METHOD_BACKWARD_EULER;
+    const bool uses_middle = method == FC_METHOD_RK4;
+    const bool uses_end = method != FC_METHOD_EXPLICIT_EULER;
     *evaluations = steps + (uses_start && uses_end ? 1.0 : 0.0) + (uses_middle ? steps : 0.0);
 
-    Coefficients start = {0.0, 0.0, 0.0};
-    Coefficients middle = start;
-    Coefficients end = start;
+    FcCoefficients start = {0.0, 0.0, 0.0};
+    FcCoefficients middle = start;
+    FcCoefficients end = start;
     if (uses_start) {
-        start = coefficients_at(problem, 0.0);
+        start = fc_scene_coefficients(scene, 0.0);
     }
     double t = 0.0;
     for (double i = 1.0; i <= steps; i += 1.0) {
-        const int last = i == steps;
+        const bool last = i == steps;
         const double t_next = last ? h : i * step;
         const double length = t_next - t;
         if (uses_middle) {
-            middle = coefficients_at(problem, t + 0.5 * length);
+            middle = fc_scene_coefficients(scene, t + 0.5 * length);
         }
         if (uses_end || !last) {
-            end = coefficients_at(problem, t_next);
+            end = fc_scene_coefficients(scene, t_next);
         }
         switch (method) {
-        case METHOD_EXPLICIT_EULER:
+        case FC_METHOD_EXPLICIT_EULER:
             y = explicit_euler(y, length, &start);
             break;
-        case METHOD_RK4:
+        case FC_METHOD_RK4:
             y = rk4(y, length, &start, &middle, &end);
             break;
-        case METHOD_TRAPEZOID:
+        case FC_METHOD_TRAPEZOID:
             y = trapezoid(y, length, &start, &end);
             break;
         default:
@@ -173,45 +159,43 @@ static Integrals integrate(const DahlProblem* problem, SolverMethod method, doub
     return y;
 }
 
-int fixed_step_step(const DahlProblem* problem, SolverMethod method, const SolverOptions* options, double h,
-                    double delta_0, StepResult* result, Message* message) {
+bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
+                   double delta_0, FcStepResult* result, FcMessage* message) {
     if (h == 0.0) {
-        *result = (StepResult){.delta = delta_0};
-        return 1;
+        *result = (FcStepResult){.delta = delta_0};
+        return true;
     }
     const double ratio = h / options->step_size;
     const double steps = fmax(1.0, ceil(ratio - STEP_ROUNDING));
     if (!(steps <= MOST_STEPS)) {
-        snprintf(
-            message->text, sizeof message->text,
+        fc_message_set(
+            message,
             "solver.stepSize = %.5g s cuts the communication step of %.5g s into %.5g steps; at most %.0e "
             "are allowed",
             options->step_size, h, ratio, MOST_STEPS);
-        return 0;
+        return false;
     }
-    const int fits = fabs(steps - ratio) <= STEP_ROUNDING;
+    const bool fits = fabs(steps - ratio) <= STEP_ROUNDING;
     const double step = fits || steps == 1.0 ? h / steps : options->step_size;
 
-    if (method == METHOD_EXPLICIT_EULER && !check_stability(problem, "explicitEuler", EXPLICIT_EULER_LIMIT,
-                                                            options->step_size, step, h, message)) {
-        return 0;
+    if (method == FC_METHOD_EXPLICIT_EULER && !check_stability(scene, "explicitEuler", EXPLICIT_EULER_LIMIT,
+                                                               options->step_size, step, h, message)) {
+        return false;
     }
-    if (method == METHOD_RK4 &&
-        !check_stability(problem, "rk4", RK4_LIMIT, options->step_size, step, h, message)) {
-        return 0;
+    if (method == FC_METHOD_RK4 &&
+        !check_stability(scene, "rk4", RK4_LIMIT, options->step_size, step, h, message)) {
+        return false;
     }
 
     double evaluations = 0.0;
-    const Integrals y =
-        integrate(problem, method, step, steps, h, (Integrals){.delta = delta_0}, &evaluations);
+    const Integrals y = integrate(scene, method, step, steps, h, (Integrals){.delta = delta_0}, &evaluations);
     if (!isfinite(y.delta) || !isfinite(y.impulse) || !isfinite(y.work)) {
-        snprintf(
-            message->text, sizeof message->text,
+        return fc_message_set(
+            message,
             "solver.stepSize = %.5g s: the deflection, the impulse or the work is no longer a finite number "
             "after a communication step of %.5g s",
             options->step_size, h);
-        return 0;
     }
-    *result = (StepResult){y.delta, y.impulse, y.work, evaluations};
-    return 1;
+    *result = (FcStepResult){y.delta, y.impulse, y.work, evaluations};
+    return true;
 }

@@ -10,14 +10,16 @@
 //     sigma   = stiffnessScale E A_r^2 / d^3
 //
 // Everything here is a pure function of its arguments and never fails for valid ones.
-#ifndef FC_CONTACT_H
-#define FC_CONTACT_H
+#ifndef FC_MODEL_CONTACT_H
+#define FC_MODEL_CONTACT_H
 
-typedef enum { CONTACT_ASPERITIES = 1, CONTACT_CONSTANT = 2 } ContactModel;
+#include <stdbool.h>
+
+typedef enum { FC_CONTACT_ASPERITIES = 1, FC_CONTACT_CONSTANT = 2 } FcContactModel;
 
 typedef struct {
-    int model;             // ContactModel
-    double sigma;          // N/m   stiffness when model is CONTACT_CONSTANT
+    int model;             // FcContactModel
+    double sigma;          // N/m   stiffness when model is FC_CONTACT_CONSTANT
     double stiffnessScale; // 1     factor on the asperity stiffness
     double R_q;            // m     standard deviation of the asperity heights
     double R;              // m     mean radius of the asperity summits
@@ -27,7 +29,7 @@ typedef struct {
     double Y;              // Pa    yield strength of the softer body
     double c;              // 1     height density c exp(-lambda s)
     double lambda;         // 1
-} ContactParameters;
+} FcContactParameters;
 
 // The contact at one combined modulus E: what remains to be computed depends on d alone.
 //     A_r = area_0 e^(-decay d)        sigma = stiffness_0 (e^(-decay d))^2 / d^3     (or stiffness_0 if constant)
@@ -35,29 +37,29 @@ typedef struct {
     double area_0;      // m2
     double stiffness_0; // N m2 with asperities, N/m when constant
     double decay;       // 1/m
-    int constant;       // stiffness does not depend on d
-} ContactAtModulus;
+    bool constant;      // stiffness does not depend on d
+} FcContactAtModulus;
 
 typedef struct {
     double sigma; // N/m
     double A_r;   // m2
-} ContactState;
+} FcContactResponse;
 
 // Partial derivatives of one quantity q with respect to the separation and the modulus.
 typedef struct {
     double by_d; // [q]/m
     double by_E; // [q]/Pa
-} ContactGradient;
+} FcContactGradient;
 
 // E [Pa] > 0.
-ContactAtModulus contact_at_modulus(const ContactParameters* p, double E);
+FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E);
 
 // At separation d [m] > 0: both, or the stiffness sigma [N/m] alone.
-ContactState contact_state(const ContactAtModulus* c, double d);
-double contact_stiffness(const ContactAtModulus* c, double d);
+FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d);
+double fc_contact_stiffness(const FcContactAtModulus* c, double d);
 
 // Exact derivatives of sigma and A_r at d [m] > 0 and E [Pa] > 0.
-ContactGradient contact_stiffness_gradient(const ContactParameters* p, double d, double E);
-ContactGradient contact_area_gradient(const ContactParameters* p, double d, double E);
+FcContactGradient fc_contact_stiffness_gradient(const FcContactParameters* p, double d, double E);
+FcContactGradient fc_contact_area_gradient(const FcContactParameters* p, double d, double E);
 
 #endif

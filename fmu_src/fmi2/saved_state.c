@@ -1,0 +1,102 @@
+// fmi2GetFMUstate, fmi2SetFMUstate, fmi2FreeFMUstate.
+#include "fmi2/saved_state.h"
+
+#include <stdlib.h>
+
+#include "fmi2/log.h"
+
+FcSavedState* fc_saved_state_of(const FcInstance* instance, FcCall call, fmi2FMUstate state) {
+    FcSavedState* saved = state;
+    if (!saved) {
+        fc_refuse(instance, call, "FMUstate is NULL");
+        return NULL;
+    }
+    if (saved->mark != FC_SAVED_STATE_MARK) {
+        fc_refuse(instance, call, "FMUstate is not a state of this FMU");
+        return NULL;
+    }
+    return saved;
+}
+
+FcSavedState* fc_saved_state_to_fill(const FcInstance* instance, FcCall call, fmi2FMUstate* state) {
+    if (!state) {
+        fc_refuse(instance, call, "the pointer to FMUstate is NULL");
+        return NULL;
+    }
+    if (*state) {
+        return fc_saved_state_of(instance, call, *state);
+    }
+    FcSavedState* saved = calloc(1, sizeof *saved);
+    if (!saved) {
+        fc_refuse(instance, call, "out of memory");
+        return NULL;
+    }
+    saved->mark = FC_SAVED_STATE_MARK;
+    *state = saved;
+    return saved;
+}
+
+// Numbers that do not belong to the present values; zero makes equal states equal.
+static void drop_stale_outputs(FcSavedState* saved) {
+    FcVariables* variables = &saved->friction.variables;
+    variables->F_t = 0.0;
+    variables->sigma = 0.0;
+    variables->A_r = 0.0;
+    if (saved->experiment.mode == FC_INITIALIZATION_MODE) {
+        variables->delta = 0.0;
+        variables->F_t_mean = 0.0;
+        variables->W_f = 0.0;
+    }
+}
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_GET_FMU_STATE);
+    FcSavedState* saved = instance ? fc_saved_state_to_fill(instance, FC_CALL_GET_FMU_STATE, FMUstate) : NULL;
+    if (!saved) {
+        return fmi2Error;
+    }
+    // Whether the outputs have been read must not show in a saved state: they are brought up to date first.
+    FcMessage message;
+    const bool settled =
+        instance->experiment.mode != FC_INSTANTIATED && fc_instance_refresh_outputs(instance, &message);
+    saved->friction = instance->contact.state;
+    saved->experiment = instance->experiment;
+    if (!settled) {
+        drop_stale_outputs(saved);
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate) {
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_SET_FMU_STATE);
+    const FcSavedState* saved =
+        instance ? fc_saved_state_of(instance, FC_CALL_SET_FMU_STATE, FMUstate) : NULL;
+    if (!saved) {
+        return fmi2Error;
+    }
+    FcMessage message;
+    if (saved->experiment.mode == FC_STEP_COMPLETE &&
+        !fc_friction_contact_prepare(&instance->contact, saved->friction.variables.solver.method, &message)) {
+        return fc_refuse(instance, FC_CALL_SET_FMU_STATE, "%s", message.text);
+    }
+    instance->contact.state = saved->friction;
+    instance->experiment = saved->experiment;
+    return fmi2OK;
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_FREE_FMU_STATE);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (!FMUstate || !*FMUstate) {
+        return fmi2OK; // as FMI 2.0 asks
+    }
+    FcSavedState* saved = fc_saved_state_of(instance, FC_CALL_FREE_FMU_STATE, *FMUstate);
+    if (!saved) {
+        return fmi2Error;
+    }
+    free(saved);
+    *FMUstate = NULL;
+    return fmi2OK;
+}

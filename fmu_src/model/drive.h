@@ -1,0 +1,72 @@
+// What drives the contact over one communication step: V(t), d(t), E(t).
+//
+//     V(t) = V + V' t + V_1 cos(2 pi f t + theta_0)                (Eq. 24)
+//     d(t) = d + d' t + a_d cos(2 pi f t + theta_0 + phase_d)      (section 3.2)
+//     E(t) = E + E' t
+//
+// t is local: 0 at the start of the step; theta_0 is the phase of the vibration there. The rates are zero when
+// the inputs are held. Local time keeps a step at 1e9 s as accurate as one at 0.
+#ifndef FC_MODEL_DRIVE_H
+#define FC_MODEL_DRIVE_H
+
+#include <stdbool.h>
+
+typedef struct {
+    double f;       // Hz
+    double V_1;     // m/s  amplitude of the velocity
+    double a_d;     // m    amplitude of the separation
+    double phase_d; // rad  lead of the separation over the velocity
+} FcVibration;
+
+typedef struct {
+    double value; // at the start of the step
+    double rate;  // per second
+} FcLinearInput;
+
+typedef struct {
+    FcLinearInput V; // m/s
+    FcLinearInput d; // m
+    FcLinearInput E; // Pa
+    FcVibration vibration;
+    double cos_phase_d, sin_phase_d;
+    double omega;   // rad/s
+    double theta_0; // rad, phase at local time 0
+} FcDrive;
+
+// The drive of a step that starts at the absolute time start + rest [s], rest being what rounding cut off start.
+FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcVibration vibration, double start,
+                      double rest);
+
+bool fc_drive_vibrates(const FcDrive* drive);  // an amplitude is not zero
+bool fc_drive_is_linear(const FcDrive* drive); // a rate is not zero
+bool fc_drive_is_constant(const FcDrive* drive);
+
+typedef struct {
+    double V; // m/s
+    double d; // m
+} FcDriveValues;
+FcDriveValues fc_drive_values(const FcDrive* drive, double t); // both for the price of one angle
+
+double fc_drive_V(const FcDrive* drive, double t);             // m/s
+double fc_drive_d(const FcDrive* drive, double t);             // m
+double fc_drive_E(const FcDrive* drive, double t);             // Pa
+double fc_drive_V_rate(const FcDrive* drive, double t);        // m/s2
+double fc_drive_V_curvature(const FcDrive* drive, double t);   // m/s3
+double fc_drive_d_rate(const FcDrive* drive, double t);        // m/s
+double fc_drive_smallest_d(const FcDrive* drive, double h);    // lower bound of d over [0, h]
+double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of E over [0, h]
+double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
+double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h]
+
+// integral of V over [t0, t1] [m], exact.
+double fc_drive_displacement(const FcDrive* drive, double t0, double t1);
+
+// The first time after t, before end, at which V changes sign (a reversal) or |V| dips close to zero without doing so;
+// end if there is none.
+typedef struct {
+    double time;   // s
+    bool reversal; // V changes sign here
+} FcDriveEvent;
+FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
+
+#endif

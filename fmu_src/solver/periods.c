@@ -1,0 +1,76 @@
+#include "solver/periods.h"
+
+#include <assert.h>
+#include <math.h>
+
+// More periods than this with moving inputs are refused: they would take minutes.
+static const double MOST_CHANGING_PERIODS = 1e6;
+
+// The same drive with its local time starting at t, a whole number of periods later.
+static FcDrive periods_later(const FcDrive* drive, double t) {
+    FcDrive later = *drive;
+    later.V.value = drive->V.value + drive->V.rate * t;
+    later.d.value = drive->d.value + drive->d.rate * t;
+    later.E.value = drive->E.value + drive->E.rate * t;
+    return later;
+}
+
+// With held inputs all periods are the same map, and n of them its n-th power.
+static void step_over_equal_periods(FcIntervalMap interval, const FcScene* scene,
+                                    const FcSolverOptions* options, double periods, double rest,
+                                    FcStepResult* total) {
+    const double period = 1.0 / scene->drive.vibration.f;
+    const FcMap one = interval(scene, options, period, total->delta, FC_MAP_ANY_START, &total->evaluations);
+    const FcMap all = fc_map_power(&one, periods);
+    fc_map_apply(&all, total);
+    const FcMap last = interval(scene, options, rest, total->delta, FC_MAP_THIS_START, &total->evaluations);
+    fc_map_apply(&last, total);
+}
+
+static void step_over_changing_periods(FcIntervalMap interval, const FcScene* scene,
+                                       const FcSolverOptions* options, double periods, double rest,
+                                       FcStepResult* total) {
+    const double f = scene->drive.vibration.f;
+    for (double k = 0.0; k <= periods; k += 1.0) {
+        const FcDrive now = periods_later(&scene->drive, k / f);
+        const FcScene part = fc_scene_make(scene->contact, &now, scene->F_C);
+        const double duration = k < periods ? 1.0 / f : rest;
+        const FcMap map =
+            interval(&part, options, duration, total->delta, FC_MAP_THIS_START, &total->evaluations);
+        fc_map_apply(&map, total);
+    }
+}
+
+bool fc_periods_step(FcIntervalMap interval, const FcScene* scene, const FcSolverOptions* options, double h,
+                     double delta_0, FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0);
+    FcStepResult total = {.delta = delta_0};
+    const FcDrive* drive = &scene->drive;
+    const double f = drive->vibration.f;
+    const double periods = fc_drive_vibrates(drive) ? floor(h * f) : 0.0;
+    const double rest = fmax(0.0, fma(h, f, -periods) / f);
+
+    if (periods < 2.0) {
+        const FcMap map = interval(scene, options, h, total.delta, FC_MAP_THIS_START, &total.evaluations);
+        fc_map_apply(&map, &total);
+    } else if (!fc_drive_is_linear(drive)) {
+        step_over_equal_periods(interval, scene, options, periods, rest, &total);
+    } else if (periods <= MOST_CHANGING_PERIODS) {
+        step_over_changing_periods(interval, scene, options, periods, rest, &total);
+    } else {
+        return fc_message_set(
+            message,
+            "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
+            "at most %.9g periods are computed one by one: the largest step is %.9g s",
+            h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
+    }
+    if (total.evaluations > FC_MOST_EVALUATIONS) {
+        return fc_message_set(
+            message,
+            "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves over "
+            "too many orders of magnitude in it; use smaller steps, or cut the motion",
+            h, FC_MOST_EVALUATIONS);
+    }
+    *result = total;
+    return true;
+}

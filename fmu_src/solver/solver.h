@@ -1,0 +1,37 @@
+// What every solver method does: take the deflection over one communication step, within a limited amount of work.
+#ifndef FC_SOLVER_SOLVER_H
+#define FC_SOLVER_SOLVER_H
+
+#include <stdbool.h>
+
+#include "message.h"
+#include "model/scene.h"
+
+typedef enum {
+    FC_METHOD_COLLOCATION = 1,
+    FC_METHOD_CVODE = 2,
+    FC_METHOD_BACKWARD_EULER = 3,
+    FC_METHOD_TRAPEZOID = 4,
+    FC_METHOD_RK4 = 5,
+    FC_METHOD_EXPLICIT_EULER = 6
+} FcMethod;
+
+typedef struct {
+    double tolerance; // 1  bound of the error of F_t and of its mean, over F_C
+    double step_size; // s  internal step of the fixed-step methods
+} FcSolverOptions;
+
+typedef struct {
+    double delta;       // m    deflection at the end of the step
+    double impulse;     // N s  integral of F_t dt over the step
+    double work;        // J    integral of F_t V dt over the step
+    double evaluations; // 1    evaluations of a(t), b(t)
+} FcStepResult;
+
+// Evaluations in one communication step, some 10 s of computing: a step that needs more is refused, so that none
+// seems to hang. Only inputs that move over many orders of magnitude get there.
+#ifndef FC_MOST_EVALUATIONS
+#define FC_MOST_EVALUATIONS 1e8
+#endif
+
+#endif
