@@ -1,0 +1,161 @@
+"""A checked batch, run by the C runner on threads of this process."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .errors import BatchError
+from .runner import DONE, DOUBLES, REFUSED, STATISTICS, TEXT, Column, Plan, Result, Start
+from .unpacked import LoadedFmu
+
+Progress = Callable[[int, int], None]  # is told how many scenarios are finished and how many of them refused
+POLL = 0.05  # s between looks at the threads
+STOP = 0.8  # s that threads have to come to the end of their step
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Scenarios of a shape; a column has a value for each, flat, or one for all."""
+
+    fmu: LoadedFmu
+    shape: tuple[int, ...]
+    starts: dict[str, np.ndarray]
+    settle: np.ndarray
+    duration: np.ndarray
+    samples: int
+    read: dict[str, tuple[int, str]]  # result -> value reference, statistic
+    frequency: int | None  # value reference; None: settle and duration are seconds
+    times: bool  # "seconds" is a result
+
+    @property
+    def scenarios(self) -> int:
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def run(self, threads: int, raises: bool, progress: Progress) -> dict[str, np.ndarray]:
+        """The results and "reason", of the batch's shape. BatchError at the first refusal, if asked for."""
+        running = _Running(self, raises)
+        if self.scenarios:
+            running.work(min(threads, self.scenarios), progress)
+        try:
+            return running.results(raises)
+        finally:
+            running.end()
+
+
+@dataclass
+class _Running:
+    """The C runner's batch and all that it borrows."""
+
+    batch: Batch
+    raises: bool
+    values: dict[str, np.ndarray] = field(init=False)
+    failures: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        batch, self.runner = self.batch, self.batch.fmu.runner
+        references = sorted({reference for reference, _ in batch.read.values()})
+        self.values, results = {}, []
+        for name, (reference, statistic) in batch.read.items():
+            width = (batch.samples,) if statistic == "samples" else ()
+            self.values[name] = array = np.full((batch.scenarios, *width), np.nan)
+            results.append(Result(references.index(reference), STATISTICS.index(statistic), _doubles(array)))
+        if batch.times:
+            self.values["seconds"] = np.full(batch.scenarios, np.nan)
+        self.plan = Plan(
+            guid=batch.fmu.guid,
+            scenarios=batch.scenarios,
+            starts=len(batch.starts),
+            start=_array(Start, [self._start(*item) for item in batch.starts.items()]),
+            variables=len(references),
+            variable=_array(ctypes.c_uint, references),
+            results=len(results),
+            result=_array(Result, results),
+            settle=_column(batch.settle),
+            duration=_column(batch.duration),
+            samples=batch.samples,
+            stops_at_refusal=self.raises,
+        )
+        if batch.frequency is not None:
+            self.plan.frequency = ctypes.pointer(ctypes.c_uint(batch.frequency))
+        if batch.times:
+            self.plan.seconds = _doubles(self.values["seconds"])
+        self.handle = self.runner.batch_begin(batch.fmu.handle, ctypes.byref(self.plan))
+        if not self.handle:
+            raise BatchError(f"no memory for {batch.scenarios} scenarios")
+
+    def _start(self, name: str, column: np.ndarray) -> Start:
+        variable = self.batch.fmu.variables[name]
+        return Start(variable.valueReference, variable.type != "Real", _column(column))
+
+    def work(self, threads: int, progress: Progress) -> None:
+        """Until no scenario is left. Whatever is raised meanwhile ends the threads first."""
+        workers = [threading.Thread(target=self._work, daemon=True) for _ in range(threads)]
+        try:
+            for worker in workers:
+                worker.start()
+            for worker in workers:
+                while worker.is_alive():
+                    worker.join(POLL)
+                    self._tell(progress)
+        except BaseException:
+            self.runner.batch_stop(self.handle)
+            until = time.monotonic() + STOP
+            for worker in workers:
+                if worker.ident is not None:
+                    worker.join(max(0.0, until - time.monotonic()))
+            # A thread in a long step still uses the batch through its own reference to this object.
+            if not any(worker.is_alive() for worker in workers):
+                self.end()
+            raise
+
+    def _tell(self, progress: Progress) -> None:
+        progress(self.runner.batch_finished(self.handle), self.runner.batch_refusals(self.handle))
+
+    def _work(self) -> None:
+        why = ctypes.create_string_buffer(TEXT)
+        if not self.runner.batch_work(self.handle, why, TEXT):
+            self.failures.append(why.value.decode(errors="replace"))
+            self.runner.batch_stop(self.handle)
+
+    def results(self, raises: bool) -> dict[str, np.ndarray]:
+        if self.failures:
+            raise BatchError(self.failures[0])
+        batch = self.batch
+        status = np.ctypeslib.as_array(self.runner.batch_statuses(self.handle), (batch.scenarios + 1,))[:-1]
+        refused = np.flatnonzero(status == REFUSED)
+        if raises and len(refused):
+            row = [int(i) for i in np.unravel_index(refused[0], batch.shape)]
+            named = f"scenario {row[0] if len(row) == 1 else tuple(row)}: " if row else ""
+            raise BatchError(named + self._reason(refused[0]))
+        reasons = np.full(batch.scenarios, None, dtype=object)
+        for row in refused:
+            reasons[row] = self._reason(row)
+        assert np.all((status == DONE) | (status == REFUSED))
+        shaped = {name: array.reshape(*batch.shape, *array.shape[1:]) for name, array in self.values.items()}
+        return shaped | {"reason": reasons.reshape(batch.shape)}
+
+    def _reason(self, row: int) -> str:
+        return self.runner.batch_reason(self.handle, int(row)).decode(errors="replace")
+
+    def end(self) -> None:
+        if self.handle:
+            self.runner.batch_end(self.handle)
+            self.handle = None
+
+
+def _doubles(array: np.ndarray) -> object:
+    return array.ctypes.data_as(DOUBLES)
+
+
+def _column(array: np.ndarray) -> Column:
+    return Column(_doubles(array), 0 if array.size == 1 else 1)
+
+
+def _array(kind: type, items: list) -> ctypes.Array:
+    return (kind * max(1, len(items)))(*items)

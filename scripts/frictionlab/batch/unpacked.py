@@ -1,0 +1,102 @@
+"""An FMU file made ready for the batch runner: its model description, and its library for this platform."""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+import hashlib
+import io
+import os
+import shutil
+import tempfile
+import zipfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import fmpy
+from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
+
+from .errors import BatchError
+from .runner import load_fmu
+
+
+@dataclass(frozen=True)
+class LoadedFmu:
+    """Stays loaded as long as the process lives; nothing of it stays in the file system."""
+
+    runner: ctypes.CDLL
+    handle: int
+    guid: bytes
+    variables: dict[str, ScalarVariable] = field(repr=False)
+
+    def variable(self, name: str, where: str, causalities: tuple[str, ...] = ()) -> ScalarVariable:
+        """The variable of this name, which must be of one of the causalities if any are given."""
+        found = self.variables.get(name)
+        if found is None:
+            same = [known for known in self.variables if known.lower() == name.lower()]
+            close = same or difflib.get_close_matches(name, self.variables, 1, 0.5)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            raise BatchError(f"{where}: {name or 'an empty name'} is no variable of the FMU{hint}")
+        if causalities and found.causality not in causalities:
+            raise BatchError(f"{where}: {name} is of causality {found.causality} and can't be set")
+        return found
+
+
+_loaded: dict[tuple[object, ...], LoadedFmu] = {}
+
+
+def loaded_fmu(fmu: str | Path | bytes, runner: ctypes.CDLL) -> LoadedFmu:
+    """The FMU of a path or of its file's bytes; unpacked once in a process."""
+    if isinstance(fmu, bytes):
+        key: tuple[object, ...] = (hashlib.sha256(fmu).digest(),)
+        name = "the FMU"
+    else:
+        name = str(fmu)
+        try:
+            stat = os.stat(fmu)  # noqa: PTH116
+        except OSError as error:
+            raise BatchError(f"{name}: {error.strerror}") from None
+        key = (os.path.realpath(fmu), stat.st_mtime_ns, stat.st_size)
+    if key not in _loaded:
+        _loaded[key] = _load(fmu if isinstance(fmu, bytes) else Path(fmu).read_bytes(), name, runner)
+    return _loaded[key]
+
+
+def _load(content: bytes, name: str, runner: ctypes.CDLL) -> LoadedFmu:
+    description, library = _members(content, name)
+    folder = Path(tempfile.mkdtemp(prefix="friction-batch-"))
+    try:
+        path = folder / f"{description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        path.write_bytes(library)
+        handle = load_fmu(runner, path)
+    finally:  # the loaded library no longer needs its file, but for Windows, which keeps it
+        shutil.rmtree(folder, ignore_errors=True)
+    variables = {variable.name: variable for variable in description.modelVariables}
+    return LoadedFmu(runner, handle, description.guid.encode(), variables)
+
+
+def _members(content: bytes, name: str) -> tuple[ModelDescription, bytes]:
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            members = archive.namelist()
+            if "modelDescription.xml" not in members:
+                raise BatchError(f"{name}: is no FMU: it has no modelDescription.xml")
+            try:
+                description = read_model_description(io.BytesIO(content), validate=False)
+            except Exception as error:  # whatever the reader makes of the text
+                reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+                raise BatchError(f"{name}: its modelDescription.xml can't be read: {reason}") from None
+            if description.fmiVersion != "2.0" or description.coSimulation is None:
+                raise BatchError(f"{name}: is not an FMU for co-simulation of FMI 2.0")
+            identifier = description.coSimulation.modelIdentifier
+            wanted = f"binaries/{fmpy.platform}/{identifier}{fmpy.sharedLibraryExtension}"
+            if wanted not in members:
+                has = sorted(
+                    {m.split("/")[1] for m in members if m.startswith("binaries/") and m.count("/") > 1}
+                )
+                raise BatchError(
+                    f"{name}: has no binary for this platform, {fmpy.platform}, only {', '.join(has)}"
+                )
+            return description, archive.read(wanted)
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, OSError, NotImplementedError) as error:
+        raise BatchError(f"{name}: is no FMU: {str(error) or 'damaged'}") from None
