@@ -16,7 +16,7 @@ from .unpacked import LoadedFmu
 
 Progress = Callable[[int, int], None]  # is told how many scenarios are finished and how many of them refused
 POLL = 0.05  # s between looks at the threads
-STOP = 0.8  # s that threads have to come to the end of their step
+STOP = 0.5  # s that threads have to come to the end of their step
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ class _Running:
         for row in refused:
             reasons[row] = self._reason(row)
         assert np.all((status == DONE) | (status == REFUSED))
-        shaped = {name: array.reshape(*batch.shape, *array.shape[1:]) for name, array in self.values.items()}
+        shaped = {name: array.reshape(batch.shape + array.shape[1:]) for name, array in self.values.items()}
         return shaped | {"reason": reasons.reshape(batch.shape)}
 
     def _reason(self, row: int) -> str:

@@ -1,0 +1,316 @@
+"""simulate_many against formulas, against sessions opened one by one, and with values that are wrong."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from frictionlab.batch import BatchError, simulate_many
+from frictionlab.simulate import FrictionFmu, Session
+
+VIBRATING = {"vibration.V_1": 1.44}
+F_C, V_1 = 55.0, 1.44  # N, m/s
+
+
+def session_results(session: Session, settle: float, samples: int) -> dict[str, float]:
+    """The same by one session after another: NumPy's own mean, least, most."""
+    period = 1.0 / session.get("vibration.f")
+    if settle:
+        session.step(settle * period)
+    work = session.get("W_f")
+    rows = []
+    for _ in range(samples):
+        session.step(period / samples)
+        rows.append(session.read(("F_t_mean", "F_t")))
+    mean, force = np.array(rows).T
+    return {
+        "mean": mean.mean(),
+        "least": force.min(),
+        "most": force.max(),
+        "last": force[-1],
+        "work": session.get("W_f") - work,
+    }
+
+
+OUTPUTS = {
+    "mean": ("F_t_mean", "mean"),
+    "least": ("F_t", "min"),
+    "most": ("F_t", "max"),
+    "last": "F_t",
+    "work": ("W_f", "change"),
+}
+
+
+def random_scenarios(count: int, seed: int) -> pd.DataFrame:
+    random = np.random.default_rng(seed)
+    return pd.DataFrame(
+        {
+            "V": random.uniform(-1.0, 2.0, count),
+            "vibration.V_1": random.choice([0.0, 0.3, 1.44], count),
+            "vibration.a_d": random.choice([0.0, 0.8e-6], count),
+            "d": random.uniform(12e-6, 17e-6, count),
+            "contact.stiffnessScale": 10.0 ** random.uniform(-7, 0, count),
+            "friction.model": random.choice(["Dahl", "Coulomb"], count),
+            "solver.method": random.choice(["collocation", "collocation", "cvode"], count),
+            "delta_0": random.choice([0.0, 1e-7], count),
+        }
+    )
+
+
+class TestNumbers:
+    @pytest.mark.parametrize("threads", [1, 3])
+    def test_mean_of_coulomb_friction(self, fmu_path: Path, threads: int) -> None:
+        """2 / pi F_C asin(V / V_1): no bristle, and a bristle that is stiff."""
+        V = np.linspace(0.01, 1.4, 40)
+        got = simulate_many(
+            fmu_path, {"V": V[:, None], "friction.model": ["Coulomb", "Dahl"], **VIBRATING}, threads=threads
+        )
+        expected = 2.0 / np.pi * F_C * np.arcsin(V / V_1)
+        assert got["F_t_mean"].shape == (40, 2)
+        assert got["F_t_mean"][:, 0] == pytest.approx(expected, rel=1e-9)
+        assert got["F_t_mean"][:, 1] == pytest.approx(expected, rel=2e-5)
+
+    @pytest.mark.parametrize("samples", [1, 5, 64, 300])
+    @pytest.mark.parametrize("threads", [1, 2])
+    def test_bits_of_single_sessions(
+        self, fmu: FrictionFmu, fmu_path: Path, samples: int, threads: int
+    ) -> None:
+        """One instance that is reset gives what a fresh one gives, in the same steps."""
+        scenarios = random_scenarios(60, samples)
+        got = simulate_many(fmu_path, scenarios, OUTPUTS, settle=200.0, samples=samples, threads=threads)
+        for row, values in enumerate(scenarios.to_dict("records")):
+            with fmu.session(values) as session:
+                expected = session_results(session, 200.0, samples)
+            assert got.iloc[row].to_dict() == expected, values
+
+    def test_samples_are_those_of_the_steps(self, fmu_path: Path) -> None:
+        """Held V without vibration: F_t = F_C (1 - exp(-x)), x = sigma V t / F_C."""
+        sigma, V, duration = 2.5e6, np.array([0.005, 0.02]), 0.01
+        got = simulate_many(
+            fmu_path,
+            {"V": V, "contact.model": "Constant", "contact.sigma": sigma},
+            {"force": ("F_t", "samples"), "delta": "delta"},
+            unit="s",
+            duration=duration,
+            samples=4,
+        )
+        t = duration * np.arange(1, 5) / 4
+        expected = F_C * -np.expm1(-sigma * np.outer(V, t) / F_C)
+        assert got["force"] == pytest.approx(expected, rel=1e-9)
+        assert got["delta"] == pytest.approx(expected[:, -1] / sigma, rel=1e-9)
+
+    def test_settle_and_duration_of_every_scenario(self, fmu_path: Path) -> None:
+        """Work of steady sliding is F_C V t."""
+        duration = np.array([1.0, 2.0, 5.0])
+        got = simulate_many(
+            fmu_path, {"V": 0.3}, {"work": ("W_f", "change")}, unit="s", settle=[1.0, 0.5, 2.0],
+            duration=duration,
+        )  # fmt: skip
+        assert got["work"] == pytest.approx(F_C * 0.3 * duration, rel=1e-9)
+
+    def test_period_is_that_of_the_scenario(self, fmu_path: Path) -> None:
+        f = np.array([10e3, 20e3, 40e3])
+        got = simulate_many(
+            fmu_path, {"V": 0.3, "vibration.f": f}, {"work": ("W_f", "change")}, settle=100.0, duration=1.0
+        )
+        assert got["work"] == pytest.approx(F_C * 0.3 / f, rel=1e-9)
+
+    def test_enumerations_by_name_or_number(self, fmu_path: Path) -> None:
+        by_name = simulate_many(fmu_path, {"V": 0.2, "friction.model": ["Dahl", "Coulomb"], **VIBRATING})
+        by_number = simulate_many(fmu_path, {"V": 0.2, "friction.model": [1, 2], **VIBRATING})
+        assert (by_name["F_t_mean"] == by_number["F_t_mean"]).all()
+        assert by_name["F_t_mean"][0] != by_name["F_t_mean"][1]
+
+
+class TestShapes:
+    def test_frame_in_frame_out(self, fmu_path: Path) -> None:
+        frame = pd.DataFrame({"V": [0.1, 0.2], "friction.model": ["Dahl", "Coulomb"]}, index=["a", "b"])
+        frame["friction.model"] = frame["friction.model"].astype("category")
+        got = simulate_many(fmu_path, frame, {"F": ("F_t", "samples"), "W": "W_f"}, samples=2)
+        assert list(got.index) == ["a", "b"]
+        assert list(got.columns) == ["F[0]", "F[1]", "W"]
+
+    def test_no_column_is_one_scenario(self, fmu_path: Path) -> None:
+        assert simulate_many(fmu_path, {})["F_t_mean"].shape == ()
+
+    def test_no_row_is_no_scenario(self, fmu_path: Path) -> None:
+        got = simulate_many(fmu_path, {"V": np.empty((0, 3))}, errors="keep")
+        assert got["F_t_mean"].shape == got["reason"].shape == (0, 3)
+
+    def test_bytes_of_an_fmu(self, fmu_path: Path) -> None:
+        values = {"V": [0.1, 0.2], **VIBRATING}
+        by_path, by_bytes = simulate_many(fmu_path, values), simulate_many(fmu_path.read_bytes(), values)
+        assert (by_path["F_t_mean"] == by_bytes["F_t_mean"]).all()
+
+
+class TestRefusals:
+    def test_kept_with_the_message(self, fmu: FrictionFmu, fmu_path: Path) -> None:
+        d = np.array([14e-6, -1e-6, 15e-6, 0.0])
+        got = simulate_many(fmu_path, {"d": d, **VIBRATING}, errors="keep", threads=2)
+        alone = simulate_many(fmu_path, {"d": d[::2], **VIBRATING})
+        assert list(got["reason"] == None) == [True, False, True, False]  # noqa: E711
+        assert "d = -1e-06 m" in got["reason"][1]
+        assert np.isnan(got["F_t_mean"][[1, 3]]).all()
+        assert (got["F_t_mean"][::2] == alone["F_t_mean"]).all()
+
+    def test_instance_is_usable_after_a_refused_step(self, fmu_path: Path) -> None:
+        """solver.stepSize would need more steps than are allowed: refused in fmi2DoStep, not before."""
+        values = {"V": 0.1, "solver.method": ["rk4", "collocation"], **VIBRATING}
+        got = simulate_many(fmu_path, values, settle=1e8, errors="keep", threads=1)
+        assert "solver.stepSize" in got["reason"][0]
+        assert got["F_t_mean"][1] == pytest.approx(2 / np.pi * F_C * np.arcsin(0.1 / V_1), rel=2e-5)
+
+    def test_first_one_is_raised(self, fmu_path: Path) -> None:
+        d = np.full((50, 40), 14e-6)
+        d[20:, 7:] = -3e-6
+        with pytest.raises(BatchError, match=r"^scenario \(20, 7\): .*d = -3e-06 m"):
+            simulate_many(fmu_path, {"d": d}, threads=4)
+
+    @pytest.mark.parametrize(
+        ("values", "message"),
+        [
+            ({"V": [0.1, np.nan]}, "column V, row 1: nan is not a finite number"),
+            ({"V": [[0.1, 0.2], [0.1, np.inf]]}, r"column V, row \(1, 1\): inf is not a finite number"),
+            ({"V": [0.1, "abc"]}, "column V, row 0: '0.1' is not a number"),
+            ({"V": np.array([0.1, "abc"], dtype=object)}, "column V, row 1: 'abc' is not a number"),
+            ({"V": [0.1, None]}, "column V, row 1: 'None' is not a number"),
+            ({"V": 1j}, r"column V: '1j' is not a number"),
+            ({"V": [0.1, 0.2], "d": [14e-6] * 3}, "column d: its 3 values do not go with the 2 of those"),
+            ({"v": 0.1}, "column v: v is no variable of the FMU; did you mean V?"),
+            ({"F_t": 0.1}, "column F_t: F_t is of causality output and can't be set"),
+            ({"friction.model": ["Dahl", "Dahle"]}, "column friction.model, row 1: 'Dahle' is not one of"),
+            ({"friction.model": [1, 1.5]}, "column friction.model, row 1: 1.5 is not a whole number or"),
+            (pd.DataFrame({"V": [0.1, pd.NA]}), "column V, row 1: '<NA>' is not a number"),
+            (pd.DataFrame([[1, 2]], columns=["V", "V"]), "column V: is there twice"),
+            ({3: 0.1}, "column 3: 3 is no variable of the FMU"),
+        ],
+    )  # fmt: skip
+    def test_wrong_values(self, fmu_path: Path, values: dict, message: str) -> None:
+        with pytest.raises(BatchError, match=message) as caught:
+            simulate_many(fmu_path, values)
+        assert "\n" not in str(caught.value)
+
+    @pytest.mark.parametrize(
+        ("arguments", "message"),
+        [
+            ({"outputs": ["F"]}, "output F: F is no variable of the FMU"),
+            ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence"),
+            ({"outputs": ["friction.model"]}, "output friction.model: friction.model is of type Enumeration"),
+            ({"outputs": {"a": ("F_t", "median")}}, "output a: 'median' is not one of end, change, mean"),
+            ({"samples": 0}, "samples = 0: must be a whole number from 1 to"),
+            ({"samples": 10**11}, "samples = 100000000000: must be a whole number from 1 to"),
+            ({"settle": [1.0, -2.0]}, "settle, row 1: -2 must be at least 0"),
+            ({"duration": [1.0] * 3}, "column duration: its 3 values do not go with the 2 of those"),
+            ({"unit": "ms"}, "unit = 'ms': must be 'period' or 's'"),
+            ({"errors": "ignore"}, "errors = 'ignore'"),
+            ({"threads": 0}, "threads = 0: must be at least 1"),
+        ],
+    )
+    def test_wrong_arguments(self, fmu_path: Path, arguments: dict, message: str) -> None:
+        with pytest.raises(BatchError, match=message):
+            simulate_many(fmu_path, {"V": [0.1, 0.2]}, **arguments)
+
+
+class TestFiles:
+    def test_nothing_stays_in_the_file_system(self, fmu_path: Path, tmp_path: Path) -> None:
+        code = f"from frictionlab.batch import simulate_many; simulate_many({str(fmu_path)!r}, {{}})"
+        subprocess.run([sys.executable, "-c", code], env=environment(tmp_path), check=True)
+        assert list(tmp_path.iterdir()) == []
+
+    def test_not_an_fmu(self, fmu_path: Path, tmp_path: Path) -> None:
+        not_zip, no_description, other_platform, damaged = (tmp_path / f"{k}.fmu" for k in range(4))
+        not_zip.write_text("no zip")
+        with zipfile.ZipFile(no_description, "w") as archive:
+            archive.writestr("readme.txt", "")
+        with zipfile.ZipFile(fmu_path) as source, zipfile.ZipFile(other_platform, "w") as archive:
+            archive.writestr("modelDescription.xml", source.read("modelDescription.xml"))
+            archive.writestr("binaries/other64/FrictionContact.so", b"")
+        with zipfile.ZipFile(damaged, "w") as archive:
+            archive.writestr("modelDescription.xml", "<fmi")
+        for path, message in (
+            (not_zip, "is no FMU: File is not a zip file"),
+            (no_description, "is no FMU: it has no modelDescription.xml"),
+            (other_platform, "has no binary for this platform, .*, only other64"),
+            (damaged, "its modelDescription.xml can't be read"),
+            (tmp_path / "none.fmu", "No such file"),
+        ):
+            with pytest.raises(BatchError, match=f"{path}: {message}") as caught:
+                simulate_many(path, {})
+            assert "\n" not in str(caught.value)
+
+    def test_model_description_of_another_fmu(self, fmu_path: Path, tmp_path: Path) -> None:
+        other = tmp_path / "other.fmu"
+        with zipfile.ZipFile(fmu_path) as source, zipfile.ZipFile(other, "w") as archive:
+            for name in source.namelist():
+                content = source.read(name)
+                if name == "modelDescription.xml":
+                    head, rest = content.split(b'guid="', 1)
+                    content = head + b'guid="{0}"' + rest.split(b'"', 1)[1]
+                archive.writestr(name, content)
+        with pytest.raises(BatchError, match=r"the guid is \{0\}"):
+            simulate_many(other, {"V": [0.1, 0.2]}, errors="keep")
+
+
+def environment(tmp: Path) -> dict[str, str]:
+    paths = os.pathsep.join(path for path in sys.path if path)
+    return {**os.environ, "PYTHONPATH": paths, "TMPDIR": str(tmp)}
+
+
+# A million scenarios of short steps, and one scenario with a single step of seconds.
+MANY = '{"V": __import__("numpy").linspace(0.1, 1, 10**6), "vibration.V_1": 1.44}, samples=64'
+LONG = (
+    '{"vibration.V_1": 1.44, "contact.stiffnessScale": 1e-6, "solver.method": "rk4"}, unit="s", duration=0.99'
+)
+
+
+class TestStops:
+    @pytest.mark.parametrize("scenarios", [MANY, LONG])
+    def test_at_an_interrupt(self, fmu_path: Path, tmp_path: Path, scenarios: str) -> None:
+        """Control-C reaches the caller, who is told of no thread, file or message that stays."""
+        code = (
+            "import sys, time\nfrom frictionlab.batch import simulate_many\n"
+            "def told(finished, refused):\n"
+            "    print('running', flush=True)\n"
+            f"try:\n    simulate_many({str(fmu_path)!r}, {scenarios}, threads=2, progress=told)\n"
+            "except KeyboardInterrupt:\n    print('interrupted')\n"
+        )
+        process = subprocess.Popen(
+            [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env=environment(tmp_path), start_new_session=True,
+        )  # fmt: skip
+        assert process.stdout.readline() == "running\n"
+        os.killpg(process.pid, signal.SIGINT)
+        printed, said = process.communicate(timeout=60)
+        assert printed.endswith("interrupted\n")
+        assert said == ""
+        assert process.returncode == 0
+        assert list(tmp_path.iterdir()) == []
+
+    def test_with_what_progress_raises(self, fmu_path: Path) -> None:
+        def told(finished: int, refused: int) -> None:
+            raise RuntimeError("enough")
+
+        before = threading.active_count()
+        with pytest.raises(RuntimeError, match="enough"):
+            simulate_many(fmu_path, {"V": np.linspace(0.1, 1.0, 10**6), **VIBRATING}, progress=told)
+        assert threading.active_count() == before
+
+    def test_progress_tells_all(self, fmu_path: Path) -> None:
+        seen: list[tuple[int, int]] = []
+        d = np.where(np.arange(300) % 3, 14e-6, -1.0)
+        simulate_many(
+            fmu_path,
+            {"d": d},
+            errors="keep",
+            progress=lambda finished, refused: seen.append((finished, refused)),
+        )
+        assert seen[-1] == (300, 100)
+        assert seen == sorted(seen)
