@@ -1,5 +1,6 @@
 #include "model/contact.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/constants.h"
@@ -12,6 +13,7 @@ static double critical_interference(const FcContactParameters* p, double E) {
 }
 
 FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E) {
+    assert(E > 0.0);
     const double x = p->lambda * critical_interference(p, E) / p->R_q;
     const double beta = p->eta * p->R * p->R_q;
     FcContactAtModulus at;
@@ -23,6 +25,7 @@ FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E)
 }
 
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d) {
+    assert(d > 0.0);
     const double e = exp(-c->decay * d);
     return (FcContactResponse){.sigma = c->constant ? c->stiffness_0 : c->stiffness_0 * (e * e) / (d * d * d),
                                .A_r = c->area_0 * e};

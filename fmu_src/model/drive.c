@@ -1,5 +1,6 @@
 #include "model/drive.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/constants.h"
@@ -20,6 +21,7 @@ FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcVibra
                       double rest) {
     FcDrive drive = {.V = V, .d = d, .E = E, .vibration = vibration};
     if (fc_drive_vibrates(&drive)) {
+        assert(vibration.f > 0.0);
         drive.omega = FC_TWO_PI * vibration.f;
         drive.cos_phase_d = cos(vibration.phase_d);
         drive.sin_phase_d = sin(vibration.phase_d);
@@ -195,6 +197,7 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
 }
 
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
+    assert(t >= 0.0 && end >= t);
     if (drive->vibration.V_1 == 0.0) {
         const double root = -drive->V.value / drive->V.rate; // no root where V' = 0: infinite or NaN
         return root > t && root < end ? (FcDriveEvent){root, 1} : (FcDriveEvent){end, 0};

@@ -1,5 +1,6 @@
 #include "solver/affine_map.h"
 
+#include <assert.h>
 #include <math.h>
 
 FcMap fc_map_identity(void) { return (FcMap){0}; }
@@ -20,6 +21,7 @@ FcMap fc_map_compose(const FcMap* first, const FcMap* second) {
 
 // By repeated squaring: composing adds no error that grows with n, so nothing special happens at P near 1.
 FcMap fc_map_power(const FcMap* one, double n) {
+    assert(n >= 0.0 && n == floor(n));
     FcMap power = fc_map_identity();
     FcMap square = *one;
     while (n >= 1.0) {
@@ -52,6 +54,7 @@ static double phi_2(double z) {
 }
 
 FcMap fc_map_of_constant_scene(double V, double sigma, double F_C, double h) {
+    assert(sigma >= 0.0 && F_C > 0.0 && h >= 0.0);
     const double z = sigma * fabs(V) * h / F_C;
     FcMap map;
     map.relaxation = -expm1(-z);

@@ -12,6 +12,7 @@
 // tolerance F_C times the fraction that relaxes in the step, which bounds the error after any number of steps.
 #include "solver/collocation.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "solver/radau_step.h"
@@ -204,6 +205,7 @@ static FcMap slack_map(const FcScene* scene, double h) {
 
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations) {
+    assert(duration >= 0.0 && options->tolerance > 0.0);
     const FcDrive* drive = &scene->drive;
     const double saturated = scene->F_C / fc_scene_largest_stiffness(scene, duration);
     if (!isfinite(saturated)) {

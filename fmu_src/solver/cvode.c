@@ -14,6 +14,7 @@
 
 #ifdef FC_WITH_SUNDIALS
 
+#include <assert.h>
 #include <cvode/cvode.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
@@ -219,6 +220,7 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
 
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                    double delta_0, FcStepResult* result, FcMessage* message) {
+    assert(solver && h >= 0.0 && options->tolerance > 0.0);
     const FcDrive* drive = &scene->drive;
     const double periods = fc_drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
     if (!(periods <= MOST_PERIODS)) {

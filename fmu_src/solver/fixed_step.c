@@ -6,6 +6,7 @@
 // Every step is solver.stepSize long; the last one is shortened so that it ends at the communication point.
 // Reversals are stepped over, as such an FMU does. The equation is affine, so the implicit methods are solved
 // exactly with one division. The impulse and the work are two more quadrature equations of the same method.
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -161,6 +162,7 @@ static Integrals integrate(const FcScene* scene, FcMethod method, double step, d
 
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
                    double delta_0, FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && options->step_size > 0.0);
     if (h == 0.0) {
         *result = (FcStepResult){.delta = delta_0};
         return true;

@@ -1,5 +1,6 @@
 #include "solver/radau_step.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -64,6 +65,7 @@ static void solve(StageSystem row) {
 }
 
 void fc_radau_step(const FcScene* scene, double t, double h, double sign, FcRadauStep* step) {
+    assert(h > 0.0);
     evaluate(scene, t, h, sign, step);
     StageSystem row;
     for (int i = 0; i < FC_RADAU_STAGES; i++) {

@@ -1,5 +1,5 @@
 // Coefficients of the 9-stage Radau IIA method on [0, 1], rounded from 60 digits.
-// tests/solver/test_radau_tables.py computes them anew from their definition.
+// tests/unit/test_radau_tables.c holds them to their definition.
 #ifndef FC_SOLVER_RADAU_TABLES_H
 #define FC_SOLVER_RADAU_TABLES_H
 

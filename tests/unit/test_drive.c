@@ -1,0 +1,279 @@
+// The drive: its phase, its values and slopes, and above all the times at which V reverses.
+#include "model/drive.h"
+
+#include <stdint.h>
+
+#include "check.h"
+
+static const double TWO_PI = 6.283185307179586;
+static const double F = 20e3; // Hz
+static const double PERIOD = 5e-5;
+
+typedef struct {
+    double V, V_rate, V_1, d_rate, a_d, phase_d, start;
+} Case;
+
+static FcDrive drive_of(Case c) {
+    return fc_drive_make((FcLinearInput){c.V, c.V_rate}, (FcLinearInput){14e-6, c.d_rate},
+                         (FcLinearInput){58e9, 0.0}, (FcVibration){F, c.V_1, c.a_d, c.phase_d}, c.start, 0.0);
+}
+
+// f t modulo 1 in whole numbers: every double t from 2^29 to 2^30 s is a multiple of 2^-23 s, and f is one of 1 Hz.
+static double exact_cycles(uint64_t f, double t) {
+    const uint64_t ticks = (uint64_t)(t * 0x1p23);
+    return (double)((f * ticks) % 0x800000u) * 0x1p-23;
+}
+
+static void phase_is_exact_after_many_years(void) {
+    for (int k = 0; k < 200; k++) {
+        const double t = 1e9 + 1237.0 * k + 0x1p-23 * (k * k);
+        const FcDrive drive = drive_of((Case){.V = 0.1, .V_1 = 1.0, .start = t});
+        const double phase = TWO_PI * exact_cycles(20000u, t);
+        CHECK_WITHIN(sin(drive.theta_0 - phase), 0.0, 2e-15);
+        CHECK_WITHIN(fc_drive_V(&drive, 0.0), 0.1 + cos(phase), 2e-15);
+    }
+}
+
+static void rest_of_the_time_counts(void) {
+    const FcVibration vibration = {F, 1.0, 0.0, 0.0};
+    const FcLinearInput held = {1.0, 0.0};
+    const double rest = 4e-8; // s, below the rounding of 1e9 s
+    const FcDrive with = fc_drive_make(held, held, held, vibration, 1e9, rest);
+    const FcDrive without = fc_drive_make(held, held, held, vibration, 1e9, 0.0);
+    CHECK_WITHIN(with.theta_0 - without.theta_0, TWO_PI * F * rest, 2e-15);
+}
+
+static void amplitudes_and_rates_decide_what_moves(void) {
+    const FcDrive held = drive_of((Case){.V = 0.1});
+    const FcDrive sideways = drive_of((Case){.V = 0.1, .V_1 = 1.0});
+    const FcDrive normal = drive_of((Case){.V = 0.1, .a_d = 1e-6});
+    const FcDrive ramp = drive_of((Case){.V = 0.1, .V_rate = -2.0});
+    const FcDrive approach = drive_of((Case){.V = 0.1, .d_rate = 1e-3});
+    CHECK(fc_drive_is_constant(&held) && !fc_drive_vibrates(&held) && !fc_drive_is_linear(&held));
+    CHECK(!fc_drive_is_constant(&sideways) && fc_drive_vibrates(&sideways) && !fc_drive_is_linear(&sideways));
+    CHECK(!fc_drive_is_constant(&normal) && fc_drive_vibrates(&normal));
+    CHECK(!fc_drive_is_constant(&ramp) && !fc_drive_vibrates(&ramp) && fc_drive_is_linear(&ramp));
+    CHECK(!fc_drive_is_constant(&approach) && fc_drive_is_linear(&approach));
+}
+
+static const Case MOVING = {
+    .V = 0.1, .V_rate = 900.0, .V_1 = 0.7, .d_rate = 0.02, .a_d = 1.1e-6, .phase_d = 0.7, .start = 0.3e-5};
+
+// Eq. 24 and section 3.2 written down once more. An angle of up to 13 rad is rounded by 9e-16, on both sides.
+static void values_follow_the_formulas(void) {
+    const FcDrive drive = drive_of(MOVING);
+    for (double t = 0.0; t < 2.0 * PERIOD; t += 0.07 * PERIOD) {
+        const double angle = TWO_PI * F * (MOVING.start + t);
+        const double V = 0.1 + 900.0 * t + 0.7 * cos(angle);
+        const double d = 14e-6 + 0.02 * t + 1.1e-6 * cos(angle + 0.7);
+        const FcDriveValues both = fc_drive_values(&drive, t);
+        CHECK_WITHIN(fc_drive_V(&drive, t), V, 2e-15);
+        CHECK_WITHIN(both.V, V, 2e-15);
+        CHECK_WITHIN(fc_drive_d(&drive, t), d, 1e-20);
+        CHECK_WITHIN(both.d, d, 1e-20);
+    }
+}
+
+// Five-point differences over 1e-3 of a period: the next term is (2 pi 1e-3)^4 / 30 = 5e-11 of the amplitude's slope.
+static void slopes_are_derivatives(void) {
+    const FcDrive drive = drive_of(MOVING);
+    const double k = 1e-3 * PERIOD;
+    const double omega = TWO_PI * F;
+    for (double t = 0.0; t < 2.0 * PERIOD; t += 0.07 * PERIOD) {
+#define SLOPE(q)                                                                                             \
+    ((8.0 * (q(&drive, t + k) - q(&drive, t - k)) - (q(&drive, t + 2 * k) - q(&drive, t - 2 * k))) /         \
+     (12.0 * k))
+        CHECK_WITHIN(fc_drive_V_rate(&drive, t), SLOPE(fc_drive_V), 1e-10 * 0.7 * omega);
+        CHECK_WITHIN(fc_drive_V_curvature(&drive, t), SLOPE(fc_drive_V_rate), 1e-10 * 0.7 * omega * omega);
+        CHECK_WITHIN(fc_drive_d_rate(&drive, t), SLOPE(fc_drive_d), 1e-10 * 1.1e-6 * omega);
+        const double moved =
+            fc_drive_displacement(&drive, 0.0, t + k) - fc_drive_displacement(&drive, 0.0, t - k);
+        const double further =
+            fc_drive_displacement(&drive, 0.0, t + 2 * k) - fc_drive_displacement(&drive, 0.0, t - 2 * k);
+        CHECK_WITHIN((8.0 * moved - further) / (12.0 * k), fc_drive_V(&drive, t), 1e-9);
+    }
+}
+
+static void bounds_hold(void) {
+    const double h = 1.7 * PERIOD;
+    const double d_rates[] = {0.0, 0.02, -0.02};
+    for (int i = 0; i < 3; i++) {
+        Case c = MOVING;
+        c.d_rate = d_rates[i];
+        FcDrive drive = drive_of(c);
+        drive.E.rate = i == 1 ? 1e12 : -1e12;
+        double smallest_d = INFINITY, smallest_E = INFINITY, largest_E = 0.0, largest_speed = 0.0;
+        for (double t = 0.0; t <= h; t += 1e-3 * PERIOD) {
+            smallest_d = fmin(smallest_d, fc_drive_d(&drive, t));
+            smallest_E = fmin(smallest_E, fc_drive_E(&drive, t));
+            largest_E = fmax(largest_E, fc_drive_E(&drive, t));
+            largest_speed = fmax(largest_speed, fabs(fc_drive_V(&drive, t)));
+        }
+        // They hold, and aren't farther off than the motion of the inputs in the step.
+        CHECK(fc_drive_smallest_d(&drive, h) <= smallest_d);
+        CHECK(fc_drive_smallest_d(&drive, h) >= smallest_d - fabs(c.d_rate) * h - 1e-11);
+        CHECK(fc_drive_smallest_E(&drive, h) <= smallest_E &&
+              fc_drive_smallest_E(&drive, h) >= smallest_E - 1e5);
+        CHECK(fc_drive_largest_E(&drive, h) >= largest_E && fc_drive_largest_E(&drive, h) <= largest_E + 1e5);
+        CHECK(fc_drive_largest_speed(&drive, h) >= largest_speed);
+        CHECK(fc_drive_largest_speed(&drive, h) <= largest_speed + fabs(c.V_rate) * h + 1e-5);
+    }
+}
+
+enum { MOST_EVENTS = 64 };
+typedef struct {
+    FcDriveEvent event[MOST_EVENTS];
+    int count;
+    int reversals;
+} Events;
+
+static Events events_until(const FcDrive* drive, double end) {
+    Events all = {0};
+    double t = 0.0;
+    while (t < end && all.count < MOST_EVENTS) {
+        const FcDriveEvent next = fc_drive_next_event(drive, t, end);
+        CHECK(next.time > t && next.time <= end);
+        if (!(next.time < end)) {
+            break;
+        }
+        all.event[all.count++] = next;
+        all.reversals += next.reversal;
+        t = next.time;
+    }
+    return all;
+}
+
+// Where V = V_1 cos crosses -V, in closed form, on both sides of each half period's end.
+static void reversals_of_held_vibration(void) {
+    const double V[] = {0.0, 0.005, -0.005, 0.5, -0.5, 1.4399};
+    for (int i = 0; i < 6; i++) {
+        const FcDrive drive = drive_of((Case){.V = V[i], .V_1 = 1.44});
+        const Events all = events_until(&drive, 3.0 * PERIOD);
+        CHECK(all.count == 6 && all.reversals == 6);
+        const double first = acos(-V[i] / 1.44) / (TWO_PI * F);
+        for (int k = 0; k < all.count; k++) {
+            const double expected = k % 2 ? (k / 2 + 1) * PERIOD - first : k / 2 * PERIOD + first;
+            // A root is known as well as V's rounding over its slope allows.
+            const double slope = fabs(fc_drive_V_rate(&drive, expected));
+            CHECK_WITHIN(all.event[k].time, expected, 2e-15 * PERIOD + 2e-15 / slope);
+        }
+    }
+}
+
+// V and V_1 apart by 2^-40 of themselves: the two reversals lie 2 sqrt(2e-12) / omega around half a period.
+static void grazing_reversals(void) {
+    const double gap = 0x1p-40;
+    const FcDrive drive = drive_of((Case){.V = 1.0 - gap, .V_1 = 1.0});
+    const Events all = events_until(&drive, PERIOD);
+    CHECK(all.count == 2 && all.reversals == 2);
+    const double apart = 2.0 * sqrt(2.0 * gap) / (TWO_PI * F);
+    CHECK_NEAR(all.event[1].time - all.event[0].time, apart, 1e-9);
+    CHECK_WITHIN(0.5 * (all.event[1].time + all.event[0].time), 0.5 * PERIOD, 1e-15 * PERIOD);
+}
+
+// V just touches zero, or stays above it: one dip a period, at half of it, while it is deep enough to matter.
+static void dips_are_no_reversals(void) {
+    const double V[] = {1.0, -1.0, 1.0 + 1e-12, 1.5};
+    for (int i = 0; i < 4; i++) {
+        const FcDrive drive = drive_of((Case){.V = V[i], .V_1 = 1.0});
+        const Events all = events_until(&drive, 2.25 * PERIOD);
+        CHECK(all.reversals == 0 && all.count == 2);
+        for (int k = 0; k < all.count; k++) {
+            const double expected = V[i] > 0.0 ? (k + 0.5) * PERIOD : (k + 1) * PERIOD;
+            CHECK_WITHIN(all.event[k].time, expected, 1e-15 * PERIOD * (k + 1));
+        }
+    }
+    const FcDrive fast = drive_of((Case){.V = 30.0, .V_1 = 1.0});
+    CHECK(events_until(&fast, 3.0 * PERIOD).count == 0);
+}
+
+static void a_ramp_reverses_once(void) {
+    const FcDrive turning = drive_of((Case){.V = 0.1, .V_rate = -300.0});
+    const Events all = events_until(&turning, 1e-3);
+    CHECK(all.count == 1 && all.reversals == 1);
+    CHECK_NEAR(all.event[0].time, 0.1 / 300.0, 3e-16);
+    const FcDrive leaving = drive_of((Case){.V = 0.1, .V_rate = 300.0});
+    const FcDrive held = drive_of((Case){.V = 0.1});
+    const FcDrive at_rest = drive_of((Case){.V = 0.0});
+    CHECK(events_until(&leaving, 1e-3).count == 0);
+    CHECK(events_until(&held, 1e-3).count == 0);
+    CHECK(events_until(&at_rest, 1e-3).count == 0);
+}
+
+// Every change of sign that a fine walk sees is a reversal, in order, with V of either sign beside it.
+static void check_by_walking(const FcDrive* drive, double end, int walked) {
+    const Events all = events_until(drive, end);
+    int k = 0;
+    double before = fc_drive_V(drive, 0.0);
+    for (int i = 1; i <= walked; i++) {
+        const double t = end * i / walked;
+        const double now = fc_drive_V(drive, t);
+        if ((before < 0.0) != (now < 0.0)) {
+            while (k < all.count && !all.event[k].reversal) {
+                k++;
+            }
+            CHECK(k < all.count);
+            if (k >= all.count) {
+                return;
+            }
+            const double root = all.event[k].time;
+            CHECK(root > t - 2.0 * end / walked && root <= t + 1e-15);
+            const double rounding = 4e-16 * drive->vibration.V_1 + 4e-16 * fabs(drive->V.rate * end) + 1e-15;
+            const double slope = fabs(fc_drive_V_rate(drive, root));
+            CHECK_WITHIN(fc_drive_V(drive, root), 0.0, rounding + 4e-16 * end * slope);
+            k++;
+        }
+        before = now;
+    }
+    while (k < all.count && !all.event[k].reversal) {
+        k++;
+    }
+    CHECK(k == all.count);
+}
+
+static double uniform(double low, double high) {
+    static uint64_t x = 88172645463325252u; // xorshift64*
+    x ^= x >> 12;
+    x ^= x << 25;
+    x ^= x >> 27;
+    return low + (high - low) * (double)((x * 2685821657736338717u) >> 11) * 0x1p-53;
+}
+
+static void reversals_of_linear_inputs(void) {
+    for (int i = 0; i < 300; i++) {
+        const double steepness = uniform(-1.5, 1.5); // V' over the vibration's largest slope
+        const Case c = {.V = uniform(-2.0, 2.0),
+                        .V_rate = i % 3 ? steepness * TWO_PI * F : 0.01 * steepness * TWO_PI * F,
+                        .V_1 = 1.0,
+                        .start = uniform(0.0, PERIOD)};
+        const FcDrive drive = drive_of(c);
+        check_by_walking(&drive, 2.6 * PERIOD, 20000);
+    }
+}
+
+// V rises from below -V_1: near its end the ramp lets V graze zero in a dip before it crosses for good.
+static void dips_of_linear_inputs(void) {
+    const FcDrive above = drive_of((Case){.V = 1.2, .V_rate = 1.0, .V_1 = 1.0});
+    const Events all = events_until(&above, 2.0 * PERIOD);
+    CHECK(all.count == 2 && all.reversals == 0);
+    for (int k = 0; k < all.count; k++) { // where V' + V_1 omega sin = 0, beside half periods
+        CHECK_WITHIN(all.event[k].time, (k + 0.5) * PERIOD, 1e-5 * PERIOD);
+        CHECK_WITHIN(fc_drive_V_rate(&above, all.event[k].time), 0.0, 1e-9 * TWO_PI * F);
+    }
+}
+
+int main(void) {
+    phase_is_exact_after_many_years();
+    rest_of_the_time_counts();
+    amplitudes_and_rates_decide_what_moves();
+    values_follow_the_formulas();
+    slopes_are_derivatives();
+    bounds_hold();
+    reversals_of_held_vibration();
+    grazing_reversals();
+    dips_are_no_reversals();
+    a_ramp_reverses_once();
+    reversals_of_linear_inputs();
+    dips_of_linear_inputs();
+    return check_result();
+}
