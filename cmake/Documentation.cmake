@@ -5,8 +5,8 @@ set(documentation_page "${CMAKE_BINARY_DIR}/generated/index.html")
 file(GLOB documentation_parts CONFIGURE_DEPENDS docs/fmu/*.html docs/fmu/*.svg)
 add_custom_command(
     OUTPUT "${documentation_page}"
-    COMMAND Python3::Interpreter -B scripts/frictionlab/fmu_documentation.py "${documentation_page}"
-    DEPENDS "${model_description}" ${documentation_parts} scripts/frictionlab/fmu_documentation.py
+    COMMAND Python3::Interpreter -B -m frictionlab.fmu_docs.page "${documentation_page}"
+    DEPENDS "${model_description}" ${documentation_parts} frictionlab/fmu_docs/page.py frictionlab/project.py
     WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}"
     COMMENT "Writing the documentation"
     VERBATIM)

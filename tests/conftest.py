@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.fmu import FrictionFmu
 
 ROOT = Path(__file__).resolve().parent.parent
 

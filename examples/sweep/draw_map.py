@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+
 from frictionlab import style
-from frictionlab.scenarios import COULOMB_FORCE, FREQUENCY, STIFFNESS_PRINTED
+from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, STIFFNESS_PRINTED
 
 V_1 = 1.44  # m/s
 

@@ -14,12 +14,14 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from frictionlab import style
-from frictionlab.build import ROOT, BuildError, build_fmu
-from frictionlab.reference_contact import Contact, stiffness
-from frictionlab.scenarios import E_REDUCED, SEPARATION
 from scipy.integrate import solve_ivp
-from systems import MasterError, parameters, run_libcosim, write_ssp
+
+from frictionlab import style
+from frictionlab.build import BuildError, build_fmu
+from frictionlab.parameters import E_REDUCED, SEPARATION
+from frictionlab.project import ROOT
+from frictionlab.reference.contact import Contact, stiffness
+from frictionlab.systems import MasterError, parameters, run_libcosim, write_ssp
 
 HERE = Path(__file__).resolve().parent
 DURATION = 0.1  # s

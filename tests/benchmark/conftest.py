@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from frictionlab.bench import Bench, build_programs
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.bench.driver import Bench, build_programs
+from frictionlab.fmu import FrictionFmu
 
 
 @pytest.fixture(scope="session")

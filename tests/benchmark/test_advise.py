@@ -6,12 +6,13 @@ import re
 from pathlib import Path
 
 import pytest
-from frictionlab import advise
-from frictionlab.bench import Bench
-from frictionlab.bench_cases import Case, expected
-from frictionlab.levels import cheapest, grade, scenes
-from frictionlab.scenarios import PERIOD
-from frictionlab.simulate import FrictionFmu, simulate
+
+from frictionlab.bench import advise
+from frictionlab.bench.cases import Case, expected
+from frictionlab.bench.driver import Bench
+from frictionlab.bench.levels import cheapest, grade, scenes
+from frictionlab.fmu import FrictionFmu, simulate
+from frictionlab.parameters import PERIOD
 
 SOFT = {"vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "contact.stiffnessScale": 4.353e-7}
 

@@ -6,7 +6,8 @@ import sys
 
 import numpy as np
 import pytest
-from frictionlab.bench import Bench, Job
+
+from frictionlab.bench.driver import Bench, Job
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the counter is preloaded, as Linux allows")
 

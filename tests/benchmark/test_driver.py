@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frictionlab.bench import Bench, Job
-from frictionlab.bench_cases import Case, cases, expected, sampled, vibrating
-from frictionlab.bench_peers import SCIPY, plain_cvode, python_fmu, scipy_solver
-from frictionlab.simulate import FrictionFmu, simulate
+
+from frictionlab.bench.cases import Case, cases, expected, sampled, vibrating
+from frictionlab.bench.driver import Bench, Job
+from frictionlab.bench.peers import SCIPY, plain_cvode, python_fmu, scipy_solver
+from frictionlab.fmu import FrictionFmu, simulate
 
 SOFT = replace(vibrating(6e6), starts=(0.0,), count=2)
 

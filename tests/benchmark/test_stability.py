@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frictionlab.simulate import FrictionFmu
-from frictionlab.stability_coupled import (
+
+from frictionlab.bench.coupling import (
     COUPLINGS,
     Belt,
     cosimulate,
@@ -14,7 +14,8 @@ from frictionlab.stability_coupled import (
     monolithic,
     theoretical_edge,
 )
-from frictionlab.stability_map import EDGES, classify, measured_edge
+from frictionlab.bench.stability_map import EDGES, classify, measured_edge
+from frictionlab.fmu import FrictionFmu
 
 
 @pytest.mark.parametrize(("method", "edge"), [(m, edge) for m, limits in EDGES.items() for edge in limits])

@@ -7,9 +7,10 @@ import math
 from pathlib import Path
 
 import pytest
-from frictionlab import stability, work_precision
-from frictionlab.bench import Bench
-from frictionlab.work_precision import Point, cost_at, step_size_points
+
+from frictionlab.bench import stability, work_precision
+from frictionlab.bench.driver import Bench
+from frictionlab.bench.work_precision import Point, cost_at, step_size_points
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:

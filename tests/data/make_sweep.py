@@ -13,11 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-
-from frictionlab import reference
-from frictionlab.reference import MP, Contact, Scene
-from frictionlab.reference_arithmetic import multiprecision
+from frictionlab.reference import solution as reference
+from frictionlab.reference.arithmetic import multiprecision
+from frictionlab.reference.solution import MP, Contact, Scene
 
 SEED = 20240607
 COUNT = 500

@@ -6,8 +6,8 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from frictionlab.reference import Contact, Scene
-from frictionlab.scenes import start_values_of
+from frictionlab.reference.solution import Contact, Scene
+from frictionlab.reference.start_values import start_values_of
 
 
 @dataclass(frozen=True)

@@ -1,15 +1,12 @@
-"""Makes the examples importable, and their second FMU."""
+"""The second FMU of the examples."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-for folder in ("examples", "examples/stick-slip", "examples/ultrasonic-slider", "examples/ci-validation"):
-    sys.path.append(str(ROOT / folder))
 
 
 @pytest.fixture(scope="session")

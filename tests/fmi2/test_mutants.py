@@ -6,7 +6,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from frictionlab.reliability_mutations import MUTANTS, ROOT, Mutant, mutated
+
+from frictionlab.check.mutants import MUTANTS, Mutant, mutated
+from frictionlab.project import ROOT
 
 
 def test_every_capability_has_a_mutant(unzipped_fmu: Path) -> None:

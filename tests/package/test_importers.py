@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-from frictionlab.scenarios import IDENTIFIED, TABLE_2, start_values
-from frictionlab.simulate import OUTPUTS, FrictionFmu, simulate
+
+from frictionlab.fmu import OUTPUTS, FrictionFmu, simulate
+from frictionlab.parameters import IDENTIFIED, TABLE_2, start_values
 
 
 def test_fmpy_validate_finds_nothing(fmu_path: Path) -> None:

@@ -8,12 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frictionlab.heights import Surfaces, area, closed_form_area, load, stiffness
-from frictionlab.identify import EXAMPLE
-from frictionlab.identify_data import read
-from frictionlab.identify_fit import Experiment, fit, parameter
-from frictionlab.paper_claims import mean_changes
-from frictionlab.paper_equations import (
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import i0
+
+from frictionlab.contact.heights import Surfaces, area, closed_form_area, load, stiffness
+from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.identify.command import EXAMPLE
+from frictionlab.identify.data import read
+from frictionlab.identify.fit import Experiment, fit, parameter
+from frictionlab.paper.claims import mean_changes
+from frictionlab.paper.equations import (
     area_eq_20,
     force_eq_23,
     force_eq_25,
@@ -21,7 +26,7 @@ from frictionlab.paper_equations import (
     residual_eq_25,
     yield_pressure_ratio,
 )
-from frictionlab.scenarios import (
+from frictionlab.parameters import (
     COULOMB_FORCE,
     E_FULL,
     E_REDUCED,
@@ -34,11 +39,7 @@ from frictionlab.scenarios import (
     TABLE_2,
     start_values,
 )
-from frictionlab.sensitivity import coulomb_limit, soft_limit
-from frictionlab.simulate import FrictionFmu, periodic_mean
-from scipy.integrate import quad
-from scipy.optimize import brentq
-from scipy.special import i0
+from frictionlab.regimes.mean import coulomb_limit, soft_limit
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
 SURFACES = Surfaces()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frictionlab import paper_figures, report_plotly
-from frictionlab.report_picture import Level, Line, Picture
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.figure import Level, Line, Picture
+from frictionlab.fmu import FrictionFmu
+from frictionlab.paper import figures as paper_figures
+from frictionlab.report import panels as report_plotly
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,8 @@ import math
 from pathlib import Path
 
 import pytest
-from frictionlab.heights import (
+
+from frictionlab.contact.heights import (
     GapError,
     Surfaces,
     area,
@@ -18,8 +19,8 @@ from frictionlab.heights import (
     separation,
     stiffness,
 )
-from frictionlab.scenarios import E_FULL, E_REDUCED
-from frictionlab.simulate import FrictionFmu
+from frictionlab.fmu import FrictionFmu
+from frictionlab.parameters import E_FULL, E_REDUCED
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 TABLE_1 = Surfaces()

@@ -7,9 +7,11 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from frictionlab.reference_constant import periodic_mean
-from frictionlab.scenarios import COULOMB_FORCE, FREQUENCY
-from frictionlab.sensitivity import (
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.parameters import COULOMB_FORCE, FREQUENCY
+from frictionlab.reference.constant import periodic_mean
+from frictionlab.regimes.mean import (
     PARAMETERS,
     REGIMES,
     V_1,
@@ -21,7 +23,6 @@ from frictionlab.sensitivity import (
     soft_limit,
     soft_sensitivity,
 )
-from frictionlab.simulate import FrictionFmu
 
 ALPHA, PHASE = 1.1 / 6.0, 2.0
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frictionlab import reference_contact, scenarios
-from frictionlab.reference import MP, Contact
-from frictionlab.simulate import FrictionFmu, Session, simulate
+
+from frictionlab import parameters as scenarios
+from frictionlab.fmu import FrictionFmu, Session, simulate
+from frictionlab.reference import contact as reference_contact
+from frictionlab.reference.solution import MP, Contact
 
 E_FULL, E_REDUCED = scenarios.E_FULL, scenarios.E_REDUCED
 UM = 1e-6

@@ -10,9 +10,10 @@ import math
 from typing import Any
 
 import pytest
-from frictionlab.simulate import OUTPUTS, FrictionFmu
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+
+from frictionlab.fmu import OUTPUTS, FrictionFmu
 
 TOLERANCE = 1e-8
 # A power of two: its period, and any number of them, are exact in time.

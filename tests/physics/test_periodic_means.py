@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frictionlab import reference, reference_constant
-from frictionlab.reference import MP
-from frictionlab.scenarios import IDENTIFIED, IDENTIFIED_ABSOLUTE, PRINTED, TABLE_2, Row, start_values
-from frictionlab.scenes import scene_of
-from frictionlab.simulate import FrictionFmu, periodic_mean
+
+from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.parameters import IDENTIFIED, IDENTIFIED_ABSOLUTE, PRINTED, TABLE_2, Row, start_values
+from frictionlab.reference import constant as reference_constant
+from frictionlab.reference import solution as reference
+from frictionlab.reference.solution import MP
+from frictionlab.reference.start_values import scene_of
 
 ACCURATE = {"solver.tolerance": 1e-11}
 

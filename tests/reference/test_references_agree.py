@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from frictionlab import reference, reference_collocation, reference_constant
-from frictionlab.reference import EXTENDED, MP, MULTIPRECISION, Contact, Scene
-from frictionlab.reference_arithmetic import multiprecision
-from frictionlab.scenarios import IDENTIFIED, PRINTED, TABLE_2, start_values
-from frictionlab.scenes import scene_of
+
+from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, start_values
+from frictionlab.reference import collocation as reference_collocation
+from frictionlab.reference import constant as reference_constant
+from frictionlab.reference import solution as reference
+from frictionlab.reference.arithmetic import multiprecision
+from frictionlab.reference.solution import EXTENDED, MP, MULTIPRECISION, Contact, Scene
+from frictionlab.reference.start_values import scene_of
 
 STIFF = Contact()
 SOFT = Contact(stiffnessScale=1e-8)  # 6e4 N/m at 14 um

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 from data.sweep import SWEEP, SweepRow
-from frictionlab import reference, reference_collocation
-from frictionlab.reference import MP
-from frictionlab.reference_arithmetic import multiprecision
+
+from frictionlab.reference import collocation as reference_collocation
+from frictionlab.reference import solution as reference
+from frictionlab.reference.arithmetic import multiprecision
+from frictionlab.reference.solution import MP
 
 
 def test_it_holds_500_scenes_of_every_kind() -> None:

@@ -11,9 +11,9 @@ MISSING = "the release's packages are not installed: scripts/setup release"
 pytest.importorskip("lief", reason=MISSING)
 pytest.importorskip("ziglang", reason=MISSING)
 
-from frictionlab.release import SUNDIALS, compile_platforms  # noqa: E402
-from frictionlab.release_sundials import SundialsSource, fetched  # noqa: E402
-from frictionlab.release_targets import ReleaseError  # noqa: E402
+from frictionlab.release.command import SUNDIALS, compile_platforms  # noqa: E402
+from frictionlab.release.sundials import SundialsSource, fetched  # noqa: E402
+from frictionlab.release.targets import ReleaseError  # noqa: E402
 
 
 @pytest.fixture(scope="session")

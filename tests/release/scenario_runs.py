@@ -6,9 +6,10 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-from frictionlab.release import CACHE, fmi_headers, model_description
-from frictionlab.release_targets import TARGETS, run_zig
-from frictionlab.scenarios import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
+
+from frictionlab.parameters import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
+from frictionlab.release.command import CACHE, fmi_headers, model_description
+from frictionlab.release.targets import TARGETS, run_zig
 
 ROOT = Path(__file__).resolve().parents[2]
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")

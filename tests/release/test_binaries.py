@@ -9,11 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from frictionlab import release_inspect
-from frictionlab.release import CACHE, fmi_headers
-from frictionlab.release_inspect import Library, check, inspect
-from frictionlab.release_targets import ReleaseError, run_zig
-from frictionlab.release_universal import universal
+
+from frictionlab.release import inspect as release_inspect
+from frictionlab.release.command import CACHE, fmi_headers
+from frictionlab.release.inspect import Library, check, inspect
+from frictionlab.release.targets import ReleaseError, run_zig
+from frictionlab.release.universal import universal
 
 PLATFORMS = [
     "linux64",

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frictionlab.scenarios import IDENTIFIED, PERIOD, TABLE_2, start_values
-from frictionlab.simulate import FrictionFmu, simulate
 from scenario_runs import OUTPUTS, build_host, largest_difference, run
+
+from frictionlab.fmu import FrictionFmu, simulate
+from frictionlab.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 
 WINE = next(filter(None, map(shutil.which, ("wine64", "wine", "/usr/lib/wine/wine64"))), None)
 QEMU = next(filter(None, map(shutil.which, ("qemu-aarch64", "qemu-aarch64-static"))), None)

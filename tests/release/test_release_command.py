@@ -13,10 +13,13 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-from frictionlab import release, release_sundials, release_targets
-from frictionlab.release_sundials import SundialsSource
-from frictionlab.release_targets import ReleaseError
 from rich.progress import Progress
+
+from frictionlab.release import command as release
+from frictionlab.release import sundials as release_sundials
+from frictionlab.release import targets as release_targets
+from frictionlab.release.sundials import SundialsSource
+from frictionlab.release.targets import ReleaseError
 
 QUIET = {"transient": True, "disable": True}
 
@@ -100,10 +103,9 @@ def test_missing_toolchain_from_the_command_line(tmp_path: Path) -> None:
     """One line on stderr and a failing exit status."""
     (tmp_path / "ziglang").mkdir()
     (tmp_path / "ziglang" / "__init__.py").touch()
-    search = os.pathsep.join([str(tmp_path), str(release.ROOT / "scripts")])
     run = subprocess.run(
-        [sys.executable, "-m", "frictionlab.release", "-o", str(tmp_path / "a.fmu")],
-        env={**os.environ, "PYTHONPATH": search},
+        [sys.executable, "-m", "frictionlab.release.command", "-o", str(tmp_path / "a.fmu")],
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
         capture_output=True,
         text=True,
     )

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from frictionlab.release import compile_platforms
-from frictionlab.release_sundials import SundialsSource
+
+from frictionlab.release.command import compile_platforms
+from frictionlab.release.sundials import SundialsSource
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 from fmpy import supported_platforms
-from frictionlab.simulate import FrictionError, FrictionFmu, simulate
+
+from frictionlab.fmu import FrictionError, FrictionFmu, simulate
 
 
 @pytest.fixture

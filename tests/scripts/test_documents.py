@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frictionlab import table2
-from frictionlab.pictures import SCENE
-from frictionlab.run import percent
-from frictionlab.simulate import OUTPUTS, FrictionFmu, simulate
+
+from frictionlab.fmu import OUTPUTS, FrictionFmu, simulate
+from frictionlab.fmu_docs.readme import SCENE
+from frictionlab.paper import table2
+from frictionlab.paper.run import percent
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md")])

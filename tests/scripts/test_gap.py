@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 
 import pytest
-from frictionlab import gap
-from frictionlab.heights import Surfaces, load
+
+from frictionlab.contact import separation as gap
+from frictionlab.contact.heights import Surfaces, load
 
 
 def test_load_gives_start_values_that_carry_it(capsys: pytest.CaptureFixture[str]) -> None:

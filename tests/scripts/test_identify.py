@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frictionlab import identify
-from frictionlab.identify_data import DataError, Measurements, read
-from frictionlab.identify_fit import Experiment, Fit, fit, parameter
-from frictionlab.identify_recovery import NOISE, TRUTH, fits, held, measurements, true_forces
-from frictionlab.scenarios import STIFFNESS_PRINTED
-from frictionlab.simulate import FrictionFmu
 from scipy import stats
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.identify import command as identify
+from frictionlab.identify.data import DataError, Measurements, read
+from frictionlab.identify.fit import Experiment, Fit, fit, parameter
+from frictionlab.identify.recovery import NOISE, TRUTH, fits, held, measurements, true_forces
+from frictionlab.parameters import STIFFNESS_PRINTED
 
 SEEDS = 100
 

@@ -7,7 +7,9 @@ import re
 from pathlib import Path
 
 import pytest
-from frictionlab import report, report_browser
+
+from frictionlab.report import browser as report_browser
+from frictionlab.report import command as report
 
 SECTIONS = (
     "claims",

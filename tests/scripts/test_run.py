@@ -9,10 +9,11 @@ from pathlib import Path
 
 import matplotlib.image
 import pytest
-from frictionlab import reference
-from frictionlab.scenarios import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
-from frictionlab.scenes import scene_of
-from frictionlab.table2 import CSV_COLUMNS
+
+from frictionlab.paper.table2 import CSV_COLUMNS
+from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
+from frictionlab.reference import solution as reference
+from frictionlab.reference.start_values import scene_of
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -14,26 +14,43 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from frictionlab import sweep, sweep_cluster
-from frictionlab.reference import periodic_mean
-from frictionlab.scenarios import IDENTIFIED, TABLE_2, start_values
-from frictionlab.scenes import scene_of
-from frictionlab.simulate import FrictionFmu
-from frictionlab.sweep_scenario import RESULTS, Sampling, evaluate
-from frictionlab.sweep_shipping import pickled
 from scipy.integrate import quad
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.parameters import IDENTIFIED, TABLE_2, start_values
+from frictionlab.reference.solution import periodic_mean
+from frictionlab.reference.start_values import scene_of
+from frictionlab.sweep import cluster as sweep_cluster
+from frictionlab.sweep import command as sweep
+from frictionlab.sweep.scenario import RESULTS, Sampling, evaluate
+from frictionlab.sweep.shipping import pickled
 
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
 
 
 def command(fmu: Path, output: Path, *arguments: str) -> list[str]:
-    return [sys.executable, "-m", "frictionlab.sweep", "--fmu", str(fmu), "--output", str(output), *arguments]
+    return [
+        sys.executable,
+        "-m",
+        "frictionlab.sweep.command",
+        "--fmu",
+        str(fmu),
+        "--output",
+        str(output),
+        *arguments,
+    ]
 
 
-def environment(with_project: bool = True) -> dict[str, str]:
-    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    return {**kept, "PYTHONPATH": str(ROOT / "scripts")} if with_project else kept
+def environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+
+def without_project(folder: Path) -> dict[str, str]:
+    """An environment in which `import frictionlab` fails, as on a machine that lacks this project."""
+    (folder / "hidden").mkdir()
+    (folder / "hidden" / "frictionlab.py").write_text("raise ImportError('this project is not here')\n")
+    return {**environment(), "PYTHONPATH": str(folder / "hidden")}
 
 
 def run(fmu: Path, output: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -250,7 +267,7 @@ class TestRuns:
     ) -> None:
         """Workers know nothing of this project: its code and the FMU come with the work."""
         dask, contact = Path(sys.executable).parent / "dask", tmp_path / "scheduler.json"
-        quiet = {"env": environment(False), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
+        quiet = {"env": without_project(tmp_path), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
         started([dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
                  "--scheduler-file", contact], **quiet)  # fmt: skip
         wait_for(contact.exists)
@@ -281,7 +298,7 @@ class TestRuns:
         self, fmu_path: Path, tmp_path: Path, started: Callable[..., subprocess.Popen]
     ) -> None:
         contact = tmp_path / "scheduler.json"
-        quiet = {"env": environment(False), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
+        quiet = {"env": without_project(tmp_path), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
         dask = Path(sys.executable).parent / "dask"
         scheduler = started([dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
                              "--scheduler-file", contact], **quiet)  # fmt: skip

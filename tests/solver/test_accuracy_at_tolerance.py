@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import pytest
 from data.sweep import SWEEP, SweepRow
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.fmu import FrictionFmu
 
 FLOOR = 1e-10
 TOLERANCES = sorted({row.tolerance for row in SWEEP})

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 from data.sweep import SWEEP
-from frictionlab import reference
-from frictionlab.reference import MP
-from frictionlab.reference_arithmetic import multiprecision
-from frictionlab.scenes import scene_of
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.reference import solution as reference
+from frictionlab.reference.arithmetic import multiprecision
+from frictionlab.reference.solution import MP
+from frictionlab.reference.start_values import scene_of
 
 PERIOD = 1.0 / 20e3
 FLOOR = 1e-10

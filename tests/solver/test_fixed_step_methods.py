@@ -10,11 +10,12 @@ import re
 
 import numpy as np
 import pytest
-from frictionlab import reference
-from frictionlab.reference import MP
-from frictionlab.reference_arithmetic import multiprecision
-from frictionlab.scenes import scene_of
-from frictionlab.simulate import FrictionError, FrictionFmu
+
+from frictionlab.fmu import FrictionError, FrictionFmu
+from frictionlab.reference import solution as reference
+from frictionlab.reference.arithmetic import multiprecision
+from frictionlab.reference.solution import MP
+from frictionlab.reference.start_values import scene_of
 
 ORDERS = {"explicitEuler": 1, "backwardEuler": 1, "trapezoid": 2, "rk4": 4}
 EXPLICIT = {"explicitEuler": 2.0, "rk4": 2.785293563405282}

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from frictionlab.scenarios import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
 
 COUNT = 10_000
 ONE_MILLION = 1_000_000

@@ -9,11 +9,12 @@ dip the force hardly relaxes, an instant later it does within 1e-4 of a period: 
 from __future__ import annotations
 
 import pytest
-from frictionlab import reference
-from frictionlab.reference import MP, Contact, Scene
-from frictionlab.reference_arithmetic import multiprecision
-from frictionlab.scenes import start_values_of
-from frictionlab.simulate import FrictionFmu
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.reference import solution as reference
+from frictionlab.reference.arithmetic import multiprecision
+from frictionlab.reference.solution import MP, Contact, Scene
+from frictionlab.reference.start_values import start_values_of
 
 FREQUENCY = 16384.0  # Hz, so that the dips are at exact times
 DEPTHS = [0.0, 1e-14, -1e-14, 1e-11, -1e-11, 1e-8, -1e-8, 1e-5, -1e-5, 1e-2, -1e-2]

@@ -1,0 +1,343 @@
+"""Speed against accuracy: every method of the FMU and its peers, scene by scene."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from rich.progress import Progress
+from rich.table import Table
+
+from frictionlab.bench import figures as bench_pictures
+from frictionlab.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
+from frictionlab.bench.driver import (
+    Bench,
+    Job,
+    Outcome,
+    command_line,
+    guarded,
+    open_bench,
+    renew_docs,
+    shown,
+    wide_console,
+    write_csv,
+    write_machine,
+)
+from frictionlab.bench.peers import SCIPY, PythonFmu, plain_cvode, python_fmu, scipy_solver
+from frictionlab.command import progress_bar
+from frictionlab.fmu import Value
+from frictionlab.parameters import PERIOD
+
+DESCRIPTION = """\
+Measures speed against accuracy. For each scene, every method of the FMU and its peers (CVODE with its
+defaults, scipy's Radau, BDF and LSODA, an FMU made with PythonFMU) over tolerances or steps: CPU and wall
+time, evaluations of the right-hand side, and the largest error of F_t and of its mean against an
+independent reference. Then the error against the communication step for held and linear inputs, and the
+cost of one step against the number of vibration periods in it."""
+
+FIXED_STEP = ("backwardEuler", "trapezoid", "rk4", "explicitEuler")
+MATCHED_ERROR = 1e-9
+
+
+@dataclass(frozen=True)
+class Point:
+    """One method at one setting on one case; errors over F_C, times in s per vibration period."""
+
+    case: str
+    method: str
+    setting: float  # tolerance, or internal steps per communication step
+    error_F: float
+    error_mean: float
+    cpu: float
+    wall: float
+    evaluations: float
+    failure: str = ""
+
+    @property
+    def error(self) -> float:
+        return max(self.error_F, self.error_mean)
+
+    def row(self) -> dict[str, object]:
+        return {
+            "case": self.case,
+            "method": self.method,
+            "setting": self.setting,
+            "error_F_t": self.error_F,
+            "error_F_t_mean": self.error_mean,
+            "cpu_s_per_period": self.cpu,
+            "wall_s_per_period": self.wall,
+            "evaluations_per_period": self.evaluations,
+            "failure": self.failure,
+        }
+
+
+References = dict[float, tuple[np.ndarray, np.ndarray]]
+
+
+def point(
+    case: Case, references: References, method: str, setting: float, run: Callable[[float], Outcome]
+) -> Point:
+    """Runs a method from each start for which there is a reference."""
+    outcomes = {start: run(start) for start in references}
+    for outcome in outcomes.values():
+        if outcome.failure:
+            return Point(case.name, method, setting, *[math.nan] * 5, outcome.failure)
+    error_F, error_mean = 0.0, 0.0
+    for start, (F, F_mean) in references.items():
+        error_F = max(error_F, float(np.abs(outcomes[start].F - F).max()) / case.F_C)
+        error_mean = max(error_mean, float(np.abs(outcomes[start].F_mean - F_mean).max()) / case.F_C)
+    scale = PERIOD / case.step
+    cpu, wall, evaluations = (
+        scale * float(np.median([getattr(outcome, name) for outcome in outcomes.values()]))
+        for name in ("cpu", "wall", "evaluations")
+    )
+    return Point(case.name, method, setting, error_F, error_mean, cpu, wall, evaluations)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is measured."""
+
+    tolerances: Sequence[float]  # of collocation and both CVODEs
+    slow_tolerances: Sequence[float]  # of what runs in Python
+    steps: Sequence[int]  # internal steps per communication step
+    budget: float  # s of CPU time for one setting
+    most_evaluations: int  # of scipy's solvers in one run
+    scipy: Sequence[str]
+
+
+FULL = Effort(
+    [10.0**-k for k in range(2, 13)],
+    [1e-3, 1e-4, 1e-6, 1e-8, 1e-10],
+    [4**k for k in range(9)],
+    0.01,
+    15_000,
+    SCIPY,
+)
+QUICK = Effort([1e-3, 1e-6, 1e-9, 1e-12], [1e-3, 1e-6], [1, 16, 256, 4096], 0.004, 1500, ("Radau", "LSODA"))
+
+
+def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iterator[Point]:
+    references = {start: expected(case, start) for start in case.starts}
+    one = {case.starts[0]: references[case.starts[0]]}  # slow peers run from one start only
+
+    def fmu(**settings: Value) -> Callable[[float], Outcome]:
+        return lambda start: bench.run(case.job(start, effort.budget, **settings))
+
+    for tolerance in effort.tolerances:
+        for method in ("collocation", "cvode"):
+            run = fmu(solver__method=method, solver__tolerance=tolerance)
+            yield point(case, references, method, tolerance, run)
+        yield point(
+            case,
+            references,
+            "plain CVODE",
+            tolerance,
+            lambda start, tolerance=tolerance: plain_cvode(bench, case, start, tolerance, effort.budget),
+        )
+    for steps in effort.steps:
+        for method in FIXED_STEP:
+            run = fmu(solver__method=method, solver__stepSize=case.step / steps)
+            yield point(case, references, method, steps, run)
+    for tolerance in effort.slow_tolerances:
+        for method in effort.scipy:
+            yield point(
+                case,
+                one,
+                f"scipy {method}",
+                tolerance,
+                lambda start, method=method, tolerance=tolerance: scipy_solver(
+                    case, start, method, tolerance, effort.most_evaluations
+                ),
+            )
+        yield point(
+            case,
+            one,
+            "PythonFMU",
+            tolerance,
+            lambda start, tolerance=tolerance: python.run(case, start, tolerance),
+        )
+
+
+def cost_at(points: Sequence[Point], error: float) -> float:
+    """CPU time [s] per period at which a method reaches the error: interpolated between its settings."""
+    measured = sorted((p for p in points if not p.failure), key=lambda p: -p.error)
+    front: list[Point] = []  # ever smaller errors at ever higher cost
+    for p in measured:
+        while front and front[-1].cpu >= p.cpu:
+            front.pop()
+        front.append(p)
+    if not front or front[-1].error > error:
+        return math.nan
+    if front[0].error <= error:
+        return front[0].cpu
+    errors = [-math.log(max(p.error, 1e-17)) for p in front]
+    return math.exp(np.interp(-math.log(error), errors, [math.log(p.cpu) for p in front]))
+
+
+def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
+    """Error against the true vibration when V and d come from outside as samples, held or linear."""
+    counts = (5, 20, 100) if quick else (5, 10, 20, 50, 100, 200, 400)
+    rows = []
+    for sigma in (6e6,) if quick else (6e6, 6e12):
+        for n in counts:
+            truth: tuple[np.ndarray, np.ndarray] | None = None
+            for linear in (False, True):
+                case = sampled(n, sigma, linear, periods=2)
+                inside = replace(
+                    case,
+                    start_values={**vibrating(sigma).start_values},
+                    inputs={},
+                )
+                truth = truth or expected(inside, 0.13 * PERIOD)
+                outcome = bench.run(case.job(0.0, 0.0, solver__tolerance=1e-9))
+                errors = [
+                    float(np.abs(got - right).max()) / case.F_C
+                    for got, right in zip((outcome.F, outcome.F_mean), truth, strict=True)
+                ]
+                rows.append(
+                    {
+                        "sigma": sigma,
+                        "samples_per_period": n,
+                        "inputs": "linear" if linear else "held",
+                        "error_F_t": errors[0],
+                        "error_F_t_mean": errors[1],
+                    }
+                )
+    return rows
+
+
+def period_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
+    """CPU time of one communication step against the number of vibration periods in it."""
+    rows = []
+    most = {"collocation": 1e9, "cvode": 1e3, "backwardEuler": 1e4}
+    for method in most:
+        for periods in (1, 10, 1e2, 1e3, 1e4, 1e6, 1e9):
+            if periods > most[method] * (0.1 if quick else 1.0):
+                continue
+            values = {
+                **vibrating(6e8).start_values,
+                "solver.method": method,
+                "solver.stepSize": PERIOD / 1000,
+            }
+            outcome = bench.run(Job(values, periods * PERIOD, 2, budget=0.004 if quick else 0.05))
+            rows.append(
+                {
+                    "method": method,
+                    "periods": periods,
+                    "cpu_s_per_step": outcome.cpu,
+                    "wall_s_per_step": outcome.wall,
+                    "evaluations_per_step": outcome.evaluations,
+                    "failure": outcome.failure,
+                }
+            )
+    return rows
+
+
+def held_step(bench: Bench, quick: bool) -> Outcome:
+    """Three inputs set, one step, two outputs read; no vibration."""
+    k = np.arange(64)
+    inputs = {
+        "V": 0.005 + 0.001 * np.cos(k),
+        "d": 14e-6 + 1e-8 * np.sin(k),
+        "E": 58e9 + 1e7 * np.sin(k),
+    }
+    return bench.run(Job({}, 1e-6, 200_000, inputs=inputs, budget=0.1 if quick else 1.0))
+
+
+def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
+    """Cost of each method over that of collocation at the matched error."""
+    methods = [m for m in dict.fromkeys(p.method for p in points) if m != "collocation"]
+    rows = []
+    for case in dict.fromkeys(p.case for p in points):
+        own = {m: [p for p in points if p.case == case and p.method == m] for m in (*methods, "collocation")}
+        base = cost_at(own["collocation"], MATCHED_ERROR)
+        costs = {m: cost_at(own[m], MATCHED_ERROR) / base for m in methods}
+        rows.append({"case": case, "collocation_us_per_period": 1e6 * base, **costs})
+    return rows
+
+
+def ratio_table(rows: Sequence[dict[str, object]]) -> Table:
+    """The nearest rivals; the CSV has them all."""
+    table = Table(
+        title=f"CPU time over that of collocation, both with errors of {MATCHED_ERROR:.0e} F_C at most",
+        title_justify="left",
+    )
+    table.add_column("scene", no_wrap=True)
+    for heading in ("collocation", "cvode", "plain CVODE", "fixed step", "Python"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in rows:
+        own = f"{row['collocation_us_per_period']:.2f} us"
+        python = (*(f"scipy {method}" for method in SCIPY), "PythonFMU")
+        rivals = [("cvode",), ("plain CVODE",), FIXED_STEP, python]
+        table.add_row(str(row["case"]), own, *(_cheapest(row, names) for names in rivals))
+    return table
+
+
+def _cheapest(row: dict[str, object], names: Sequence[str]) -> str:
+    known = [float(row[name]) for name in names if not math.isnan(row.get(name, math.nan))]  # type: ignore[arg-type]
+    return f"{min(known):.3g}" if known else "not reached"
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    options = command_line("work-precision", DESCRIPTION).parse_args(argv)
+    with progress_bar() as progress:
+        guarded(lambda: run(options, progress))
+
+
+def run(options: argparse.Namespace, progress: Progress) -> None:
+    output, quick, build_dir = options.output, options.quick, options.build_dir
+    effort = QUICK if quick else FULL
+    chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
+    output.mkdir(parents=True, exist_ok=True)
+    with open_bench(build_dir, progress) as bench, python_fmu() as python:
+        task = progress.add_task("Measuring", total=len(chosen) + 3)
+        points: list[Point] = []
+        for case in chosen:
+            progress.update(task, description=case.name)
+            points += measure(bench, python, case, effort)
+            progress.advance(task)
+        step_sizes = step_size_points(bench, quick)
+        progress.advance(task)
+        periods = period_points(bench, quick)
+        progress.advance(task)
+        held = held_step(bench, quick)
+    compared = ratios(points)
+    written = [
+        write_csv([p.row() for p in points], output / "work-precision.csv"),
+        write_csv(compared, output / "work-precision-ratios.csv"),
+        write_csv(step_sizes, output / "step-size.csv"),
+        write_csv(periods, output / "periods.csv"),
+        write_machine(output / "machine.json"),
+    ]
+    progress.update(task, description="Drawing")
+    titles = {case.name: case.title for case in chosen}
+    written += bench_pictures.work_precision(points, titles, output)
+    written += bench_pictures.step_sizes(step_sizes, output)
+    written += bench_pictures.periods(periods, output)
+    if options.docs:
+        written += renew_docs(written)
+    progress.stop()
+    wide_console().print(ratio_table(compared))
+    one, many = (
+        row["cpu_s_per_step"]
+        for row in periods
+        if row["method"] == "collocation" and row["periods"] in (1, 1e6)
+    )
+    print(f"One step over 1e6 periods costs {many / one:.2f} times one over 1 period.")
+    print(f"Held inputs, no vibration: {1e9 * held.cpu:.0f} ns to set 3 inputs, step and get 2 outputs.")
+    print("Written:", ", ".join(shown(path) for path in written))
+
+
+QUICK_CASES = (
+    f"vibrating-{SIGMAS[1]:.0e}".replace("+", ""),
+    f"vibrating-{SIGMAS[4]:.0e}".replace("+", ""),
+    "held",
+)
+
+
+if __name__ == "__main__":
+    main()

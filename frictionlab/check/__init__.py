@@ -1,0 +1,1 @@
+"""Sanitizers, fuzzers, soak, coverage, mutants: the long runs."""

@@ -1,0 +1,115 @@
+"""docs/bad-input.md: what each wrong call or value gets, from the very calls that the tests make.
+
+PYTHONPATH=scripts:tests/fmi2 .venv/bin/python -m frictionlab.reliability_bad_input     writes the page
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from frictionlab.build import build_fmu
+from frictionlab.fmu import FrictionFmu
+from frictionlab.project import ROOT
+
+PAGE = ROOT / "docs" / "bad-input.md"
+TESTS = ROOT / "tests" / "fmi2"
+STATUS = ("fmi2OK", "fmi2Warning", "fmi2Discard", "fmi2Error", "fmi2Fatal", "fmi2Pending")
+
+HEAD = """\
+# What wrong calls and values get
+
+Each row is a call that a test makes (`tests/fmi2/bad_calls.py`), with the status it got and the message that
+reached the logger, in the category `logStatusError`. Written by `scripts/check bad-input`; a test holds this
+page to what the FMU does.
+
+The state afterwards is in every row the state before, to the last bit: the test compares the serialized state
+with that of an instance that was never called wrongly, and lets both run on to equal results. The instance
+stays usable. No call returns `fmi2Discard` or `fmi2Fatal`, and nothing is written to stdout or stderr.
+"""
+
+ORDER = """
+## Calls out of order
+
+x: allowed. -: `fmi2Error`, with a message such as
+
+    {example}
+
+and nothing changes. Functions of model exchange are refused everywhere; fmi2GetStatus, fmi2GetIntegerStatus
+and fmi2GetStringStatus are refused in every state, since no step is ever pending. Without an instance (NULL)
+every function returns `fmi2Error` and `fmi2FreeInstance` does nothing.
+
+"""
+
+INSTANTIATION = """
+## Instantiation
+
+`fmi2Instantiate` gives NULL, with the message
+
+"""
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("%%", "%")
+
+
+def _instantiation(library: object) -> list[str]:
+    from fmi_library import MODEL_EXCHANGE, Instance
+
+    cases = {
+        "another FMU's guid": {"guid": "{00000000-0000-0000-0000-000000000000}"},
+        "fmuType = fmi2ModelExchange": {"kind": MODEL_EXCHANGE},
+        "an empty instance name": {"name": ""},
+        "no instance name": {"name": None},
+    }
+    rows = ["| for | message |", "|---|---|"]
+    for title, arguments in cases.items():
+        refused = Instance(library, **arguments)
+        if refused.component is not None:
+            raise AssertionError(f"{title} is accepted")
+        text = refused.last_message.text.replace(library.guid, "{...}")
+        rows.append(f"| {title} | {_cell(text)} |")
+    return rows
+
+
+def page(folder: Path) -> str:
+    """The text of the page, from the unpacked FMU."""
+    if str(TESTS) not in sys.path:
+        sys.path.insert(0, str(TESTS))
+    from bad_calls import GROUPS
+    from fmi_library import Instance, Library
+    from test_call_order import TABLE
+
+    library = Library(folder)
+    lines = [HEAD]
+    for group, calls in GROUPS.items():
+        lines += [f"## {group}\n", "| call | in state | status | message |", "|---|---|---|---|"]
+        for bad in calls:
+            with Instance(library) as instance:
+                bad.setup(instance)
+                instance.bring_to(bad.state)
+                bad.prepare(instance)
+                instance.messages.clear()
+                status = bad.call(instance)
+                text = instance.last_message.text
+            lines.append(f"| {_cell(bad.title)} | {bad.state} | {STATUS[status]} | {_cell(text)} |")
+        lines.append("")
+    with Instance(library) as instance:
+        instance.bring_to("step complete")
+        instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
+        lines.append(ORDER.strip("\n").format(example=instance.last_message.text))
+    lines += ["", "    " + "\n    ".join(TABLE.strip("\n").splitlines())]
+    lines += [INSTANTIATION.rstrip("\n"), "", *_instantiation(library), ""]
+    return "\n".join(lines)
+
+
+def write_page() -> None:
+    with FrictionFmu(build_fmu()) as fmu:
+        text = page(fmu.directory)
+    PAGE.parent.mkdir(exist_ok=True)
+    PAGE.write_text(text)
+    print(f"wrote {PAGE.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    write_page()

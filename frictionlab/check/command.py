@@ -1,0 +1,229 @@
+"""scripts/check: the long runs that look for crashes, leaks, races, hangs, drift and tests that can't fail.
+
+    scripts/check                  all of them, an hour and more
+    scripts/check fuzz soak        these
+    scripts/check --quick ...      minutes
+    scripts/check --ci             sanitizers and fuzzers in under three minutes
+
+Each prints its figures and the command behind them. docs/reliability.md says what they found.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from frictionlab.build import BuildError, build_fmu, presets
+from frictionlab.check.bad_input import write_page
+from frictionlab.check.mutants import check_mutations
+from frictionlab.project import ROOT
+
+FUZZERS = {"call_sequence": 100, "state_bytes": 420}  # name: longest input in bytes
+LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
+
+
+class CheckError(Exception):
+    """A check found something; the text says what."""
+
+
+class Skipped(Exception):
+    """A check can't run here; the text says what is missing."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How long the runs are."""
+
+    tests: tuple[str, ...]
+    fuzz_seconds: int
+    fuzz_runs: int
+    soak: tuple[str, str]  # held steps, seconds of vibration
+
+
+FULL = Extent(("tests",), 3600, 10_000_000, ("1e9", "1e5"))
+QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"))
+CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"))
+
+
+def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
+    """Runs a command in the project's root with its output shown; raises CheckError if it fails."""
+    if environment:
+        print(" ".join(f"{name}={value}" for name, value in environment.items()))
+    print("$ " + " ".join(command), flush=True)
+    done = subprocess.run(command, cwd=ROOT, env={**os.environ, **(environment or {})}, check=False)
+    if done.returncode:
+        raise CheckError(f"{Path(command[0]).name} ended with {done.returncode}")
+
+
+def _tool(name: str, package: str) -> str:
+    found = shutil.which(name)
+    if found is None:
+        raise Skipped(f"{name} is missing (Debian: apt-get install {package})")
+    return found
+
+
+def _build_target(preset: str, *targets: str, configure: tuple[str, ...] = ()) -> Path:
+    cmake = [sys.executable, "-m", "cmake"]
+    python = f"-DPython3_EXECUTABLE={sys.executable}"
+    _run([*cmake, "--preset", preset, python, *configure, "--log-level=WARNING"])
+    folder = presets()[preset]
+    _run([*cmake, "--build", str(folder), "--parallel", "2", "--target", *targets, "--", "-s"])
+    return folder
+
+
+def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | None = None) -> None:
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
+    _run(command, {"FRICTION_FMU": str(fmu), **(environment or {})})
+
+
+def _runtimes(*names: str) -> str:
+    """The sanitizer runtimes, to be loaded before Python, which was built without."""
+    compiler = os.environ.get("CC", "cc")
+    paths = []
+    for name in names:
+        answer = subprocess.run(
+            [*compiler.split(), f"-print-file-name={name}"], capture_output=True, text=True, check=True
+        )
+        path = Path(answer.stdout.strip())
+        if not path.is_absolute():
+            raise Skipped(f"{compiler} has no {name} (with gcc it comes along)")
+        paths.append(str(path.resolve()))
+    return " ".join(paths)
+
+
+def check_sanitize(extent: Extent) -> None:
+    """The tests on a library built with AddressSanitizer and UndefinedBehaviorSanitizer."""
+    runtimes = _runtimes("libasan.so", "libubsan.so")
+    environment = {
+        "LD_PRELOAD": runtimes,
+        "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1",  # Python itself leaks
+        "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
+    }
+    _test(build_fmu("asan"), extent.tests, environment)
+
+
+def check_threads(extent: Extent) -> None:
+    """The threaded test on a library built with ThreadSanitizer."""
+    environment = {"LD_PRELOAD": _runtimes("libtsan.so"), "TSAN_OPTIONS": "halt_on_error=1"}
+    _test(build_fmu("tsan"), ("tests/fmi2/test_instances.py",), environment)
+
+
+def check_fuzz(extent: Extent) -> None:
+    """libFuzzer on call sequences and on state bytes, with the same sanitizers."""
+    clang = os.environ.get("CC") or shutil.which("clang") or shutil.which("clang-14")
+    if clang is None or "clang" not in clang:
+        raise Skipped("clang is missing (Debian: apt-get install clang libclang-rt-14-dev)")
+    os.environ["CC"] = clang
+    try:
+        folder = _build_target("fuzz", *(f"fuzz_{name}" for name in FUZZERS))
+    finally:
+        del os.environ["CC"]
+    for name, longest in FUZZERS.items():
+        found = folder / f"corpus-{name}"
+        found.mkdir(exist_ok=True)
+        options = [
+            f"-max_len={longest}",
+            f"-max_total_time={extent.fuzz_seconds}",
+            f"-runs={extent.fuzz_runs}",
+            "-timeout=30",
+            "-print_final_stats=1",
+            "-verbosity=0",
+            f"-artifact_prefix={folder}/{name}-",
+        ]
+        _run([str(folder / f"fuzz_{name}"), *options, str(found), f"tests/fuzz/corpus/{name}"])
+
+
+def check_soak(extent: Extent) -> None:
+    """Very many steps: the work does not drift from the cycle identity."""
+    folder = _build_target("default", "soak")
+    _run([str(folder / "soak"), *extent.soak])
+
+
+def check_leaks(extent: Extent) -> None:
+    """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
+    valgrind = _tool("valgrind", "valgrind")
+    folder = _build_target("debug", "soak", *(f"replay_{name}" for name in FUZZERS))
+    options = ["--quiet", "--leak-check=full", "--show-leak-kinds=all", "--error-exitcode=1"]
+    for name in FUZZERS:
+        seeds = sorted(str(seed.relative_to(ROOT)) for seed in (ROOT / "tests/fuzz/corpus" / name).iterdir())
+        _run([valgrind, *options, str(folder / f"replay_{name}"), *seeds])
+    _run([valgrind, *options, str(folder / "soak"), "1e5", "1"])
+
+
+def check_coverage(extent: Extent) -> None:
+    """Lines and branches of fmu_src that the tests execute."""
+    fmu = build_fmu("coverage")
+    for counts in fmu.parent.rglob("*.gcda"):
+        counts.unlink()
+    _test(fmu, extent.tests)
+    gcovr = [sys.executable, "-m", "gcovr", "--root", ".", "--filter", "fmu_src/", str(fmu.parent)]
+    _run([*gcovr, "--print-summary", "--fail-under-line", str(LEAST_LINES)])
+
+
+def check_mutants(extent: Extent) -> None:
+    """Each capability of modelDescription.xml has a test that fails when its function does nothing."""
+    unnoticed = check_mutations()
+    if unnoticed:
+        raise CheckError(f"no test notices: {', '.join(unnoticed)}")
+
+
+def write_bad_input(extent: Extent) -> None:
+    """Writes docs/bad-input.md anew from the tests' bad calls."""
+    write_page()
+
+
+CHECKS: dict[str, Callable[[Extent], None]] = {
+    "sanitize": check_sanitize,
+    "threads": check_threads,
+    "fuzz": check_fuzz,
+    "soak": check_soak,
+    "leaks": check_leaks,
+    "coverage": check_coverage,
+    "mutants": check_mutants,
+    "bad-input": write_bad_input,
+}
+IN_CI = ("sanitize", "fuzz")
+
+
+def main() -> None:
+    what = "\n".join(f"  {name:10} {check.__doc__}" for name, check in CHECKS.items())
+    parser = argparse.ArgumentParser(
+        prog="scripts/check",
+        description="The long runs: crashes, leaks, races, hangs, drift, tests that can't fail.",
+        epilog=f"checks:\n{what}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("checks", nargs="*", metavar="CHECK", help="which ones; all when none is named")
+    parser.add_argument("--quick", action="store_true", help="shorter runs, in minutes")
+    parser.add_argument("--ci", action="store_true", help="sanitizers and fuzzers in under three minutes")
+    arguments = parser.parse_args()
+    for name in arguments.checks:
+        if name not in CHECKS:
+            parser.error(f"unknown check {name}; there are: {', '.join(CHECKS)}")
+    extent = CI if arguments.ci else QUICK if arguments.quick else FULL
+    failed = []
+    for name in arguments.checks or (IN_CI if arguments.ci else CHECKS):
+        print(f"\n== {name}: {CHECKS[name].__doc__}", flush=True)
+        begin = time.monotonic()
+        try:
+            CHECKS[name](extent)
+            result = "nothing found"
+        except Skipped as reason:
+            result = f"skipped: {reason}"
+        except (CheckError, BuildError) as error:
+            result = f"FAILED: {error}"
+            failed.append(name)
+        print(f"== {name}: {result} ({time.monotonic() - begin:.0f} s)", flush=True)
+    if failed:
+        sys.exit(f"error: {', '.join(failed)} failed")
+
+
+if __name__ == "__main__":
+    main()

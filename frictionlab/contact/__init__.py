@@ -1,0 +1,1 @@
+"""The contact of rough surfaces: stiffness and area from their heights."""

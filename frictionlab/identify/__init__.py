@@ -1,0 +1,1 @@
+"""Parameters of the FMU from measurements."""

@@ -1,0 +1,1 @@
+"""The paper's equations, figures, tables and claims, from the FMU."""

@@ -1,0 +1,1 @@
+"""What a solver is graded against; shares no code with the FMU."""

@@ -1,0 +1,147 @@
+"""First reference: the integrating factor, by Gauss quadrature between reversals.
+
+    delta(t) = e^-G(w,t) delta(w) + integral_w^t e^-G(s,t) V(s) ds,      G(s,t) = integral_s^t sigma |V| / F_C
+
+For every node t of every piece of the mesh, w is the start of the piece or, where that is long forgotten, a
+time with G(w,t) large enough that e^-G vanishes. No equation is stepped or solved: stiffness only narrows the
+window.
+Impulse and work are quadratures over the nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from frictionlab.reference.arithmetic import Arithmetic, gauss_rule
+from frictionlab.reference.mesh import graded_mesh
+from frictionlab.reference.scene import Drive, Scene
+
+
+@dataclass(frozen=True)
+class AffineMap:
+    """delta_1 = (1 - relaxation) delta_0 + offset; impulse and work affine in delta_0 likewise."""
+
+    relaxation: Any
+    offset: Any
+    impulse_slope: Any
+    impulse_offset: Any
+    work_slope: Any
+    work_offset: Any
+
+    def then(self, next_: AffineMap) -> AffineMap:
+        keep, add = 1 - self.relaxation, self.offset
+        return AffineMap(
+            relaxation=self.relaxation + keep * next_.relaxation,
+            offset=add - next_.relaxation * add + next_.offset,
+            impulse_slope=self.impulse_slope + next_.impulse_slope * keep,
+            impulse_offset=self.impulse_offset + next_.impulse_slope * add + next_.impulse_offset,
+            work_slope=self.work_slope + next_.work_slope * keep,
+            work_offset=self.work_offset + next_.work_slope * add + next_.work_offset,
+        )
+
+    def power(self, n: int) -> AffineMap:
+        """n of these, one after the other."""
+        zero = 0 * self.relaxation
+        result, square = AffineMap(zero, zero, zero, zero, zero, zero), self
+        while n:
+            if n & 1:
+                result = result.then(square)
+            square = square.then(square)
+            n >>= 1
+        return result
+
+    def apply(self, delta_0: Any) -> tuple[Any, Any, Any]:
+        """Deflection at the end, impulse, work."""
+        return (
+            delta_0 - self.relaxation * delta_0 + self.offset,
+            self.impulse_slope * delta_0 + self.impulse_offset,
+            self.work_slope * delta_0 + self.work_offset,
+        )
+
+
+def interval_map(scene: Scene, t0: Any, h: Any, arithmetic: Arithmetic, ratio: float = 2.0) -> AffineMap:
+    """The affine map of [t0, t0 + h] for the Dahl model."""
+    mesh = arithmetic.array(graded_mesh(scene, t0, h, ratio))
+    drive = Drive(scene, t0, arithmetic)
+    total = None
+    block = 400  # pieces at a time, to bound memory
+    for first in range(0, len(mesh) - 1, block):
+        for piece in _piece_maps(drive, mesh[first : first + block + 1], arithmetic):
+            total = piece if total is None else total.then(piece)
+    if total is None:
+        zero = arithmetic.real(0)
+        total = AffineMap(zero, zero, zero, zero, zero, zero)
+    return total
+
+
+def _piece_maps(drive: Drive, mesh: np.ndarray, arithmetic: Arithmetic) -> list[AffineMap]:
+    rule = gauss_rule(arithmetic.nodes)
+    x, weights = arithmetic.array(rule.nodes), arithmetic.array(rule.weights)
+    begin, size = mesh[:-1, None], (mesh[1:] - mesh[:-1])[:, None]
+    inner = begin + size * x[None, :]
+    rate = drive.relaxation_rate(inner)
+    exponent = size * (rate @ arithmetic.matrix(rule.from_start).T)
+    # the end of the piece is treated as one more node
+    times = np.concatenate([inner, mesh[1:, None]], axis=1)
+    exponent = np.concatenate([exponent, size * (rate @ weights)[:, None]], axis=1)
+    starts = np.broadcast_to(begin, times.shape)
+    relaxation, offset = _deflection(drive, starts, times, exponent, arithmetic)
+    sigma, V = drive.sigma(inner), drive.V(inner)
+    keep = 1 - relaxation[:, :-1]
+    impulse = weights * size * sigma
+    work = impulse * V
+    return [
+        AffineMap(*values)
+        for values in zip(
+            relaxation[:, -1],
+            offset[:, -1],
+            (impulse * keep).sum(axis=1),
+            (impulse * offset[:, :-1]).sum(axis=1),
+            (work * keep).sum(axis=1),
+            (work * offset[:, :-1]).sum(axis=1),
+            strict=True,
+        )
+    ]
+
+
+def _deflection(
+    drive: Drive, starts: np.ndarray, times: np.ndarray, exponent: np.ndarray, arithmetic: Arithmetic
+) -> tuple[np.ndarray, np.ndarray]:
+    """1 - P and Q of delta(time) = P delta(start) + Q, elementwise."""
+    shape = times.shape
+    starts, times, exponent = starts.ravel(), times.ravel(), exponent.ravel()
+    from_start = exponent <= arithmetic.real(1.4 * arithmetic.window)
+    length = times - starts
+    remembered = np.where(from_start, exponent, arithmetic.real(1))
+    relaxation = np.where(from_start, -arithmetic.expm1(-remembered), arithmetic.real(1))
+    forgotten = np.flatnonzero(~from_start)
+    if forgotten.size:
+        length[forgotten] = _window_length(drive, times[forgotten], length[forgotten], arithmetic)
+    rule = gauss_rule(arithmetic.window_nodes)
+    x, weights = arithmetic.array(rule.nodes), arithmetic.array(rule.weights)
+    inner = times[:, None] - length[:, None] * (1 - x)
+    decay = length[:, None] * (drive.relaxation_rate(inner) @ arithmetic.matrix(rule.to_end).T)
+    offset = length * ((arithmetic.exp(-decay) * drive.V(inner)) @ weights)
+    return relaxation.reshape(shape), offset.reshape(shape)
+
+
+def _window_length(
+    drive: Drive, times: np.ndarray, longest: np.ndarray, arithmetic: Arithmetic
+) -> np.ndarray:
+    """L <= longest with G(time - L, time) near the window's exponent."""
+    rule = gauss_rule(8)
+    x, weights = arithmetic.array(rule.nodes), arithmetic.array(rule.weights)
+    wanted = arithmetic.real(arithmetic.window)
+    length = longest.copy()
+    for _ in range(200):
+        inner = times[:, None] - length[:, None] * (1 - x)
+        exponent = length * (drive.relaxation_rate(inner) @ weights)
+        long, short = exponent > 1.3 * wanted, (exponent < 0.95 * wanted) & (length < longest)
+        if not (long | short).any():
+            return length
+        scale = np.where(long | short, wanted / exponent, 1 + 0 * exponent)
+        length = np.minimum(length * np.clip(scale, arithmetic.real(1e-3), arithmetic.real(2)), longest)
+    raise ArithmeticError("no window found for the integrating factor")

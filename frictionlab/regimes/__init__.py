@@ -1,0 +1,1 @@
+"""Between sticking and sliding: which regime a scene is in, and its mean force."""

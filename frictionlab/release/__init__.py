@@ -1,0 +1,1 @@
+"""One FMU for Linux, Windows and macOS."""

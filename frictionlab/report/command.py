@@ -1,0 +1,170 @@
+"""The paper's figures, tables and claims from the FMU, the regimes and the identification on one page."""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from rich.progress import Progress
+
+from frictionlab.build import BuildError, build_fmu
+from frictionlab.command import progress_bar
+from frictionlab.contact import figures as contact_figures
+from frictionlab.figure import Picture
+from frictionlab.fmu import FrictionError, FrictionFmu
+from frictionlab.identify import recovery
+from frictionlab.paper import figures as paper_figures
+from frictionlab.paper.claims import claims
+from frictionlab.paper.table2 import results
+from frictionlab.project import ROOT
+from frictionlab.regimes import figures as regime_figures
+from frictionlab.regimes.mean import Probe
+from frictionlab.report import browser, images, text
+from frictionlab.report.page import Section, page
+
+DESCRIPTION = """\
+Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the
+equations give, the height statistics, the regimes and sensitivities of the mean friction, and the
+identification. Writes build/report/index.html, one page that needs no network, and each picture as SVG and
+PNG beside it."""
+
+# Pictures that the README and the documents show, and their names there.
+IN_DOCS = ("fig-04", "fig-13", "heights", "mean", "regimes", "reduction", "sensitivity-cuts", "recovery")
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="scripts/report", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--quick", action="store_true", help="coarser maps, the page without the image files")
+    parser.add_argument("--fmu", type=Path, help="use this FMU instead of building one")
+    parser.add_argument(
+        "--output", type=Path, default=ROOT / "build" / "report", help="folder to write to (build/report)"
+    )
+    parser.add_argument(
+        "--docs",
+        action="store_true",
+        help="also renew the pictures that docs/ shows, docs/pictures/paper-*.png",
+    )
+    parser.add_argument(
+        "--screenshots",
+        action="store_true",
+        help="also check the page in headless Chromium and write screens/*.png: three widths, light and dark",
+    )
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    options = arguments(argv)
+    try:
+        run(options)
+    except (BuildError, FrictionError, browser.BrowserError) as error:
+        sys.exit(f"error: {error}")
+    except OSError as error:
+        sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")
+
+
+def run(options: argparse.Namespace) -> None:
+    options.output.mkdir(parents=True, exist_ok=True)
+    with progress_bar() as progress:
+        path = options.fmu or build_fmu(progress=progress)
+        with FrictionFmu(path) as fmu:
+            pictures = _pictures(fmu, options.quick, progress)
+            sections = text.sections(list(results(fmu)), claims(fmu), pictures)
+        index = options.output / "index.html"
+        _write(index, sections, options.quick)
+        written = [index]
+        if not options.quick or options.docs:
+            written += _draw(pictures, options, progress)
+        if options.screenshots:
+            written += _screenshots(index, progress)
+    print(f"Written: {index} and {len(written) - 1} pictures")
+    if browser.find_browser() is None:
+        print("No Chromium on this machine: the page was not looked at in a browser.")
+
+
+def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Picture]]:
+    for figure in paper_figures.FIGURES:
+        yield lambda figure=figure: figure(fmu)
+    yield lambda: text.table_2_waves(fmu)
+    yield contact_figures.areas
+    yield contact_figures.loads
+    for figure in (
+        regime_figures.means,
+        regime_figures.regimes,
+        regime_figures.reduction,
+        regime_figures.sensitivities,
+        regime_figures.sensitivity_cuts,
+        regime_figures.phases,
+    ):
+        yield lambda figure=figure: figure(probe, quick)
+    yield lambda: recovery.picture(fmu, 20 if quick else 100)
+
+
+def _pictures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Picture]:
+    with Probe(fmu) as probe:
+        jobs = list(_jobs(fmu, probe, quick))
+        task = progress.add_task("Simulating", total=len(jobs))
+        found = {}
+        for job in jobs:
+            picture = job()
+            found[picture.key] = picture
+            progress.advance(task)
+        progress.remove_task(task)
+    return found
+
+
+def _write(path: Path, sections: Sequence[Section], quick: bool) -> None:
+    made = ", ".join(f"{name} {version(name)}" for name in ("FMPy", "numpy", "scipy", "plotly"))
+    command = "scripts/report --quick" if quick else "scripts/report"
+    footer = (
+        f"Made by <code>{command}</code> with FrictionContact.fmu; Python {platform.python_version()}, "
+        f"{made}; {platform.system()} {platform.machine()}."
+    )
+    partial = path.with_suffix(".part")
+    partial.write_text(page(text.TITLE, text.LEDE, sections, footer), encoding="utf-8")
+    partial.replace(path)
+
+
+def _draw(pictures: dict[str, Picture], options: argparse.Namespace, progress: Progress) -> list[Path]:
+    task = progress.add_task("Drawing", total=len(pictures))
+    written = []
+    for key, picture in pictures.items():
+        paths = [options.output / f"{key}.svg", options.output / f"{key}.png"]
+        images.draw(picture, *paths)
+        written += paths
+        if options.docs and key in IN_DOCS:
+            written.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
+            written[-1].parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(paths[1], written[-1])
+        progress.advance(task)
+    progress.remove_task(task)
+    return written
+
+
+def _screenshots(index: Path, progress: Progress) -> list[Path]:
+    task = progress.add_task("Looking at the page", total=2 * len(browser.WIDTHS))
+    written, problems = [], []
+    for name, width in browser.WIDTHS.items():
+        for theme in ("light", "dark"):
+            path = index.parent / "screens" / f"{name}-{theme}.png"
+            seen = browser.visit(index, width, theme == "dark", path)
+            written.append(path)
+            problems += [f"{name}, {theme}: {problem}" for problem in seen.problems]
+            if not seen.drawn:
+                problems.append(f"{name}, {theme}: not all pictures are drawn")
+            if seen.scroll_width > width:
+                problems.append(f"{name}, {theme}: {seen.scroll_width} px wide, the window has {width}")
+            progress.advance(task)
+    if problems:
+        raise browser.BrowserError("; ".join(problems))
+    return written
+
+
+if __name__ == "__main__":
+    main()

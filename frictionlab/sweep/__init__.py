@@ -1,0 +1,1 @@
+"""Many scenes on all cores or a Dask cluster."""
