@@ -1,6 +1,6 @@
 """docs/bad-input.md: what each wrong call or value gets, from the very calls that the tests make.
 
-PYTHONPATH=scripts:tests/fmi2 .venv/bin/python -m frictionlab.reliability_bad_input     writes the page
+.venv/bin/python -m frictionlab.check.bad_input     writes the page
 """
 
 from __future__ import annotations

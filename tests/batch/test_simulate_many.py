@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+
 from frictionlab.batch import BatchError, simulate_many
-from frictionlab.simulate import FrictionFmu, Session
+from frictionlab.fmu import FrictionFmu, Session
 
 VIBRATING = {"vibration.V_1": 1.44}
 F_C, V_1 = 55.0, 1.44  # N, m/s

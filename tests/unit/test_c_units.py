@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from frictionlab.build import presets
 
 PROGRAMS = sorted(path.stem for path in Path(__file__).parent.glob("test_*.c"))
