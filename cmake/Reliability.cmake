@@ -1,8 +1,7 @@
 # Programs that scripts/check builds and runs: the soak, the fuzzers' inputs given once, and with FC_FUZZ the fuzzers.
-add_executable(soak EXCLUDE_FROM_ALL tests/soak/soak.c "${variable_table}")
-target_include_directories(soak SYSTEM PRIVATE "${FMI_HEADERS}")
-target_include_directories(soak PRIVATE fmu_src)
-target_link_libraries(soak PRIVATE FrictionContact fc_options m)
+add_executable(soak EXCLUDE_FROM_ALL tests/soak/soak.c host/fmi2_linked.c "${variable_table}")
+target_include_directories(soak PRIVATE fmu_src tests)
+target_link_libraries(soak PRIVATE FrictionContact fmi2_library fc_options m)
 
 if(FC_FUZZ AND NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "FC_FUZZ needs clang, which libFuzzer is part of (Debian: clang libclang-rt-14-dev); "
@@ -13,9 +12,10 @@ add_dependencies(FrictionContact variables)
 foreach(name call_sequence state_bytes)
     foreach(kind replay fuzz)
         set(program ${kind}_${name})
-        add_executable(${program} EXCLUDE_FROM_ALL tests/fuzz/${name}.c ${fmi_sources} "${variable_table}")
-        target_include_directories(${program} SYSTEM PRIVATE "${FMI_HEADERS}")
-        target_link_libraries(${program} PRIVATE friction_core fc_options)
+        add_executable(${program} EXCLUDE_FROM_ALL tests/fuzz/${name}.c host/fmi2_linked.c ${fmi_sources}
+                       "${variable_table}")
+        target_include_directories(${program} PRIVATE tests)
+        target_link_libraries(${program} PRIVATE friction_core fmi2_library fc_options)
         add_dependencies(${program} variables)
     endforeach()
     target_sources(replay_${name} PRIVATE tests/fuzz/replay.c)

@@ -52,7 +52,7 @@ static fmi2ValueReference next_reference(Bytes* input) {
 }
 
 typedef struct {
-    fmi2Component instance[INSTANCES];
+    Fmi2Instance instance[INSTANCES];
     fmi2FMUstate slot[SLOTS];
     double time; // s, of the last step done
 } Bench;
@@ -124,8 +124,8 @@ static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
     return status;
 }
 
-static fmi2Status call(Bytes* input, Bench* bench, fmi2Component* place) {
-    fmi2Component c = *place;
+static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
+    fmi2Component c = instance->component;
     const unsigned function = next_byte(input) % 32;
     fmi2ValueReference vr = 0;
     double real = 0.0;
@@ -143,8 +143,8 @@ static fmi2Status call(Bytes* input, Bench* bench, fmi2Component* place) {
     case 4:
         return fmi2Reset(c);
     case 5:
-        fmi2FreeInstance(c);
-        *place = instantiate();
+        fmi2_instance_free(instance);
+        instantiate(instance);
         return fmi2OK;
     case 6:
         vr = next_reference(input);
@@ -208,26 +208,29 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Bytes input = {data, data + size};
-    Bench bench = {.instance = {instantiate(), instantiate()}};
+    Bench bench = {.time = 0.0};
+    for (int i = 0; i < INSTANCES; i++) {
+        instantiate(&bench.instance[i]);
+    }
     for (int calls = 0; input.at < input.end && calls < CALLS_MOST; calls++) {
-        fmi2Component* place = &bench.instance[*input.at < 128 ? 0 : 1];
-        const StateBytes before = state_of(*place);
-        messages = 0;
-        const fmi2Status status = call(&input, &bench, place);
+        Fmi2Instance* instance = &bench.instance[*input.at < 128 ? 0 : 1];
+        const StateBytes before = state_of(instance->component);
+        new_errors(instance);
+        const fmi2Status status = call(&input, &bench, instance);
         HOLD(status == fmi2OK || status == fmi2Warning || status == fmi2Error, "the status is one of three");
         if (status == fmi2Error) {
-            const StateBytes after = state_of(*place);
-            HOLD(messages > 0, "an error comes with a message");
+            const StateBytes after = state_of(instance->component);
+            HOLD(new_errors(instance) > 0, "an error comes with a message");
             HOLD(same_state(&before, &after), "an error changes nothing");
         } else {
-            check_outputs(*place);
+            check_outputs(instance->component);
         }
     }
     for (int i = 0; i < SLOTS; i++) {
-        HOLD(fmi2FreeFMUstate(bench.instance[0], &bench.slot[i]) == fmi2OK, "a slot can be freed");
+        HOLD(fmi2FreeFMUstate(bench.instance[0].component, &bench.slot[i]) == fmi2OK, "a slot can be freed");
     }
     for (int i = 0; i < INSTANCES; i++) {
-        fmi2FreeInstance(bench.instance[i]);
+        fmi2_instance_free(&bench.instance[i]);
     }
     return 0;
 }

@@ -20,11 +20,11 @@ def build_host(platform: str, folder: Path) -> Path:
     """run_scenarios for a platform."""
     suffix = ".exe" if platform == "win64" else ""
     libraries = [] if platform == "win64" else ["-ldl"]
-    source = Path(__file__).with_name("run_scenarios.c")
+    sources = [str(Path(__file__).with_name("run_scenarios.c")), str(ROOT / "host" / "fmi2_library.c")]
     host = folder / f"run_scenarios{suffix}"
-    options = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{fmi_headers()}"]
+    options = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{fmi_headers()}", f"-I{ROOT / 'host'}"]
     run_zig(
-        ["-target", TARGETS[platform].triple, *options, str(source), "-o", host.name, *libraries],
+        ["-target", TARGETS[platform].triple, *options, *sources, "-o", host.name, *libraries],
         CACHE,
         folder,
     )

@@ -14,66 +14,51 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "fmi2/variables.h"
 #include "fmi2Functions.h"
-#include "friction_contact.h"
+#include "fmi2_library.h"
+#include "variable_reference.h"
 
 static const double F_C = 55.0;
 static const double F = 20e3;
 static const double LIMIT = 1e-11; // of the drift, relative to the work
 
-static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
-                   fmi2String category, fmi2String text, ...) {
-    (void)environment, (void)name, (void)category;
-    if (status == fmi2Error) {
-        fprintf(stderr, "error: %s\n", text);
-    }
-}
-
-static void demand(fmi2Status status, const char* call) {
+static void demand(const Fmi2Instance* contact, fmi2Status status, const char* call) {
     if (status != fmi2OK) {
-        fprintf(stderr, "error: %s returns %d\n", call, (int)status);
+        fprintf(stderr, "error: %s returns %d: %s\n", call, (int)status, contact->said);
         exit(2);
     }
 }
 
-static fmi2ValueReference reference_of(size_t offset) {
-    fmi2ValueReference vr = 0;
-    while (fc_variables[vr].offset != offset) {
-        vr++;
-    }
-    return vr;
-}
-
-static void set(fmi2Component c, size_t offset, double value) {
+static void set(Fmi2Instance* contact, size_t offset, double value) {
     const fmi2ValueReference vr = reference_of(offset);
-    demand(fmi2SetReal(c, &vr, 1, &value), "fmi2SetReal");
+    demand(contact, fmi2SetReal(contact->component, &vr, 1, &value), "fmi2SetReal");
 }
 
-static double get(fmi2Component c, size_t offset) {
+static double get(const Fmi2Instance* contact, size_t offset) {
     const fmi2ValueReference vr = reference_of(offset);
     double value = 0.0;
-    demand(fmi2GetReal(c, &vr, 1, &value), "fmi2GetReal");
+    demand(contact, fmi2GetReal(contact->component, &vr, 1, &value), "fmi2GetReal");
     return value;
 }
 
-static void step(fmi2Component c, double t, double h) { demand(fmi2DoStep(c, t, h, fmi2True), "fmi2DoStep"); }
+static void step(const Fmi2Instance* contact, double t, double h) {
+    demand(contact, fmi2DoStep(contact->component, t, h, fmi2True), "fmi2DoStep");
+}
 
-static fmi2Component initialized(double V, double V_1) {
-    static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
-    fmi2Component c = fmi2Instantiate("soak", fmi2CoSimulation, fc_guid, NULL, &callbacks, 0, 0);
-    if (!c) {
+static void initialize(Fmi2Instance* contact, double V, double V_1) {
+    if (!fmi2_instance_make(contact, &fmi2_linked, "soak", fc_guid, NULL)) {
+        fprintf(stderr, "error: %s\n", contact->said);
         exit(2);
     }
-    set(c, offsetof(FcVariables, V), V);
-    set(c, offsetof(FcVariables, F_C), F_C);
-    set(c, offsetof(FcVariables, vibration.f), F);
-    set(c, offsetof(FcVariables, vibration.V_1), V_1);
-    set(c, offsetof(FcVariables, solver.tolerance), 1e-9);
-    demand(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), "fmi2SetupExperiment");
-    demand(fmi2EnterInitializationMode(c), "fmi2EnterInitializationMode");
-    demand(fmi2ExitInitializationMode(c), "fmi2ExitInitializationMode");
-    return c;
+    set(contact, offsetof(FcVariables, V), V);
+    set(contact, offsetof(FcVariables, F_C), F_C);
+    set(contact, offsetof(FcVariables, vibration.f), F);
+    set(contact, offsetof(FcVariables, vibration.V_1), V_1);
+    set(contact, offsetof(FcVariables, solver.tolerance), 1e-9);
+    fmi2Component c = contact->component;
+    demand(contact, fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), "fmi2SetupExperiment");
+    demand(contact, fmi2EnterInitializationMode(c), "fmi2EnterInitializationMode");
+    demand(contact, fmi2ExitInitializationMode(c), "fmi2ExitInitializationMode");
 }
 
 static double seconds(void) {
@@ -106,25 +91,26 @@ static int report(const char* run, double steps, double began, double work, doub
 static int held(double steps) {
     const double began = seconds();
     const double h = 1e-6;
-    fmi2Component c = initialized(0.005, 0.0);
+    Fmi2Instance contact;
+    initialize(&contact, 0.005, 0.0);
     double t = 0.0;
     long double expected = 0.0L;
     for (double done = 0.0; done < steps;) {
         const double V = 0.02 * chance() - 0.01;
-        const double before = get(c, offsetof(FcVariables, delta));
-        set(c, offsetof(FcVariables, V), V);
+        const double before = get(&contact, offsetof(FcVariables, delta));
+        set(&contact, offsetof(FcVariables, V), V);
         const double many = fmin(1e6, steps - done);
         for (double i = 0.0; i < many; i += 1.0) {
-            step(c, t, h);
+            step(&contact, t, h);
             t = t + h;
         }
         done += many;
-        const double slipped = get(c, offsetof(FcVariables, delta)) - before;
+        const double slipped = get(&contact, offsetof(FcVariables, delta)) - before;
         expected += (long double)F_C * (fabsl((long double)V) * (long double)h * (long double)many -
                                         (V < 0.0 ? -1.0L : 1.0L) * (long double)slipped);
     }
-    const double work = get(c, offsetof(FcVariables, W_f));
-    fmi2FreeInstance(c);
+    const double work = get(&contact, offsetof(FcVariables, W_f));
+    fmi2_instance_free(&contact);
     return report("held", steps, began, work, (double)(((long double)work - expected) / expected));
 }
 
@@ -132,23 +118,24 @@ static int vibrating(double duration) {
     const double began = seconds();
     const double V = 0.5;
     const double V_1 = 0.4;
-    fmi2Component c = initialized(V, V_1);
+    Fmi2Instance contact;
+    initialize(&contact, V, V_1);
     double t = 0.0;
     double steps = 0.0;
     for (; t < duration; steps += 1.0) {
         const double h = uneven_step(t);
-        step(c, t, h);
+        step(&contact, t, h);
         t = t + h;
     }
     const long double two_pi = 6.283185307179586476925286766559L;
     const long double cycles = (long double)F * (long double)t;
     const long double swing =
         (long double)V_1 / (two_pi * (long double)F) * sinl(two_pi * (cycles - floorl(cycles)));
-    const double delta = get(c, offsetof(FcVariables, delta));
+    const double delta = get(&contact, offsetof(FcVariables, delta));
     const long double expected =
         (long double)F_C * ((long double)V * (long double)t + swing - (long double)delta);
-    const double work = get(c, offsetof(FcVariables, W_f));
-    fmi2FreeInstance(c);
+    const double work = get(&contact, offsetof(FcVariables, W_f));
+    fmi2_instance_free(&contact);
     return report("vibrating", steps, began, work, (double)(((long double)work - expected) / expected));
 }
 
@@ -156,20 +143,22 @@ static int reversing(double duration) {
     const double began = seconds();
     const double V = 0.1;
     const double V_1 = 0.4;
-    fmi2Component c = initialized(V, V_1);
-    fmi2Component whole = initialized(V, V_1);
+    Fmi2Instance contact;
+    initialize(&contact, V, V_1);
+    Fmi2Instance whole;
+    initialize(&whole, V, V_1);
     double t = 0.0;
     double steps = 0.0;
     for (; t < duration; steps += 1.0) {
         const double h = uneven_step(t);
-        step(c, t, h);
+        step(&contact, t, h);
         t = t + h;
     }
-    step(whole, 0.0, t);
-    const double work = get(c, offsetof(FcVariables, W_f));
-    const double expected = get(whole, offsetof(FcVariables, W_f));
-    fmi2FreeInstance(c);
-    fmi2FreeInstance(whole);
+    step(&whole, 0.0, t);
+    const double work = get(&contact, offsetof(FcVariables, W_f));
+    const double expected = get(&whole, offsetof(FcVariables, W_f));
+    fmi2_instance_free(&contact);
+    fmi2_instance_free(&whole);
     return report("reversing", steps, began, work, (work - expected) / expected);
 }
 
