@@ -3,7 +3,7 @@
     scripts/check                  all of them, an hour and more
     scripts/check fuzz soak        these
     scripts/check --quick ...      minutes
-    scripts/check --ci             sanitizers and fuzzers in under three minutes
+    scripts/check --ci             sanitizers, valgrind and fuzzers in under four minutes
 
 Each prints its figures and the command behind them. docs/reliability.md says what they found.
 """
@@ -189,7 +189,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "mutants": check_mutants,
     "bad-input": write_bad_input,
 }
-IN_CI = ("sanitize", "fuzz")
+IN_CI = ("sanitize", "leaks", "fuzz")
 
 
 def main() -> None:
@@ -202,7 +202,7 @@ def main() -> None:
     )
     parser.add_argument("checks", nargs="*", metavar="CHECK", help="which ones; all when none is named")
     parser.add_argument("--quick", action="store_true", help="shorter runs, in minutes")
-    parser.add_argument("--ci", action="store_true", help="sanitizers and fuzzers in under three minutes")
+    parser.add_argument("--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:

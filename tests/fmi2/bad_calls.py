@@ -417,6 +417,17 @@ COMBINATIONS = [
     _driven("E", -1e15, 1e-4, "E moves from 58556936170 Pa", "at least 1 Pa"),
     _driven("V", 1e308, 1e3, "V moves from 0.005 m/s to inf m/s", "must stay finite"),
     BadCall(
+        "a step in which d moves to 1e-6 m while vibration.a_d = 1.1e-6 m",
+        "step complete",
+        lambda i: i.step(0.0, 1e-4),
+        (
+            "fmi2DoStep: d moves from 1.4e-05 m to 1e-06 m in the step",
+            "with vibration.a_d = 1.1e-06 m the separation must stay above 0 m",
+        ),
+        prepare=lambda i: (i.set({"vibration.a_d": 1.1e-6}), i.set_input_rates({"d": -0.13})),
+        mend=lambda i: i.set_input_rates({"d": 0.0}),
+    ),
+    BadCall(
         "a step of 2e6 vibration periods while V moves",
         "step complete",
         lambda i: i.step(0.0, 100.0),

@@ -48,6 +48,26 @@ def test_slope_of_the_force_with_the_rates_of_the_next_step(
     assert slope == pytest.approx(expected, rel=1e-5)
 
 
+@pytest.mark.parametrize("phase_d", [0.0, 0.7, 2.5])
+def test_slope_of_the_force_under_vibration(new_instance: Callable[..., Instance], phase_d: float) -> None:
+    """Off by (2 pi f h)^2 = 1.6e-6 of the slopes that the vibration gives, at h = 1e-8 s."""
+    instance = new_instance()
+    vibration = {"vibration.V_1": 0.1, "vibration.a_d": 1.1e-6, "vibration.phase_d": phase_d}
+    assert instance.set({"contact.stiffnessScale": 1e-6, **vibration}) == OK
+    instance.initialize()
+    t = 0.0
+    for h in (1.3e-5, 1.1e-5, 1.9e-5, 0.8e-5):
+        assert instance.step(t, h) == OK
+        t += h
+        assert instance.set_input_rates(RATES) == OK
+        expected = slope_ahead(instance, t, 1e-8, RATES)
+        assert abs(expected) > 1e4
+        assert instance.set_input_rates(RATES) == OK
+        status, slope = instance.output_rate("F_t")
+        assert status == OK
+        assert slope == pytest.approx(expected, rel=1e-4)
+
+
 def test_slope_of_the_force_after_a_step_continues_its_rates(new_instance: Callable[..., Instance]) -> None:
     instance = soft_instance(new_instance)
     assert instance.set_input_rates(RATES) == OK
