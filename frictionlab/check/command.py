@@ -202,7 +202,9 @@ def main() -> None:
     )
     parser.add_argument("checks", nargs="*", metavar="CHECK", help="which ones; all when none is named")
     parser.add_argument("--quick", action="store_true", help="shorter runs, in minutes")
-    parser.add_argument("--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes")
+    parser.add_argument(
+        "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
+    )
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:
