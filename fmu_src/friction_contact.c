@@ -1,12 +1,14 @@
 #include "friction_contact.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
-#include "solver/collocation.h"
-#include "solver/coulomb.h"
-#include "solver/cvode.h"
-#include "solver/fixed_step.h"
+#include "solver/method.h"
+
+// Below this the limit mu F_n is no longer a normal number, and the surfaces are metres of R_q apart.
+static const double SMALLEST_LIMIT = 1e-300; // N
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
     return fc_message_set(
@@ -16,44 +18,90 @@ static bool fail_stiffness(FcMessage* message, double d, double E) {
         d, E);
 }
 
-// The drive from the absolute time start + rest on, the inputs moving at these rates.
-static FcDrive drive_from(const FcFrictionState* state, double start, double rest,
-                          const double rate[FC_INPUT_COUNT]) {
-    const FcVariables* v = &state->variables;
-    return fc_drive_make((FcLinearInput){v->V, rate[FC_INPUT_V]}, (FcLinearInput){v->d, rate[FC_INPUT_D]},
-                         (FcLinearInput){v->E, rate[FC_INPUT_E]}, v->vibration, start, rest);
-}
-
-// The scene at the present time, with the rates of the last step or, where they have been set, of the next.
-static FcScene scene_now(const FcFrictionState* state) {
-    const FcDrive drive = drive_from(state, state->time, state->time_rest,
-                                     state->next_rate_set ? state->next_rate : state->rate);
-    return fc_scene_make(&state->variables.contact, &drive, state->variables.F_C);
-}
-
-// The separation and the modulus must stay positive and the stiffness a number over the step [0, h].
-static bool check_drive(const FcScene* scene, double h, FcMessage* message) {
-    const FcDrive* drive = &scene->drive;
-    const double d = fc_drive_smallest_d(drive, h);
-    const double a_d = drive->vibration.a_d;
-    if (!(d > 0.0)) {
-        return drive->d.rate == 0.0
-                   ? fc_message_set(
-                         message,
-                         "vibration.a_d = %.9g m must be below d = %.9g m: the separation d - a_d must stay "
-                         "above 0 m",
-                         a_d, drive->d.value)
-                   : fc_message_set(
-                         message,
-                         "d moves from %.9g m to %.9g m in the step: with vibration.a_d = %.9g m the "
-                         "separation must stay above 0 m",
-                         drive->d.value, drive->d.value + drive->d.rate * h, a_d);
+// The contact at the modulus E [Pa] with the present parameters: computed anew where they or E have changed.
+static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E) {
+    const FcContactParameters* parameters = &contact->state.variables.contact;
+    if (contact->at_E_E != E || memcmp(&contact->at_E_of, parameters, sizeof *parameters) != 0) {
+        contact->at_E = fc_contact_at_modulus(parameters, E);
+        contact->at_E_of = *parameters;
+        contact->at_E_E = E;
     }
+    return &contact->at_E;
+}
+
+_Static_assert(sizeof(FcContactParameters) == 10 * sizeof(double) + 2 * sizeof(int),
+               "memcmp needs contact parameters without padding");
+
+// The scene from the absolute time start + rest on, the inputs moving at these rates for ahead [s] before it begins.
+static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
+                          const double rate[FC_INPUT_COUNT], double ahead) {
+    const FcVariables* v = &contact->state.variables;
+    const FcLinearInput V = {v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
+    const FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
+    const FcLinearInput E = {v->E + rate[FC_INPUT_E] * ahead, rate[FC_INPUT_E]};
+    const FcLinearInput load = {v->load + rate[FC_INPUT_LOAD] * ahead, rate[FC_INPUT_LOAD]};
+    const FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
+    return fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
+}
+
+FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
+    const FcFrictionState* state = &contact->state;
+    return scene_from(contact, state->time, state->time_rest,
+                      state->next_rate_set ? state->next_rate : state->rate, 0.0);
+}
+
+static bool fail_separation(const FcScene* scene, double h, FcMessage* message) {
+    const FcDrive* drive = &scene->drive;
+    const double a_d = drive->vibration.a_d;
+    if (scene->contact->input == FC_CONTACT_LOAD) {
+        const FcContactAtModulus* at_E = &scene->at_E;
+        return fc_message_set(message,
+                              "load = %.9g N presses the surfaces together: with vibration.a_d = %.9g m the "
+                              "separation must stay "
+                              "above 0 m, which it does up to %.9g N",
+                              fmax(drive->load.value, fc_drive_load(drive, h)), a_d,
+                              at_E->load_0 * exp(scene->log_swell - at_E->decay * a_d));
+    }
+    if (drive->d.rate == 0.0) {
+        return fc_message_set(
+            message,
+            "vibration.a_d = %.9g m must be below d = %.9g m: the separation d - a_d must stay above 0 m",
+            a_d, drive->d.value);
+    }
+    return fc_message_set(message,
+                          "d moves from %.9g m to %.9g m in the step: with vibration.a_d = %.9g m the "
+                          "separation must stay above 0 m",
+                          drive->d.value, drive->d.value + drive->d.rate * h, a_d);
+}
+
+static bool check_limit(const FcScene* scene, double h, FcMessage* message) {
+    const double limit = fc_scene_smallest_limit(scene, h);
+    if (limit >= SMALLEST_LIMIT && isfinite(fc_scene_force_scale(scene))) {
+        return true;
+    }
+    return fc_message_set(message,
+                          "friction.mu = %.9g times the normal force is %.9g N in the step: the limit of the "
+                          "friction must be finite and at least %.9g N; check d, load and contact.*",
+                          scene->friction->mu, limit, SMALLEST_LIMIT);
+}
+
+// Separation, modulus, load and limit must stay positive and the stiffness a number over the step [0, h].
+static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
+    const FcDrive* drive = &scene->drive;
     if (!(fc_drive_smallest_E(drive, h) > 0.0)) {
         return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa",
                               drive->E.value, drive->E.value + drive->E.rate * h);
     }
-    if (!isfinite(fc_scene_largest_stiffness(scene, h)) || !isfinite(scene->at_E.area_0)) {
+    if (scene->contact->input == FC_CONTACT_LOAD && !(fc_drive_load(drive, h) > 0.0)) {
+        return fc_message_set(message, "load moves from %.9g N to %.9g N in the step: it must stay above 0 N",
+                              drive->load.value, fc_drive_load(drive, h));
+    }
+    const double d = fc_scene_smallest_d(scene, h);
+    if (!(d > 0.0)) {
+        return fail_separation(scene, h, message);
+    }
+    if (!isfinite(fc_scene_largest_stiffness(scene, h)) || !isfinite(scene->at_E.area_0) ||
+        !isfinite(scene->at_E.load_0)) {
         return fail_stiffness(message, d, fc_drive_largest_E(drive, h));
     }
     if (!isfinite(fc_drive_largest_speed(drive, h))) {
@@ -61,15 +109,25 @@ static bool check_drive(const FcScene* scene, double h, FcMessage* message) {
                               "V moves from %.9g m/s to %.9g m/s in the step: it must stay a finite number",
                               drive->V.value, drive->V.value + drive->V.rate * h);
     }
-    return true;
+    return check_limit(scene, h, message);
 }
 
-bool fc_friction_contact_check(const FcFrictionContact* contact, FcMessage* message) {
-    const double held[FC_INPUT_COUNT] = {0};
-    const FcDrive drive = drive_from(&contact->state, contact->state.time, contact->state.time_rest, held);
-    const FcScene scene =
-        fc_scene_make(&contact->state.variables.contact, &drive, contact->state.variables.F_C);
-    return check_drive(&scene, 0.0, message);
+// Single bounds say enough where nothing moves and no load decides.
+static bool is_to_be_checked(const FcScene* scene) {
+    return !fc_drive_is_constant(&scene->drive) || scene->contact->input == FC_CONTACT_LOAD ||
+           scene->friction->limit == FC_LIMIT_LOAD;
+}
+
+static const double HELD[FC_INPUT_COUNT] = {0};
+
+// The scene at the present time with held inputs.
+static FcScene held_scene(FcFrictionContact* contact) {
+    return scene_from(contact, contact->state.time, contact->state.time_rest, HELD, 0.0);
+}
+
+bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
+    const FcScene scene = held_scene(contact);
+    return check_scene(&scene, 0.0, message);
 }
 
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message) {
@@ -79,21 +137,40 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
+static FcSolverOptions solver_options(const FcVariables* v) {
+    return (FcSolverOptions){.tolerance = v->solver.tolerance, .step_size = v->solver.stepSize};
+}
+
+// The deflection at the start [m].
+static double first_deflection(FcFrictionContact* contact) {
+    FcVariables* v = &contact->state.variables;
+    if (v->friction.model == FC_COULOMB) {
+        return 0.0;
+    }
+    if (v->initialState == FC_STATE_GIVEN) {
+        return v->delta_0;
+    }
+    const FcScene scene = held_scene(contact);
+    const FcSolverOptions options = solver_options(v);
+    return fc_method_settled(&scene, &options, v->delta_0, &v->solver.evaluations);
+}
+
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message) {
     FcFrictionContact fresh = *contact;
-    fresh.state.time = start;
-    fresh.state.time_rest = 0.0;
-    fresh.state.W_f_rest = 0.0;
+    FcFrictionState* state = &fresh.state;
+    state->time = start;
+    state->time_rest = 0.0;
+    state->W_f_rest = 0.0;
+    state->Q_f_rest = 0.0;
+    memcpy(state->rate, HELD, sizeof state->rate);
     if (!fc_friction_contact_check(&fresh, message)) {
         return false;
     }
-    FcVariables* v = &fresh.state.variables;
-    v->delta = v->friction.model == FC_FRICTION_DAHL ? v->delta_0 : 0.0;
+    FcVariables* v = &state->variables;
     v->W_f = 0.0;
+    v->Q_f = 0.0;
     v->solver.evaluations = 0.0;
-    for (int i = 0; i < FC_INPUT_COUNT; i++) {
-        fresh.state.rate[i] = 0.0;
-    }
+    v->delta = first_deflection(&fresh);
     fc_friction_contact_update_outputs(&fresh);
     v->F_t_mean = v->F_t;
     if (!isfinite(v->F_t)) {
@@ -113,32 +190,21 @@ void fc_friction_contact_free(FcFrictionContact* contact) {
     contact->cvode = NULL;
 }
 
-// Applies the periods of the vibration, or the whole step, to the method.
-static bool step(FcFrictionContact* contact, const FcScene* scene, double h, FcStepResult* result,
-                 FcMessage* message) {
-    const FcVariables* v = &contact->state.variables;
-    const FcSolverOptions options = {.tolerance = v->solver.tolerance, .step_size = v->solver.stepSize};
-    if (v->friction.model == FC_FRICTION_COULOMB) {
-        return fc_periods_step(fc_coulomb_interval, scene, &options, h, v->delta, result, message);
+// Adds the damping of the bristle and the viscous friction to what the method gives.
+static void add_damping(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
+    const double sigma_1 = scene->friction->model == FC_COULOMB ? 0.0 : scene->friction->sigma_1;
+    const double sigma_2 = scene->friction->sigma_2;
+    if (sigma_1 != 0.0) {
+        result->impulse += sigma_1 * (result->delta - delta_0);
+        result->work += sigma_1 * result->drag;
+        result->heat += sigma_1 * result->drag;
     }
-    switch (v->solver.method) {
-    case FC_METHOD_COLLOCATION:
-        if (fc_drive_is_constant(&scene->drive)) {
-            fc_collocation_constant(scene, h, v->delta, result);
-            return true;
-        }
-        return fc_periods_step(fc_collocation_interval, scene, &options, h, v->delta, result, message);
-    case FC_METHOD_CVODE:
-        return fc_cvode_step(contact->cvode, scene, &options, h, v->delta, result, message);
-    default:
-        return fc_fixed_step(scene, (FcMethod)v->solver.method, &options, h, v->delta, result, message);
+    if (sigma_2 != 0.0) {
+        const double viscous = sigma_2 * fc_drive_square(&scene->drive, 0.0, h);
+        result->impulse += sigma_2 * fc_drive_displacement(&scene->drive, 0.0, h);
+        result->work += viscous;
+        result->heat += viscous;
     }
-}
-
-// F_t, Eq. 1, at the deflection delta and the local time t.
-static double force(const FcVariables* v, const FcScene* scene, double t, double sigma, double delta) {
-    return v->friction.model == FC_FRICTION_COULOMB ? fc_coulomb_force(fc_drive_V(&scene->drive, t), v->F_C)
-                                                    : sigma * delta;
 }
 
 // What a + b loses in rounding (Knuth's two-sum).
@@ -148,100 +214,79 @@ static double rounding_of_sum(double a, double b) {
     return (a - (sum - b_part)) + (b - b_part);
 }
 
+// Adds part to *sum, *rest being what rounding cuts off.
+static void accumulate(double* sum, double* rest, double part) {
+    const double all = part + *rest;
+    *rest = rounding_of_sum(*sum, all);
+    *sum += all;
+}
+
+static void set_outputs(FcVariables* v, const FcScene* now) {
+    const FcContactResponse response = fc_scene_contact(now, 0.0);
+    v->sigma = response.sigma;
+    v->A_r = response.A_r;
+    v->F_n = response.F_n;
+    v->F_t = fc_scene_force(now, 0.0, v->delta);
+}
+
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
-    FcFrictionState* state = &contact->state;
-    FcVariables* v = &state->variables;
-    const FcDrive drive = drive_from(state, t, 0.0, state->next_rate);
-    const FcScene scene = fc_scene_make(&v->contact, &drive, v->F_C);
     if (!(h >= 0.0) || !isfinite(t + h)) {
         return fc_message_set(
             message, "the step from t = %.9g s by h = %.9g s: h must be a finite number of at least 0 s", t,
             h);
     }
-    if (!fc_drive_is_constant(&drive) && !check_drive(&scene, h, message)) {
+    const FcFrictionState* before = &contact->state;
+    const FcScene scene = scene_from(contact, t, 0.0, before->next_rate, 0.0);
+    if (is_to_be_checked(&scene) && !check_scene(&scene, h, message)) {
         return false;
     }
+    const FcVariables* v = &before->variables;
+    const FcSolverOptions options = solver_options(v);
     FcStepResult result;
-    if (!step(contact, &scene, h, &result, message)) {
+    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, v->delta, &result,
+                        message)) {
         return false;
     }
+    add_damping(&scene, h, v->delta, &result);
 
-    const FcContactResponse end = fc_scene_contact(&scene, h);
-    if (!isfinite(end.sigma) || !isfinite(end.A_r)) {
+    FcFrictionState after = *before;
+    after.time = t + h;
+    after.time_rest = rounding_of_sum(t, h);
+    memcpy(after.rate, before->next_rate, sizeof after.rate);
+    memcpy(after.next_rate, HELD, sizeof after.next_rate);
+    after.next_rate_set = 0;
+    FcVariables* next = &after.variables;
+    next->V += after.rate[FC_INPUT_V] * h;
+    next->d += after.rate[FC_INPUT_D] * h;
+    next->E += after.rate[FC_INPUT_E] * h;
+    next->load += after.rate[FC_INPUT_LOAD] * h;
+    next->delta = result.delta;
+    next->solver.evaluations += result.evaluations;
+    accumulate(&next->W_f, &after.W_f_rest, result.work);
+    accumulate(&next->Q_f, &after.Q_f_rest, result.heat);
+    // Evaluated at the phase of t + h itself, which is also that of the next step: a phase that is carried on from the
+    // step's start loses digits with every period of it.
+    const FcScene end = scene_from(contact, after.time, after.time_rest, after.rate, h);
+    set_outputs(next, &end);
+    next->F_t_mean = h > 0.0 ? result.impulse / h : next->F_t;
+    if (!isfinite(next->sigma) || !isfinite(next->A_r)) {
         return fail_stiffness(message, v->d, v->E);
     }
-    const double F_t = force(v, &scene, h, end.sigma, result.delta);
-    const double F_t_mean = h > 0.0 ? result.impulse / h : F_t;
-    const double work = result.work + state->W_f_rest;
-    const double W_f = v->W_f + work;
-    if (!isfinite(F_t) || !isfinite(F_t_mean) || !isfinite(W_f) || !isfinite(result.delta)) {
+    if (!isfinite(next->F_t) || !isfinite(next->F_n) || !isfinite(next->F_t_mean) || !isfinite(next->W_f) ||
+        !isfinite(next->Q_f) || !isfinite(next->delta)) {
         return fc_message_set(
             message,
             "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
             "d = %.9g m",
             h, v->V, v->d);
     }
-    state->time = t + h;
-    state->time_rest = rounding_of_sum(t, h);
-    state->W_f_rest = rounding_of_sum(v->W_f, work);
-    v->V += drive.V.rate * h;
-    v->d += drive.d.rate * h;
-    v->E += drive.E.rate * h;
-    v->F_t = F_t;
-    v->F_t_mean = F_t_mean;
-    v->W_f = W_f;
-    v->sigma = end.sigma;
-    v->A_r = end.A_r;
-    v->delta = result.delta;
-    v->solver.evaluations += result.evaluations;
-    for (int i = 0; i < FC_INPUT_COUNT; i++) {
-        state->rate[i] = state->next_rate[i];
-        state->next_rate[i] = 0.0;
-    }
-    state->next_rate_set = 0;
+    contact->state = after;
     return true;
 }
 
 void fc_friction_contact_update_outputs(FcFrictionContact* contact) {
-    FcVariables* v = &contact->state.variables;
-    const FcScene scene = scene_now(&contact->state);
-    const FcContactResponse now = fc_scene_contact(&scene, 0.0);
-    v->sigma = now.sigma;
-    v->A_r = now.A_r;
-    v->F_t = force(v, &scene, 0.0, now.sigma, v->delta);
-}
-
-double fc_friction_contact_force_rate(const FcFrictionContact* contact) {
-    const FcVariables* v = &contact->state.variables;
-    if (v->friction.model == FC_FRICTION_COULOMB) {
-        return 0.0;
-    }
-    const FcScene scene = scene_now(&contact->state);
-    const FcDrive* drive = &scene.drive;
-    const double sigma = fc_scene_stiffness(&scene, 0.0);
-    const double V = fc_drive_V(drive, 0.0);
-    const FcContactGradient slope =
-        fc_contact_stiffness_gradient(&v->contact, fc_drive_d(drive, 0.0), drive->E.value);
-    const double sigma_rate = slope.by_d * fc_drive_d_rate(drive, 0.0) + slope.by_E * drive->E.rate;
-    return sigma * (V - sigma * fabs(V) * v->delta / v->F_C) + sigma_rate * v->delta; // Eq. 1, 2
-}
-
-FcOutputGradient fc_friction_contact_output_gradient(const FcFrictionContact* contact) {
-    const FcVariables* v = &contact->state.variables;
-    const FcScene scene = scene_now(&contact->state);
-    const double d = fc_drive_d(&scene.drive, 0.0);
-    const FcContactGradient stiffness = fc_contact_stiffness_gradient(&v->contact, d, v->E);
-    const FcContactGradient area = fc_contact_area_gradient(&v->contact, d, v->E);
-    FcOutputGradient gradient = {0};
-    gradient.sigma[FC_INPUT_D] = stiffness.by_d;
-    gradient.sigma[FC_INPUT_E] = stiffness.by_E;
-    gradient.A_r[FC_INPUT_D] = area.by_d;
-    gradient.A_r[FC_INPUT_E] = area.by_E;
-    if (v->friction.model == FC_FRICTION_DAHL) {
-        gradient.F_t[FC_INPUT_D] = stiffness.by_d * v->delta;
-        gradient.F_t[FC_INPUT_E] = stiffness.by_E * v->delta;
-    }
-    return gradient;
+    const FcScene scene = fc_friction_contact_scene(contact);
+    set_outputs(&contact->state.variables, &scene);
 }
 
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h) {

@@ -8,44 +8,46 @@
 #include <stdbool.h>
 
 #include "message.h"
-#include "model/contact.h"
-#include "model/drive.h"
+#include "model/scene.h"
 
-typedef enum { FC_FRICTION_DAHL = 1, FC_FRICTION_COULOMB = 2 } FcFrictionModel;
+typedef enum { FC_STATE_GIVEN = 1, FC_STATE_SETTLED = 2 } FcInitialState;
 
 typedef struct {
-    double V;        // m/s  input
-    double d;        // m    input
-    double E;        // Pa   input
-    double F_t;      // N    output
-    double F_t_mean; // N    output
-    double W_f;      // J    output
-    double sigma;    // N/m  output
-    double A_r;      // m2   output
-    double delta;    // m    output, the state
-    double delta_0;  // m
-    double F_C;      // N
-    struct {
-        int model; // FcFrictionModel
-    } friction;
+    double V;         // m/s  input
+    double d;         // m    input
+    double E;         // Pa   input
+    double load;      // N    input
+    double F_t;       // N    output
+    double F_t_mean;  // N    output
+    double F_n;       // N    output
+    double W_f;       // J    output
+    double Q_f;       // J    output
+    double sigma;     // N/m  output
+    double A_r;       // m2   output
+    double delta;     // m    output, the state
+    double delta_0;   // m
+    double F_C;       // N
+    int initialState; // FcInitialState
+    FcFriction friction;
     FcContactParameters contact;
     FcVibration vibration;
     struct {
         int method;         // FcMethod
         double tolerance;   // 1
         double stepSize;    // s
-        double evaluations; // 1, evaluations of a(t), b(t) since the start
+        double evaluations; // 1, evaluations of the coefficients of the bristle's equation since the start
     } solver;
 } FcVariables;
 
-typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_COUNT } FcInput;
+typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_COUNT } FcInput;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
     FcVariables variables;
     double time;                      // s, the communication point reached
     double time_rest;                 // s, what rounding cut off when time was computed as t + h
-    double W_f_rest;                  // J, what rounding cut off the sum W_f
+    double W_f_rest;                  // J, what rounding cut off the sums W_f
+    double Q_f_rest;                  // J, and Q_f
     double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
@@ -54,38 +56,35 @@ typedef struct {
 typedef struct {
     FcFrictionState state;
     struct FcCvode* cvode; // only when solver.method = cvode
+    // The contact at the modulus and the parameters it was last computed for.
+    FcContactAtModulus at_E;
+    FcContactParameters at_E_of;
+    double at_E_E; // Pa, 0 before the first time
 } FcFrictionContact;
 
 // Functions that return bool return true, or false with *message filled and the contact unchanged.
 
-// After all start values and parameters are set: checks their combination, starts the state from delta_0 at time
-// start [s], computes the outputs.
+// After all start values and parameters are set: checks their combination, starts the state from delta_0, or where it
+// settles, at time start [s], computes the outputs.
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message);
 // Allocates what the method (one FcMethod) needs for stepping, unless it is there. A saved state does not carry it.
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message);
 void fc_friction_contact_free(FcFrictionContact* contact); // frees what the two above allocated
 
-// Checks what single bounds can't: the separation stays positive under vibration, the stiffness is a finite number.
-bool fc_friction_contact_check(const FcFrictionContact* contact, FcMessage* message);
+// Checks what single bounds can't: the separation stays positive under vibration, the stiffness and the limit are
+// finite numbers above 0.
+bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
 
 // Advances from t to t + h [s], h >= 0. The inputs move at next_rate and stay where they end.
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
 
-// Recomputes F_t, sigma, A_r from the state and the present inputs and parameters (delta, F_t_mean and W_f are what
-// the last step left). Call after an input or a tunable parameter changed and before an output is read.
+// Recomputes F_t, F_n, sigma, A_r from the state and the present inputs and parameters (delta, F_t_mean, W_f and Q_f are
+// what the last step left). Call after an input or a tunable parameter changed and before an output is read.
 void fc_friction_contact_update_outputs(FcFrictionContact* contact);
 
-// Time derivative of F_t at the present time [N/s], with the inputs moving at the rates of the last step or, where
-// new ones have been set, of the next.
-double fc_friction_contact_force_rate(const FcFrictionContact* contact);
-
-// Partial derivatives of the outputs with respect to the inputs at the present time and deflection.
-typedef struct {
-    double F_t[FC_INPUT_COUNT];
-    double sigma[FC_INPUT_COUNT];
-    double A_r[FC_INPUT_COUNT];
-} FcOutputGradient; // delta, F_t_mean and W_f do not depend on the present inputs
-FcOutputGradient fc_friction_contact_output_gradient(const FcFrictionContact* contact);
+// The scene that begins at the present time, with the inputs moving at the rates of the last step or, where new ones
+// have been set, of the next. It points into the contact.
+FcScene fc_friction_contact_scene(FcFrictionContact* contact);
 
 // The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);

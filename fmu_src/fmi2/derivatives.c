@@ -4,6 +4,7 @@
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/values.h"
+#include "model/derivatives.h"
 
 // The variable of the reference if it has the causality; NULL after logging why not.
 static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
@@ -80,7 +81,8 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (!fc_instance_refresh_outputs(instance, &message)) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    const double rate = fc_friction_contact_force_rate(&instance->contact);
+    const FcScene scene = fc_friction_contact_scene(&instance->contact);
+    const double rate = fc_force_rate(&scene, instance->contact.state.variables.delta);
     if (!isfinite(rate)) {
         return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
     }
@@ -90,29 +92,38 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-// Row of the gradient that belongs to the output; NULL for an output that does not depend on the present inputs.
-// Before the first step F_t_mean is F_t.
-static const double* gradient_row(const FcOutputGradient* gradient, const FcVariableInfo* output,
-                                  int initializing) {
+// The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs. Before the
+// first step F_t_mean is F_t.
+static double slope_of(const FcSlopes* slopes, const FcVariableInfo* output, bool initializing) {
     switch (output->offset) {
     case offsetof(FcVariables, F_t):
-        return gradient->F_t;
+        return slopes->F_t;
+    case offsetof(FcVariables, F_n):
+        return slopes->F_n;
     case offsetof(FcVariables, sigma):
-        return gradient->sigma;
+        return slopes->sigma;
     case offsetof(FcVariables, A_r):
-        return gradient->A_r;
+        return slopes->A_r;
     case offsetof(FcVariables, F_t_mean):
-        return initializing ? gradient->F_t : NULL;
+        return initializing ? slopes->F_t : 0.0;
     default:
-        return NULL;
+        return 0.0;
     }
 }
 
 // Derivative of the output along the direction of the inputs.
-static double along(const double* gradient_row, const double direction[FC_INPUT_COUNT]) {
+static double along(const FcGradient* gradient, const FcVariableInfo* output, bool initializing,
+                    const double direction[FC_INPUT_COUNT]) {
+    const FcSlopes* slopes[FC_INPUT_COUNT] = {
+        [FC_INPUT_V] = &gradient->by_V,
+        [FC_INPUT_D] = &gradient->by_d,
+        [FC_INPUT_E] = &gradient->by_E,
+        [FC_INPUT_LOAD] = &gradient->by_load,
+    };
     double derivative = 0.0;
-    for (int input = 0; gradient_row && input < FC_INPUT_COUNT; input++) {
-        derivative += gradient_row[input] * direction[input];
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        const double slope = slope_of(slopes[input], output, initializing);
+        derivative += slope != 0.0 ? slope * direction[input] : 0.0;
     }
     return derivative;
 }
@@ -149,17 +160,18 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if (!fc_instance_refresh_outputs(instance, &message)) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    const FcOutputGradient gradient = fc_friction_contact_output_gradient(&instance->contact);
+    const FcScene scene = fc_friction_contact_scene(&instance->contact);
+    const FcGradient gradient = fc_gradient(&scene, instance->contact.state.variables.delta);
     const bool initializing = instance->experiment.mode == FC_INITIALIZATION_MODE;
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
-        if (!isfinite(along(gradient_row(&gradient, info, initializing), direction))) {
+        if (!isfinite(along(&gradient, info, initializing, direction))) {
             return fc_refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
         }
     }
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
-        dvUnknown[u] = along(gradient_row(&gradient, info, initializing), direction);
+        dvUnknown[u] = along(&gradient, info, initializing, direction);
     }
     return fmi2OK;
 }

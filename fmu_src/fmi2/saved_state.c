@@ -42,10 +42,12 @@ static void drop_stale_outputs(FcSavedState* saved) {
     variables->F_t = 0.0;
     variables->sigma = 0.0;
     variables->A_r = 0.0;
+    variables->F_n = 0.0;
     if (saved->experiment.mode == FC_INITIALIZATION_MODE) {
         variables->delta = 0.0;
         variables->F_t_mean = 0.0;
         variables->W_f = 0.0;
+        variables->Q_f = 0.0;
     }
 }
 

@@ -6,7 +6,7 @@
 //     12      4     size of all the bytes
 //     16      38    guid of the FMU
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
-//                   time and its rounding, rounding of W_f, rates of the last step, rates of the next step:
+//                   time and its rounding, roundings of W_f and Q_f, rates of the last step, rates of the next step:
 //                   8 bytes each; whether the latter were set: 4
 //                   state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
 //                   8
@@ -24,7 +24,7 @@
 #include "fmi2/values.h"
 
 enum {
-    LAYOUT_VERSION = 1,
+    LAYOUT_VERSION = 2,
     MAGIC_SIZE = 8,
     GUID_SIZE = 38,
     HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE,
@@ -33,7 +33,7 @@ enum {
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (5 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FrictionState must be added to transfer_state");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
@@ -97,6 +97,7 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
     transfer_real(cursor, &friction->time);
     transfer_real(cursor, &friction->time_rest);
     transfer_real(cursor, &friction->W_f_rest);
+    transfer_real(cursor, &friction->Q_f_rest);
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
         transfer_real(cursor, &friction->rate[input]);
     }
@@ -227,8 +228,8 @@ static const char* unsound_part(FcSavedState* saved) {
     }
     const FcFrictionState* friction = &saved->friction;
     if (!isfinite(friction->time) || !isfinite(friction->time_rest) || !isfinite(friction->W_f_rest) ||
-        !all_finite(friction->rate, FC_INPUT_COUNT) || !all_finite(friction->next_rate, FC_INPUT_COUNT) ||
-        !is_flag(friction->next_rate_set)) {
+        !isfinite(friction->Q_f_rest) || !all_finite(friction->rate, FC_INPUT_COUNT) ||
+        !all_finite(friction->next_rate, FC_INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
     return experiment_is_sound(&saved->experiment) ? NULL : "the state of the instance";

@@ -32,6 +32,8 @@ static inline FcInput fc_variable_input(const FcVariableInfo* info) {
         return FC_INPUT_D;
     case offsetof(FcVariables, E):
         return FC_INPUT_E;
+    case offsetof(FcVariables, load):
+        return FC_INPUT_LOAD;
     default:
         return FC_INPUT_COUNT;
     }

@@ -17,9 +17,9 @@ static double phase_in_cycles(double f, double t) {
     return fraction < 1.0 ? fraction : 0.0;
 }
 
-FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcVibration vibration, double start,
-                      double rest) {
-    FcDrive drive = {.V = V, .d = d, .E = E, .vibration = vibration};
+FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
+                      FcVibration vibration, double start, double rest) {
+    FcDrive drive = {.V = V, .d = d, .E = E, .load = load, .vibration = vibration};
     if (fc_drive_vibrates(&drive)) {
         assert(vibration.f > 0.0);
         drive.omega = FC_TWO_PI * vibration.f;
@@ -35,7 +35,7 @@ bool fc_drive_vibrates(const FcDrive* drive) {
 }
 
 bool fc_drive_is_linear(const FcDrive* drive) {
-    return drive->V.rate != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0;
+    return drive->V.rate != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0 || drive->load.rate != 0.0;
 }
 
 bool fc_drive_is_constant(const FcDrive* drive) {
@@ -45,6 +45,15 @@ bool fc_drive_is_constant(const FcDrive* drive) {
 static double theta(const FcDrive* drive, double t) { return drive->theta_0 + drive->omega * t; }
 
 static double linear(FcLinearInput input, double t) { return input.value + input.rate * t; }
+
+FcDrive fc_drive_later(const FcDrive* drive, double t) {
+    FcDrive later = *drive;
+    later.V.value = linear(drive->V, t);
+    later.d.value = linear(drive->d, t);
+    later.E.value = linear(drive->E, t);
+    later.load.value = linear(drive->load, t);
+    return later;
+}
 
 FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
     FcDriveValues now = {.V = linear(drive->V, t), .d = linear(drive->d, t)};
@@ -68,6 +77,8 @@ double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive
 
 double fc_drive_E(const FcDrive* drive, double t) { return linear(drive->E, t); }
 
+double fc_drive_load(const FcDrive* drive, double t) { return linear(drive->load, t); }
+
 double fc_drive_V_rate(const FcDrive* drive, double t) {
     return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
 }
@@ -83,6 +94,10 @@ double fc_drive_d_rate(const FcDrive* drive, double t) {
 
 double fc_drive_smallest_d(const FcDrive* drive, double h) {
     return fmin(drive->d.value, linear(drive->d, h)) - drive->vibration.a_d;
+}
+
+double fc_drive_largest_d(const FcDrive* drive, double h) {
+    return fmax(drive->d.value, linear(drive->d, h)) + drive->vibration.a_d;
 }
 
 double fc_drive_smallest_E(const FcDrive* drive, double h) {
@@ -106,6 +121,30 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
                         cos(theta(drive, middle));
     }
     return displacement;
+}
+
+// With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
+// the integrals of (v + V' tau)^2, of 2 (v + V' tau) V_1 cos and of V_1^2 cos^2.
+double fc_drive_square(const FcDrive* drive, double t0, double t1) {
+    const double duration = t1 - t0;
+    const double middle = 0.5 * (t0 + t1);
+    const double v = linear(drive->V, middle);
+    const double rate = drive->V.rate;
+    double square = (v * v + rate * rate * duration * duration / 12.0) * duration;
+    const double V_1 = drive->vibration.V_1;
+    if (V_1 != 0.0) {
+        const double omega = drive->omega;
+        const double angle = theta(drive, middle);
+        const double s = 0.5 * omega * duration;
+        // integral of tau sin(omega tau), which vanishes like s^3
+        const double moment =
+            s > 0.1 ? 2.0 * (sin(s) - s * cos(s)) / (omega * omega)
+                    : 2.0 * s * s * s * (1.0 / 3 - s * s * (1.0 / 30 - s * s * (1.0 / 840 - s * s / 45360))) /
+                          (omega * omega);
+        square += 2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * moment * sin(angle));
+        square += V_1 * V_1 * (0.5 * duration + 0.5 * sin(2.0 * s) / omega * cos(2.0 * angle));
+    }
+    return fmax(0.0, square);
 }
 
 // The first angle after theta, by more than the rounding of a root, that equals target modulo 2 pi.

@@ -1,8 +1,8 @@
-// What drives the contact over one communication step: V(t), d(t), E(t).
+// What drives the contact over one communication step: V(t), d(t) or load(t), E(t).
 //
 //     V(t) = V + V' t + V_1 cos(2 pi f t + theta_0)                (Eq. 24)
 //     d(t) = d + d' t + a_d cos(2 pi f t + theta_0 + phase_d)      (section 3.2)
-//     E(t) = E + E' t
+//     E(t) = E + E' t              load(t) = load + load' t
 //
 // t is local: 0 at the start of the step; theta_0 is the phase of the vibration there. The rates are zero when
 // the inputs are held. Local time keeps a step at 1e9 s as accurate as one at 0.
@@ -24,9 +24,10 @@ typedef struct {
 } FcLinearInput;
 
 typedef struct {
-    FcLinearInput V; // m/s
-    FcLinearInput d; // m
-    FcLinearInput E; // Pa
+    FcLinearInput V;    // m/s
+    FcLinearInput d;    // m
+    FcLinearInput E;    // Pa
+    FcLinearInput load; // N
     FcVibration vibration;
     double cos_phase_d, sin_phase_d;
     double omega;   // rad/s
@@ -34,8 +35,11 @@ typedef struct {
 } FcDrive;
 
 // The drive of a step that starts at the absolute time start + rest [s], rest being what rounding cut off start.
-FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcVibration vibration, double start,
-                      double rest);
+FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
+                      FcVibration vibration, double start, double rest);
+
+// The same drive with its local time starting at t [s]; with vibration, t a whole number of periods.
+FcDrive fc_drive_later(const FcDrive* drive, double t);
 
 bool fc_drive_vibrates(const FcDrive* drive);  // an amplitude is not zero
 bool fc_drive_is_linear(const FcDrive* drive); // a rate is not zero
@@ -50,16 +54,21 @@ FcDriveValues fc_drive_values(const FcDrive* drive, double t); // both for the p
 double fc_drive_V(const FcDrive* drive, double t);             // m/s
 double fc_drive_d(const FcDrive* drive, double t);             // m
 double fc_drive_E(const FcDrive* drive, double t);             // Pa
+double fc_drive_load(const FcDrive* drive, double t);          // N
 double fc_drive_V_rate(const FcDrive* drive, double t);        // m/s2
 double fc_drive_V_curvature(const FcDrive* drive, double t);   // m/s3
 double fc_drive_d_rate(const FcDrive* drive, double t);        // m/s
 double fc_drive_smallest_d(const FcDrive* drive, double h);    // lower bound of d over [0, h]
+double fc_drive_largest_d(const FcDrive* drive, double h);     // upper bound of d over [0, h]
 double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of E over [0, h]
 double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h]
 
 // integral of V over [t0, t1] [m], exact.
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1);
+
+// integral of V^2 over [t0, t1] [m2/s], exact.
+double fc_drive_square(const FcDrive* drive, double t0, double t1);
 
 // The first time after t, before end, at which V changes sign (a reversal) or |V| dips close to zero without doing so;
 // end if there is none.

@@ -1,54 +1,224 @@
 #include "model/scene.h"
 
-#include <math.h>
+#include <assert.h>
+#include <float.h>
 
-FcScene fc_scene_make(const FcContactParameters* contact, const FcDrive* drive, double F_C) {
-    return (FcScene){.contact = contact,
-                     .at_E = fc_contact_at_modulus(contact, drive->E.value),
-                     .drive = *drive,
-                     .F_C = F_C};
+// Where the surfaces rest at the time t [m], with contact.input = Load.
+static double rest_separation(const FcScene* scene, const FcContactAtModulus* at_E, double t) {
+    return (log(at_E->load_0 / fc_drive_load(&scene->drive, t)) + scene->log_swell) / at_E->decay;
+}
+
+static bool follows_load(const FcScene* scene) { return scene->contact->input == FC_CONTACT_LOAD; }
+
+static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
+
+FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
+                      const FcFriction* friction, double F_C, const FcDrive* drive) {
+    FcScene scene = {.contact = contact, .friction = friction, .F_C = F_C, .drive = *drive, .at_E = *at_E};
+    if (drive->vibration.a_d != 0.0 && (follows_load(&scene) || limit_follows_load(&scene))) {
+        scene.log_swell = fc_contact_log_swell(at_E, drive->vibration.a_d);
+    }
+    if (!follows_load(&scene)) {
+        scene.drive.load.rate = 0.0;
+        return scene;
+    }
+    scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
+    scene.drive.d = (FcLinearInput){scene.floats ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
+    return scene;
+}
+
+FcScene fc_scene_later(const FcScene* scene, double t) {
+    const FcDrive drive = fc_drive_later(&scene->drive, t);
+    const FcContactAtModulus at_E =
+        drive.E.rate == 0.0 ? scene->at_E : fc_contact_at_modulus(scene->contact, drive.E.value);
+    return fc_scene_make(scene->contact, &at_E, scene->friction, scene->F_C, &drive);
 }
 
 // The contact at the modulus of the time t.
 static FcContactAtModulus contact_at(const FcScene* scene, double t) {
+    return scene->drive.E.rate == 0.0 ? scene->at_E
+                                      : fc_contact_at_modulus(scene->contact, fc_drive_E(&scene->drive, t));
+}
+
+// The separation at t, of which the drive gives driven.
+static double separation(const FcScene* scene, const FcContactAtModulus* at_E, double driven, double t) {
+    return scene->floats ? driven + rest_separation(scene, at_E, t) : driven;
+}
+
+double fc_scene_d(const FcScene* scene, double t) {
+    const double driven = fc_drive_d(&scene->drive, t);
+    if (!scene->floats) {
+        return driven;
+    }
+    const FcContactAtModulus at_E = contact_at(scene, t);
+    return separation(scene, &at_E, driven, t);
+}
+
+double fc_scene_d_rate(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
-    return drive->E.rate == 0.0 ? scene->at_E : fc_contact_at_modulus(scene->contact, fc_drive_E(drive, t));
+    double rate = fc_drive_d_rate(drive, t);
+    if (scene->floats) {
+        const double by_E =
+            drive->E.rate != 0.0 ? fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t)).F_n : 0.0;
+        rate += (by_E * drive->E.rate - drive->load.rate / fc_drive_load(drive, t)) / scene->at_E.decay;
+    }
+    return rate;
 }
 
 FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
     const FcContactAtModulus at_E = contact_at(scene, t);
-    return fc_contact_response(&at_E, fc_drive_d(&scene->drive, t));
+    return fc_contact_response(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
 }
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
     const FcDriveValues now = fc_drive_values(&scene->drive, t);
-    if (scene->at_E.constant) {
-        return (FcCoefficients){.V = now.V, .sigma = scene->at_E.stiffness_0, .limit = scene->F_C};
+    FcCoefficients at = {.V = now.V, .sigma = scene->at_E.stiffness_0, .limit = scene->F_C};
+    if (scene->at_E.model != FC_CONTACT_CONSTANT || limit_follows_load(scene)) {
+        const FcContactAtModulus at_E = contact_at(scene, t);
+        const FcContactResponse response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
+        at.sigma = response.sigma;
+        if (limit_follows_load(scene)) {
+            at.limit = scene->friction->mu * response.F_n;
+        }
     }
-    if (scene->drive.E.rate == 0.0) {
-        return (FcCoefficients){
-            .V = now.V, .sigma = fc_contact_stiffness(&scene->at_E, now.d), .limit = scene->F_C};
-    }
-    const FcContactAtModulus at_E = contact_at(scene, t);
-    return (FcCoefficients){.V = now.V, .sigma = fc_contact_stiffness(&at_E, now.d), .limit = scene->F_C};
+    at.limit *= fc_stribeck(scene->friction, now.V);
+    return at;
 }
 
 double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coefficients(scene, t).sigma; }
 
-double fc_scene_log_stiffness_rate(const FcScene* scene, double t) {
+FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
-    const double d = fc_drive_d(drive, t);
-    const double E = fc_drive_E(drive, t);
-    const double sigma = fc_scene_stiffness(scene, t);
-    const FcContactGradient slope = fc_contact_stiffness_gradient(scene->contact, d, E);
-    return sigma > 0.0 ? (slope.by_d * fc_drive_d_rate(drive, t) + slope.by_E * drive->E.rate) / sigma : 0.0;
+    FcLogRates rates = {0.0, 0.0};
+    if (scene->at_E.model != FC_CONTACT_CONSTANT || limit_follows_load(scene)) {
+        const double d_rate = fc_scene_d_rate(scene, t);
+        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, t));
+        rates.sigma = by_d.sigma * d_rate;
+        rates.limit = by_d.F_n * d_rate;
+        if (drive->E.rate != 0.0) {
+            const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t));
+            rates.sigma += by_E.sigma * drive->E.rate;
+            rates.limit += by_E.F_n * drive->E.rate;
+        }
+        if (!limit_follows_load(scene)) {
+            rates.limit = 0.0;
+        }
+    }
+    const double V = fc_drive_V(drive, t);
+    rates.limit +=
+        fc_stribeck_slope(scene->friction, V) / fc_stribeck(scene->friction, V) * fc_drive_V_rate(drive, t);
+    return rates;
+}
+
+double fc_scene_bound_rate(const FcScene* scene, double t) {
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    const FcLogRates rates = fc_scene_log_rates(scene, t);
+    return at.limit / at.sigma * (rates.limit - rates.sigma);
+}
+
+// A bristle that slips has a deflection of g / sigma to the last bits only.
+static const double ON_THE_BOUND = 1.0 - 8.0 * DBL_EPSILON;
+
+double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    const double side = delta < 0.0 ? -1.0 : 1.0;
+    if (scene->friction->model != FC_ELASTIC_PLASTIC || at.sigma * fabs(delta) < ON_THE_BOUND * at.limit ||
+        !isfinite(at.limit / at.sigma)) {
+        return 0.0;
+    }
+    return side * at.V >= fc_scene_bound_rate(scene, t) ? side : 0.0;
+}
+
+static double elastic_plastic_rate(const FcScene* scene, double t, double V, double delta) {
+    const double side = fc_scene_slip_side(scene, t, delta);
+    return side != 0.0 ? side * fc_scene_bound_rate(scene, t) : V;
+}
+
+double fc_scene_deflection_rate(const FcScene* scene, double t, double delta) {
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    switch (scene->friction->model) {
+    case FC_COULOMB:
+        return 0.0;
+    case FC_ELASTIC_PLASTIC:
+        return elastic_plastic_rate(scene, t, at.V, delta);
+    default:
+        return fc_coefficients_rate(&at) * delta + at.V;
+    }
+}
+
+double fc_scene_force(const FcScene* scene, double t, double delta) {
+    const FcFriction* friction = scene->friction;
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    const double viscous = friction->sigma_2 != 0.0 ? friction->sigma_2 * at.V : 0.0;
+    if (friction->model == FC_COULOMB) {
+        return fc_sign(at.V) * at.limit + viscous;
+    }
+    const double damping =
+        friction->sigma_1 != 0.0 ? friction->sigma_1 * fc_scene_deflection_rate(scene, t, delta) : 0.0;
+    double elastic = at.sigma * delta; // Eq. 1
+    if (friction->model == FC_ELASTIC_PLASTIC) {
+        elastic = fmax(-at.limit, fmin(at.limit, elastic));
+    }
+    return elastic + damping + viscous;
+}
+
+// Bounds of the separation where the surfaces rest.
+static double smallest_rest(const FcScene* scene, double h) {
+    const FcContactAtModulus end = contact_at(scene, h);
+    const double load_0 = fmin(scene->at_E.load_0, end.load_0);
+    const double load = fmax(scene->drive.load.value, fc_drive_load(&scene->drive, h));
+    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
+}
+
+static double largest_rest(const FcScene* scene, double h) {
+    const FcContactAtModulus end = contact_at(scene, h);
+    const double load_0 = fmax(scene->at_E.load_0, end.load_0);
+    const double load = fmin(scene->drive.load.value, fc_drive_load(&scene->drive, h));
+    return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
+}
+
+double fc_scene_smallest_d(const FcScene* scene, double h) {
+    assert(h >= 0.0);
+    const double driven = fc_drive_smallest_d(&scene->drive, h);
+    return scene->floats ? driven + smallest_rest(scene, h) : driven;
+}
+
+static double largest_d(const FcScene* scene, double h) {
+    const double driven = fc_drive_largest_d(&scene->drive, h);
+    return scene->floats ? driven + largest_rest(scene, h) : driven;
 }
 
 double fc_scene_largest_stiffness(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     if (drive->E.rate == 0.0) {
-        return fc_contact_stiffness(&scene->at_E, fc_drive_smallest_d(drive, h));
+        return fc_contact_stiffness(&scene->at_E, fc_scene_smallest_d(scene, h));
     }
     const FcContactAtModulus stiffest = fc_contact_at_modulus(scene->contact, fc_drive_largest_E(drive, h));
-    return fc_contact_stiffness(&stiffest, fc_drive_smallest_d(drive, h));
+    return fc_contact_stiffness(&stiffest, fc_scene_smallest_d(scene, h));
+}
+
+double fc_scene_smallest_limit(const FcScene* scene, double h) {
+    if (!limit_follows_load(scene)) {
+        return scene->F_C;
+    }
+    const FcContactAtModulus end = contact_at(scene, h);
+    const double load_0 = fmin(scene->at_E.load_0, end.load_0);
+    return scene->friction->mu * load_0 * exp(-scene->at_E.decay * largest_d(scene, h));
+}
+
+double fc_scene_smallest_saturation(const FcScene* scene, double h) {
+    if (scene->at_E.model == FC_CONTACT_MINDLIN && limit_follows_load(scene)) { // both go with e^(-decay d)
+        const FcContactAtModulus end = contact_at(scene, h);
+        return scene->friction->mu *
+               fmin(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
+    }
+    return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
+}
+
+double fc_scene_force_scale(const FcScene* scene) {
+    if (!limit_follows_load(scene)) {
+        return scene->F_C;
+    }
+    const double d = fc_scene_d(scene, 0.0) - (fc_drive_d(&scene->drive, 0.0) - scene->drive.d.value);
+    return scene->friction->mu * scene->at_E.load_0 * exp(scene->log_swell - scene->at_E.decay * d);
 }

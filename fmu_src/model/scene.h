@@ -1,43 +1,86 @@
-// The scene of one communication step: a contact, what drives it, and the bristle whose force resists (Eq. 1, 2).
+// The scene of one communication step: a contact, what drives it, and the law of friction. It gives what the equation of
+// the bristle needs at any time of the step,
 //
-//     F_t = sigma(t) delta,      delta' = a(t) delta + V(t),      a = -sigma(t) |V(t)| / F_C
+//     delta' = V(t) - sigma(t) |V(t)| delta / g(t)                       (Eq. 2; g = F_C in the paper)
 //
-// delta [m] is the state; F_t [N] is positive when it resists positive V.
+// and the force that a deflection means there. With contact.input = Load the surfaces float: the separation is the one
+// at which the mean of F_n over a period of the vibration is the load.
 #ifndef FC_MODEL_SCENE_H
 #define FC_MODEL_SCENE_H
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "model/contact.h"
 #include "model/drive.h"
+#include "model/friction.h"
 
 typedef struct {
     const FcContactParameters* contact;
-    FcContactAtModulus at_E; // contact at the modulus of the start of the step
+    const FcFriction* friction;
+    double F_C; // N, the constant limit
     FcDrive drive;
-    double F_C; // N
+    FcContactAtModulus at_E; // the contact at the modulus of the start of the step
+    double log_swell;        // ln of the mean over a period of F_n over F_n without vibration
+    bool
+        floats; // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
 } FcScene;
 
-// What Eq. 2 needs at one moment.
+// at_E is the contact at the drive's modulus at the start. Keeps the pointers.
+FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
+                      const FcFriction* friction, double F_C, const FcDrive* drive);
+
+// The scene with its local time starting at t [s]; with vibration, t a whole number of periods.
+FcScene fc_scene_later(const FcScene* scene, double t);
+
+// At the local time t [s].
+double fc_scene_d(const FcScene* scene, double t);      // m
+double fc_scene_d_rate(const FcScene* scene, double t); // m/s
+FcContactResponse fc_scene_contact(const FcScene* scene, double t);
+double fc_scene_stiffness(const FcScene* scene, double t); // N/m
+
+// What the equation of the bristle needs at one moment.
 typedef struct {
     double V;     // m/s
     double sigma; // N/m
-    double limit; // N, F_C
+    double limit; // N, g
 } FcCoefficients;
 
-// a of the head of this file [1/s].
+FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
+
+// -sigma |V| / g [1/s]: the equation is delta' = rate delta + V.
 static inline double fc_coefficients_rate(const FcCoefficients* at) {
     return -at->sigma * fabs(at->V) / at->limit;
 }
 
-// Keeps the pointer to the parameters of the contact.
-FcScene fc_scene_make(const FcContactParameters* contact, const FcDrive* drive, double F_C);
+// Time derivatives of ln(sigma) and ln(g) [1/s]; 0 for what has become 0.
+typedef struct {
+    double sigma;
+    double limit;
+} FcLogRates;
+FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
 
-// sigma and A_r at the local time t [s]; sigma [N/m] alone; an upper bound of sigma [N/m] over [0, h].
-FcContactResponse fc_scene_contact(const FcScene* scene, double t);
-double fc_scene_stiffness(const FcScene* scene, double t);
-FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
-double fc_scene_log_stiffness_rate(const FcScene* scene, double t); // d ln(sigma) / dt [1/s]
-double fc_scene_largest_stiffness(const FcScene* scene, double h);
+// Rate [m/s] at which the bound g / sigma of the deflection moves.
+double fc_scene_bound_rate(const FcScene* scene, double t);
+
+// +1 or -1 where a bristle of ElasticPlastic deflected by delta [m] slips along that bound, 0 where it sticks and in
+// every other law.
+double fc_scene_slip_side(const FcScene* scene, double t, double delta);
+
+// delta' [m/s] of a bristle that is deflected by delta [m], for every law. A bristle that an input has pushed beyond the
+// limit of ElasticPlastic lies on it.
+double fc_scene_deflection_rate(const FcScene* scene, double t, double delta);
+
+// F_t [N] of that bristle, damping and viscous friction included.
+double fc_scene_force(const FcScene* scene, double t, double delta);
+
+// Bounds over [0, h], h [s] >= 0.
+double fc_scene_smallest_d(const FcScene* scene, double h);          // m
+double fc_scene_largest_stiffness(const FcScene* scene, double h);   // N/m
+double fc_scene_smallest_limit(const FcScene* scene, double h);      // N
+double fc_scene_smallest_saturation(const FcScene* scene, double h); // m, of g / sigma
+
+// What solver.tolerance is relative to [N]: F_C, or mu times the mean of F_n over a period at the start.
+double fc_scene_force_scale(const FcScene* scene);
 
 #endif

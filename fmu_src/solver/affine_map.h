@@ -1,7 +1,8 @@
 // What an interval of a bristle's motion does to its deflection.
 //
-// Eq. 2 is affine in delta, so any interval is an affine map of the deflection at its start, and so are the impulse of
-// the force and its work over the interval. Maps compose; n equal intervals are the n-th power of one.
+// Its equation is affine in delta, so any interval is an affine map of the deflection at its start; so are the impulse of
+// the force, its work and its drag over the interval, and the heat is quadratic. Maps compose; n equal intervals are the
+// n-th power of one.
 #ifndef FC_SOLVER_AFFINE_MAP_H
 #define FC_SOLVER_AFFINE_MAP_H
 
@@ -10,20 +11,25 @@
 typedef struct {
     double relaxation;     // 1      delta_1 = (1 - relaxation) delta_0 + offset
     double offset;         // m
-    double impulse_slope;  // N s/m  integral F dt   = impulse_slope delta_0 + impulse_offset
+    double impulse_slope;  // N s/m  integral F dt = impulse_slope delta_0 + impulse_offset
     double impulse_offset; // N s
     double work_slope;     // N      integral F V dt = work_slope delta_0 + work_offset
     double work_offset;    // J
+    double drag_slope;     // m/s    integral delta' V dt = drag_slope delta_0 + drag_offset
+    double drag_offset;    // m2/s
+    double heat_square;    // N/m    integral F (V - delta') dt
+    double heat_slope;     // N                = heat_square delta_0^2 + heat_slope delta_0 + heat_offset
+    double heat_offset;    // J
 } FcMap;
 
 FcMap fc_map_identity(void);
 FcMap fc_map_compose(const FcMap* first, const FcMap* second);
 FcMap fc_map_power(const FcMap* one, double n); // n a non-negative whole number
 
-// Takes result->delta over the interval and adds the interval's impulse and work.
+// Takes result->delta over the interval and adds what the interval gives.
 void fc_map_apply(const FcMap* map, FcStepResult* result);
 
-// One interval of constant V, sigma, F_C: exact for any duration h [s] >= 0.
-FcMap fc_map_of_constant_scene(double V, double sigma, double F_C, double h);
+// One interval of constant coefficients: exact for any duration h [s] >= 0.
+FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h);
 
 #endif

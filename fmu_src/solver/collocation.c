@@ -29,32 +29,51 @@ static const double LARGEST_RESOLUTION = 2.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
 
-// Time [s] in which the bristle relaxes by 1 from t on: about the least root of g x + g' x^2 / 2 = 1
-// and g'' x^3 / 6 = 1. The last one counts where V only touches zero.
+// Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved: the root of
+// |V'| x + |V''| x^2 / 2 = V_S + |V| / 2. Infinite where g does not depend on V.
+static double stribeck_time(const FcScene* scene, double t) {
+    const FcFriction* friction = scene->friction;
+    if (friction->model != FC_LUGRE || friction->staticRatio == 1.0) {
+        return INFINITY;
+    }
+    const FcDrive* drive = &scene->drive;
+    const double change = friction->V_S + 0.5 * fabs(fc_drive_V(drive, t));
+    const double rate = fabs(fc_drive_V_rate(drive, t));
+    const double curvature = fabs(fc_drive_V_curvature(drive, t));
+    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
+}
+
+// Time [s] in which the bristle relaxes by 1 from t on: about the least root of r x + r' x^2 / 2 = 1
+// and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
 static double relaxation_layer(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
-    const double per_speed = fc_scene_stiffness(scene, t) / scene->F_C;
-    const double g = per_speed * fabs(fc_drive_V(drive, t));
-    const double g_rate = per_speed * fabs(fc_drive_V_rate(drive, t));
-    const double g_curvature = per_speed * fabs(fc_drive_V_curvature(drive, t));
-    return fmin(2.0 / (g + sqrt(g * g + 2.0 * g_rate)), cbrt(6.0 / g_curvature));
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    const double per_speed = at.sigma / at.limit;
+    const double r = per_speed * fabs(at.V);
+    const double r_rate = per_speed * fabs(fc_drive_V_rate(drive, t));
+    const double r_curvature = per_speed * fabs(fc_drive_V_curvature(drive, t));
+    const double relaxation = fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
+    return fmin(relaxation, stribeck_time(scene, t));
 }
 
 // Width [s] of a dip of |V| at t that does not reach zero: that of the parabola, or the time to relax by 1 in it.
 static double dip_layer(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
     const double curvature = fabs(fc_drive_V_curvature(drive, t));
-    const double per_speed = fc_scene_stiffness(scene, t) / scene->F_C;
-    return fmax(sqrt(2.0 * fabs(fc_drive_V(drive, t)) / curvature), cbrt(6.0 / (per_speed * curvature)));
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    const double width =
+        fmax(sqrt(2.0 * fabs(at.V) / curvature), cbrt(6.0 * at.limit / (at.sigma * curvature)));
+    return fmin(width, stribeck_time(scene, t));
 }
 
 // Layer [s] at the start of a communication step: none if delta_0 is where the bristle has settled, to first order in
 // the time it takes to relax, so that it only follows V and sigma on their own scales.
 static double start_layer(const FcScene* scene, double delta_0, double tolerance) {
     const FcCoefficients now = fc_scene_coefficients(scene, 0.0);
-    const double g = now.sigma * fabs(now.V) / scene->F_C;
-    const double settled = copysign(1.0, now.V) * (1.0 + fc_scene_log_stiffness_rate(scene, 0.0) / g);
-    if (fabs(now.sigma * delta_0 / scene->F_C - settled) <= SAFETY * tolerance) {
+    const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
+    const double r = -fc_coefficients_rate(&now);
+    const double settled = copysign(now.limit, now.V) * (1.0 + (rates.sigma - rates.limit) / r);
+    if (fabs(now.sigma * delta_0 - settled) <= SAFETY * tolerance * fc_scene_force_scale(scene)) {
         const FcDrive* drive = &scene->drive; // distance of the reversal behind, width of the dip
         return fmin(fabs(now.V / fc_drive_V_rate(drive, 0.0)),
                     sqrt(2.0 * fabs(now.V / fc_drive_V_curvature(drive, 0.0))));
@@ -62,43 +81,51 @@ static double start_layer(const FcScene* scene, double delta_0, double tolerance
     return relaxation_layer(scene, 0.0);
 }
 
-// How fast the phase and ln(sigma) move at the most, and whether the surfaces come so close, or the modulus moves so
-// far, that 1/d^3 and E have to be followed instead of bounded.
+// How fast the phase and the logarithms of sigma and g move at the most, and whether the surfaces come so close, or the
+// modulus or the load move so far, that they have to be followed instead of bounded.
 typedef struct {
     double rate; // 1/s
     bool follows_d_and_E;
 } Smoothness;
 
+static bool depends_on_d(const FcScene* scene) {
+    return scene->at_E.model != FC_CONTACT_CONSTANT || scene->friction->limit == FC_LIMIT_LOAD;
+}
+
 static Smoothness smoothness(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     Smoothness smooth = {.rate = fc_drive_vibrates(drive) ? drive->omega : 0.0};
-    if (scene->at_E.constant) {
+    if (!depends_on_d(scene)) {
         return smooth;
     }
     const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
-    const double by_nearness = 3.0 / fc_drive_smallest_d(drive, h);
+    const double by_nearness = 3.0 / fc_scene_smallest_d(scene, h);
     const double E = fc_drive_smallest_E(drive, h);
     smooth.rate += 2.0 * scene->at_E.decay * d_rate;
-    smooth.follows_d_and_E =
-        (d_rate > 0.0 && by_nearness > 2.0 * scene->at_E.decay) || fc_drive_largest_E(drive, h) > 100.0 * E;
+    smooth.follows_d_and_E = scene->floats || (d_rate > 0.0 && by_nearness > 2.0 * scene->at_E.decay) ||
+                             fc_drive_largest_E(drive, h) > 100.0 * E;
     if (!smooth.follows_d_and_E) {
         smooth.rate += by_nearness * d_rate + fabs(drive->E.rate) / E;
     }
     return smooth;
 }
 
-// Time [s] from t on over which the phase or ln(sigma) moves by 1, at the least.
+// Time [s] from t on over which the phase, ln(sigma) or ln(g) moves by 1, at the least.
 static double smooth_time(const FcScene* scene, const Smoothness* smooth, double t) {
+    const double by_V = stribeck_time(scene, t);
     if (!smooth->follows_d_and_E) {
-        return 1.0 / smooth->rate;
+        return fmin(by_V, 1.0 / smooth->rate);
     }
     const FcDrive* drive = &scene->drive;
     // Twice the rates at t: they rise while the step goes on.
-    const double by_nearness = 2.0 * 3.0 / fc_drive_d(drive, t);
+    const double by_nearness = 2.0 * 3.0 / fc_scene_d(scene, t);
     const double by_E = 2.0 * fabs(drive->E.rate) / fc_drive_E(drive, t);
-    const double rate = smooth->rate + by_nearness * fabs(fc_drive_d_rate(drive, t)) + by_E;
+    const double d_rate = fc_scene_d_rate(scene, t);
+    const double floating =
+        scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
+    const double rate = smooth->rate + by_nearness * fabs(d_rate) + by_E + floating;
     const double curvature = by_nearness * drive->vibration.a_d * drive->omega * drive->omega;
-    return 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)); // rate x + curvature x^2 / 2 = 1
+    return fmin(by_V, 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature))); // rate x + curvature x^2 / 2 = 1
 }
 
 // Where the two trajectories of the interval's map are: P started from 1 and Q started from 0. For one start alone
@@ -137,7 +164,7 @@ static double graded_step(const Progress* progress, const FcScene* scene, const 
 }
 
 // Estimated error over what the step is allowed, for the map's two trajectories.
-static double relative_error(const Progress* progress, const FcRadauStep* step, double F_C) {
+static double relative_error(const Progress* progress, const FcRadauStep* step) {
     const double P = 1.0 - progress->map.relaxation;
     const FcRadauTail full = fc_radau_tail_full(step, progress->map.offset);
     double error = fc_radau_error(&full, step->z_mean);
@@ -145,21 +172,9 @@ static double relative_error(const Progress* progress, const FcRadauStep* step, 
         const FcRadauTail homogeneous = fc_radau_tail_homogeneous(step, P * progress->delta_scale);
         error += fc_radau_error(&homogeneous, step->z_mean);
     }
-    const double rounding = ROUNDING * F_C / step->sigma[FC_RADAU_STAGES - 1];
+    const double rounding = ROUNDING * step->saturation;
     const double allowed = fmax(SAFETY * progress->delta_tolerance, rounding) * fmin(1.0, step->z_mean);
     return error > 0.0 ? error / allowed : 0.0;
-}
-
-// Adds the step to the map.
-static void accept(Progress* progress, const FcRadauStep* step, double h) {
-    FcMap* map = &progress->map;
-    const double P = 1.0 - map->relaxation;
-    const double Q = map->offset;
-    const double relaxed = fc_radau_impulse_relaxed(step, h);
-    map->impulse_slope += relaxed * P;
-    map->impulse_offset += relaxed * Q + fc_radau_impulse_driven(step, h);
-    map->relaxation -= P * step->relaxed[FC_RADAU_STAGES - 1];
-    map->offset += Q * step->relaxed[FC_RADAU_STAGES - 1] + step->driven[FC_RADAU_STAGES - 1];
 }
 
 // Goes through a stretch.
@@ -168,7 +183,6 @@ static void cross(Progress* progress, const FcScene* scene, const Stretch* stret
     const double end = stretch->end;
     const double V_middle = fc_drive_V(&scene->drive, 0.5 * (start + end));
     const double sign = V_middle > 0.0 ? 1.0 : V_middle < 0.0 ? -1.0 : 0.0;
-    const FcMap before = progress->map;
     double t = start;
     while (t < end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const double h = graded_step(progress, scene, stretch, t);
@@ -176,7 +190,7 @@ static void cross(Progress* progress, const FcScene* scene, const Stretch* stret
         fc_radau_step(scene, t, h, sign, &step);
         progress->evaluations += FC_RADAU_STAGES;
 
-        const double error = relative_error(progress, &step, scene->F_C);
+        const double error = relative_error(progress, &step);
         // 1.6^12 = 281: an error far below its bound needs no root.
         const double change = error < 1.0 / 300.0 ? 1.6 : fmax(0.3, pow(error, -1.0 / ORDER));
         const bool can_shrink = progress->resolution > SMALLEST_RESOLUTION && t + 0.5 * h > t;
@@ -186,20 +200,17 @@ static void cross(Progress* progress, const FcScene* scene, const Stretch* stret
         }
         progress->resolution =
             fmax(SMALLEST_RESOLUTION, fmin(LARGEST_RESOLUTION, progress->resolution * change));
-        accept(progress, &step, h);
+        const FcMap map = fc_radau_map(&step, h);
+        progress->map = fc_map_compose(&progress->map, &map);
         t = h < end - t ? t + h : end;
     }
-    // Work from F |V| = F_C (|V| - s delta'), exact and without quadrature.
-    FcMap* map = &progress->map;
-    const double path = sign * fc_drive_displacement(&scene->drive, start, end);
-    map->work_slope += sign * scene->F_C * (map->relaxation - before.relaxation);
-    map->work_offset += scene->F_C * (path - sign * (map->offset - before.offset));
 }
 
 // Without stiffness there is no force: the bristle goes with V.
 static FcMap slack_map(const FcScene* scene, double h) {
     FcMap map = fc_map_identity();
     map.offset = fc_drive_displacement(&scene->drive, 0.0, h);
+    map.drag_offset = fc_drive_square(&scene->drive, 0.0, h);
     return map;
 }
 
@@ -207,15 +218,16 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
                               double delta_0, FcMapScope scope, double* evaluations) {
     assert(duration >= 0.0 && options->tolerance > 0.0);
     const FcDrive* drive = &scene->drive;
-    const double saturated = scene->F_C / fc_scene_largest_stiffness(scene, duration);
+    const double saturated = fc_scene_force_scale(scene) / fc_scene_largest_stiffness(scene, duration);
     if (!isfinite(saturated)) {
         return slack_map(scene, duration);
     }
+    const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
     Progress progress = {
         .map = fc_map_identity(),
         .resolution = 1.5 * pow(options->tolerance, 1.0 / (2 * FC_RADAU_STAGES)),
         .smooth = smoothness(scene, duration),
-        .delta_scale = fmax(fabs(delta_0), scene->F_C / fc_scene_stiffness(scene, 0.0)),
+        .delta_scale = fmax(fabs(delta_0), start.limit / start.sigma),
         .delta_tolerance = options->tolerance * saturated,
         .evaluations = *evaluations,
     };
@@ -246,8 +258,8 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
 }
 
 void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
-    const FcMap map =
-        fc_map_of_constant_scene(scene->drive.V.value, fc_scene_stiffness(scene, 0.0), scene->F_C, h);
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const FcMap map = fc_map_of_constant_scene(&at, h);
     *result = (FcStepResult){.delta = delta_0, .evaluations = 1.0};
     fc_map_apply(&map, result);
 }

@@ -1,8 +1,8 @@
 // SUNDIALS CVODE: variable-order BDF with the exact 1x1 Jacobian.
 //
-//     y = delta / L,     y' = a(t) y + V(t) / L,     a = -sigma |V| / F_C                       (Eq. 2)
+//     y = delta / L,     y' = a(t) y + V(t) / L,     a = -sigma |V| / g                         (Eq. 2)
 //
-// L = F_C / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
+// L = g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
 // of F_t / F_C; less where the surfaces move less than that. The step is cut at the reversals of V. CVODE is
 // started anew, in a time that begins at 0, on every piece: it never steps over a kink and no history
 // outlives a step. The error of y is bounded absolutely: y is large where the contact is soft, and an error
@@ -31,7 +31,8 @@
 
 #define MOST_PERIODS 1e5     // vibration periods in one communication step: minutes of computing
 #define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
-#define SHORTEST_STEP 1e-200 // s; CVODE can't tell a shorter one from none, and one explicit step is exact
+#define SHORTEST_STEP                                                                                        \
+    1e-150 // s; CVODE can't tell much shorter ones from none, and one explicit step is exact
 #define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
 
 // Five-point Gauss-Legendre on [-1, 1]: exact for the degree 9.
@@ -154,7 +155,7 @@ static bool failed(const FcCvode* solver, double tau, double h, const char* reas
 
 // The deflection's scale over a step of h [s] from delta_0, see the head of this file.
 static double deflection_scale(const FcScene* scene, double h, double delta_0) {
-    const double saturated = scene->F_C / fc_scene_largest_stiffness(scene, h);
+    const double saturated = fc_scene_smallest_saturation(scene, h);
     const double moved = fabs(delta_0) + fc_drive_largest_speed(&scene->drive, h) * h;
     const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
     return isfinite(L) && L > 0.0 ? L : 1.0;
@@ -172,7 +173,7 @@ static double local_error_bound(const FcDrive* drive, double tolerance, double h
 static double initial_step(FcCvode* solver, double duration, double local_error) {
     const FcCoefficients at = coefficients_at(solver, 0.0);
     const double V_rate = fabs(fc_drive_V_rate(&solver->scene->drive, solver->start));
-    const double ramp = at.sigma * V_rate / (2.0 * solver->scene->F_C);
+    const double ramp = at.sigma * V_rate / (2.0 * at.limit);
     const double inverse_width = fmax(fabs(fc_coefficients_rate(&at)), sqrt(ramp));
     return fmin(duration, sqrt(local_error) / fmax(inverse_width, 1.0 / duration));
 }
@@ -209,9 +210,14 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
                 return failed(solver, node, h, solver->reason, message);
             }
             const FcCoefficients at = coefficients_at(solver, node);
-            const double F = at.sigma * solver->L * NV_Ith_S(solver->dense, 0);
-            sum->impulse += half * gauss_weight[i] * F;
-            sum->work += half * gauss_weight[i] * F * at.V;
+            const double delta = solver->L * NV_Ith_S(solver->dense, 0);
+            const double F = at.sigma * delta;
+            const double slip = -fc_coefficients_rate(&at) * delta; // V - delta'
+            const double weight = half * gauss_weight[i];
+            sum->impulse += weight * F;
+            sum->work += weight * F * at.V;
+            sum->heat += weight * F * slip;
+            sum->drag += weight * (at.V - slip) * at.V;
         }
         tau = tau_next;
     }
@@ -233,12 +239,14 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
         return false;
     }
     if (h < SHORTEST_STEP) {
-        const double sigma = fc_scene_stiffness(scene, 0.0);
-        const double V = fc_drive_V(drive, 0.0);
-        const double F = sigma * delta_0;
-        *result = (FcStepResult){.delta = delta_0 + h * (V - fabs(V) * F / scene->F_C),
+        const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+        const double F = at.sigma * delta_0;
+        const double slip = -fc_coefficients_rate(&at) * delta_0;
+        *result = (FcStepResult){.delta = delta_0 + h * (at.V - slip),
                                  .impulse = h * F,
-                                 .work = h * F * V,
+                                 .work = h * F * at.V,
+                                 .heat = h * F * slip,
+                                 .drag = h * (at.V - slip) * at.V,
                                  .evaluations = 1.0};
         return true;
     }
@@ -263,7 +271,8 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
     }
     sum.delta = h > 0.0 ? solver->L * NV_Ith_S(solver->y, 0) : delta_0;
     sum.evaluations = solver->evaluations;
-    if (!isfinite(sum.delta) || !isfinite(sum.impulse) || !isfinite(sum.work)) {
+    if (!isfinite(sum.delta) || !isfinite(sum.impulse) || !isfinite(sum.work) || !isfinite(sum.heat) ||
+        !isfinite(sum.drag)) {
         return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
                       message);
     }

@@ -1,14 +1,13 @@
 // Fixed-step methods: explicit Euler, RK4, trapezoid and backward Euler, as a plain co-simulation FMU has
 // them.
 //
-//     delta' = a(t) delta + b(t),     a = -sigma |V| / F_C,     b = V                          (Eq. 2)
+//     delta' = a(t) delta + b(t),     a = -sigma |V| / g,       b = V                          (Eq. 2)
 //
 // Every step is solver.stepSize long; the last one is shortened so that it ends at the communication point.
 // Reversals are stepped over, as such an FMU does. The equation is affine, so the implicit methods are solved
-// exactly with one division. The impulse and the work are two more quadrature equations of the same method.
+// exactly with one division. The integrals of FcStepResult are quadrature equations of the same method.
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 
 #include "solver/fixed_step.h"
 
@@ -17,7 +16,7 @@
 // A step that fits this fraction of a step less or more than a whole number of times is taken to fit exactly.
 #define STEP_ROUNDING 1e-6
 
-// sigma |V| h / F_C up to which |growth per step| <= 1: of 1 - z, and of 1 - z + z^2/2 - z^3/6 + z^4/24.
+// sigma |V| h / g up to which |growth per step| <= 1: of 1 - z, and of 1 - z + z^2/2 - z^3/6 + z^4/24.
 #define EXPLICIT_EULER_LIMIT 2.0
 #define RK4_LIMIT 2.785293563405282
 
@@ -25,19 +24,25 @@
 #define SAMPLES_PER_PERIOD 256.0
 #define MOST_SAMPLES 1e6
 
+// The deflection and the integrals of FcStepResult.
 typedef struct {
     double delta;   // m
     double impulse; // N s
     double work;    // J
+    double heat;    // J
+    double drag;    // m2/s
 } Integrals;
 
 static Integrals slope_at(const FcCoefficients* at, double delta) {
     const double F = at->sigma * delta;
-    return (Integrals){fc_coefficients_rate(at) * delta + at->V, F, F * at->V};
+    const double slip = -fc_coefficients_rate(at) * delta; // V - delta'
+    const double rate = at->V - slip;
+    return (Integrals){rate, F, F * at->V, F * slip, rate * at->V};
 }
 
 static Integrals plus(Integrals y, double h, Integrals slope) {
-    return (Integrals){y.delta + h * slope.delta, y.impulse + h * slope.impulse, y.work + h * slope.work};
+    return (Integrals){y.delta + h * slope.delta, y.impulse + h * slope.impulse, y.work + h * slope.work,
+                       y.heat + h * slope.heat, y.drag + h * slope.drag};
 }
 
 static Integrals explicit_euler(Integrals y, double h, const FcCoefficients* start) {
@@ -46,8 +51,9 @@ static Integrals explicit_euler(Integrals y, double h, const FcCoefficients* sta
 
 static Integrals backward_euler(Integrals y, double h, const FcCoefficients* end) {
     const double delta = (y.delta + h * end->V) / (1.0 - h * fc_coefficients_rate(end));
-    const Integrals slope = slope_at(end, delta);
-    return (Integrals){delta, y.impulse + h * slope.impulse, y.work + h * slope.work};
+    Integrals next = plus(y, h, slope_at(end, delta));
+    next.delta = delta;
+    return next;
 }
 
 static Integrals trapezoid(Integrals y, double h, const FcCoefficients* start, const FcCoefficients* end) {
@@ -64,16 +70,21 @@ static Integrals rk4(Integrals y, double h, const FcCoefficients* start, const F
     return plus(plus(plus(plus(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4);
 }
 
-// sigma(t) |V(t)| over [0, h] is at most this [N/s]: the product of the two largest values.
-static double power_bound(const FcScene* scene, double h) {
-    return fc_scene_largest_stiffness(scene, h) * fc_drive_largest_speed(&scene->drive, h);
+// sigma |V| / g over [0, h] is at most this [1/s]: the product of the extremes.
+static double rate_bound(const FcScene* scene, double h) {
+    return fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_saturation(scene, h);
 }
 
-// The largest sigma(t) |V(t)| over [0, h] [N/s], sampled; the bound where that would take too many samples.
-static double largest_stiffness_rate(const FcScene* scene, double h) {
+static double rate_at(const FcScene* scene, double t) {
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    return -fc_coefficients_rate(&at);
+}
+
+// The largest sigma |V| / g over [0, h] [1/s], sampled; the bound where that would take too many samples.
+static double largest_rate(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     if (fc_drive_is_constant(drive)) {
-        return fc_scene_stiffness(scene, 0.0) * fabs(fc_drive_V(drive, 0.0));
+        return rate_at(scene, 0.0);
     }
     double duration = h;
     double periods = 1.0;
@@ -85,12 +96,12 @@ static double largest_stiffness_rate(const FcScene* scene, double h) {
     }
     const double samples = ceil(SAMPLES_PER_PERIOD * periods);
     if (!(samples <= MOST_SAMPLES)) {
-        return power_bound(scene, h);
+        return rate_bound(scene, h);
     }
     double largest = 0.0;
     for (double i = 0.0; i <= samples; i += 1.0) {
         const double t = duration * (i / samples);
-        largest = fmax(largest, fc_scene_stiffness(scene, t) * fabs(fc_drive_V(drive, t)));
+        largest = fmax(largest, rate_at(scene, t));
     }
     return largest;
 }
@@ -98,21 +109,20 @@ static double largest_stiffness_rate(const FcScene* scene, double h) {
 // An explicit method beyond its limit would return numbers that grow without bound: refuse it.
 static bool check_stability(const FcScene* scene, const char* method, double limit, double step_size,
                             double step, double h, FcMessage* message) {
-    const double allowed = limit * scene->F_C;
-    if (power_bound(scene, h) * step <= allowed) {
+    if (rate_bound(scene, h) * step <= limit) {
         return true;
     }
-    const double rate = largest_stiffness_rate(scene, h);
-    if (rate * step <= allowed) {
+    const double rate = largest_rate(scene, h);
+    if (rate * step <= limit) {
         return true;
     }
     // Rounded down, so that the printed step is itself usable.
-    const double usable = (1.0 - 1e-4) * allowed / rate;
+    const double usable = (1.0 - 1e-4) * limit / rate;
     fc_message_set(
         message,
         "solver.stepSize = %.5g s is too long for solver.method = %s: sigma |V| h / F_C = %.5g with the step "
         "h = %.5g s, and the method is stable up to %.5g; the largest usable step is %.5g s",
-        step_size, method, rate * step / scene->F_C, step, limit, usable);
+        step_size, method, rate * step, step, limit, usable);
     return false;
 }
 
@@ -123,7 +133,7 @@ static Integrals integrate(const FcScene* scene, FcMethod method, double step, d
     const bool uses_end = method != FC_METHOD_EXPLICIT_EULER;
     *evaluations = steps + (uses_start && uses_end ? 1.0 : 0.0) + (uses_middle ? steps : 0.0);
 
-    FcCoefficients start = {0.0, 0.0, 0.0};
+    FcCoefficients start = {0.0, 0.0, 1.0};
     FcCoefficients middle = start;
     FcCoefficients end = start;
     if (uses_start) {
@@ -191,13 +201,19 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
 
     double evaluations = 0.0;
     const Integrals y = integrate(scene, method, step, steps, h, (Integrals){.delta = delta_0}, &evaluations);
-    if (!isfinite(y.delta) || !isfinite(y.impulse) || !isfinite(y.work)) {
+    if (!isfinite(y.delta) || !isfinite(y.impulse) || !isfinite(y.work) || !isfinite(y.heat) ||
+        !isfinite(y.drag)) {
         return fc_message_set(
             message,
             "solver.stepSize = %.5g s: the deflection, the impulse or the work is no longer a finite number "
             "after a communication step of %.5g s",
             options->step_size, h);
     }
-    *result = (FcStepResult){y.delta, y.impulse, y.work, evaluations};
+    *result = (FcStepResult){.delta = y.delta,
+                             .impulse = y.impulse,
+                             .work = y.work,
+                             .heat = y.heat,
+                             .drag = y.drag,
+                             .evaluations = evaluations};
     return true;
 }

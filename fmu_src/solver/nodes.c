@@ -36,6 +36,10 @@ static inline double series_exp_less_1(double x) {
 // Whether the phase and ln(sigma) stay within the range of the series over a step of h [s].
 static bool is_short(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
+    if (scene->floats || scene->at_E.model == FC_CONTACT_MINDLIN || scene->friction->limit == FC_LIMIT_LOAD ||
+        (scene->friction->model == FC_LUGRE && scene->friction->staticRatio != 1.0)) {
+        return false;
+    }
     const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
     return drive->E.rate == 0.0 && 0.5 * h * drive->omega <= SERIES_RANGE &&
            0.5 * h * 2.0 * scene->at_E.decay * d_rate <= SERIES_RANGE;
@@ -48,6 +52,7 @@ void fc_node_coefficients(const FcScene* scene, double t, double h, const double
             const FcCoefficients now = fc_scene_coefficients(scene, t + node[i] * h);
             at->V[i] = now.V;
             at->sigma[i] = now.sigma;
+            at->limit[i] = now.limit;
         }
         return;
     }
@@ -72,9 +77,10 @@ void fc_node_coefficients(const FcScene* scene, double t, double h, const double
         const double d_moved =
             drive->d.rate * later + drive->vibration.a_d * (c_d * cos_later_less_1 - s_d * sin_later);
         const double d = d_middle + d_moved;
+        at->limit[i] = scene->F_C;
         at->sigma[i] = stiffness * (1.0 + series_exp_less_1(-two_decay * d_moved)) / (d * d * d);
     }
-    if (scene->at_E.constant) {
+    if (scene->at_E.model == FC_CONTACT_CONSTANT) {
         for (int i = 0; i < FC_NODE_COUNT; i++) {
             at->sigma[i] = scene->at_E.stiffness_0;
         }

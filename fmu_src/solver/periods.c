@@ -6,15 +6,6 @@
 // More periods than this with moving inputs are refused: they would take minutes.
 static const double MOST_CHANGING_PERIODS = 1e6;
 
-// The same drive with its local time starting at t, a whole number of periods later.
-static FcDrive periods_later(const FcDrive* drive, double t) {
-    FcDrive later = *drive;
-    later.V.value = drive->V.value + drive->V.rate * t;
-    later.d.value = drive->d.value + drive->d.rate * t;
-    later.E.value = drive->E.value + drive->E.rate * t;
-    return later;
-}
-
 // With held inputs all periods are the same map, and n of them its n-th power.
 static void step_over_equal_periods(FcIntervalMap interval, const FcScene* scene,
                                     const FcSolverOptions* options, double periods, double rest,
@@ -32,8 +23,7 @@ static void step_over_changing_periods(FcIntervalMap interval, const FcScene* sc
                                        FcStepResult* total) {
     const double f = scene->drive.vibration.f;
     for (double k = 0.0; k <= periods; k += 1.0) {
-        const FcDrive now = periods_later(&scene->drive, k / f);
-        const FcScene part = fc_scene_make(scene->contact, &now, scene->F_C);
+        const FcScene part = fc_scene_later(scene, k / f);
         const double duration = k < periods ? 1.0 / f : rest;
         const FcMap map =
             interval(&part, options, duration, total->delta, FC_MAP_THIS_START, &total->evaluations);

@@ -12,14 +12,14 @@ _Static_assert((int)FC_RADAU_STAGES == (int)FC_NODE_COUNT,
 
 static void evaluate(const FcScene* scene, double t, double h, double sign, FcRadauStep* step) {
     step->z_mean = 0.0;
-    const double sign_over_F_C = sign / scene->F_C;
     FcNodeCoefficients at;
     fc_node_coefficients(scene, t, h, FC_RADAU_NODES, &at);
+    step->saturation = at.limit[FC_RADAU_STAGES - 1] / at.sigma[FC_RADAU_STAGES - 1];
     for (int i = 0; i < FC_RADAU_STAGES; i++) {
         step->sigma[i] = at.sigma[i];
         step->shift[i] = h * at.V[i];
         // sign V and not |V|: V may be a rounding error past its reversal, and g must stay smooth there.
-        step->z[i] = step->shift[i] * at.sigma[i] * sign_over_F_C;
+        step->z[i] = step->shift[i] * at.sigma[i] * (sign / at.limit[i]);
         step->z_mean += FC_RADAU_WEIGHTS[i] * step->z[i];
     }
 }
@@ -81,20 +81,30 @@ void fc_radau_step(const FcScene* scene, double t, double h, double sign, FcRada
     }
 }
 
-double fc_radau_impulse_relaxed(const FcRadauStep* step, double h) {
-    double sum = 0.0;
+// Quadratures over the stages; with u = P u_0 + Q there,
+//     F = sigma u,   F V,   u' V = (V - r u) V,   F (V - u') = sigma r u^2.
+FcMap fc_radau_map(const FcRadauStep* step, double h) {
+    FcMap map = {.relaxation = -step->relaxed[FC_RADAU_STAGES - 1],
+                 .offset = step->driven[FC_RADAU_STAGES - 1]};
     for (int i = 0; i < FC_RADAU_STAGES; i++) {
-        sum += FC_RADAU_WEIGHTS[i] * step->sigma[i] * (1.0 + step->relaxed[i]);
+        const double P = 1.0 + step->relaxed[i];
+        const double Q = step->driven[i];
+        const double z = step->z[i];
+        const double V = step->shift[i] / h;
+        const double F = FC_RADAU_WEIGHTS[i] * step->sigma[i];
+        map.impulse_slope += F * P;
+        map.impulse_offset += F * Q;
+        map.work_slope += F * P * step->shift[i];
+        map.work_offset += F * Q * step->shift[i];
+        map.drag_slope -= FC_RADAU_WEIGHTS[i] * z * P * V;
+        map.drag_offset += FC_RADAU_WEIGHTS[i] * (step->shift[i] - z * Q) * V;
+        map.heat_square += F * z * P * P;
+        map.heat_slope += 2.0 * F * z * P * Q;
+        map.heat_offset += F * z * Q * Q;
     }
-    return h * sum;
-}
-
-double fc_radau_impulse_driven(const FcRadauStep* step, double h) {
-    double sum = 0.0;
-    for (int i = 0; i < FC_RADAU_STAGES; i++) {
-        sum += FC_RADAU_WEIGHTS[i] * step->sigma[i] * step->driven[i];
-    }
-    return h * sum;
+    map.impulse_slope *= h;
+    map.impulse_offset *= h;
+    return map;
 }
 
 static FcRadauTail tail_of(const double slope[FC_RADAU_STAGES]) {

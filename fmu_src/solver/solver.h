@@ -17,15 +17,17 @@ typedef enum {
 } FcMethod;
 
 typedef struct {
-    double tolerance; // 1  bound of the error of F_t and of its mean, over F_C
+    double tolerance; // 1  bound of the error of F_t and of its mean, over fc_scene_force_scale
     double step_size; // s  internal step of the fixed-step methods
 } FcSolverOptions;
 
 typedef struct {
-    double delta;       // m    deflection at the end of the step
-    double impulse;     // N s  integral of F_t dt over the step
-    double work;        // J    integral of F_t V dt over the step
-    double evaluations; // 1    evaluations of a(t), b(t)
+    double delta;       // m     deflection at the end of the step
+    double impulse;     // N s   integral of F dt, F being F_t without its parts from sigma_1 and sigma_2
+    double work;        // J     integral of F V dt
+    double heat;        // J     integral of F (V - delta') dt
+    double drag;        // m2/s  integral of delta' V dt, the work of the damping over sigma_1
+    double evaluations; // 1     evaluations of the coefficients of the equation of the bristle
 } FcStepResult;
 
 // Evaluations in one communication step, some 10 s of computing: a step that needs more is refused, so that none

@@ -80,9 +80,9 @@ OUT_OF_BOUNDS = [
     _set("solver.tolerance", 0.0, "below its minimum 1e-12", state="instantiated"),
     _set("solver.tolerance", 1.0, "above its maximum 0.01", state="instantiated"),
     _set("solver.stepSize", -1e-8, "below its minimum 1e-15 s", state="initialization"),
-    _choose("friction.model", 0, "= 0 is not one of its values: 1 (Dahl), 2 (Coulomb)"),
-    _choose("friction.model", 3, "= 3 is not one of its values", state="initialization"),
-    _choose("contact.model", -1, "= -1 is not one of its values: 1 (Asperities), 2 (Constant)"),
+    _choose("friction.model", 0, "= 0 is not one of its values: 1 (Dahl), 2 (Coulomb), "),
+    _choose("friction.model", 5, "= 5 is not one of its values", state="initialization"),
+    _choose("contact.model", -1, "= -1 is not one of its values: 1 (Asperities), 2 (Constant), 3 (Mindlin)"),
     _choose("solver.method", 7, "= 7 is not one of its values: 1 (collocation), 2 (cvode)"),
 ]
 

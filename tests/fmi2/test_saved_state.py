@@ -181,8 +181,8 @@ def offsets(library: Library) -> dict[str, int]:
         at += 8 if variable.kind == "Real" else 4
     places["time"] = at
     places["time_rest"] = at + 8
-    places["next_rate of V"] = at + 8 * 6
-    places["next_rate_set"] = at + 8 * 9
+    places["next_rate of V"] = at + 8 * 8
+    places["next_rate_set"] = at + 8 * 12
     places["state"] = places["next_rate_set"] + 4
     places["outputs_stale"] = places["state"] + 4
     places["start_time"] = places["state"] + 16
@@ -195,7 +195,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
     data = instance.fingerprint()
     places = offsets(library)
     assert data[:8] == b"FRICTION"
-    assert struct.unpack_from("<II", data, 8) == (1, len(data))
+    assert struct.unpack_from("<II", data, 8) == (2, len(data))
     assert data[GUID_AT:BODY_AT].decode() == library.guid
     assert struct.unpack_from("<d", data, places["V"]) == (0.125,)
     assert struct.unpack_from("<i", data, places["solver.method"]) == (1,)
@@ -211,7 +211,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
         ("d", struct.pack("<d", -1.0), "d"),
         ("F_t", struct.pack("<d", float("inf")), "F_t"),
         ("contact.R_q", struct.pack("<d", 0.0), "contact.R_q"),
-        ("friction.model", struct.pack("<i", 3), "friction.model"),
+        ("friction.model", struct.pack("<i", 5), "friction.model"),
         ("solver.method", struct.pack("<i", -1), "solver.method"),
         ("time", struct.pack("<d", float("nan")), "time"),
         ("time_rest", struct.pack("<d", float("inf")), "time"),
@@ -238,7 +238,7 @@ def test_sealed_bytes_with_impossible_values_are_refused(
 
 @pytest.mark.parametrize(
     ("position", "new", "told"),
-    [(0, b"OTHERFMU", "do not begin with FRICTION"), (8, b"\x02", "version"), (GUID_AT + 1, b"zzzz", "guid")],
+    [(0, b"OTHERFMU", "do not begin with FRICTION"), (8, b"\x01", "version"), (GUID_AT + 1, b"zzzz", "guid")],
 )
 def test_foreign_bytes_are_refused_with_the_reason(
     instance: Instance, position: int, new: bytes, told: str

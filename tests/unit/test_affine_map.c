@@ -4,6 +4,11 @@
 #include "check.h"
 
 // One that relaxes by a third, with everything else away from 0.
+static FcMap constant(double V, double sigma, double limit, double h) {
+    const FcCoefficients at = {.V = V, .sigma = sigma, .limit = limit};
+    return fc_map_of_constant_scene(&at, h);
+}
+
 static const FcMap MAP = {.relaxation = 1.0 / 3.0,
                           .offset = 2e-9,
                           .impulse_slope = 0.7,
@@ -105,7 +110,7 @@ static void a_constant_scene_is_solved(void) {
          183.93972058572116},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const FcMap map = fc_map_of_constant_scene(cases[i].V, cases[i].sigma, cases[i].F_C, cases[i].h);
+        const FcMap map = constant(cases[i].V, cases[i].sigma, cases[i].F_C, cases[i].h);
         CHECK_NEAR(map.relaxation, cases[i].relaxation, 1e-15);
         CHECK_NEAR(map.offset, cases[i].offset, 1e-15);
         CHECK_NEAR(map.impulse_slope, cases[i].impulse_slope, 1e-15);
@@ -117,13 +122,13 @@ static void a_constant_scene_is_solved(void) {
 
 // Without motion, time or stiffness nothing relaxes and nothing is divided by zero.
 static void a_scene_at_rest(void) {
-    const FcMap at_rest = fc_map_of_constant_scene(0.0, 1e9, 55.0, 2.0);
+    const FcMap at_rest = constant(0.0, 1e9, 55.0, 2.0);
     CHECK(at_rest.relaxation == 0.0 && at_rest.offset == 0.0);
     CHECK(at_rest.impulse_slope == 2e9 && at_rest.impulse_offset == 0.0);
     CHECK(at_rest.work_slope == 0.0 && at_rest.work_offset == 0.0);
-    const FcMap no_time = fc_map_of_constant_scene(0.3, 1e9, 55.0, 0.0);
+    const FcMap no_time = constant(0.3, 1e9, 55.0, 0.0);
     CHECK(no_time.relaxation == 0.0 && no_time.offset == 0.0 && no_time.impulse_slope == 0.0);
-    const FcMap slack = fc_map_of_constant_scene(0.3, 0.0, 55.0, 2.0);
+    const FcMap slack = constant(0.3, 0.0, 55.0, 2.0);
     CHECK(slack.relaxation == 0.0 && slack.offset == 0.6 && slack.impulse_slope == 0.0);
     CHECK(slack.impulse_offset == 0.0 && slack.work_offset == 0.0);
 }
@@ -131,8 +136,8 @@ static void a_scene_at_rest(void) {
 // Halves of an interval make the whole, across the two branches of the formulas.
 static void halves_compose_to_the_whole(void) {
     for (double h = 1e-12; h < 1e-6; h *= 3.7) {
-        const FcMap half = fc_map_of_constant_scene(0.005, 5.743065402e12, 55.0, 0.5 * h);
-        const FcMap whole = fc_map_of_constant_scene(0.005, 5.743065402e12, 55.0, h);
+        const FcMap half = constant(0.005, 5.743065402e12, 55.0, 0.5 * h);
+        const FcMap whole = constant(0.005, 5.743065402e12, 55.0, h);
         const FcMap halves = fc_map_compose(&half, &half);
         CHECK_NEAR(halves.relaxation, whole.relaxation, 1e-15);
         CHECK_NEAR(halves.offset, whole.offset, 1e-15);

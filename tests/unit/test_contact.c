@@ -53,8 +53,22 @@ static void constant_stiffness_ignores_the_surfaces(void) {
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     CHECK(fc_contact_stiffness(&at_E, 3e-6) == 2.5e6 && fc_contact_response(&at_E, 3e-6).sigma == 2.5e6);
     CHECK_NEAR(fc_contact_response(&at_E, 14e-6).A_r, 5.187698908e-7, TEN_DIGITS);
-    const FcContactGradient slope = fc_contact_stiffness_gradient(&p, 14e-6, E);
-    CHECK(slope.by_d == 0.0 && slope.by_E == 0.0);
+    CHECK(fc_contact_slope_by_d(&at_E, 14e-6).sigma == 0.0 && fc_contact_slope_by_E(&p, E).sigma == 0.0);
+}
+
+// F_n and Mindlin's stiffness at the parameters of Table 1, from an independent quadrature over the heights.
+static void load_and_mindlin_of_table_1(void) {
+    const double d[] = {12.9e-6, 14e-6, 15.1e-6, 17e-6};
+    const double F_n[] = {541.5402078, 312.4415202, 180.2630758, 69.71512644};
+    FcContactParameters p = table_1();
+    p.model = FC_CONTACT_MINDLIN;
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
+    for (int i = 0; i < 4; i++) {
+        CHECK_NEAR(fc_contact_response(&at_E, d[i]).F_n, F_n[i], TEN_DIGITS);
+    }
+    CHECK_NEAR(fc_contact_stiffness(&at_E, 14e-6), 5.273663570e9, TEN_DIGITS);
+    CHECK_NEAR(fc_contact_stiffness(&at_E, 17e-6), 1.176713397e9, TEN_DIGITS);
+    CHECK_NEAR(exp(fc_contact_log_swell(&at_E, 1.1e-6)), 1.077066856, TEN_DIGITS); // I_0(0.55)
 }
 
 typedef double (*Quantity)(const FcContactParameters* p, double d, double modulus);
@@ -69,51 +83,66 @@ static double area(const FcContactParameters* p, double d, double modulus) {
     return fc_contact_response(&at_E, d).A_r;
 }
 
-// Five-point differences with a step k of the variable: off by (k n)^4 / 30 for a power n, which is 30 at most, and by
-// rounding, 1e-16 / k.
-static void check_gradient(Quantity q, FcContactGradient slope, const FcContactParameters* p, double d,
-                           double modulus) {
-    const double k = 3e-4;
-    const double by_d = (8.0 * (q(p, d * (1 + k), modulus) - q(p, d * (1 - k), modulus)) -
-                         (q(p, d * (1 + 2 * k), modulus) - q(p, d * (1 - 2 * k), modulus))) /
-                        (12.0 * k * d);
-    const double by_E = (8.0 * (q(p, d, modulus * (1 + k)) - q(p, d, modulus * (1 - k))) -
-                         (q(p, d, modulus * (1 + 2 * k)) - q(p, d, modulus * (1 - 2 * k)))) /
-                        (12.0 * k * modulus);
-    CHECK_NEAR(slope.by_d, by_d, 1e-9);
-    CHECK_WITHIN(slope.by_E, by_E, 1e-9 * fabs(by_E) + 1e-11 * q(p, d, modulus) / modulus);
+static double normal_force(const FcContactParameters* p, double d, double modulus) {
+    const FcContactAtModulus at_E = fc_contact_at_modulus(p, modulus);
+    return fc_contact_response(&at_E, d).F_n;
 }
 
-// Eq. 13 makes the area depend on E where asperities stay elastic: E of some GPa.
-static void gradients_are_derivatives(void) {
+// Five-point differences of the logarithm with a step k of the variable: off by (k n)^4 / 30 for a power n, which is 30
+// at most, and by rounding, 1e-16 / k, of the variable's inverse.
+static void check_slope(Quantity q, double by_d, double by_E, const FcContactParameters* p, double d,
+                        double modulus) {
+    const double k = 3e-4;
+    const double of_d = (8.0 * log(q(p, d * (1 + k), modulus) / q(p, d * (1 - k), modulus)) -
+                         log(q(p, d * (1 + 2 * k), modulus) / q(p, d * (1 - 2 * k), modulus))) /
+                        (12.0 * k * d);
+    const double of_E = (8.0 * log(q(p, d, modulus * (1 + k)) / q(p, d, modulus * (1 - k))) -
+                         log(q(p, d, modulus * (1 + 2 * k)) / q(p, d, modulus * (1 - 2 * k)))) /
+                        (12.0 * k * modulus);
+    CHECK_NEAR(by_d, of_d, 1e-9);
+    CHECK_WITHIN(by_E, of_E, 1e-9 * fabs(of_E) + 1e-11 / modulus);
+}
+
+// Eq. 13 makes everything depend on E where asperities stay elastic: E of some GPa.
+static void slopes_are_derivatives(void) {
+    const int models[] = {FC_CONTACT_ASPERITIES, FC_CONTACT_MINDLIN};
     FcContactParameters p = table_1();
-    for (double d = 1e-6; d < 30e-6; d *= 1.7) {
-        for (double modulus = 3e8; modulus < 3e11; modulus *= 7.0) {
-            check_gradient(stiffness, fc_contact_stiffness_gradient(&p, d, modulus), &p, d, modulus);
-            check_gradient(area, fc_contact_area_gradient(&p, d, modulus), &p, d, modulus);
+    for (int model = 0; model < 2; model++) {
+        p.model = models[model];
+        for (double d = 1e-6; d < 30e-6; d *= 1.7) {
+            for (double modulus = 3e8; modulus < 3e12; modulus *= 7.0) {
+                const FcContactAtModulus at = fc_contact_at_modulus(&p, modulus);
+                const FcContactLogSlope by_d = fc_contact_slope_by_d(&at, d);
+                const FcContactLogSlope by_E = fc_contact_slope_by_E(&p, modulus);
+                check_slope(stiffness, by_d.sigma, by_E.sigma, &p, d, modulus);
+                check_slope(area, by_d.A_r, by_E.A_r, &p, d, modulus);
+                check_slope(normal_force, by_d.F_n, by_E.F_n, &p, d, modulus);
+            }
         }
     }
-    // d ln sigma / dd = -(2 lambda / R_q + 3 / d) at 14 um
-    const FcContactGradient at_14 = fc_contact_stiffness_gradient(&p, 14e-6, E);
-    CHECK_NEAR(at_14.by_d / stiffness(&p, 14e-6, E), -1.2142857142857142e6, 1e-14);
+    p.model = FC_CONTACT_ASPERITIES;
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
+    CHECK_NEAR(fc_contact_slope_by_d(&at_E, 14e-6).sigma, -1.2142857142857142e6, 1e-14);
 }
 
-// Numbers too small to be told from 0 give slopes of 0, not NaN.
+// e^(-decay d) underflows at a metre, e^-x at a soft modulus: nothing there may be undefined.
 static void far_apart_nothing_touches(void) {
     const FcContactParameters p = table_1();
-    const FcContactGradient stiffness_slope = fc_contact_stiffness_gradient(&p, 1.0, E);
-    const FcContactGradient area_slope = fc_contact_area_gradient(&p, 1.0, E);
-    CHECK(stiffness_slope.by_d == 0.0 && stiffness_slope.by_E == 0.0);
-    CHECK(area_slope.by_d == 0.0 && area_slope.by_E == 0.0);
-    const FcContactGradient soft = fc_contact_area_gradient(&p, 14e-6, 1e3); // e^-x = 0
-    CHECK(soft.by_E == 0.0 && soft.by_d < 0.0);
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
+    const FcContactResponse far = fc_contact_response(&at_E, 1.0);
+    CHECK(far.sigma == 0.0 && far.A_r == 0.0 && far.F_n == 0.0);
+    const FcContactLogSlope by_d = fc_contact_slope_by_d(&at_E, 1.0);
+    CHECK(isfinite(by_d.sigma) && isfinite(by_d.A_r) && isfinite(by_d.F_n));
+    const FcContactLogSlope soft = fc_contact_slope_by_E(&p, 1e3); // e^-x = 0
+    CHECK(soft.A_r == 0.0 && isfinite(soft.F_n) && isfinite(soft.sigma));
 }
 
 int main(void) {
     values_of_table_1();
     stiffness_scales();
     constant_stiffness_ignores_the_surfaces();
-    gradients_are_derivatives();
+    load_and_mindlin_of_table_1();
+    slopes_are_derivatives();
     far_apart_nothing_touches();
     return check_result();
 }

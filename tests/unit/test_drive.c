@@ -15,7 +15,8 @@ typedef struct {
 
 static FcDrive drive_of(Case c) {
     return fc_drive_make((FcLinearInput){c.V, c.V_rate}, (FcLinearInput){14e-6, c.d_rate},
-                         (FcLinearInput){58e9, 0.0}, (FcVibration){F, c.V_1, c.a_d, c.phase_d}, c.start, 0.0);
+                         (FcLinearInput){58e9, 0.0}, (FcLinearInput){1.0, 0.0},
+                         (FcVibration){F, c.V_1, c.a_d, c.phase_d}, c.start, 0.0);
 }
 
 // f t modulo 1 in whole numbers: every double t from 2^29 to 2^30 s is a multiple of 2^-23 s, and f is one of 1 Hz.
@@ -38,8 +39,8 @@ static void rest_of_the_time_counts(void) {
     const FcVibration vibration = {F, 1.0, 0.0, 0.0};
     const FcLinearInput held = {1.0, 0.0};
     const double rest = 4e-8; // s, below the rounding of 1e9 s
-    const FcDrive with = fc_drive_make(held, held, held, vibration, 1e9, rest);
-    const FcDrive without = fc_drive_make(held, held, held, vibration, 1e9, 0.0);
+    const FcDrive with = fc_drive_make(held, held, held, held, vibration, 1e9, rest);
+    const FcDrive without = fc_drive_make(held, held, held, held, vibration, 1e9, 0.0);
     CHECK_WITHIN(with.theta_0 - without.theta_0, TWO_PI * F * rest, 2e-15);
 }
 

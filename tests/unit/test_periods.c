@@ -42,10 +42,12 @@ static bool step(Case c, FcStepResult* result, FcMessage* message) {
     static const FcContactParameters contact = {.model = FC_CONTACT_CONSTANT, .sigma = 1e6, .R_q = 1.0};
     static const FcSolverOptions options = {.tolerance = 1e-6, .step_size = 1e-8};
     memset(&asked, 0, sizeof asked);
-    const FcDrive drive =
-        fc_drive_make((FcLinearInput){2.0, c.V_rate}, (FcLinearInput){1.0, 0.5 * c.V_rate},
-                      (FcLinearInput){8.0, 0.25 * c.V_rate}, (FcVibration){F, c.V_1, 0.0, 0.0}, 0.0, 0.0);
-    const FcScene scene = fc_scene_make(&contact, &drive, 55.0);
+    const FcDrive drive = fc_drive_make((FcLinearInput){2.0, c.V_rate}, (FcLinearInput){1.0, 0.5 * c.V_rate},
+                                        (FcLinearInput){8.0, 0.25 * c.V_rate}, (FcLinearInput){1.0, 0.0},
+                                        (FcVibration){F, c.V_1, 0.0, 0.0}, 0.0, 0.0);
+    static const FcFriction friction = {.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT};
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, drive.E.value);
+    const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
     return fc_periods_step(quarter, &scene, &options, c.h, 1.0, result, message);
 }
 

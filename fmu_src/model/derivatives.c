@@ -1,0 +1,175 @@
+#include "model/derivatives.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
+
+// Second time derivative of the bound g / sigma [m/s2], by a central difference of its rate, which is exact.
+static double bound_acceleration(const FcScene* scene) {
+    const FcDrive* drive = &scene->drive;
+    const double d = fc_scene_d(scene, 0.0);
+    const double rate = drive->omega + fabs(fc_scene_d_rate(scene, 0.0)) * (scene->at_E.decay + 1.0 / d) +
+                        fabs(drive->E.rate) / drive->E.value + fabs(drive->load.rate) / drive->load.value;
+    if (!(rate > 0.0)) {
+        return 0.0;
+    }
+    const double tau = 1e-4 / rate; // the error is some tau^2
+    return (fc_scene_bound_rate(scene, tau) - fc_scene_bound_rate(scene, -tau)) / (2.0 * tau);
+}
+
+static double elastic_plastic_force_rate(const FcScene* scene, double delta) {
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
+    const double sigma_1 = scene->friction->sigma_1;
+    const double side = fc_scene_slip_side(scene, 0.0, delta);
+    if (side != 0.0) {
+        const double damping = sigma_1 != 0.0 ? sigma_1 * side * bound_acceleration(scene) : 0.0;
+        return side * at.limit * rates.limit + damping;
+    }
+    const double damping = sigma_1 != 0.0 ? sigma_1 * fc_drive_V_rate(&scene->drive, 0.0) : 0.0;
+    return at.sigma * (rates.sigma * delta + at.V) + damping;
+}
+
+// F = sigma delta + sigma_1 delta', delta' = rate delta + V.
+static double affine_force_rate(const FcScene* scene, double delta) {
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
+    const double rate = fc_coefficients_rate(&at);
+    const double delta_rate = rate * delta + at.V;
+    double damping = 0.0;
+    if (scene->friction->sigma_1 != 0.0) {
+        const double V_rate = fc_drive_V_rate(&scene->drive, 0.0);
+        const double rate_rate =
+            rate * (rates.sigma - rates.limit) - at.sigma / at.limit * fc_sign(at.V) * V_rate;
+        damping = scene->friction->sigma_1 * (V_rate + rate_rate * delta + rate * delta_rate);
+    }
+    return at.sigma * (rates.sigma * delta + delta_rate) + damping;
+}
+
+double fc_force_rate(const FcScene* scene, double delta) {
+    const FcFriction* friction = scene->friction;
+    const double viscous =
+        friction->sigma_2 != 0.0 ? friction->sigma_2 * fc_drive_V_rate(&scene->drive, 0.0) : 0.0;
+    if (friction->model == FC_ELASTIC_PLASTIC) {
+        return elastic_plastic_force_rate(scene, delta) + viscous;
+    }
+    if (friction->model == FC_COULOMB) {
+        const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+        return fc_sign(at.V) * at.limit * fc_scene_log_rates(scene, 0.0).limit + viscous;
+    }
+    return affine_force_rate(scene, delta) + viscous;
+}
+
+// Derivatives of ln(sigma), ln(A_r) and ln(F_n) with respect to an input, the separation following where it floats.
+typedef struct {
+    FcContactLogSlope by_d, by_E, by_load;
+} LogSlopes;
+
+static FcContactLogSlope times(FcContactLogSlope slope, double factor) {
+    return (FcContactLogSlope){slope.sigma * factor, slope.A_r * factor, slope.F_n * factor};
+}
+
+static FcContactLogSlope plus(FcContactLogSlope a, FcContactLogSlope b) {
+    return (FcContactLogSlope){a.sigma + b.sigma, a.A_r + b.A_r, a.F_n + b.F_n};
+}
+
+static LogSlopes log_slopes(const FcScene* scene) {
+    const FcDrive* drive = &scene->drive;
+    const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, 0.0));
+    const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, drive->E.value);
+    if (scene->contact->input == FC_CONTACT_SEPARATION) {
+        return (LogSlopes){.by_d = by_d, .by_E = by_E};
+    }
+    // d = (ln F_n(0) - ln load + ...) / decay
+    const double decay = scene->at_E.decay;
+    return (LogSlopes){
+        .by_E = plus(by_E, times(by_d, by_E.F_n / decay)),
+        .by_load = times(by_d, -1.0 / (decay * drive->load.value)),
+    };
+}
+
+// F_t of Dahl and LuGre: sigma delta + sigma_1 (V - sigma |V| delta / g).
+static double affine_force_slope(const FcScene* scene, const FcCoefficients* at, double delta,
+                                 double log_sigma, double log_limit) {
+    const double sigma_1 = scene->friction->sigma_1;
+    const double damping =
+        sigma_1 != 0.0 ? sigma_1 * fc_coefficients_rate(at) * delta * (log_sigma - log_limit) : 0.0;
+    return at->sigma * delta * log_sigma + damping;
+}
+
+static double force_slope(const FcScene* scene, double delta, const FcContactLogSlope* slope) {
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double log_limit = limit_follows_load(scene) ? slope->F_n : 0.0;
+    if (scene->friction->model == FC_COULOMB) {
+        return fc_sign(at.V) * at.limit * log_limit;
+    }
+    if (scene->friction->model != FC_ELASTIC_PLASTIC) {
+        return affine_force_slope(scene, &at, delta, slope->sigma, log_limit);
+    }
+    const double side = fc_scene_slip_side(scene, 0.0, delta);
+    return side != 0.0 ? side * at.limit * log_limit : at.sigma * delta * slope->sigma;
+}
+
+// The damping of a bristle that slips is sigma_1 times the rate of the bound: by a central difference over an input.
+static double slip_damping_slope(const FcScene* scene, double side, size_t input) {
+    const double sigma_1 = scene->friction->sigma_1;
+    if (sigma_1 == 0.0 || side == 0.0) {
+        return 0.0;
+    }
+    const double value = ((const FcLinearInput*)(const void*)((const char*)&scene->drive + input))->value;
+    const double change = 1e-5 * value;
+    double rate[2];
+    for (int i = 0; i < 2; i++) {
+        FcDrive drive = scene->drive;
+        ((FcLinearInput*)(void*)((char*)&drive + input))->value += i == 0 ? -change : change;
+        const FcContactAtModulus at_E = fc_contact_at_modulus(scene->contact, drive.E.value);
+        const FcScene moved = fc_scene_make(scene->contact, &at_E, scene->friction, scene->F_C, &drive);
+        rate[i] = fc_scene_bound_rate(&moved, 0.0);
+    }
+    return sigma_1 * side * (rate[1] - rate[0]) / (2.0 * change);
+}
+
+// Of the damping and viscous parts; the elastic part does not depend on V.
+static double force_slope_by_V(const FcScene* scene, double delta) {
+    const FcFriction* friction = scene->friction;
+    if (friction->model == FC_COULOMB || friction->sigma_1 == 0.0) {
+        return friction->sigma_2;
+    }
+    if (friction->model == FC_ELASTIC_PLASTIC) {
+        return friction->sigma_2 + (fc_scene_slip_side(scene, 0.0, delta) == 0.0 ? friction->sigma_1 : 0.0);
+    }
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double log_limit = fc_stribeck_slope(friction, at.V) / fc_stribeck(friction, at.V);
+    const double rate_slope = -at.sigma / at.limit * fc_sign(at.V) - fc_coefficients_rate(&at) * log_limit;
+    return friction->sigma_2 + friction->sigma_1 * (1.0 + rate_slope * delta);
+}
+
+static FcSlopes slopes(const FcScene* scene, const FcContactResponse* now, double delta,
+                       const FcContactLogSlope* slope) {
+    return (FcSlopes){
+        .F_t = force_slope(scene, delta, slope),
+        .F_n = now->F_n * slope->F_n,
+        .sigma = now->sigma * slope->sigma,
+        .A_r = now->A_r * slope->A_r,
+    };
+}
+
+FcGradient fc_gradient(const FcScene* scene, double delta) {
+    const FcContactResponse now = fc_scene_contact(scene, 0.0);
+    const LogSlopes logs = log_slopes(scene);
+    FcGradient gradient = {
+        .by_V = {.F_t = force_slope_by_V(scene, delta)},
+        .by_d = slopes(scene, &now, delta, &logs.by_d),
+        .by_E = slopes(scene, &now, delta, &logs.by_E),
+        .by_load = slopes(scene, &now, delta, &logs.by_load),
+    };
+    const double side = fc_scene_slip_side(scene, 0.0, delta);
+    gradient.by_E.F_t += slip_damping_slope(scene, side, offsetof(FcDrive, E));
+    if (scene->contact->input == FC_CONTACT_LOAD) {
+        gradient.by_load.F_t += slip_damping_slope(scene, side, offsetof(FcDrive, load));
+    } else {
+        gradient.by_d.F_t += slip_damping_slope(scene, side, offsetof(FcDrive, d));
+    }
+    return gradient;
+}

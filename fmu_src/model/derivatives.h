@@ -1,0 +1,26 @@
+// How the outputs of a scene change at its start: in time, and with its inputs.
+#ifndef FC_MODEL_DERIVATIVES_H
+#define FC_MODEL_DERIVATIVES_H
+
+#include "model/scene.h"
+
+// Time derivative of F_t [N/s] of a bristle deflected by delta [m], the inputs moving as the drive says.
+double fc_force_rate(const FcScene* scene, double delta);
+
+// Partial derivatives with respect to one input, at the given deflection and rates of the inputs.
+typedef struct {
+    double F_t;
+    double F_n;
+    double sigma;
+    double A_r;
+} FcSlopes;
+
+typedef struct {
+    FcSlopes by_V;
+    FcSlopes by_d;
+    FcSlopes by_E;
+    FcSlopes by_load;
+} FcGradient;
+FcGradient fc_gradient(const FcScene* scene, double delta);
+
+#endif
