@@ -29,15 +29,15 @@ static const double LARGEST_RESOLUTION = 2.0;
 // Rounding in a step, over F_C: asking for less would only shorten steps.
 static const double ROUNDING = 2e-13;
 
-// Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved: the root of
-// |V'| x + |V''| x^2 / 2 = V_S + |V| / 2. Infinite where g does not depend on V.
+// Time [s] in which V moves by a fraction of itself and of a Stribeck velocity, so that g(V) is resolved: the root of
+// |V'| x + |V''| x^2 / 2 = 0.3 V_S + 0.2 |V|. Infinite where g does not depend on V.
 static double stribeck_time(const FcScene* scene, double t) {
     const FcFriction* friction = scene->friction;
     if (friction->model != FC_LUGRE || friction->staticRatio == 1.0) {
         return INFINITY;
     }
     const FcDrive* drive = &scene->drive;
-    const double change = friction->V_S + 0.5 * fabs(fc_drive_V(drive, t));
+    const double change = 0.3 * friction->V_S + 0.2 * fabs(fc_drive_V(drive, t));
     const double rate = fabs(fc_drive_V_rate(drive, t));
     const double curvature = fabs(fc_drive_V_curvature(drive, t));
     return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
