@@ -12,17 +12,19 @@ from __future__ import annotations
 
 import argparse
 import os
+import random
 import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from frictionlab.build import BuildError, build_fmu, presets
 from frictionlab.check.bad_input import write_page
 from frictionlab.check.mutants import check_mutations
+from frictionlab.check.random_mutants import check_random_mutants
 from frictionlab.project import ROOT
 
 FUZZERS = {"call_sequence": 100, "state_bytes": 420}  # name: longest input in bytes
@@ -45,11 +47,13 @@ class Extent:
     fuzz_seconds: int
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
+    mutants: int
+    seed: int = 0  # of the mutants
 
 
-FULL = Extent(("tests",), 3600, 10_000_000, ("1e9", "1e5"))
-QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"))
-CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"))
+FULL = Extent(("tests",), 3600, 10_000_000, ("1e9", "1e5"), 40)
+QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 10)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 4)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -174,6 +178,13 @@ def check_mutants(extent: Extent) -> None:
         raise CheckError(f"no test notices: {', '.join(unnoticed)}")
 
 
+def check_mutants_random(extent: Extent) -> None:
+    """Random single-token mutants of fmu_src, half of them in the solver: a test fails for each."""
+    unnoticed = check_random_mutants(extent.mutants, extent.seed)
+    if unnoticed:
+        raise CheckError(f"no test notices, and survivors.csv gives no reason: {'; '.join(unnoticed)}")
+
+
 def write_bad_input(extent: Extent) -> None:
     """Writes docs/bad-input.md anew from the tests' bad calls."""
     write_page()
@@ -187,13 +198,14 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "leaks": check_leaks,
     "coverage": check_coverage,
     "mutants": check_mutants,
+    "mutants-random": check_mutants_random,
     "bad-input": write_bad_input,
 }
 IN_CI = ("sanitize", "leaks", "fuzz")
 
 
 def main() -> None:
-    what = "\n".join(f"  {name:10} {check.__doc__}" for name, check in CHECKS.items())
+    what = "\n".join(f"  {name:14} {check.__doc__}" for name, check in CHECKS.items())
     parser = argparse.ArgumentParser(
         prog="scripts/check",
         description="The long runs: crashes, leaks, races, hangs, drift, tests that can't fail.",
@@ -205,11 +217,13 @@ def main() -> None:
     parser.add_argument(
         "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
     )
+    parser.add_argument("--seed", type=int, help="of mutants-random; drawn anew when not given")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:
             parser.error(f"unknown check {name}; there are: {', '.join(CHECKS)}")
-    extent = CI if arguments.ci else QUICK if arguments.quick else FULL
+    seed = random.randrange(10**6) if arguments.seed is None else arguments.seed
+    extent = replace(CI if arguments.ci else QUICK if arguments.quick else FULL, seed=seed)
     failed = []
     for name in arguments.checks or (IN_CI if arguments.ci else CHECKS):
         print(f"\n== {name}: {CHECKS[name].__doc__}", flush=True)

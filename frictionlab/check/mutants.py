@@ -8,21 +8,15 @@ from __future__ import annotations
 
 import os
 import re
-import shlex
 import subprocess
 import sys
 import tempfile
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import fmpy
-
-from frictionlab.build import BuildError, build_fmu
+from frictionlab.build import build_fmu
+from frictionlab.check.workshop import SHIPPED, Workshop
 from frictionlab.project import ROOT
-
-HEADERS = Path(fmpy.__file__).parent / "c-code"
-LIBRARY = "binaries/linux64/FrictionContact.so"
 
 
 @dataclass(frozen=True)
@@ -136,50 +130,6 @@ def mutated(text: str, mutant: Mutant) -> str:
     return text.replace(old, new)
 
 
-class Workshop:
-    """Compiles the FMU's sources, without SUNDIALS, one file spoilt at a time."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.original = build_fmu()
-        self.sources = [
-            *sorted((ROOT / "fmu_src").rglob("*.c")),
-            self.original.parent / "generated/variables.c",
-        ]
-        for source in self.sources:
-            self._compile(source, source.read_text())
-
-    def _object(self, source: Path) -> Path:
-        return self.folder / f"{source.parent.name}-{source.stem}.o"
-
-    def _cc(self, *arguments: str) -> None:
-        command = [*shlex.split(os.environ.get("CC", "cc")), "-std=c11", "-O1", "-w", "-fPIC", *arguments]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise BuildError(done.stderr)
-
-    def _compile(self, source: Path, text: str) -> None:
-        spoilt = self.folder / source.name
-        spoilt.write_text(text)
-        include = [f"-I{path}" for path in (source.parent, ROOT / "fmu_src", HEADERS)]
-        self._cc("-ffp-contract=off", *include, "-c", str(spoilt), "-o", str(self._object(source)))
-
-    def fmu(self, mutant: Mutant | None = None) -> Path:
-        spoilt = ROOT / "fmu_src" / mutant.source if mutant else None
-        if mutant and spoilt:
-            self._compile(spoilt, mutated(spoilt.read_text(), mutant))
-        library, packed = self.folder / "FrictionContact.so", self.folder / "FrictionContact.fmu"
-        self._cc(
-            "-shared", *(str(self._object(source)) for source in self.sources), "-lm", "-o", str(library)
-        )
-        with zipfile.ZipFile(self.original) as original, zipfile.ZipFile(packed, "w") as new:
-            for name in original.namelist():
-                new.writestr(name, library.read_bytes() if name == LIBRARY else original.read(name))
-        if spoilt:
-            self._compile(spoilt, spoilt.read_text())
-        return packed
-
-
 def _tests_pass(fmu: Path, tests: str) -> bool:
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests.split()]
     environment = {**os.environ, "FRICTION_FMU": str(fmu)}
@@ -192,13 +142,17 @@ def _tests_pass(fmu: Path, tests: str) -> bool:
 def check_mutations() -> list[str]:
     """Tries all mutants; gives the titles of those that no test notices."""
     with tempfile.TemporaryDirectory(prefix="friction-mutants-") as folder:
-        workshop = Workshop(Path(folder))
+        workshop = Workshop(Path(folder), build_fmu())
+        workshop.compile(SHIPPED)
         tests = sorted({name for mutant in MUTANTS for name in mutant.tests.split()})
         if not _tests_pass(workshop.fmu(), " ".join(tests)):
             return ["the sources as they are: their tests fail already"]
         unnoticed = []
         for mutant in MUTANTS:
-            noticed = not _tests_pass(workshop.fmu(mutant), mutant.tests)
+            source = (ROOT / "fmu_src" / mutant.source).read_text()
+            workshop.write(mutant.source, mutated(source, mutant), SHIPPED)
+            noticed = not _tests_pass(workshop.fmu(), mutant.tests)
+            workshop.write(mutant.source, source, SHIPPED)
             print(f"{'noticed' if noticed else 'NOT NOTICED'}  {mutant.title}", flush=True)
             if not noticed:
                 unnoticed.append(mutant.title)
