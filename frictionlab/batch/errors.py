@@ -1,7 +1,9 @@
-"""What a batch refuses before it runs."""
+"""What a batch refuses."""
 
 from __future__ import annotations
 
+from ..project import UserError
 
-class BatchError(ValueError):
+
+class BatchError(UserError):
     """The batch can't be run, or a scenario was refused; the text is one line that says why."""

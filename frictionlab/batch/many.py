@@ -12,43 +12,35 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import fmpy
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
 
-from frictionlab.build import build_fmu
-from frictionlab.project import ROOT
-
-from .columns import common_shape, flat, numbers_of, start_values
+from ..project import ROOT
 from .errors import BatchError
-from .run import Batch, Progress
-from .runner import STATISTICS, runner
-from .unpacked import LoadedFmu, loaded_fmu
+from .prepare import Outputs, Unit, prepared
+from .run import Progress
+from .runner import runner
+from .unpacked import loaded_fmu
 
-Statistic = Literal["end", "change", "mean", "min", "max", "samples"]
-Output = str | tuple[str, Statistic]
-MOST_SAMPLES = 10_000_000
-SETTLING = 1e6  # periods: every state that matters has forgotten its start
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def simulate_many(
     fmu: str | Path | bytes,
     values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
-    outputs: Sequence[str] | Mapping[str, Output] = ("F_t_mean",),
+    outputs: Outputs = ("F_t_mean",),
     *,
     settle: npt.ArrayLike | None = None,
     duration: npt.ArrayLike = 1.0,
     samples: int = 1,
-    unit: Literal["period", "s"] = "period",
+    unit: Unit = "period",
     settled: bool = False,
     errors: Literal["raise", "keep"] = "raise",
     threads: int | None = None,
@@ -80,7 +72,14 @@ def simulate_many(
     it goes on to the caller.
     """
     batch = prepared(
-        fmu, values, outputs, settle=settle, duration=duration, samples=samples, unit=unit, settled=settled
+        loaded_fmu(fmu, runner(built_runner())),
+        values,
+        outputs,
+        settle=settle,
+        duration=duration,
+        samples=samples,
+        unit=unit,
+        settled=settled,
     )
     if errors not in ("raise", "keep"):
         raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
@@ -90,7 +89,7 @@ def simulate_many(
         results = batch.run(threads or processors(), errors == "raise", shown)
     if errors == "raise":
         del results["reason"]
-    return _frame(results, values.index) if isinstance(values, pd.DataFrame) else results
+    return _frame(results, values.index) if not isinstance(values, Mapping) else results
 
 
 def processors() -> int:
@@ -98,93 +97,19 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def prepared(
-    fmu: str | Path | bytes,
-    values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
-    outputs: Sequence[str] | Mapping[str, Output],
-    *,
-    settle: npt.ArrayLike | None = None,
-    duration: npt.ArrayLike = 1.0,
-    samples: int = 1,
-    unit: Literal["period", "s"] = "period",
-    settled: bool = False,
-    times: bool = False,
-    library: Path | None = None,
-) -> Batch:
-    """The batch of `simulate_many`, checked. times: one result more, "seconds" of processor time."""
-    if unit not in ("period", "s"):
-        raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
-    if (
-        isinstance(samples, bool)
-        or not isinstance(samples, (int, np.integer))
-        or not 1 <= samples <= MOST_SAMPLES
-    ):
-        raise BatchError(f"samples = {samples}: must be a whole number from 1 to {MOST_SAMPLES}")
-    loaded = loaded_fmu(fmu, runner(library or built_runner()))
-    if settle is None:
-        settle = 0.0 if settled or unit == "s" else SETTLING
-    starts = start_values(loaded, _settled(loaded, values) if settled else _named(values))
-    spans = {"settle": numbers_of(settle, "settle", 0.0), "duration": numbers_of(duration, "duration", 0.0)}
-    shape = common_shape(starts | spans)
-    return Batch(
-        loaded,
-        shape,
-        {name: flat(column, shape) for name, column in starts.items()},
-        flat(spans["settle"], shape),
-        flat(spans["duration"], shape),
-        int(samples),
-        _read(loaded, outputs),
-        loaded.variable("vibration.f", "unit").valueReference if unit == "period" else None,
-        times,
-    )
-
-
 def built_runner() -> Path:
     """The runner's library, built where it is missing."""
     path = ROOT / "build" / f"friction_batch{fmpy.sharedLibraryExtension}"
     if not path.is_file():
+        from ..build import build_fmu  # with what it needs, only where it is needed
+
         build_fmu()
     return path
 
 
-def _named(values: Mapping[str, npt.ArrayLike] | pd.DataFrame) -> Mapping[str, npt.ArrayLike]:
-    if not isinstance(values, pd.DataFrame):
-        return values
-    if not values.columns.is_unique:
-        name = values.columns[values.columns.duplicated()][0]
-        raise BatchError(f"column {name}: is there twice")
-    return {name: values[name].array for name in values.columns}
-
-
-def _settled(
-    fmu: LoadedFmu, values: Mapping[str, npt.ArrayLike] | pd.DataFrame
-) -> Mapping[str, npt.ArrayLike]:
-    fmu.variable("initialState", "settled")
-    if "initialState" in values:
-        raise BatchError("column initialState: settled gives it already")
-    return {**_named(values), "initialState": "Settled"}
-
-
-def _read(fmu: LoadedFmu, outputs: Sequence[str] | Mapping[str, Output]) -> dict[str, tuple[int, Statistic]]:
-    """Name of each result -> value reference and statistic."""
-    if isinstance(outputs, str):
-        raise BatchError(f"outputs = {outputs!r}: must be a sequence of names, or a mapping")
-    named = dict(outputs) if isinstance(outputs, Mapping) else {name: name for name in outputs}
-    read = {}
-    for name, output in named.items():
-        variable, statistic = (output, "end") if isinstance(output, str) else output
-        found = fmu.variable(variable, f"output {name}")
-        if found.type != "Real":
-            raise BatchError(f"output {name}: {variable} is of type {found.type}; only Real is read")
-        if statistic not in STATISTICS:
-            raise BatchError(f"output {name}: {statistic!r} is not one of {', '.join(STATISTICS)}")
-        if name in ("reason", "seconds"):
-            raise BatchError(f"output {name}: the name is taken")
-        read[name] = found.valueReference, statistic
-    return read
-
-
 def _frame(results: Mapping[str, np.ndarray], index: pd.Index) -> pd.DataFrame:
+    import pandas as pd
+
     columns: dict[str, np.ndarray] = {}
     for name, array in results.items():
         if array.ndim == 1:
@@ -203,6 +128,10 @@ def _shown(progress: bool | Progress, scenarios: int) -> AbstractContextManager[
 @contextmanager
 def _bar(scenarios: int) -> Iterator[Progress]:
     """On standard error where that is a terminal: scenarios per second and time left."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
     console = Console(stderr=True)
     columns = (
         TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),

@@ -39,7 +39,10 @@ class Batch:
 
     def run(self, threads: int, raises: bool, progress: Progress) -> dict[str, np.ndarray]:
         """The results and "reason", of the batch's shape. BatchError at the first refusal, if asked for."""
-        running = _Running(self, raises)
+        try:
+            running = _Running(self, raises)
+        except MemoryError:
+            raise BatchError(f"no memory for the results of {self.scenarios} scenarios") from None
         if self.scenarios:
             running.work(min(threads, self.scenarios), progress)
         try:

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import ctypes
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 from functools import cache
 from pathlib import Path
+
+import fmpy
 
 from .errors import BatchError
 
@@ -67,10 +73,30 @@ def runner(path: Path) -> ctypes.CDLL:
     return library
 
 
-def load_fmu(library: ctypes.CDLL, path: Path) -> int:
+@cache
+def runner_of(content: bytes) -> ctypes.CDLL:
+    """The same from the bytes of the library's file."""
+    with temporary_file("friction_batch", content) as path:
+        return runner(path)
+
+
+@contextmanager
+def temporary_file(name: str, content: bytes) -> Iterator[Path]:
+    """A shared library of this content. What is loaded from it no longer needs it when it is gone."""
+    folder = Path(tempfile.mkdtemp(prefix="friction-batch-"))
+    try:
+        path = folder / f"{name}{fmpy.sharedLibraryExtension}"
+        path.write_bytes(content)
+        yield path
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def load_fmu(library: ctypes.CDLL, name: str, content: bytes) -> int:
     """Handle of an FMU's shared library for batch_begin. It stays loaded as long as the process lives."""
     why = ctypes.create_string_buffer(TEXT)
-    handle = library.batch_load(str(path).encode(), why, TEXT)
+    with temporary_file(name, content) as path:
+        handle = library.batch_load(str(path).encode(), why, TEXT)
     if not handle:
         raise BatchError(f"the FMU's library can't be loaded: {why.value.decode(errors='replace')}")
     return handle

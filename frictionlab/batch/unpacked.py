@@ -6,9 +6,6 @@ import ctypes
 import difflib
 import hashlib
 import io
-import os
-import shutil
-import tempfile
 import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -52,30 +49,27 @@ def loaded_fmu(fmu: str | Path | bytes, runner: ctypes.CDLL) -> LoadedFmu:
         name = "the FMU"
     else:
         name = str(fmu)
+        path = Path(fmu).resolve()
         try:
-            stat = os.stat(fmu)  # noqa: PTH116
+            stat = path.stat()
+            key = (path, stat.st_mtime_ns, stat.st_size)
+            fmu = b"" if key in _loaded else path.read_bytes()
         except OSError as error:
             raise BatchError(f"{name}: {error.strerror}") from None
-        key = (os.path.realpath(fmu), stat.st_mtime_ns, stat.st_size)
     if key not in _loaded:
-        _loaded[key] = _load(fmu if isinstance(fmu, bytes) else Path(fmu).read_bytes(), name, runner)
+        _loaded[key] = _load(fmu, name, runner)
     return _loaded[key]
 
 
 def _load(content: bytes, name: str, runner: ctypes.CDLL) -> LoadedFmu:
-    description, library = _members(content, name)
-    folder = Path(tempfile.mkdtemp(prefix="friction-batch-"))
-    try:
-        path = folder / f"{description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
-        path.write_bytes(library)
-        handle = load_fmu(runner, path)
-    finally:  # the loaded library no longer needs its file, but for Windows, which keeps it
-        shutil.rmtree(folder, ignore_errors=True)
+    description, library = description_and_library(content, name)
+    handle = load_fmu(runner, description.coSimulation.modelIdentifier, library)
     variables = {variable.name: variable for variable in description.modelVariables}
     return LoadedFmu(runner, handle, description.guid.encode(), variables)
 
 
-def _members(content: bytes, name: str) -> tuple[ModelDescription, bytes]:
+def description_and_library(content: bytes, name: str) -> tuple[ModelDescription, bytes]:
+    """Model description and shared library for this platform of an FMU file; its name is for messages."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = archive.namelist()

@@ -1,50 +1,49 @@
 """Chunks of scenarios on the workers of a Dask cluster: processes of this machine, or a scheduler's.
 
-A chunk whose worker dies is run again by another one. Chunks that keep losing their workers run at the end,
-one scenario at a time, so that only the scenario that kills its workers is given up.
+A chunk whose worker dies is halved at the end, until only the scenario that kills its workers is given up.
 """
 
 from __future__ import annotations
 
 import contextlib
+import copy
+import itertools
 import logging
-import operator
-from collections.abc import Iterator, Mapping, Sequence
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 
-import cloudpickle
 import dask
+import numpy as np
 from distributed import Client, Future, LocalCluster, as_completed
 from distributed.client import FutureCancelledError
 from distributed.comm import CommClosedError
 from distributed.scheduler import KilledWorker
 
-from frictionlab.sweep.plan import PlanError, Value
+from frictionlab.project import UserError
+from frictionlab.sweep.plan import PlanError
+from frictionlab.sweep.scenario import RESULTS, Results
+from frictionlab.sweep.spans import Chunks, Span
 
 CONNECT_SECONDS = 5.0
-Rows = list[dict[str, Value]]
-Numbered = list[tuple[int, Mapping[str, Value]]]
+IN_HAND = 2  # chunks of each worker: one that it runs, and one that waits there
 
 
-class ClusterError(RuntimeError):
+class ClusterError(UserError):
     """The cluster went away or can't do the work; the text is one line that says how."""
 
 
 @contextlib.contextmanager
-def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
-    """A client of the scheduler at this address, or of as many worker processes on this machine."""
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    for name in ("distributed.worker", "distributed.nanny", "distributed.scheduler", "distributed.client"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+def connected(scheduler: str | None, workers: int, folder: Path) -> Iterator[Client]:
+    """A client of the scheduler at this address, or of so many processes here, which use the folder."""
+    for name in ("", ".worker", ".nanny", ".scheduler", ".client", ".comm", ".core"):
+        logging.getLogger("distributed" + name).setLevel(logging.CRITICAL)
+    logging.getLogger("tornado.application").setLevel(logging.CRITICAL)
     dask.config.set({"distributed.comm.timeouts.connect": CONNECT_SECONDS})
     if scheduler is None:
-        # One death makes a chunk suspect: a worker that dies again and again as it starts can stall its
-        # nanny.
-        dask.config.set({"distributed.scheduler.allowed-failures": 0})
-        cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
-        with cluster, Client(cluster) as client:
+        with _local(workers, folder) as client:
             yield client
-            with contextlib.suppress(TimeoutError):  # closing amid a worker's restart can fail
-                client.wait_for_workers(workers, timeout=30)
         return
     try:
         client = Client(scheduler, timeout=CONNECT_SECONDS)
@@ -57,31 +56,100 @@ def connected(scheduler: str | None, workers: int) -> Iterator[Client]:
         yield client
 
 
-def run(client: Client, function: bytes, content: bytes, chunks: Sequence[Numbered]) -> Iterator[Rows]:
-    """Rows of the chunks as they come: of a pickled function of the FMU's bytes and a chunk."""
-    # Function and FMU are tasks of their own: what is lost with a worker is made again.
-    work = client.submit(cloudpickle.loads, function, pure=True)
-    fmu = client.submit(bytes, content, pure=True)
+@contextlib.contextmanager
+def _local(workers: int, folder: Path) -> Iterator[Client]:
+    quiet = {"DASK_LOGGING__DISTRIBUTED": "critical", "TMPDIR": str(folder)}
+    dask.config.set(
+        {
+            # One death makes a chunk suspect: a worker that dies again and again can stall its nanny.
+            "distributed.scheduler.allowed-failures": 0,
+            "distributed.nanny.pre-spawn-environ": quiet,
+            "temporary-directory": str(folder),
+        }
+    )
+    os.environ.setdefault("PYTHONWARNINGS", "ignore")  # what is killed says nothing of it
+    # Control-C is this process's to handle: what it starts inherits that it is ignored.
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+    except (OSError, RuntimeError) as error:
+        raise PlanError(
+            "worker processes here can't be reached through the loopback interface: "
+            f"{error.__cause__ or error}"
+        ) from None
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    with cluster, Client(cluster) as client:
+        try:
+            yield client
+        except BaseException:
+            _kill(cluster)
+            raise
+        with contextlib.suppress(TimeoutError):  # closing amid a worker's restart can fail
+            client.wait_for_workers(workers, timeout=30)
 
-    def submit(chunk: Numbered) -> Future:
-        return client.submit(operator.call, work, fmu, chunk, pure=False)
 
-    submitted = {submit(chunk): chunk for chunk in chunks}
-    suspects: Numbered = []
-    for future in as_completed(list(submitted), raise_errors=False):
-        chunk = submitted.pop(future)  # lets the cluster forget it
-        rows = _result(future)
-        if rows is None:
-            suspects.extend(chunk)
+def _kill(cluster: LocalCluster) -> None:
+    """Ends the workers in the midst of their work."""
+    for nanny in cluster.workers.values():
+        nanny.auto_restart = False
+        if nanny.pid:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(nanny.pid, signal.SIGKILL)
+
+
+def run(
+    client: Client,
+    function: Callable[[object, Mapping[str, np.ndarray]], Results],
+    work: object,
+    values: Callable[[Span], Mapping[str, np.ndarray]],
+    chunks: Chunks,
+) -> Iterator[tuple[Span, Results]]:
+    """Results of function(work, values(chunk)) for all chunks, as they come."""
+    # The work is a task of its own: what is lost with a worker is made again.
+    shared = client.submit(copy.copy, work, pure=False)
+    todo = iter(chunks)
+
+    def submit(span: Span) -> Future:
+        return client.submit(function, shared, values(span), pure=False)
+
+    def more(count: int) -> dict[Future, Span]:
+        return {submit(span): span for span in itertools.islice(todo, count)}
+
+    submitted = more(IN_HAND * sum(client.nthreads().values()))
+    suspects: list[Span] = []
+    completed = as_completed(list(submitted), raise_errors=False)
+    for future in completed:
+        span = submitted.pop(future)  # lets the cluster forget it
+        results = _result(future)
+        if results is None:
+            suspects.append(span)
         else:
-            yield rows
-    for index, values in suspects:
-        rows = _result(submit([(index, values)]))
-        yield rows or [{"scenario": index, **values, "reason": "every worker that ran this scenario died"}]
+            chunks.learn(span[1] - span[0], float(np.sum(results.columns["seconds"])))
+            yield span, results
+        for new, of_it in more(1).items():
+            submitted[new] = of_it
+            completed.add(new)
+    while suspects:
+        first, stop = suspects.pop()
+        results = _result(submit((first, stop)))
+        middle = (first + stop) // 2
+        if results is not None:
+            yield (first, stop), results
+        elif middle == first:
+            yield (first, stop), given_up()
+        else:
+            suspects += [(middle, stop), (first, middle)]
 
 
-def _result(future: Future) -> Rows | None:
-    """The rows, or None if too many workers died with them."""
+def given_up() -> Results:
+    """Of a scenario that no worker survives."""
+    columns = {name: np.full(1, np.nan) for name in RESULTS}
+    return Results(columns, {0: "every worker that ran this scenario died"})
+
+
+def _result(future: Future) -> Results | None:
+    """The results, or None if too many workers died with them."""
     try:
         return future.result()
     except KilledWorker:

@@ -3,33 +3,35 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import hashlib
 import os
 import platform
+import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-import pandas as pd
+import fmpy
+import numpy as np
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
 
+from frictionlab.batch.many import built_runner
+from frictionlab.batch.prepare import MOST_SAMPLES
 from frictionlab.build import BuildError, build_fmu
-from frictionlab.project import ROOT
-from frictionlab.sweep import cluster as sweep_cluster
+from frictionlab.project import ROOT, UserError
+from frictionlab.sweep import cluster, scenario
 from frictionlab.sweep import plan as sweep_plan
-from frictionlab.sweep.cluster import ClusterError, Numbered
-from frictionlab.sweep.plan import PlanError, Variables
-from frictionlab.sweep.scenario import RESULTS, Sampling
+from frictionlab.sweep.cluster import ClusterError
+from frictionlab.sweep.plan import PlanError, Scenarios, Variables
+from frictionlab.sweep.scenario import RESULTS, Results
 from frictionlab.sweep.shipping import shipped
-from frictionlab.sweep.store import Store, digest, opened
+from frictionlab.sweep.spans import MOST, Chunks, missing
+from frictionlab.sweep.store import Store, opened
 
 DESCRIPTION = """\
 Runs the FMU to its periodic state in many scenarios and writes one row for each to results.parquet.
@@ -71,7 +73,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--workers", type=int, default=os.cpu_count() or 1, help="processes here (one a core)"
     )
-    parser.add_argument("--chunk", type=int, default=100, help="scenarios handed out at a time (100)")
+    parser.add_argument("--chunk", type=int, help="scenarios handed out at a time (half a second's work)")
     parser.add_argument("--settle", type=float, default=1e6, help="periods before the one that is read (1e6)")
     parser.add_argument("--samples", type=int, default=64, help="samples of that period (64)")
     parser.add_argument("--fmu", type=Path, help="use this FMU instead of building one")
@@ -84,18 +86,19 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return options
 
 
-def scenarios_of(options: argparse.Namespace, fmu: Path) -> pd.DataFrame:
-    for name, least in (
-        ("workers", 1),
-        ("chunk", 1),
-        ("settle", 0),
-        ("samples", 1),
-        ("random", 1),
-        ("seed", 0),
+def scenarios_of(options: argparse.Namespace, fmu: Path) -> Scenarios:
+    for name, least, most in (
+        ("workers", 1, 1000),
+        ("chunk", 1, MOST),
+        ("settle", 0, sys.float_info.max),
+        ("samples", 1, MOST_SAMPLES),
+        ("random", 1, sweep_plan.MOST_SCENARIOS),
+        ("seed", 0, sys.maxsize),
     ):
         value = getattr(options, name)
-        if value is not None and not value >= least:
-            raise PlanError(f"--{name} {value}: must be at least {least}")
+        if value is not None and not least <= value <= most:
+            bound = f"at least {least}" if not value >= least else f"at most {most}"
+            raise PlanError(f"--{name} {value}: must be {bound}")
     if not options.csv and not options.vary:
         raise PlanError("nothing to sweep: give --vary NAME=VALUES or --csv FILE (see --help)")
     if options.csv and (options.vary or options.random):
@@ -112,19 +115,16 @@ def scenarios_of(options: argparse.Namespace, fmu: Path) -> pd.DataFrame:
     return sweep_plan.with_fixed(variables, scenarios, options.set)
 
 
-def chunks_of(scenarios: pd.DataFrame, done: set[int], size: int) -> list[Numbered]:
-    todo = [(k, values) for k, values in enumerate(sweep_plan.records(scenarios)) if k not in done]
-    return [todo[k : k + size] for k in range(0, len(todo), size)]
-
-
 def sweep(options: argparse.Namespace, console: Console) -> str:
     """Runs it, or the rest of it, and says in a few words what came of it."""
     fmu = options.fmu or build_fmu()
     scenarios = scenarios_of(options, fmu)
-    content, sampling = fmu.read_bytes(), Sampling(options.settle, options.samples)
+    content = fmu.read_bytes()
     plan = {
-        "digest": digest(scenarios, content, sampling),
-        "scenarios": len(scenarios),
+        "digest": hashlib.sha256(
+            repr((scenarios.digest(), options.settle, options.samples)).encode() + content
+        ).hexdigest(),
+        "scenarios": scenarios.count,
         "variables": list(scenarios.columns),
         "settle": options.settle,
         "samples": options.samples,
@@ -135,61 +135,96 @@ def sweep(options: argparse.Namespace, console: Console) -> str:
         if store.is_whole():
             good, bad = store.counts()
             return f"nothing to do: {options.output} holds all {good} results ({bad} failed scenarios apart)"
-        return _run(options, console, store, scenarios, content, sampling)
+        return _run(options, console, store, scenarios, content)
+
+
+@dataclass
+class Progress:
+    """How far a sweep is: scenarios from an earlier run, and those of this one."""
+
+    total: int
+    earlier: int
+    new: int = 0
+    failed: int = 0
+    seconds: float = 0.0  # of processor time on the workers
+    elapsed: float = 0.0  # s
+
+    def add(self, results: Results) -> None:
+        self.new += len(results.columns["seconds"])
+        self.failed += len(results.reasons)
+        self.seconds += float(np.nansum(results.columns["seconds"]))
 
 
 def _run(
-    options: argparse.Namespace,
-    console: Console,
-    store: Store,
-    scenarios: pd.DataFrame,
-    content: bytes,
-    sampling: Sampling,
+    options: argparse.Namespace, console: Console, store: Store, scenarios: Scenarios, fmu: bytes
 ) -> str:
-    columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-        TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("{task.fields[failed]}"),
-    )  # fmt: skip
-    done = store.done()
-    chunks = chunks_of(scenarios, done, options.chunk)
-    new, failed, seconds = len(scenarios) - len(done), 0, 0.0
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("Sweeping", total=len(scenarios), completed=len(done), failed="")
-        with sweep_cluster.connected(options.scheduler, options.workers) as client:
-            cores = sum(client.nthreads().values())
-            begin = time.perf_counter()
-            for rows in sweep_cluster.run(client, shipped(sampling), content, chunks):
-                store.keep(rows)
-                failed += sum("reason" in row for row in rows)
-                seconds += sum(row.get("seconds", 0.0) for row in rows)
-                progress.update(task, advance=len(rows), failed=f"{failed} failed" if failed else "")
-            elapsed = time.perf_counter() - begin
-    good, bad = store.finish([*scenarios.columns, *RESULTS])
+    missing_spans = missing(scenarios.count, store.done())
+    progress = Progress(scenarios.count, scenarios.count - sum(stop - first for first, stop in missing_spans))
+    runner = built_runner().read_bytes()
+    with (
+        _bar(console, progress) as show,
+        cluster.connected(options.scheduler, options.workers, store.work) as client,
+    ):
+        code = shipped(client, store.work) if options.scheduler else scenario
+        work = code.Work(fmu, runner, fmpy.platform, options.settle, options.samples)
+        cores = sum(client.nthreads().values())
+        chunks = Chunks(missing_spans, options.chunk, cores)
+        begin = time.perf_counter()
+        for span, results in cluster.run(
+            client, code.run_chunk, work, lambda span: scenarios.rows(*span), chunks
+        ):
+            store.keep(span, scenarios.shown(*span), results)
+            progress.add(results)
+            progress.elapsed = time.perf_counter() - begin
+            show()
+    good, bad = store.finish(list(RESULTS))
     lines = [f"{good} results in {store.folder / 'results.parquet'}"]
     if bad:
         lines.append(f"{bad} failed scenarios, with reasons, in {store.folder / 'failed.csv'}")
-    if done:
-        lines.append(f"{len(done)} scenarios were there from an earlier run")
-    if new:
+    if progress.earlier:
+        lines.append(f"{progress.earlier} scenarios were there from an earlier run")
+    if progress.new:
+        rate = progress.new / progress.elapsed
         lines.append(
-            f"{new} scenarios in {elapsed:.1f} s on {cores} workers: {new / elapsed:.0f} per second, "
-            f"{new / elapsed / cores:.0f} per worker; {1e3 * seconds / new:.2f} ms of processor time each"
+            f"{progress.new} scenarios in {progress.elapsed:.1f} s on {cores} workers: "
+            f"{rate:.0f} per second, {rate / cores:.0f} per worker; "
+            f"{1e3 * progress.seconds / progress.new:.3g} ms of processor time each"
         )
     return "\n".join(lines)
+
+
+@contextlib.contextmanager
+def _bar(console: Console, progress: Progress) -> Iterator[Callable[[], None]]:
+    """A bar on a terminal, and a function that brings it up to date."""
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+        TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("{task.fields[said]}"),
+    )  # fmt: skip
+    with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("Sweeping", total=progress.total, completed=progress.earlier, said="")
+
+        def show() -> None:
+            said = f"{progress.new / progress.elapsed:.0f} per second"
+            if progress.failed:
+                said += f", {progress.failed} failed"
+            bar.update(task, completed=progress.earlier + progress.new, said=said)
+
+        yield show
 
 
 def main(argv: Sequence[str] | None = None) -> None:
     options = arguments(argv)
     console = Console(stderr=True)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     again = (
         f"what was computed is kept in {options.output}; the same command without --fresh goes on from there"
     )
     try:
         print(sweep(options, console))
-    except (BuildError, PlanError) as error:
-        sys.exit(f"error: {error}")
     except ClusterError as error:
         sys.exit(f"error: {error}; {again}")
+    except (BuildError, UserError) as error:
+        sys.exit(f"error: {error}")
     except KeyboardInterrupt:
         sys.exit(f"stopped; {again}")
 

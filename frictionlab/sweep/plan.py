@@ -1,34 +1,48 @@
 """What a sweep runs: scenarios as the rows of a table, from a grid, at random, or from a CSV file.
 
 A column is a variable of the FMU that can be set, its values in the units of the model description; an
-enumeration's values are the names of its items.
+enumeration's values are the names of its items. Rows of a grid are made where they are needed.
 """
 
 from __future__ import annotations
 
 import csv
 import difflib
+import hashlib
 import math
+from array import array
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
-from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
+from fmpy.model_description import ScalarVariable
+
+from frictionlab.batch.unpacked import description_and_library
+from frictionlab.project import UserError
 
 Value = float | str
 MOST_SCENARIOS = 10_000_000
+SHOWN = 40  # characters of a wrong value in a message
 
 
-class PlanError(ValueError):
+class PlanError(UserError):
     """The sweep that was asked for can't be run; the text is one line that says why."""
+
+
+def shown(text: str) -> str:
+    return repr(text if len(text) <= SHOWN else text[:SHOWN] + "...")
 
 
 class Variables:
     """The FMU's variables that a scenario can set."""
 
     def __init__(self, fmu: Path) -> None:
-        description: ModelDescription = read_model_description(str(fmu), validate=False)
+        try:
+            content = fmu.read_bytes()
+        except OSError as error:
+            raise PlanError(f"--fmu {fmu}: {error.strerror}") from None
+        description, _ = description_and_library(content, f"--fmu {fmu}")
         self._all = {variable.name: variable for variable in description.modelVariables}
         self.settable = [v.name for v in description.modelVariables if v.causality in ("input", "parameter")]
 
@@ -37,29 +51,103 @@ class Variables:
             return self._all[name]
         if name in self._all:
             raise PlanError(f"{where}: {name} is an {self._all[name].causality} of the FMU and can't be set")
-        close = difflib.get_close_matches(name, self.settable, 1, 0.5)
+        close = difflib.get_close_matches(name[:SHOWN], self.settable, 1, 0.5)
         by_case = [known for known in self.settable if known.lower() == name.lower()]
         hint = f"; did you mean {(by_case or close)[0]}?" if by_case or close else ""
-        raise PlanError(f"{where}: {name or 'a variable without a name'} is no variable of the FMU{hint}")
+        named = name if len(name) <= SHOWN else shown(name)
+        raise PlanError(f"{where}: {named or 'a variable without a name'} is no variable of the FMU{hint}")
+
+    def items(self, name: str) -> dict[str, float] | None:
+        """Names and numbers of the items of an enumeration."""
+        variable = self._all[name]
+        if variable.type != "Enumeration":
+            return None
+        return {item.name: float(item.value) for item in variable.declaredType.items}
 
     def value(self, name: str, text: str, where: str) -> Value:
         """The value that a text stands for, as the named variable takes it. Bounds are left to the FMU."""
-        variable = self.find(name, where)
-        if variable.type == "Enumeration":
-            items = [item.name for item in variable.declaredType.items]
-            if text not in items:
-                raise PlanError(f"{where}: {text!r} is not one of {', '.join(items)}")
-            return text
-        return number(text, where)
+        self.find(name, where)
+        items = self.items(name)
+        if items is None:
+            return number(text, where)
+        if text not in items:
+            raise PlanError(f"{where}: {shown(text)} is not one of {', '.join(items)}")
+        return text
+
+    def column(
+        self, name: str, values: Sequence[Value], repeat: int = 1, picks: np.ndarray | None = None
+    ) -> Column:
+        items = self.items(name)
+        numbers = np.array(values if items is None else [items[value] for value in values], dtype=float)
+        return Column(numbers, None if items is None else np.array(values, dtype=object), repeat, picks)
+
+
+@dataclass(frozen=True)
+class Column:
+    """The values of one variable in all scenarios: numbers, and names where they are items of an enumeration.
+
+    Scenario i has the value with the number picks[i], or else (i // repeat) modulo the number of values.
+    """
+
+    numbers: np.ndarray
+    names: np.ndarray | None = None
+    repeat: int = 1
+    picks: np.ndarray | None = None
+
+    def rows(self, first: int, stop: int) -> np.ndarray:
+        """Numbers of these scenarios."""
+        return self.numbers[self._index(first, stop)]
+
+    def shown(self, first: int, stop: int) -> np.ndarray:
+        """The same as results show them: enumerations by name."""
+        return (self.numbers if self.names is None else self.names)[self._index(first, stop)]
+
+    def _index(self, first: int, stop: int) -> np.ndarray:
+        if self.picks is not None:
+            return self.picks[first:stop]
+        return np.arange(first, stop) // self.repeat % len(self.numbers)
+
+    def content(self) -> Iterable[bytes]:
+        """Equal for equal columns."""
+        yield repr((self.repeat, None if self.names is None else list(self.names))).encode()
+        yield self.numbers.tobytes()
+        yield b"" if self.picks is None else self.picks.tobytes()
+
+
+@dataclass(frozen=True)
+class Scenarios:
+    """So many scenarios of named columns."""
+
+    count: int
+    columns: dict[str, Column] = field(repr=False)
+
+    def rows(self, first: int, stop: int) -> dict[str, np.ndarray]:
+        """Numbers of each column; one where all scenarios share it."""
+        return {
+            name: column.numbers if len(column.numbers) == 1 else column.rows(first, stop)
+            for name, column in self.columns.items()
+        }
+
+    def shown(self, first: int, stop: int) -> dict[str, np.ndarray]:
+        return {name: column.shown(first, stop) for name, column in self.columns.items()}
+
+    def digest(self) -> str:
+        """Equal for equal scenarios in the same order."""
+        state = hashlib.sha256(str(self.count).encode())
+        for name, column in self.columns.items():
+            state.update(name.encode())
+            for part in column.content():
+                state.update(part)
+        return state.hexdigest()
 
 
 def number(text: str, where: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise PlanError(f"{where}: {text!r} is not a number") from None
+        raise PlanError(f"{where}: {shown(text)} is not a number") from None
     if not math.isfinite(value):
-        raise PlanError(f"{where}: {text!r} is not a finite number")
+        raise PlanError(f"{where}: {shown(text)} is not a finite number")
     return value
 
 
@@ -90,21 +178,28 @@ def grid_values(variables: Variables, text: str) -> tuple[str, list[Value]]:
     if len(parts) == 1:
         return name, [variables.value(name, item.strip(), where) for item in rest.split(",")]
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise PlanError(f"{where}: {rest!r} is neither low:high:count nor low:high:count:log nor a,b,c")
+        raise PlanError(f"{where}: {shown(rest)} is neither low:high:count nor low:high:count:log nor a,b,c")
     low, high, logarithmic = _bounds(parts, where)
-    if not parts[2].isdigit() or not 1 <= int(parts[2]) <= MOST_SCENARIOS:
-        raise PlanError(f"{where}: the count {parts[2]!r} is not a whole number from 1 to {MOST_SCENARIOS}")
+    is_whole = parts[2].isascii() and parts[2].isdecimal()
+    if not is_whole or len(parts[2]) > 9 or not 1 <= int(parts[2]) <= MOST_SCENARIOS:
+        raise PlanError(
+            f"{where}: the count {shown(parts[2])} is not a whole number from 1 to {MOST_SCENARIOS}"
+        )
     spaced = np.geomspace if logarithmic else np.linspace
     return name, [float(value) for value in spaced(low, high, int(parts[2]))]
 
 
-def grid(variables: Variables, texts: Iterable[str]) -> pd.DataFrame:
+def grid(variables: Variables, texts: Iterable[str]) -> Scenarios:
     """Every combination of the values; the last variable changes fastest."""
     axes = dict(_once(grid_values(variables, text) for text in texts))
     count = math.prod(len(values) for values in axes.values())
     if count > MOST_SCENARIOS:
         raise PlanError(f"the grid has {count} scenarios; the most that a sweep runs is {MOST_SCENARIOS}")
-    return pd.MultiIndex.from_product(axes.values(), names=list(axes)).to_frame(index=False)
+    columns, repeat = {}, count
+    for name, values in axes.items():
+        repeat //= len(values)
+        columns[name] = variables.column(name, values, repeat)
+    return Scenarios(count, columns)
 
 
 def _once(columns: Iterable[tuple[str, object]]) -> Iterable[tuple[str, object]]:
@@ -116,76 +211,96 @@ def _once(columns: Iterable[tuple[str, object]]) -> Iterable[tuple[str, object]]
         yield name, values
 
 
-def random(variables: Variables, texts: Iterable[str], count: int, seed: int) -> pd.DataFrame:
+def random(variables: Variables, texts: Iterable[str], count: int, seed: int) -> Scenarios:
     """count rows, each value drawn by itself from "NAME=low:high", "NAME=low:high:log" or "NAME=a,b,c"."""
+    if count > MOST_SCENARIOS:
+        raise PlanError(f"--random {count}: the most that a sweep runs is {MOST_SCENARIOS}")
     generator = np.random.default_rng(seed)
 
-    def column(text: str) -> tuple[str, object]:
+    def column(text: str) -> tuple[str, Column]:
         name, rest = assignment(text, "--vary")
         where = f"--vary {name}"
         variables.find(name, where)
         parts = rest.split(":")
         if len(parts) == 1:
             values = [variables.value(name, item.strip(), where) for item in rest.split(",")]
-            return name, generator.choice(np.array(values, dtype=object), count)
+            picks = generator.integers(0, len(values), count)
+            return name, variables.column(name, values, picks=picks.astype(np.int32))
         if len(parts) > 3 or (len(parts) == 3 and parts[2] != "log"):
             raise PlanError(
-                f"{where}: {rest!r} is neither low:high nor low:high:log nor a,b,c (with --random)"
+                f"{where}: {shown(rest)} is neither low:high nor low:high:log nor a,b,c (with --random)"
             )
         low, high, logarithmic = _bounds(parts, where)
         if logarithmic:
-            return name, np.exp(generator.uniform(math.log(low), math.log(high), count))
-        return name, generator.uniform(low, high, count)
+            return name, Column(np.exp(generator.uniform(math.log(low), math.log(high), count)))
+        return name, Column(generator.uniform(low, high, count))
 
-    return pd.DataFrame(dict(_once(column(text) for text in texts))).infer_objects()
+    return Scenarios(count, dict(_once(column(text) for text in texts)))
 
 
-def from_csv(variables: Variables, path: Path) -> pd.DataFrame:
+def from_csv(variables: Variables, path: Path) -> Scenarios:
     """A header with names of variables, then one scenario a row.
 
     Errors name row (the header is 1) and column.
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.reader(file, strict=True))
+            return _read_rows(variables, str(path), csv.reader(file, strict=True))
     except OSError as error:
         raise PlanError(f"{path}: {error.strerror}") from None
     except (csv.Error, UnicodeDecodeError) as error:
         raise PlanError(f"{path}: is not a CSV file: {error}") from None
-    if not rows or not rows[0]:
+
+
+def _read_rows(variables: Variables, path: str, rows: Iterable[list[str]]) -> Scenarios:
+    numbered = enumerate(rows, 1)
+    _, header = next(numbered, (1, []))
+    if not header:
         raise PlanError(f"{path}: is empty; row 1 must name the variables")
-    names = [name.strip() for name in rows[0]]
-    for number_of_column, name in enumerate(names, 1):
-        variables.find(name, f"{path}: row 1, column {number_of_column}")
-        if name in names[: number_of_column - 1]:
-            raise PlanError(f"{path}: row 1, column {number_of_column}: {name} is there twice")
-    table = []
-    for row, cells in enumerate(rows[1:], 2):
+    names = [name.strip() for name in header]
+    for place, name in enumerate(names, 1):
+        variables.find(name, f"{path}: row 1, column {place}")
+        if name in names[: place - 1]:
+            raise PlanError(f"{path}: row 1, column {place}: {name} is there twice")
+    items = [variables.items(name) for name in names]
+    columns = [array("d") for _ in names]
+    for row, cells in numbered:
         if not cells:
             continue
         if len(cells) != len(names):
             raise PlanError(f"{path}: row {row}: has {len(cells)} cells where the header has {len(names)}")
-        table.append(
-            [
-                variables.value(name, cell.strip(), f"{path}: row {row}, column {name}")
-                for name, cell in zip(names, cells, strict=True)
-            ]
-        )
-    if not table:
+        for name, cell, known, column in zip(names, cells, items, columns, strict=True):
+            value = variables.value(name, cell.strip(), f"{path}: row {row}, column {name}")
+            column.append(value if known is None else known[value])
+        if len(columns[0]) > MOST_SCENARIOS:
+            raise PlanError(f"{path}: has more than {MOST_SCENARIOS} rows, the most that a sweep runs")
+    if not columns[0]:
         raise PlanError(f"{path}: has no row below the header")
-    return pd.DataFrame(table, columns=names)
+    return Scenarios(
+        len(columns[0]),
+        {
+            name: _column_of(variables, name, np.array(column), known)
+            for name, column, known in zip(names, columns, items, strict=True)
+        },
+    )
 
 
-def with_fixed(variables: Variables, scenarios: pd.DataFrame, texts: Iterable[str]) -> pd.DataFrame:
+def _column_of(
+    variables: Variables, name: str, numbers: np.ndarray, items: Mapping[str, float] | None
+) -> Column:
+    if items is None:
+        return Column(numbers)
+    by_number = {value: item for item, value in items.items()}
+    used, picks = np.unique(numbers, return_inverse=True)
+    return variables.column(name, [by_number[value] for value in used], picks=picks.astype(np.int32))
+
+
+def with_fixed(variables: Variables, scenarios: Scenarios, texts: Iterable[str]) -> Scenarios:
     """The scenarios with columns for "NAME=VALUE", the same in all rows."""
-    fixed: dict[str, Value] = {}
+    columns = dict(scenarios.columns)
     for text in texts:
         name, rest = assignment(text, "--set")
-        if name in fixed or name in scenarios:
+        if name in columns:
             raise PlanError(f"--set {name}: is given twice")
-        fixed[name] = variables.value(name, rest, f"--set {name}")
-    return scenarios.assign(**fixed)
-
-
-def records(scenarios: pd.DataFrame) -> list[Mapping[str, Value]]:
-    return scenarios.to_dict("records")
+        columns[name] = variables.column(name, [variables.value(name, rest, f"--set {name}")])
+    return Scenarios(scenarios.count, columns)

@@ -1,22 +1,21 @@
-"""One scenario of a sweep: the FMU brought to its periodic state and sampled over one period of vibration.
+"""What a sweep reads of a scenario: the FMU brought to its periodic state, and one period sampled.
 
-This module and `fmu` travel to the workers of a cluster with the work (`shipping`); Python 3.11
+This module and `batch` travel to the workers of a cluster with the work (`sweep.shipping`); Python 3.11
 or newer, fmpy and numpy must be there.
 """
 
 from __future__ import annotations
 
-import atexit
-import hashlib
-import tempfile
-import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
+import fmpy
 import numpy as np
 
-from ..fmu import FrictionError, FrictionFmu, Value
+from ..batch.prepare import Output, prepared
+from ..batch.runner import runner_of
+from ..batch.unpacked import loaded_fmu
+from ..project import UserError
 
 # Column of the results -> unit and meaning.
 RESULTS = {
@@ -30,71 +29,47 @@ RESULTS = {
     "evaluations": "1, evaluations of the right-hand side",
     "seconds": "s, processor time that the scenario took on its worker",
 }
+OUTPUTS: dict[str, Output] = {
+    "F_mean": ("F_t_mean", "mean"),
+    "reduction": "F_C",  # and what it is made of
+    "F_min": ("F_t", "min"),
+    "F_max": ("F_t", "max"),
+    "sigma_mean": ("sigma", "mean"),
+    "A_r_mean": ("A_r", "mean"),
+    "W_period": ("W_f", "change"),
+    "evaluations": "solver.evaluations",
+}
 
 
 @dataclass(frozen=True)
-class Sampling:
-    """How a scenario is brought to its periodic state and read."""
+class Work:
+    """What a worker needs to run scenarios, but for their values."""
 
-    settle: float  # periods of the vibration
+    fmu: bytes  # the file
+    runner: bytes  # the batch runner's shared library
+    platform: str  # that it is for
+    settle: float  # periods of the vibration that bring a scenario to its periodic state
     samples: int  # in the period after that
 
-    def __post_init__(self) -> None:
-        if not self.settle >= 0.0 or self.samples < 1:
-            raise ValueError(f"settle = {self.settle}, samples = {self.samples}: must be at least 0 and 1")
+
+@dataclass(frozen=True)
+class Results:
+    """Of consecutive scenarios: the columns of RESULTS, NaN where a scenario has a reason instead."""
+
+    columns: dict[str, np.ndarray]
+    reasons: dict[int, str] = field(default_factory=dict)  # row -> why it was refused
 
 
-_loaded: dict[str, FrictionFmu] = {}
-
-
-def load(content: bytes) -> FrictionFmu:
-    """The FMU of these bytes, unzipped once in each process."""
-    digest = hashlib.sha256(content).hexdigest()
-    if digest not in _loaded:
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "FrictionContact.fmu"
-            path.write_bytes(content)
-            _loaded[digest] = FrictionFmu(path)
-        atexit.register(_loaded[digest].close)
-    return _loaded[digest]
-
-
-def evaluate(fmu: FrictionFmu, values: Mapping[str, Value], sampling: Sampling) -> dict[str, float]:
-    """The columns of RESULTS for one scenario. FrictionError if the FMU refuses it."""
-    begin = time.process_time()
-    with fmu.session(values) as session:
-        period, F_C = 1.0 / session.get("vibration.f"), session.get("F_C")
-        session.step(sampling.settle * period)
-        work = session.get("W_f")
-        rows = np.empty((sampling.samples, 4))
-        for k in range(sampling.samples):
-            session.step(period / sampling.samples)
-            rows[k] = session.read(("F_t_mean", "F_t", "sigma", "A_r"))
-        work = session.get("W_f") - work
-        evaluations = session.get("solver.evaluations")
-    mean, force = rows[:, 0].mean(), rows[:, 1]
-    return {
-        "F_mean": float(mean),
-        "reduction": float(100.0 * (1.0 - mean / F_C)),
-        "F_min": float(force.min()),
-        "F_max": float(force.max()),
-        "sigma_mean": float(rows[:, 2].mean()),
-        "A_r_mean": float(rows[:, 3].mean()),
-        "W_period": work,
-        "evaluations": evaluations,
-        "seconds": time.process_time() - begin,
-    }
-
-
-def run_chunk(
-    content: bytes, numbered: Sequence[tuple[int, Mapping[str, Value]]], sampling: Sampling
-) -> list[dict[str, Value]]:
-    """Scenarios with their numbers; what failed has its reason in place of results."""
-    fmu = load(content)
-    rows: list[dict[str, Value]] = []
-    for index, values in numbered:
-        try:
-            rows.append({"scenario": index, **values, **evaluate(fmu, values, sampling)})
-        except FrictionError as error:
-            rows.append({"scenario": index, **values, "reason": str(error)})
-    return rows
+def run_chunk(work: Work, values: Mapping[str, np.ndarray]) -> Results:
+    """The results of scenarios: of every variable a value for each, or one for all."""
+    if fmpy.platform != work.platform:
+        raise UserError(f"the worker is of platform {fmpy.platform}, the sweep of {work.platform}")
+    fmu = loaded_fmu(work.fmu, runner_of(work.runner))
+    batch = prepared(fmu, values, OUTPUTS, settle=work.settle, samples=work.samples, times=True)
+    columns = batch.run(threads=1, raises=False, progress=lambda finished, refused: None)
+    reasons = columns.pop("reason")
+    columns["reduction"] = 100.0 * (1.0 - columns["F_mean"] / columns["reduction"])
+    return Results(
+        {name: np.atleast_1d(columns[name]) for name in RESULTS},
+        {int(row): reasons[row] for row in np.flatnonzero(reasons != None)},  # noqa: E711
+    )

@@ -1,35 +1,35 @@
-"""The folder of a sweep: rows are kept as they come, so that a killed sweep goes on where it was.
+"""The folder of a sweep: results are kept as they come, so that a killed sweep goes on where it was.
 
     sweep.json        what is being swept
     parts/*.parquet   rows that have been computed; gone when the sweep is whole
+    work/             what its processes here need while they run
     results.parquet   at the end: one row a scenario
     failed.parquet    at the end, if any failed: scenarios with their reason (failed.csv: the same to read)
 
-Every file is written under another name and renamed when whole.
+Every file is written under another name and renamed when whole. Memory holds one group of rows at a time.
 """
 
 from __future__ import annotations
 
 import contextlib
 import fcntl
-import hashlib
 import json
+import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-import pandas as pd
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+from pyarrow import csv
 
 from frictionlab.sweep.plan import PlanError, Value
-from frictionlab.sweep.scenario import Sampling
+from frictionlab.sweep.scenario import Results
+from frictionlab.sweep.spans import Span
 
-
-def digest(scenarios: pd.DataFrame, fmu: bytes, sampling: Sampling) -> str:
-    """Equal for equal sweeps: same scenarios in the same order, same FMU, same sampling."""
-    state = hashlib.sha256(fmu)
-    state.update(repr(sampling).encode())
-    state.update(scenarios.to_csv(index=False).encode())
-    return state.hexdigest()
+GROUP = 100_000  # rows of a group in the joined files, at least
 
 
 class Store:
@@ -57,34 +57,51 @@ class Store:
             raise
 
     def _take_up(self, fresh: bool) -> None:
-        record = self.folder / "sweep.json"
         if fresh:
             self._remove("results.parquet", "failed.parquet", "failed.csv", "sweep.json")
             for part in self._parts():
                 part.unlink()
         for unfinished in (*self.folder.glob("*.unfinished"), *self.folder.glob("parts/*.unfinished")):
             unfinished.unlink()
-        if record.exists():
-            begun = json.loads(record.read_text())
-            if begun["digest"] != self.plan["digest"]:
+        shutil.rmtree(self.work, ignore_errors=True)
+        if (self.folder / "sweep.json").exists():
+            if self._begun_digest() != self.plan["digest"]:
                 raise PlanError(
                     f"{self.folder}: holds another sweep (other scenarios, sampling or FMU); "
                     "choose another --output, or --fresh to discard it"
                 )
-            return
-        self._write("sweep.json", lambda path: path.write_text(json.dumps(self.plan, indent=2) + "\n"))
+        else:
+            text = json.dumps(self.plan, indent=2) + "\n"
+            self._write("sweep.json", lambda path: path.write_text(text))
+        self.work.mkdir()
+
+    def _begun_digest(self) -> object:
+        record = self.folder / "sweep.json"
+        try:
+            begun = json.loads(record.read_text())
+            return begun["digest"]
+        except (OSError, ValueError, KeyError, TypeError):
+            raise PlanError(
+                f"{record}: is damaged; choose another --output, or --fresh to discard what the folder holds"
+            ) from None
+
+    @property
+    def work(self) -> Path:
+        return self.folder / "work"
 
     def _parts(self) -> list[Path]:
-        return sorted((self.folder / "parts").glob("*.parquet"))
+        return sorted((self.folder / "parts").glob("*.parquet"), key=_span)
 
     def _remove(self, *names: str) -> None:
         for name in names:
             (self.folder / name).unlink(missing_ok=True)
 
-    def _write(self, name: str, write: object) -> None:
+    def _write(self, name: str, write: Callable[[Path], object]) -> None:
         unfinished = self.folder / f"{name}.unfinished"
         try:
-            write(unfinished)  # type: ignore[operator]
+            write(unfinished)
+            with unfinished.open("rb") as file:
+                os.fsync(file.fileno())
             unfinished.replace(self.folder / name)
         except OSError as error:
             with contextlib.suppress(OSError):
@@ -94,39 +111,83 @@ class Store:
     def is_whole(self) -> bool:
         return (self.folder / "results.parquet").exists()
 
-    def done(self) -> set[int]:
-        """Numbers of the scenarios that need not be run again."""
-        return {int(number) for part in self._parts() for number in pd.read_parquet(part)["scenario"]}
+    def done(self) -> list[Span]:
+        """Scenarios that need not be run again. A part that can't be read is discarded."""
+        spans = []
+        for part in self._parts():
+            first, stop = _span(part)
+            try:
+                whole = pq.read_metadata(part).num_rows == stop - first
+            except (OSError, pa.ArrowException):
+                whole = False
+            if whole:
+                spans.append((first, stop))
+            else:
+                part.unlink()
+        return spans
 
-    def keep(self, rows: Sequence[Mapping[str, Value]]) -> None:
-        first, last = rows[0]["scenario"], rows[-1]["scenario"]
-        frame = pd.DataFrame(rows)
-        self._write(f"parts/{first:08d}-{last:08d}.parquet", lambda path: frame.to_parquet(path, index=False))
+    def keep(self, span: Span, values: Mapping[str, np.ndarray], results: Results) -> None:
+        """The rows of consecutive scenarios."""
+        first, stop = span
+        reasons = [results.reasons.get(row) for row in range(stop - first)]
+        table = pa.table(
+            {
+                "scenario": np.arange(first, stop),
+                **{name: _arrow(column) for name, column in values.items()},
+                **results.columns,
+                "reason": pa.array(reasons, pa.string()),
+            }
+        )
+        self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: pq.write_table(table, path))
 
-    def finish(self, columns: Sequence[str]) -> tuple[int, int]:
+    def finish(self, results: Sequence[str]) -> tuple[int, int]:
         """Joins the parts; the numbers of good and failed scenarios."""
-        frames = [pd.read_parquet(part) for part in self._parts()]
-        rows = pd.concat(frames, ignore_index=True).sort_values("scenario", ignore_index=True)
-        reasons = rows["reason"] if "reason" in rows else pd.Series(None, index=rows.index, dtype=object)
-        rows = rows.reindex(columns=["scenario", *columns])
-        good, bad = rows[reasons.isna()], rows[reasons.notna()]
-        if len(bad):
-            named = [name for name in columns if name in self.plan["variables"]]
-            bad = bad[["scenario", *named]].assign(reason=reasons[reasons.notna()])
-            self._write("failed.parquet", lambda path: bad.to_parquet(path, index=False))
-            self._write("failed.csv", lambda path: bad.to_csv(path, index=False))
-        self._write("results.parquet", lambda path: good.to_parquet(path, index=False))
+        good = bad = 0
+        if any(pc.any(pc.is_valid(table["reason"])).as_py() for table in self._groups()):
+            bad = self._join("failed.parquet", pq.ParquetWriter, lambda table: _failed(table, results))
+            self._join("failed.csv", csv.CSVWriter, lambda table: _failed(table, results))
+        good = self._join("results.parquet", pq.ParquetWriter, _good)
         shutil.rmtree(self.folder / "parts")
-        return len(good), len(bad)
+        return good, bad
+
+    def _groups(self) -> Iterator[pa.Table]:
+        tables: list[pa.Table] = []
+        for part in self._parts():
+            tables.append(pq.read_table(part))
+            if sum(table.num_rows for table in tables) >= GROUP:
+                yield pa.concat_tables(tables).combine_chunks()
+                tables = []
+        if tables:
+            yield pa.concat_tables(tables).combine_chunks()
+
+    def _join(self, name: str, writer: type, chosen: Callable[[pa.Table], pa.Table]) -> int:
+        """Writes the chosen rows of all groups, a group at a time; how many they are."""
+        rows = 0
+
+        def write(path: Path) -> None:
+            nonlocal rows
+            with contextlib.ExitStack() as stack:
+                file = None
+                for group in self._groups():
+                    table = chosen(group)
+                    if file is None:
+                        file = stack.enter_context(writer(str(path), table.schema))
+                    if table.num_rows:
+                        file.write_table(table)
+                        rows += table.num_rows
+
+        self._write(name, write)
+        return rows
 
     def counts(self) -> tuple[int, int]:
         """The numbers of good and failed scenarios of a whole sweep."""
         failed = self.folder / "failed.parquet"
-        good = len(pd.read_parquet(self.folder / "results.parquet", columns=["scenario"]))
-        return good, len(pd.read_parquet(failed, columns=["scenario"])) if failed.exists() else 0
+        good = pq.read_metadata(self.folder / "results.parquet").num_rows
+        return good, pq.read_metadata(failed).num_rows if failed.exists() else 0
 
     def close(self) -> None:
         """Unlocks; leaves nothing where nothing has been kept."""
+        shutil.rmtree(self.work, ignore_errors=True)
         self._remove("lock")
         self._lock.close()
         if not self._parts():
@@ -135,6 +196,23 @@ class Store:
                 self._remove("sweep.json")
         if self._made and not any(self.folder.iterdir()):
             self.folder.rmdir()
+
+
+def _span(part: Path) -> Span:
+    first, _, last = part.stem.partition("-")
+    return int(first), int(last) + 1
+
+
+def _arrow(column: np.ndarray) -> pa.Array:
+    return pa.array(column, pa.string() if column.dtype == object else None)
+
+
+def _good(table: pa.Table) -> pa.Table:
+    return table.filter(pc.is_null(table["reason"])).drop_columns("reason")
+
+
+def _failed(table: pa.Table, results: Sequence[str]) -> pa.Table:
+    return table.filter(pc.is_valid(table["reason"])).drop_columns(list(results))
 
 
 @contextlib.contextmanager

@@ -13,41 +13,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from batch.one_by_one import sampled_period
 
 from frictionlab.batch import BatchError, simulate_many
-from frictionlab.fmu import FrictionFmu, Session
+from frictionlab.fmu import FrictionFmu
+from frictionlab.sweep.scenario import OUTPUTS
 
 VIBRATING = {"vibration.V_1": 1.44}
 F_C, V_1 = 55.0, 1.44  # N, m/s
-
-
-def session_results(session: Session, settle: float, samples: int) -> dict[str, float]:
-    """The same by one session after another: NumPy's own mean, least, most."""
-    period = 1.0 / session.get("vibration.f")
-    if settle:
-        session.step(settle * period)
-    work = session.get("W_f")
-    rows = []
-    for _ in range(samples):
-        session.step(period / samples)
-        rows.append(session.read(("F_t_mean", "F_t")))
-    mean, force = np.array(rows).T
-    return {
-        "mean": mean.mean(),
-        "least": force.min(),
-        "most": force.max(),
-        "last": force[-1],
-        "work": session.get("W_f") - work,
-    }
-
-
-OUTPUTS = {
-    "mean": ("F_t_mean", "mean"),
-    "least": ("F_t", "min"),
-    "most": ("F_t", "max"),
-    "last": "F_t",
-    "work": ("W_f", "change"),
-}
 
 
 def random_scenarios(count: int, seed: int) -> pd.DataFrame:
@@ -86,11 +59,11 @@ class TestNumbers:
     ) -> None:
         """One instance that is reset gives what a fresh one gives, in the same steps."""
         scenarios = random_scenarios(60, samples)
-        got = simulate_many(fmu_path, scenarios, OUTPUTS, settle=200.0, samples=samples, threads=threads)
+        outputs = {name: output for name, output in OUTPUTS.items() if name != "reduction"}
+        got = simulate_many(fmu_path, scenarios, outputs, settle=200.0, samples=samples, threads=threads)
         for row, values in enumerate(scenarios.to_dict("records")):
-            with fmu.session(values) as session:
-                expected = session_results(session, 200.0, samples)
-            assert got.iloc[row].to_dict() == expected, values
+            expected = sampled_period(fmu, values, 200.0, samples)
+            assert {name: got[name].iloc[row] for name in got} == {n: expected[n] for n in got}, values
 
     def test_samples_are_those_of_the_steps(self, fmu_path: Path) -> None:
         """Held V without vibration: F_t = F_C (1 - exp(-x)), x = sigma V t / F_C."""

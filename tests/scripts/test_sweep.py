@@ -11,19 +11,25 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import fmpy
 import numpy as np
 import pandas as pd
 import pytest
+from batch.one_by_one import sampled_period
+from distributed import Client
 from scipy.integrate import quad
 
+from frictionlab.batch.many import built_runner
 from frictionlab.fmu import FrictionFmu
 from frictionlab.parameters import IDENTIFIED, TABLE_2, start_values
+from frictionlab.project import UserError
 from frictionlab.reference.solution import periodic_mean
 from frictionlab.reference.start_values import scene_of
 from frictionlab.sweep import cluster as sweep_cluster
 from frictionlab.sweep import command as sweep
-from frictionlab.sweep.scenario import RESULTS, Sampling, evaluate
-from frictionlab.sweep.shipping import pickled
+from frictionlab.sweep.plan import Scenarios
+from frictionlab.sweep.scenario import RESULTS, Results, Work, run_chunk
+from frictionlab.sweep.spans import Chunks, missing
 
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
@@ -80,9 +86,22 @@ def check_grid(output: Path, fmu: FrictionFmu) -> None:
     assert np.array_equal(table["vibration.V_1"], np.tile(V_1, 40))
     for k in (0, 24, 500, 999):
         row = table.iloc[k]
-        here = evaluate(fmu, {name: row[name] for name in ("V", "vibration.V_1")}, Sampling(1e6, 16))
-        for name in set(RESULTS) - {"seconds"}:
+        here = sampled_period(fmu, {name: row[name] for name in ("V", "vibration.V_1")}, 1e6, 16)
+        assert set(here) == set(RESULTS) - {"seconds"}
+        for name in here:
             assert row[name] == here[name], name
+
+
+def evaluate(fmu_path: Path, values: dict[str, float], samples: int) -> dict[str, float]:
+    """A scenario as a worker runs it."""
+    work = Work(fmu_path.read_bytes(), built_runner().read_bytes(), fmpy.platform, 1e6, samples)
+    results = run_chunk(work, {name: np.array([value]) for name, value in values.items()})
+    assert not results.reasons
+    return {name: column[0] for name, column in results.columns.items()}
+
+
+def table_of(scenarios: Scenarios) -> pd.DataFrame:
+    return pd.DataFrame(scenarios.shown(0, scenarios.count))
 
 
 @pytest.fixture
@@ -105,8 +124,8 @@ class TestScenario:
     """One scenario against formulas."""
 
     @pytest.mark.parametrize("V", [0.1, 0.5])
-    def test_stiff_contact_gives_the_coulomb_limit(self, fmu: FrictionFmu, V: float) -> None:
-        row = evaluate(fmu, {"V": V, "vibration.V_1": 1.44}, Sampling(1e6, 64))
+    def test_stiff_contact_gives_the_coulomb_limit(self, fmu_path: Path, V: float) -> None:
+        row = evaluate(fmu_path, {"V": V, "vibration.V_1": 1.44}, 64)
         mean = 55.0 * 2 / np.pi * np.arcsin(V / 1.44)
         path = quad(
             lambda t: abs(V + 1.44 * np.cos(2 * np.pi * t)), 0, 1, points=[np.arccos(-V / 1.44) / 2 / np.pi]
@@ -119,12 +138,12 @@ class TestScenario:
         # Sliding dissipates F_C times the path, but for the two reversals.
         assert row["W_period"] == pytest.approx(55.0 * path[0] / 20e3, rel=1e-3)
 
-    def test_moving_separation(self, fmu: FrictionFmu) -> None:
+    def test_moving_separation(self, fmu_path: Path) -> None:
         """Row 2 of Table 2, identified; the mean stiffness is 1.5068 times that at rest."""
         start = start_values(TABLE_2[1], IDENTIFIED)
-        row = evaluate(fmu, start, Sampling(1e6, 64))
+        row = evaluate(fmu_path, start, 64)
         assert row["F_mean"] == pytest.approx(21.56, abs=0.01)
-        at_rest = evaluate(fmu, {**start, "vibration.a_d": 0.0}, Sampling(1e6, 4))["sigma_mean"]
+        at_rest = evaluate(fmu_path, {**start, "vibration.a_d": 0.0}, 4)["sigma_mean"]
         assert row["sigma_mean"] / at_rest == pytest.approx(1.506797919, rel=1e-8)
         assert row["F_min"] < row["F_mean"] < row["F_max"]
 
@@ -138,19 +157,19 @@ class TestScenario:
              "contact.stiffnessScale": 1e-3},
         ],
     )  # fmt: skip
-    def test_mean_of_the_reference(self, fmu: FrictionFmu, values: dict[str, float]) -> None:
+    def test_mean_of_the_reference(self, fmu_path: Path, values: dict[str, float]) -> None:
         mean = float(periodic_mean(scene_of(values)))
-        assert evaluate(fmu, values, Sampling(1e6, 8))["F_mean"] == pytest.approx(mean, abs=55e-6)
+        assert evaluate(fmu_path, values, 8)["F_mean"] == pytest.approx(mean, abs=55e-6)
 
-    def test_number_of_samples_leaves_the_mean(self, fmu: FrictionFmu) -> None:
+    def test_number_of_samples_leaves_the_mean(self, fmu_path: Path) -> None:
         start = start_values(TABLE_2[1], IDENTIFIED)
-        means = [evaluate(fmu, start, Sampling(1e6, samples))["F_mean"] for samples in (1, 7, 64)]
+        means = [evaluate(fmu_path, start, samples)["F_mean"] for samples in (1, 7, 64)]
         assert means == pytest.approx([means[0]] * 3, abs=55e-6)
 
 
 class TestPlan:
     def scenarios(self, fmu_path: Path, *arguments: str) -> pd.DataFrame:
-        return sweep.scenarios_of(sweep.arguments(list(arguments)), fmu_path)
+        return table_of(sweep.scenarios_of(sweep.arguments(list(arguments)), fmu_path))
 
     def test_grid(self, fmu_path: Path) -> None:
         table = self.scenarios(
@@ -198,7 +217,7 @@ class TestPlan:
     ) -> None:
         path = tmp_path / "scenarios.csv"
         path.write_text(content)
-        with pytest.raises(sweep.PlanError, match=re.escape(f"{path}: {message}")):
+        with pytest.raises(UserError, match=re.escape(f"{path}: {message}")):
             self.scenarios(fmu_path, "--csv", str(path))
 
     @pytest.mark.parametrize(
@@ -221,8 +240,35 @@ class TestPlan:
         ],
     )
     def test_wrong_arguments(self, fmu_path: Path, arguments: list[str], message: str) -> None:
-        with pytest.raises(sweep.PlanError, match=re.escape(message)):
+        with pytest.raises(UserError, match=re.escape(message)):
             self.scenarios(fmu_path, *arguments)
+
+
+class TestSpans:
+    def test_missing(self) -> None:
+        assert missing(10, [(4, 6), (0, 2), (6, 7)]) == [(2, 4), (7, 10)]
+        assert missing(10, []) == [(0, 10)]
+        assert missing(3, [(0, 3)]) == []
+
+    def test_chunks_cover_the_spans_once_in_order(self) -> None:
+        chunks = Chunks([(2, 700), (900, 5000)], None, 2)
+        numbers: list[int] = []
+        for first, stop in chunks:
+            assert first < stop
+            numbers += range(first, stop)
+            chunks.learn(stop - first, 1e-3 * (stop - first))
+        assert numbers == [*range(2, 700), *range(900, 5000)]
+
+    def test_size_follows_what_a_scenario_takes(self) -> None:
+        chunks = Chunks([(0, 10**6)], None, 2)
+        pieces = iter(chunks)
+        for seconds, size in ((1e-4, 5000), (1e-3, 500), (100.0, 1)):  # half a second's work
+            for _ in range(10):
+                first, stop = next(pieces)
+                chunks.learn(stop - first, seconds * (stop - first))
+            assert stop - first == size
+        fixed = iter(Chunks([(0, 95)], 30, 2))
+        assert [stop - first for first, stop in fixed] == [30, 30, 30, 5]
 
 
 class TestRuns:
@@ -277,7 +323,7 @@ class TestRuns:
             for name in ("one", "two")
         ]  # fmt: skip
         address = pd.read_json(contact, typ="series")["address"]
-        with sweep_cluster.Client(address, timeout=10) as client:
+        with Client(address, timeout=10) as client:
             client.wait_for_workers(2, timeout=60)
         output = tmp_path / "sweep"
         arguments = (*GRID, "--chunk", "10", "--scheduler", address, "--samples", "16")
@@ -306,7 +352,7 @@ class TestRuns:
         started([dask, "worker", "--scheduler-file", contact, "--nthreads", "1", "--no-nanny",
                  "--no-dashboard"], **quiet)  # fmt: skip
         address = pd.read_json(contact, typ="series")["address"]
-        with sweep_cluster.Client(address, timeout=10) as client:
+        with Client(address, timeout=10) as client:
             client.wait_for_workers(1, timeout=60)
         output = tmp_path / "sweep"
         arguments = (*GRID, "--chunk", "10", "--scheduler", address, "--samples", "16")
@@ -326,19 +372,25 @@ class TestRuns:
         rest = run(fmu_path, output, *GRID, "--samples", "16", "--workers", "2")
         assert f"{kept} scenarios were there from an earlier run" in rest.stdout, rest.stderr
 
-    def test_scenario_that_kills_its_worker(self) -> None:
+    def test_scenario_that_kills_its_worker(self, tmp_path: Path) -> None:
         """It alone is given up."""
 
-        def deadly(content: bytes, numbered: list) -> list:
-            if any(index == 3 for index, _ in numbered):
+        def deadly(work: object, values: dict[str, np.ndarray]) -> Results:
+            if 3 in values["number"]:
                 os._exit(1)
-            return [{"scenario": index} for index, _ in numbered]
+            return Results({"seconds": values["number"] * 1e-3})
 
-        chunks = [[(k, {}), (k + 1, {})] for k in range(0, 8, 2)]
-        with sweep_cluster.connected(None, 1) as client:
-            rows = [row for rows in sweep_cluster.run(client, pickled(deadly), b"", chunks) for row in rows]
-        assert sorted(row["scenario"] for row in rows) == list(range(8))
-        assert [row["scenario"] for row in rows if "reason" in row] == [3]
+        kept: dict[int, str | None] = {}
+        with sweep_cluster.connected(None, 1, tmp_path) as client:
+            for (first, stop), results in sweep_cluster.run(
+                client, deadly, b"", lambda span: {"number": np.arange(*span)}, Chunks([(0, 9)], 4, 1)
+            ):
+                for row in range(stop - first):
+                    assert first + row not in kept
+                    kept[first + row] = results.reasons.get(row)
+        assert sorted(kept) == list(range(9))
+        assert kept.pop(3) == "every worker that ran this scenario died"
+        assert not any(kept.values())
 
 
 class TestNothingHalfWritten:

@@ -1,0 +1,102 @@
+"""The arguments of `simulate_many`, checked before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .columns import common_shape, flat, numbers_of, start_values
+from .errors import BatchError
+from .run import Batch
+from .runner import STATISTICS
+from .unpacked import LoadedFmu
+
+if TYPE_CHECKING:  # workers of a cluster do without
+    import pandas as pd
+
+Statistic = Literal["end", "change", "mean", "min", "max", "samples"]
+Output = str | tuple[str, Statistic]
+Outputs = Sequence[str] | Mapping[str, Output]
+Unit = Literal["period", "s"]
+MOST_SAMPLES = 1_000_000
+SETTLING = 1e6  # periods: every state that matters has forgotten its start
+
+
+def prepared(
+    fmu: LoadedFmu,
+    values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
+    outputs: Outputs,
+    *,
+    settle: npt.ArrayLike | None = None,
+    duration: npt.ArrayLike = 1.0,
+    samples: int = 1,
+    unit: Unit = "period",
+    settled: bool = False,
+    times: bool = False,
+) -> Batch:
+    """The batch of `simulate_many`, checked. times: one result more, "seconds" of processor time."""
+    if unit not in ("period", "s"):
+        raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
+    check_samples(samples, "samples =")
+    if settle is None:
+        settle = 0.0 if settled or unit == "s" else SETTLING
+    starts = start_values(fmu, _settled(fmu, values) if settled else _named(values))
+    spans = {"settle": numbers_of(settle, "settle", 0.0), "duration": numbers_of(duration, "duration", 0.0)}
+    shape = common_shape(starts | spans)
+    return Batch(
+        fmu,
+        shape,
+        {name: flat(column, shape) for name, column in starts.items()},
+        flat(spans["settle"], shape),
+        flat(spans["duration"], shape),
+        int(samples),
+        _read(fmu, outputs),
+        fmu.variable("vibration.f", "unit").valueReference if unit == "period" else None,
+        times,
+    )
+
+
+def check_samples(samples: object, where: str) -> None:
+    is_whole = isinstance(samples, (int, np.integer)) and not isinstance(samples, bool)
+    if not is_whole or not 1 <= samples <= MOST_SAMPLES:
+        raise BatchError(f"{where} {samples}: must be a whole number from 1 to {MOST_SAMPLES}")
+
+
+def _named(values: Mapping[str, npt.ArrayLike] | pd.DataFrame) -> Mapping[str, npt.ArrayLike]:
+    if isinstance(values, Mapping):
+        return values
+    if not values.columns.is_unique:
+        name = values.columns[values.columns.duplicated()][0]
+        raise BatchError(f"column {name}: is there twice")
+    return {name: values[name].array for name in values.columns}
+
+
+def _settled(
+    fmu: LoadedFmu, values: Mapping[str, npt.ArrayLike] | pd.DataFrame
+) -> Mapping[str, npt.ArrayLike]:
+    fmu.variable("initialState", "settled")
+    if "initialState" in values:
+        raise BatchError("column initialState: settled gives it already")
+    return {**_named(values), "initialState": "Settled"}
+
+
+def _read(fmu: LoadedFmu, outputs: Outputs) -> dict[str, tuple[int, Statistic]]:
+    """Name of each result -> value reference and statistic."""
+    if isinstance(outputs, str):
+        raise BatchError(f"outputs = {outputs!r}: must be a sequence of names, or a mapping")
+    named = dict(outputs) if isinstance(outputs, Mapping) else {name: name for name in outputs}
+    read = {}
+    for name, output in named.items():
+        variable, statistic = (output, "end") if isinstance(output, str) else output
+        found = fmu.variable(variable, f"output {name}")
+        if found.type != "Real":
+            raise BatchError(f"output {name}: {variable} is of type {found.type}; only Real is read")
+        if statistic not in STATISTICS:
+            raise BatchError(f"output {name}: {statistic!r} is not one of {', '.join(STATISTICS)}")
+        if name in ("reason", "seconds"):
+            raise BatchError(f"output {name}: the name is taken")
+        read[name] = found.valueReference, statistic
+    return read

@@ -1,0 +1,39 @@
+"""Scenarios through one session each: what batches and sweeps are compared with, bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from frictionlab.fmu import FrictionFmu, Value
+
+SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
+
+
+def sampled_period(
+    fmu: FrictionFmu, values: Mapping[str, Value], settle: float, samples: int
+) -> dict[str, float]:
+    """The columns of a sweep: settle periods in a step, then one period in samples steps."""
+    with fmu.session(values) as session:
+        period, F_C = 1.0 / session.get("vibration.f"), session.get("F_C")
+        if settle:
+            session.step(settle * period)
+        work = session.get("W_f")
+        rows = np.empty((samples, len(SAMPLED)))
+        for row in rows:
+            session.step(period / samples)
+            row[:] = session.read(SAMPLED)
+        work = session.get("W_f") - work
+        evaluations = session.get("solver.evaluations")
+    mean, force, sigma, area = rows.T
+    return {
+        "F_mean": mean.mean(),
+        "reduction": 100.0 * (1.0 - mean.mean() / F_C),
+        "F_min": force.min(),
+        "F_max": force.max(),
+        "sigma_mean": sigma.mean(),
+        "A_r_mean": area.mean(),
+        "W_period": work,
+        "evaluations": evaluations,
+    }
