@@ -1,0 +1,162 @@
+// The four figures and the line of numbers above them.
+"use strict";
+
+const TIME_UNITS = [[1, "s"], [1e3, "ms"], [1e6, "µs"], [1e9, "ns"]];
+const LENGTH_UNITS = [[1, "m"], [1e3, "mm"], [1e6, "µm"], [1e9, "nm"]];
+const ENERGY_UNITS = [[1, "J"], [1e3, "mJ"], [1e6, "µJ"], [1e9, "nJ"]];
+const STIFFNESS_UNITS = [[1, "N/m"], [1e-3, "kN/m"], [1e-6, "MN/m"], [1e-9, "GN/m"]];
+
+// The unit in which size is a handy number.
+function handy(units, size) {
+  const sorted = [...units].sort((a, b) => a[0] - b[0]);
+  return sorted.find(([factor]) => size * factor >= 1) ?? sorted[sorted.length - 1];
+}
+
+function extent(numbers) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const number of numbers) {
+    if (number < low) low = number;
+    if (number > high) high = number;
+  }
+  return [low, high];
+}
+
+// Round limits around zero and all values; the limit of friction keeps them still while a slider moves.
+function forceRange(force, limit) {
+  const [low, high] = extent(force);
+  const up = roundUp(1.08 * Math.max(high, low < -0.02 * limit ? 0 : limit, -low / 10));
+  return [low < -0.02 * limit ? -roundUp(-1.08 * low) : 0, up];
+}
+
+// Spans of time where the surfaces slide backwards.
+function backwards({ time, velocity }) {
+  const spans = [];
+  let from = null;
+  velocity.forEach((V, k) => {
+    if (V < 0 && from === null) from = time[k];
+    if (from !== null && (V >= 0 || k === velocity.length - 1)) {
+      spans.push([from, time[k]]);
+      from = null;
+    }
+  });
+  return spans;
+}
+
+class Figures {
+  // dragged(kind, {x, y}): a person points at a place in a figure.
+  constructor(dragged) {
+    const host = (name) => document.getElementById(name);
+    const linear = { x: {}, y: {} };
+    this.force = new Chart(host("force"), linear);
+    this.loop = new Chart(host("loop"), linear);
+    this.mean = new Chart(host("mean"), { x: { log: true }, y: {} });
+    this.map = new RegimeChart(host("map"));
+    this.mean.onDrag((at) => dragged("mean", at));
+    this.map.onDrag((at) => dragged("map", at));
+    this.curve = null;
+  }
+
+  showWave(wave, regime, V_1) {
+    const [timeFactor, timeUnit] = handy(TIME_UNITS, wave.time.at(-1));
+    const time = wave.time.map((t) => t * timeFactor);
+    const y = forceRange(wave.force, regime.limit);
+    const meanText = `mean ${readable(wave.mean)} N`;
+    this.force.draw({
+      x: [0, time.at(-1)],
+      y,
+      bands: backwards({ time, velocity: wave.velocity }),
+      lines: [{ x: time, y: wave.force, kind: "force" }],
+      rules: [{ y: wave.mean, kind: "mean", text: meanText }],
+      summary: `Friction force over two periods, from ${readable(Math.min(...wave.force))} to ${readable(Math.max(...wave.force))} N, ${meanText}`,
+    });
+    setText("force-x", `Time in ${timeUnit}`);
+
+    const [low, high] = extent(wave.displacement);
+    const [lengthFactor, lengthUnit] = handy(LENGTH_UNITS, Math.max(high, -low));
+    const reach = roundUp(1.04 * lengthFactor * Math.max(high, -low));
+    const x = wave.displacement.map((x) => x * lengthFactor);
+    this.loop.draw({
+      x: V_1 > 0 ? [-reach, reach] : [Math.min(0, low * lengthFactor), Math.max(high * lengthFactor, 1e-12)],
+      y,
+      lines: [{ x, y: wave.force, kind: "force" }],
+      rules: [{ y: wave.mean, kind: "mean" }],
+      summary: `Friction force against displacement over ${readable((high - low) * lengthFactor)} ${lengthUnit}`,
+    });
+    setText("loop-x", `${V_1 > 0 ? "Displacement of the vibration" : "Sliding distance"} in ${lengthUnit}`);
+  }
+
+  setCurve(curve) {
+    this.curve = curve;
+  }
+
+  // here: {ratio, V, mean, without}; measured: points of the preset, or none.
+  showMean(here, measured) {
+    const { curve } = this;
+    if (!curve) return;
+    const [low, high] = extent(curve.y);
+    const points = curve.isRatio ? (measured ?? []).map(([x, y, text]) => ({ x, y, kind: "measured", title: text })) : [];
+    const own = curve.isRatio ? { x: here.ratio, y: here.mean / here.without } : { x: here.V, y: here.mean };
+    const top = roundUp(1.05 * Math.max(curve.isRatio ? 1 : 0, high, ...points.map(({ y }) => y)));
+    const bottom = low < -0.02 * top ? -roundUp(-1.05 * low) : 0;
+    const coulomb = { x: curve.x, y: curve.x.map((zeta) => (2 / Math.PI) * Math.asin(Math.min(zeta, 1))), kind: "coulomb" };
+    const isShown = own.x > 0 && Number.isFinite(own.y);
+    this.mean.draw({
+      x: extent(curve.x),
+      y: [bottom, top],
+      lines: [...(curve.isRatio ? [coulomb] : []), { x: curve.x, y: curve.y, kind: "force" }],
+      points: [...points, ...(isShown ? [{ ...own, kind: "here", title: "this scene" }] : [])],
+      summary: `Mean friction against the velocity ratio; this scene at ${readable(own.x)} has ${readable(own.y)}`,
+    });
+    setHtml("mean-y", curve.isRatio ? "Mean friction over that without vibration" : "Friction force in N");
+    setHtml("mean-x", curve.isRatio ? "Velocity ratio <var>V</var>/<var>V</var><sub>1</sub>" : "Sliding velocity <var>V</var> in m/s");
+    document.getElementById("mean-key").hidden = !curve.isRatio;
+    document.getElementById("measured-key").hidden = points.length === 0;
+  }
+
+  showRegime({ kappa, zeta }) {
+    const isShown = kappa > 0 && Number.isFinite(zeta) && zeta > 0;
+    document.getElementById("map-none").hidden = kappa > 0;
+    this.map.draw({
+      x: MAP.kappa,
+      y: MAP.zeta,
+      points: isShown ? [{ x: kappa, y: zeta, kind: "here", title: "this scene" }] : [],
+      summary: isShown
+        ? `Regime map; this scene at kappa ${readable(kappa)}, zeta ${readable(zeta)}`
+        : "Regime map; this scene has no place in it",
+    });
+  }
+
+  showNumbers(wave, regime, without) {
+    setNumber("mean-force", wave.mean, "N");
+    setNumber("without", without, "N");
+    setNumber("reduction", without > 0 ? 100 * (1 - wave.mean / without) : NaN, "%");
+    setNumber("work", wave.W_f, "J", ENERGY_UNITS);
+    setNumber("heat", wave.Q_f, "J", ENERGY_UNITS);
+    setNumber("stiffness", regime.sigma, "N/m", STIFFNESS_UNITS);
+    setNumber("normal-force", regime.F_n, "N");
+    setNumber("kappa", regime.kappa, "");
+    setNumber("zeta", regime.zeta, "");
+  }
+}
+
+const written = new Map(); // what setText and setHtml last put into an element, by its id
+
+function setText(id, text) {
+  if (written.get(id) !== text) document.getElementById(id).textContent = text;
+  written.set(id, text);
+}
+
+function setHtml(id, html) {
+  if (written.get(id) !== html) document.getElementById(id).innerHTML = html;
+  written.set(id, html);
+}
+
+// Shows a number in a handy unit; the value attribute holds it in full, in SI.
+function setNumber(id, value, unit, units) {
+  const element = document.getElementById(id);
+  element.value = value === undefined ? "" : String(value);
+  element.closest("div").hidden = value === undefined || (id === "normal-force" && Number.isNaN(value));
+  const [factor, text] = units && value ? handy(units, Math.abs(value)) : [1, unit];
+  setText(id, withUnit(value * factor, Number.isFinite(value) ? text : ""));
+}

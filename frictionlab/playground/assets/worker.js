@@ -1,0 +1,78 @@
+// Curves and maps, computed beside the page so that it never stalls. A newer scene ends the work on an older one.
+"use strict";
+
+const LEVELS = [[19, 11], [37, 21], [73, 41]]; // columns and rows of the map, from coarse to fine
+const SLICE = 8; // ms of work between two looks at the mail
+
+let fmu = null;
+let latest = null;
+let working = false;
+let done = 0; // the scene whose curve was sent last
+let mapKey = null; // of the map that is finished
+
+const mail = () => new Promise((resolve) => setTimeout(resolve));
+
+onmessage = async ({ data }) => {
+  if (data.bytes) {
+    fmu = await Fmu.load(data.bytes, data.description);
+  } else {
+    latest = data;
+  }
+  if (fmu && latest && !working) {
+    working = true;
+    while (latest) await work();
+    working = false;
+    postMessage({ id: done, done: true });
+  }
+};
+
+// What the map depends on: all but where in it the scene is.
+function keyOf(values) {
+  const rest = { ...values };
+  delete rest.V;
+  delete rest[stiffnessName(values)];
+  return JSON.stringify(rest);
+}
+
+function sendCurve({ id, values }) {
+  done = id;
+  postMessage({ id, curve: curve(fmu, values) });
+}
+
+async function work() {
+  const { id, values } = latest;
+  latest = null;
+  try {
+    sendCurve({ id, values });
+    const key = keyOf(values);
+    if (key === mapKey) return;
+    mapKey = null;
+    if (!((values["vibration.V_1"] ?? 0) > 0)) {
+      postMessage({ id, map: null });
+      mapKey = key;
+      return;
+    }
+    for (const [columns, rows] of LEVELS) {
+      const cells = new Float64Array(columns * rows);
+      let row = 0;
+      let begin = performance.now();
+      for (const line of regimeMap(fmu, values, columns, rows)) {
+        cells.set(line, columns * row++);
+        if (performance.now() - begin > SLICE) {
+          await mail();
+          if (latest && keyOf(latest.values) !== key) return;
+          if (latest) {
+            sendCurve(latest);
+            latest = null;
+          }
+          begin = performance.now();
+        }
+      }
+      postMessage({ id, map: { columns, rows, cells } });
+    }
+    mapKey = key;
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    postMessage({ id, refusal: error.message });
+  }
+}

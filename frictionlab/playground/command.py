@@ -1,0 +1,94 @@
+"""One HTML file with the FMU alive in it: `scripts/playground`."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import os
+import sys
+from pathlib import Path
+
+from playwright.sync_api import Browser
+
+from frictionlab.project import ROOT, UserError
+
+sys.path.insert(0, str(ROOT / "cmake"))
+
+import generate_variables
+import model_description
+
+from frictionlab.playground.browser import chromium, measure, take_pictures
+from frictionlab.playground.core import core
+from frictionlab.playground.description import description
+from frictionlab.playground.page import page
+from frictionlab.playground.presets import presets
+from frictionlab.release.targets import ReleaseError
+
+DEFAULT = ROOT / "build" / "playground.html"
+XML = ROOT / "modelDescription.xml"
+CACHE = ROOT / "build" / "zig-cache"
+
+
+def page_text() -> str:
+    wasm = core(generate_variables.table(model_description.read(XML)), CACHE)
+    return page(wasm, description(XML), presets())
+
+
+def write(output: Path, text: str) -> None:
+    """Writes output whole or not at all."""
+    if output.is_dir():
+        raise OSError(errno.EISDIR, os.strerror(errno.EISDIR), str(output))
+    output.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = output.with_name(f".{output.name}.{os.getpid()}.part")
+    try:
+        unfinished.write_text(text, encoding="utf-8")
+        unfinished.replace(output)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        prog="scripts/playground",
+        description="Make one self-contained HTML file with the FMU, compiled to WebAssembly, in it.",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, default=DEFAULT, metavar="HTML", help="default: build/playground.html"
+    )
+    parser.add_argument(
+        "--measure", action="store_true", help="open it in Chromium and tell how long pictures take"
+    )
+    parser.add_argument(
+        "--pictures", type=Path, metavar="FOLDER", help="open it in Chromium and write four pictures of it"
+    )
+    options = parser.parse_args()
+    try:
+        text = page_text()
+        write(options.output, text)
+        print(f"{shown(options.output)}, {len(text.encode()) / 1e3:.0f} kB: open it in a browser")
+        if options.measure or options.pictures:
+            with chromium() as browser:
+                look(browser, options)
+    except (ReleaseError, UserError) as error:
+        sys.exit(f"error: {error}")
+    except OSError as error:
+        sys.exit(f"error: {options.output} can't be written: {error.strerror}")
+
+
+def look(browser: Browser, options: argparse.Namespace) -> None:
+    """What needs a browser: measures and pictures."""
+    if options.measure:
+        times = measure(browser, options.output)
+        print(f"first picture after {times.first_picture:.0f} ms")
+        print(f"work of a frame: median {times.median_frame:.1f} ms, slowest {times.slowest_frame:.1f} ms")
+    if options.pictures:
+        for path in take_pictures(browser, options.output, options.pictures):
+            print(shown(path))
+
+
+def shown(path: Path) -> Path:
+    return path.relative_to(ROOT) if path.is_relative_to(ROOT) else path
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,50 @@
+"""The page, made once, in a headless Chromium that tells what a page must not do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playground_page import Playground
+from playwright.sync_api import Browser
+
+from frictionlab.playground.browser import chromium
+from frictionlab.playground.command import XML, page_text
+from frictionlab.playground.description import description
+from frictionlab.playground.presets import Preset, possible, presets
+from frictionlab.project import UserError
+
+pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
+
+
+@pytest.fixture(scope="session")
+def html(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("playground") / "playground.html"
+    path.write_text(page_text(), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    try:
+        with chromium() as browser:
+            yield browser
+    except UserError as missing:
+        pytest.skip(str(missing))
+
+
+@pytest.fixture
+def playground(browser: Browser, html: Path) -> Iterator[Playground]:
+    """Open on a desktop. Fails the test if the page had an error or asked for anything beyond itself."""
+    context = browser.new_context(viewport={"width": 1440, "height": 900})
+    playground = Playground(context.new_page(), html)
+    playground.open()
+    yield playground
+    context.close()
+    assert playground.problems == []
+
+
+@pytest.fixture(scope="session")
+def offered() -> list[Preset]:
+    return possible(presets(), description(XML)["variables"])

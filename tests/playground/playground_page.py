@@ -1,0 +1,80 @@
+"""The page as a person uses it, in a browser that tells what a page must not do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+from frictionlab.playground.presets import Preset
+
+
+class Playground:
+    """problems: errors of the scripts, words in the console, requests beyond the page's own file."""
+
+    def __init__(self, page: Page, html: Path) -> None:
+        self.page = page
+        self.address = html.as_uri()
+        self.problems: list[str] = []
+        page.on("pageerror", lambda error: self.problems.append(f"script error: {error}"))
+        page.on("console", lambda message: self.problems.append(f"console: {message.text}"))
+        page.on("request", lambda request: self._note_request(request.url))
+
+    def _note_request(self, url: str) -> None:
+        if not url.startswith((self.address, "blob:", "data:")):
+            self.problems.append(f"request: {url}")
+
+    def open(self, words: str = "") -> None:
+        self.page.goto("about:blank")
+        self.page.goto(self.address + words)
+        self.page.wait_for_selector("body.ready")
+
+    def load(self, values: Mapping[str, float | str]) -> None:
+        """Goes to the address of a scene, on the page that is open."""
+        words = "&".join(f"{name}={value}" for name, value in values.items())
+        self.page.evaluate(
+            "words => { document.body.dataset.address = 'busy'; location.hash = ''; location.hash = words; }",
+            words,
+        )
+        self.settle()
+
+    def choose(self, preset: Preset) -> None:
+        self.page.locator("#preset").select_option(preset.id)
+        self.settle()
+
+    def settle(self) -> None:
+        """Waits until figures, numbers and texts are those of the scene."""
+        self.page.wait_for_selector("body[data-address=done]")
+
+    def finish(self) -> None:
+        """Waits for curves and map as well."""
+        self.settle()
+        self.page.wait_for_selector("body[data-worker=done]")
+
+    def number(self, name: str) -> float:
+        """A number above the figures, in SI and in full."""
+        return float(self.page.locator(f"#{name}").get_attribute("value") or "nan")
+
+    def text(self, kind: str) -> str:
+        """What Copy as gives."""
+        self.page.locator(f'[data-kind="{kind}"]').click()
+        return self.page.locator("#copy-text").input_value()
+
+    def wave(self) -> dict[str, list[float]]:
+        """The columns of the data of the first figures."""
+        names, *rows = (line.split(",") for line in self.text("CSV").splitlines())
+        return {name: [float(row[k]) for row in rows] for k, name in enumerate(names)}
+
+    def enter(self, variable: str, text: str) -> None:
+        field = self.page.locator(f'[data-variable="{variable}"] input[type=text]')
+        field.fill(text)
+        field.press("Enter")
+        self.settle()
+
+    def pick(self, variable: str, item: str) -> None:
+        self.page.locator(f'[data-variable="{variable}"] select').select_option(item)
+        self.settle()
+
+    def refusal(self, variable: str) -> str:
+        return self.page.locator(f'[data-variable="{variable}"] .refusal').inner_text()

@@ -1,0 +1,143 @@
+"""Every control of the page does to the FMU what it says, and shows what the FMU refuses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from native_wave import wave
+from playground_page import Playground
+
+from frictionlab.fmu import FrictionError, FrictionFmu
+from frictionlab.playground.command import XML
+from frictionlab.playground.description import description
+
+LIMIT = 1e-12  # of the largest force
+VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}
+# What must be chosen for a control to have an effect.
+CONTEXT = {
+    "contact.sigma": {"contact.model": "Constant"},
+    "vibration.phase_d": {"vibration.a_d": 1e-6},
+}
+START = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 5e-7}
+
+
+def controls(playground: Playground) -> list[str]:
+    return playground.page.locator("[data-variable]").evaluate_all(
+        "all => all.map((c) => c.dataset.variable)"
+    )
+
+
+def quantities(playground: Playground) -> list[str]:
+    return [name for name in controls(playground) if "items" not in VARIABLES[name]]
+
+
+def assert_same(playground: Playground, fmu: FrictionFmu, values: dict[str, float | str]) -> list[float]:
+    native = wave(fmu, values).force
+    np.testing.assert_allclose(
+        playground.wave()["F_t_N"], native, rtol=0, atol=LIMIT * max(map(abs, native)), err_msg=str(values)
+    )
+    return native
+
+
+def test_every_quantity_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) -> None:
+    """Typed into its field, in the unit that is shown."""
+    assert len(quantities(playground)) >= 8
+    for name in quantities(playground):
+        scene = START | CONTEXT.get(name, {})
+        playground.load(scene)
+        before = assert_same(playground, fmu, scene)
+        factor = VARIABLES[name]["factor"]
+        value = 1.5 * float(scene.get(name, VARIABLES[name]["start"])) or 0.5 / factor
+        text = repr(value * factor)
+        playground.enter(name, text)
+        after = assert_same(playground, fmu, scene | {name: float(text) / factor})
+        assert name == "delta_0" or before != after, name
+
+
+def test_every_choice_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) -> None:
+    choices = [name for name in controls(playground) if "items" in VARIABLES[name]]
+    assert {"friction.model", "contact.model"} <= set(choices)
+    for name in choices:
+        forces = []
+        for item in VARIABLES[name]["items"]:
+            playground.load(START)
+            playground.pick(name, item["name"])
+            forces.append(assert_same(playground, fmu, START | {name: item["name"]}))
+        assert all(forces[0] != other for other in forces[1:]), name
+
+
+def test_every_slider_moves_with_the_keyboard(playground: Playground) -> None:
+    """An arrow moves field, spoken value and figures together."""
+    playground.load(START | {"vibration.a_d": 1e-6})
+    for name in quantities(playground):
+        root = playground.page.locator(f'[data-variable="{name}"]')
+        if not root.is_visible():
+            continue
+        slider, field = root.locator("input[type=range]"), root.locator("input[type=text]")
+        before = field.input_value()
+        slider.press("PageUp" if name != "vibration.phase_d" else "ArrowRight")
+        playground.settle()
+        value = float(field.input_value())
+        assert value > float(before), name
+        spoken = (slider.get_attribute("aria-valuetext") or "").split("\u202f")[0].rstrip("°")
+        if "·" not in spoken:
+            assert float(spoken.replace("−", "-")) == pytest.approx(value, rel=1e-3), name
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("F_C", -1.0), ("vibration.f", 0.0), ("vibration.a_d", 20e-6), ("d", -1e-6), ("E", 0.0)],
+)
+def test_a_refusal_is_the_fmu_s_own_message_at_the_control(
+    playground: Playground, fmu: FrictionFmu, name: str, value: float
+) -> None:
+    playground.load(START)
+    before = playground.wave()
+    factor = VARIABLES[name]["factor"]
+    playground.enter(name, repr(value * factor))
+    with pytest.raises(FrictionError) as refused:
+        wave(fmu, START | {name: float(repr(value * factor)) / factor})
+    assert playground.refusal(name) == str(refused.value).split("; ")[-1]
+    assert playground.wave() == before
+    field = playground.page.locator(f'[data-variable="{name}"] input[type=text]')
+    assert field.get_attribute("aria-invalid") == "true"
+    playground.enter(name, repr(float(VARIABLES[name]["start"]) * factor))
+    assert playground.refusal(name) == ""
+    assert playground.wave() == before
+
+
+@pytest.mark.parametrize("text", ["", "ten", "1e", "NaN", "0x"])
+def test_what_is_no_number_is_told_so(playground: Playground, text: str) -> None:
+    playground.load(START)
+    before = playground.wave()
+    field = playground.page.locator('[data-variable="V"] input[type=text]')
+    field.fill(text)
+    field.press("Enter")
+    field.blur()
+    assert playground.refusal("V").endswith("is not a number")
+    assert playground.wave() == before
+
+
+def test_an_address_with_foreign_words_shows_the_message(playground: Playground) -> None:
+    playground.open("#colour=3")
+    playground.settle()
+    assert playground.page.locator("#refusal").inner_text() == "colour is no variable of this FMU"
+    playground.open("#friction.model=Newton")
+    playground.settle()
+    assert "friction.model" in playground.refusal("friction.model")
+
+
+def test_pointing_at_the_map_and_at_the_curve_moves_the_scene(playground: Playground) -> None:
+    playground.load(START)
+    playground.finish()
+    for figure, numbers, part in (("map", ("kappa", "zeta"), 0.7), ("mean", ("zeta",), 0.5)):
+        box = playground.page.locator(f"#{figure} svg").bounding_box()
+        assert box is not None
+        before = [playground.number(number) for number in numbers]
+        playground.page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.3 * box["height"])
+        playground.settle()
+        after = [playground.number(number) for number in numbers]
+        assert all(abs(a - b) > 0.1 * b for a, b in zip(after, before, strict=True)), (before, after)
+        ring = playground.page.locator(f"#{figure} .point.here").bounding_box()
+        assert ring is not None
+        assert ring["x"] + ring["width"] / 2 == pytest.approx(box["x"] + part * box["width"], abs=1.5)

@@ -1,0 +1,103 @@
+"""What Copy as gives does in other tools what the page shows."""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from lxml import etree
+from playground_page import Playground
+
+from frictionlab.fmu import FrictionFmu
+from frictionlab.playground.command import XML
+from frictionlab.playground.description import description
+from frictionlab.playground.presets import Preset
+
+SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
+VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}
+TOLERANCE = 1e-6 * 55.0  # N
+
+
+@pytest.fixture
+def scene(offered: list[Preset]) -> Preset:
+    return next(preset for preset in offered if preset.id == "table2-row6-identified")
+
+
+def test_the_link_restores_the_scene(playground: Playground, offered: list[Preset]) -> None:
+    for preset in offered[::5]:
+        playground.open()
+        playground.choose(preset)
+        playground.enter("V", "123.456789")
+        before, link = playground.wave(), playground.text("Link")
+        playground.page.goto("about:blank")
+        playground.page.goto(link)
+        playground.page.wait_for_selector("body.ready")
+        playground.settle()
+        assert playground.wave() == before
+        assert playground.page.locator("#preset").input_value() == preset.id
+        assert playground.page.locator("#changed").inner_text() == "changed"
+
+
+def test_the_command_runs(
+    playground: Playground, fmu: FrictionFmu, fmu_path: Path, scene: Preset, tmp_path: Path
+) -> None:
+    """It gives the same scene to the FMU: the forces at the end of a run from rest."""
+    playground.choose(scene)
+    program, *words = shlex.split(playground.text("fmpy"))
+    assert program == "fmpy" and words[-1] == "--show-plot"
+    words[1] = str(fmu_path)
+    subprocess.run(
+        [Path(sys.executable).with_name("fmpy"), *words[:-1], "--output-file", "out.csv"],
+        cwd=tmp_path,
+        check=True,
+        capture_output=True,
+    )
+    result = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
+    assert result["time"][-1] == pytest.approx(2 / 20e3)
+    with fmu.session(scene.values) as session:
+        session.step(2 / 20e3)
+        assert result["F_t"][-1] == pytest.approx(session.get("F_t"), abs=2 * TOLERANCE)
+
+
+def test_the_python_gives_the_mean(
+    playground: Playground, fmu_path: Path, scene: Preset, tmp_path: Path
+) -> None:
+    playground.choose(scene)
+    (tmp_path / "FrictionContact.fmu").symlink_to(fmu_path)
+    run = subprocess.run(
+        [sys.executable, "-c", playground.text("Python")],
+        cwd=tmp_path,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    value, unit = run.stdout.splitlines()[-1].split()
+    assert unit == "N"
+    assert float(value) == pytest.approx(playground.number("mean-force"), abs=2 * TOLERANCE)
+
+
+def test_the_parameter_set_holds_the_scene(
+    playground: Playground, offered: list[Preset], tmp_path: Path
+) -> None:
+    schema = etree.XMLSchema(etree.parse(SCHEMA))
+    for preset in offered:
+        playground.choose(preset)
+        path = tmp_path / "scene.ssv"
+        path.write_text(playground.text(".ssv"), encoding="utf-8")
+        root = etree.parse(path).getroot()
+        schema.assertValid(root)
+        found = {
+            parameter.get("name"): parameter[0].get("value")
+            for parameter in root.iterfind("{*}Parameters/{*}Parameter")
+        }
+        starts = {name: VARIABLES[name]["start"] for name in preset.values}
+        restored = {
+            name: start if name not in found else type(start)(found[name]) for name, start in starts.items()
+        }
+        assert restored == preset.values
+        assert found.keys() <= preset.values.keys()

@@ -1,0 +1,79 @@
+"""The page itself: accessible, sized to phone and desktop, and one file that loads nothing."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playground_page import Playground
+from playwright.sync_api import Browser
+
+from frictionlab.playground.browser import SCHEMES, SIZES
+from frictionlab.playground.command import XML
+from frictionlab.playground.description import description
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("size", SIZES)
+def test_no_barrier_is_found(browser: Browser, html: Path, size: str, scheme: str) -> None:
+    """By axe-core, whose rules are those of WCAG; and nothing is wider than the window."""
+    width, height = SIZES[size]
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, color_scheme=scheme, bypass_csp=True
+    )
+    playground = Playground(context.new_page(), html)
+    playground.open()
+    playground.finish()
+    found = Axe().run(playground.page)
+    scroll_width = playground.page.evaluate("document.documentElement.scrollWidth")
+    context.close()
+    assert [f"{rule['id']}: {rule['help']}" for rule in found.response["violations"]] == []
+    assert scroll_width == width
+    assert playground.problems == []
+
+
+def test_every_control_has_its_own_name(playground: Playground) -> None:
+    sliders = playground.page.get_by_role("slider")
+    names = [sliders.nth(k).get_attribute("aria-label") for k in range(sliders.count())]
+    assert len(names) >= 8 and all(names) and len(set(names)) == len(names)
+
+
+def test_every_input_and_parameter_with_a_control_is_one_of_the_fmu(playground: Playground) -> None:
+    known = {variable["name"] for variable in description(XML)["variables"]}
+    found = playground.page.locator("[data-variable]").evaluate_all(
+        "all => all.map((c) => c.dataset.variable)"
+    )
+    assert set(found) <= known
+    assert {
+        "V",
+        "d",
+        "E",
+        "F_C",
+        "vibration.f",
+        "vibration.V_1",
+        "vibration.a_d",
+        "vibration.phase_d",
+    } <= set(found)
+
+
+def test_the_file_names_no_other(html: Path) -> None:
+    text = html.read_text(encoding="utf-8")
+    sources = re.findall(r"(?:src|href)=\"([^\"#]+)\"", text)
+    assert [source for source in sources if not source.startswith(("data:", "https://doi.org/"))] == []
+    assert "default-src 'none'" in text
+    assert "[page.css]" not in text and "<!--[" not in text
+
+
+def test_the_core_imports_nothing(playground: Playground) -> None:
+    imports, exports = playground.page.evaluate(
+        """async () => {
+            const text = atob(document.getElementById("wasm").textContent);
+            const module = await WebAssembly.compile(Uint8Array.from(text, (c) => c.charCodeAt(0)));
+            const names = (list) => list.map(({ name }) => name);
+            return [names(WebAssembly.Module.imports(module)), names(WebAssembly.Module.exports(module))];
+        }"""
+    )
+    assert imports == []
+    assert {"fmi2DoStep", "fmi2SetReal", "fmi2GetReal", "fmi2Reset", "host_message"} <= set(exports)
