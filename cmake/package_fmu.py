@@ -93,13 +93,17 @@ def main() -> None:
     parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers")
     parser.add_argument("--binary", type=_pair, action="append", default=[], metavar="PLATFORM=FILE")
     parser.add_argument("--file", type=_pair, action="append", default=[], metavar="NAME=FILE")
+    parser.add_argument(
+        "--folder", type=_pair, action="append", default=[], metavar="NAME=FOLDER", help="all files in it"
+    )
     arguments = parser.parse_args()
     write_fmu(
         arguments.output,
         arguments.xml,
         dict(arguments.binary),
         source_files(arguments.sources, arguments.table, arguments.fmi_headers),
-        dict(arguments.file),
+        dict(arguments.file)
+        | {f"{name}/{path.name}": path for name, folder in arguments.folder for path in folder.iterdir()},
     )
 
 

@@ -17,11 +17,11 @@ sys.path.insert(0, str(ROOT / "cmake"))
 import generate_variables
 import model_description
 
+from frictionlab.description import description
 from frictionlab.playground.browser import chromium, measure, take_pictures
 from frictionlab.playground.core import core
-from frictionlab.playground.description import description
 from frictionlab.playground.page import page
-from frictionlab.playground.presets import presets
+from frictionlab.presets import presets
 from frictionlab.release.targets import ReleaseError
 
 DEFAULT = ROOT / "build" / "playground.html"

@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from frictionlab.playground.presets import Preset, possible
+from frictionlab.presets import Preset, possible
 
 ASSETS = Path(__file__).with_name("assets")
 PLACE = re.compile(r"/\*\[([\w.]+)\]\*/|<!--\[(\w+)\]-->")

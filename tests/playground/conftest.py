@@ -9,10 +9,10 @@ import pytest
 from playground_page import Playground
 from playwright.sync_api import Browser
 
+from frictionlab.description import description
 from frictionlab.playground.browser import chromium
 from frictionlab.playground.command import XML, page_text
-from frictionlab.playground.description import description
-from frictionlab.playground.presets import Preset, possible, presets
+from frictionlab.presets import Preset, possible, presets
 from frictionlab.project import UserError
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")

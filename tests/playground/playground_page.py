@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
-from frictionlab.playground.presets import Preset
+from frictionlab.presets import Preset
 
 
 class Playground:

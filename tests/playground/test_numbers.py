@@ -10,7 +10,7 @@ from native_wave import wave
 from playground_page import Playground
 
 from frictionlab.fmu import FrictionFmu, periodic_mean
-from frictionlab.playground.presets import Preset
+from frictionlab.presets import Preset
 
 LIMIT = 1e-12  # of the largest force: another C library rounds exp and cos otherwise
 TOLERANCE = 1e-6  # solver.tolerance, relative to F_C

@@ -10,9 +10,9 @@ from axe_playwright_python.sync_playwright import Axe
 from playground_page import Playground
 from playwright.sync_api import Browser
 
+from frictionlab.description import description
 from frictionlab.playground.browser import SCHEMES, SIZES
 from frictionlab.playground.command import XML
-from frictionlab.playground.description import description
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -1,4 +1,4 @@
-"""modelDescription.xml as the page's controls read it."""
+"""modelDescription.xml as plain Python values, read with Python's own library alone."""
 
 from __future__ import annotations
 

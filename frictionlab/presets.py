@@ -1,4 +1,4 @@
-"""The scenes of the page, which the FMU holds as parameter sets too: the one place where they stand."""
+"""Scenes that the page of the live FMU offers and the FMU holds as parameter sets: the one place for them."""
 
 from __future__ import annotations
 

@@ -1,0 +1,84 @@
+"""An FMU held against the results that it carries: met as it is, missed when changed, errors in one line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "ci-validation" / "check_reference.py"
+FOLDER = Path("extra") / "org.fmi-standard.fmi-ls-ref"
+
+
+def check(fmu: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(SCRIPT), str(fmu)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+
+
+@pytest.fixture
+def unpacked(fmu_path: Path, tmp_path: Path) -> Path:
+    folder = tmp_path / "unpacked"
+    with zipfile.ZipFile(fmu_path) as archive:
+        archive.extractall(folder)
+    return folder
+
+
+def test_the_fmu_meets_its_results(fmu_path: Path, unpacked: Path) -> None:
+    for fmu in (fmu_path, unpacked):
+        done = check(fmu)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert "12 of 12 results as in the reference" in done.stdout
+
+
+def test_a_changed_result_is_missed(unpacked: Path) -> None:
+    path = unpacked / FOLDER / "default-experiment.csv"
+    head, line, *rest = path.read_text().splitlines()
+    path.write_text("\n".join([head, line.replace("0.0,0.0", "0.0,1.0", 1), *rest]))
+    done = check(unpacked)
+    assert done.returncode == 1
+    assert [line for line in done.stdout.splitlines() if line.startswith("MISSED")] == [
+        "MISSED default-experiment: F_t: 1, bound 5.5e-05"
+    ]
+
+
+def test_another_parameter_set_is_missed(unpacked: Path) -> None:
+    path = unpacked / FOLDER / "table2-row2-identified.ssv"
+    path.write_text(path.read_text(encoding="utf-8").replace('"1.44"', '"1.43"'), encoding="utf-8")
+    done = check(unpacked)
+    assert done.returncode == 1
+    assert "MISSED table2-row2-identified: F_t:" in done.stdout
+    assert "MISSED default-experiment" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "message"),
+    [
+        ("fmi-ls-manifest.xml", None, "fmi-ls-manifest.xml can't be read: No such file"),
+        ("fmi-ls-manifest.xml", "<a/>", "no experiment is listed"),
+        ("validation.exp", "<a", "validation.exp can't be read: "),
+        (
+            "default-experiment.csv",
+            "time,F_t\n0,0\n",
+            "communication points are not those",
+        ),
+        ("table2-row2-identified.ssv", None, "table2-row2-identified.ssv can't be read: No such file"),
+    ],
+)
+def test_what_is_wrong_is_one_line(unpacked: Path, file: str, text: str | None, message: str) -> None:
+    if text is None:
+        (unpacked / FOLDER / file).unlink()
+    else:
+        (unpacked / FOLDER / file).write_text(text)
+    done = check(unpacked)
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ") and message in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_no_fmu_is_one_line(tmp_path: Path) -> None:
+    for name, message in (("none.fmu", "is no FMU"), ("text.fmu", "is no FMU")):
+        (tmp_path / "text.fmu").write_text("text")
+        done = check(tmp_path / name)
+        assert done.returncode == 1 and message in done.stderr and done.stderr.count("\n") == 1
