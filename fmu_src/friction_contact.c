@@ -1,6 +1,7 @@
 #include "friction_contact.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -9,6 +10,10 @@
 
 // Below this the limit mu F_n is no longer a normal number, and the surfaces are metres of R_q apart.
 static const double SMALLEST_LIMIT = 1e-300; // N
+
+// Vibration periods since time 0 beyond which its phase is refused: neighbouring numbers of time are then more than
+// 1/64 of a period apart.
+static const double MOST_CYCLES = 0x1p46;
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
     return fc_message_set(
@@ -120,6 +125,19 @@ static bool is_to_be_checked(const FcScene* scene) {
 
 static const double HELD[FC_INPUT_COUNT] = {0};
 
+// The time t [s] must tell the phase of the vibration.
+static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
+    const double f = drive->vibration.f;
+    if (!fc_drive_vibrates(drive) || fabs(t) * f <= MOST_CYCLES) {
+        return true;
+    }
+    return fc_message_set(
+        message,
+        "time = %.9g s is too large for vibration.f = %.9g Hz: beyond %.9g s its neighbouring "
+        "numbers are more than 1/64 of a period apart",
+        t, f, MOST_CYCLES / f);
+}
+
 // The scene at the present time with held inputs.
 static FcScene held_scene(FcFrictionContact* contact) {
     return scene_from(contact, contact->state.time, contact->state.time_rest, HELD, 0.0);
@@ -127,7 +145,7 @@ static FcScene held_scene(FcFrictionContact* contact) {
 
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
     const FcScene scene = held_scene(contact);
-    return check_scene(&scene, 0.0, message);
+    return check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
 }
 
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message) {
@@ -230,13 +248,18 @@ static void set_outputs(FcVariables* v, const FcScene* now) {
 }
 
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
-    if (!(h >= 0.0) || !isfinite(t + h)) {
+    if (!(h == 0.0 || h >= DBL_MIN) || !isfinite(t + h)) {
         return fc_message_set(
-            message, "the step from t = %.9g s by h = %.9g s: h must be a finite number of at least 0 s", t,
-            h);
+            message,
+            "the step from t = %.9g s by h = %.9g s: h must be 0 s, or a finite number of at "
+            "least %.9g s",
+            t, h, DBL_MIN);
     }
     const FcFrictionState* before = &contact->state;
     const FcScene scene = scene_from(contact, t, 0.0, before->next_rate, 0.0);
+    if (!check_time(&scene.drive, t, message) || !check_time(&scene.drive, t + h, message)) {
+        return false;
+    }
     if (is_to_be_checked(&scene) && !check_scene(&scene, h, message)) {
         return false;
     }

@@ -29,11 +29,10 @@
 #define SMALLEST_LOCAL_ERROR 1e-14
 #define LARGEST_LOCAL_ERROR 1e-3
 
-#define MOST_PERIODS 1e5     // vibration periods in one communication step: minutes of computing
-#define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
-#define SHORTEST_STEP                                                                                        \
-    1e-150 // s; CVODE can't tell much shorter ones from none, and one explicit step is exact
-#define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
+#define MOST_PERIODS 1e5      // vibration periods in one communication step: minutes of computing
+#define STEPS_PER_PERIOD 8.0  // at least: the vibration can't slip between two steps
+#define SHORTEST_PIECE 1e-150 // s; CVODE multiplies two durations, which gives 0 below 1e-162 s
+#define MOST_FAILED_TRIES 50  // error test or convergence failures of one step of CVODE
 
 // Five-point Gauss-Legendre on [-1, 1]: exact for the degree 9.
 #define GAUSS_POINTS 5
@@ -53,6 +52,7 @@ struct FcCvode {
     // The piece under way, as the callbacks see it.
     const FcScene* scene;
     double start;       // s, local time at which the piece starts; CVODE's time is 0 there
+    double unit;        // s, of CVODE's time: 1 s, or the piece's duration where that is very short
     double L;           // m
     double evaluations; // of a(t), b(t)
     char reason[160];   // CVODE's last error message
@@ -60,21 +60,22 @@ struct FcCvode {
 
 static FcCoefficients coefficients_at(FcCvode* solver, double tau) {
     solver->evaluations += 1.0;
-    return fc_scene_coefficients(solver->scene, solver->start + tau);
+    return fc_scene_coefficients(solver->scene, solver->start + solver->unit * tau);
 }
 
 static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
     FcCvode* solver = user;
     const FcCoefficients at = coefficients_at(solver, tau);
-    NV_Ith_S(slope, 0) = fc_coefficients_rate(&at) * NV_Ith_S(y, 0) + at.V / solver->L;
+    NV_Ith_S(slope, 0) = solver->unit * (fc_coefficients_rate(&at) * NV_Ith_S(y, 0) + at.V / solver->L);
     return 0;
 }
 
 static int jacobian(realtype tau, N_Vector y, N_Vector slope, SUNMatrix J, void* user, N_Vector t1,
                     N_Vector t2, N_Vector t3) {
     (void)y, (void)slope, (void)t1, (void)t2, (void)t3;
-    const FcCoefficients at = coefficients_at(user, tau);
-    SM_ELEMENT_D(J, 0, 0) = fc_coefficients_rate(&at);
+    FcCvode* solver = user;
+    const FcCoefficients at = coefficients_at(solver, tau);
+    SM_ELEMENT_D(J, 0, 0) = solver->unit * fc_coefficients_rate(&at);
     return 0;
 }
 
@@ -150,7 +151,7 @@ void fc_cvode_free(FcCvode* solver) {
 static bool failed(const FcCvode* solver, double tau, double h, const char* reason, FcMessage* message) {
     return fc_message_set(message,
                           "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s",
-                          solver->start + tau, h, reason);
+                          solver->start + solver->unit * tau, h, reason);
 }
 
 // The deflection's scale over a step of h [s] from delta_0, see the head of this file.
@@ -186,21 +187,24 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
     const FcDrive* drive = &solver->scene->drive;
     const double longest =
         fc_drive_vibrates(drive) ? 1.0 / (STEPS_PER_PERIOD * drive->vibration.f) : duration;
+    const double unit = duration < SHORTEST_PIECE ? duration : 1.0;
+    const double end = duration / unit;
+    solver->unit = unit;
     solver->reason[0] = '\0';
     if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSStolerances(cvode, SMALLEST_LOCAL_ERROR, local_error) != CV_SUCCESS ||
-        CVodeSetMaxStep(cvode, longest) != CV_SUCCESS ||
-        CVodeSetInitStep(cvode, initial_step(solver, duration, local_error)) != CV_SUCCESS ||
-        CVodeSetStopTime(cvode, duration) != CV_SUCCESS) {
+        CVodeSetMaxStep(cvode, longest / unit) != CV_SUCCESS ||
+        CVodeSetInitStep(cvode, initial_step(solver, duration, local_error) / unit) != CV_SUCCESS ||
+        CVodeSetStopTime(cvode, end) != CV_SUCCESS) {
         return failed(solver, 0.0, h, solver->reason, message);
     }
     double tau = 0.0;
-    while (tau < duration) {
+    while (tau < end) {
         if (solver->evaluations > FC_MOST_EVALUATIONS) {
             return failed(solver, tau, h, "too many evaluations in one step", message);
         }
         double tau_next = tau;
-        if (CVode(cvode, duration, solver->y, &tau_next, CV_ONE_STEP) < 0) {
+        if (CVode(cvode, end, solver->y, &tau_next, CV_ONE_STEP) < 0) {
             return failed(solver, tau, h, solver->reason, message);
         }
         const double half = 0.5 * (tau_next - tau);
@@ -213,7 +217,7 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
             const double delta = solver->L * NV_Ith_S(solver->dense, 0);
             const double F = at.sigma * delta;
             const double slip = -fc_coefficients_rate(&at) * delta; // V - delta'
-            const double weight = half * gauss_weight[i];
+            const double weight = unit * half * gauss_weight[i];
             sum->impulse += weight * F;
             sum->work += weight * F * at.V;
             sum->heat += weight * F * slip;
@@ -237,18 +241,6 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
             "at most %.0e are allowed; use smaller steps or collocation",
             h, periods, drive->vibration.f, MOST_PERIODS);
         return false;
-    }
-    if (h < SHORTEST_STEP) {
-        const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-        const double F = at.sigma * delta_0;
-        const double slip = -fc_coefficients_rate(&at) * delta_0;
-        *result = (FcStepResult){.delta = delta_0 + h * (at.V - slip),
-                                 .impulse = h * F,
-                                 .work = h * F * at.V,
-                                 .heat = h * F * slip,
-                                 .drag = h * (at.V - slip) * at.V,
-                                 .evaluations = 1.0};
-        return true;
     }
     solver->scene = scene;
     solver->L = deflection_scale(scene, h, delta_0);

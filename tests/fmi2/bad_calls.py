@@ -209,6 +209,7 @@ BAD_STEPS = [
     _step("step size -1e-5", 0.0, -1e-5, "communicationStepSize = -1e-05 s must be finite and at least 0 s"),
     _step("step size NaN", 0.0, NAN, "communicationStepSize = nan s"),
     _step("step size infinite", 0.0, INF, "communicationStepSize = inf s"),
+    _step("step size 5e-324", 0.0, 5e-324, "h must be 0 s, or a finite number of at least 2.22507386e-308 s"),
     _step("time NaN", NAN, 1e-5, "currentCommunicationPoint = nan s, but the instance is at 0 s"),
     _step("time infinite", INF, 1e-5, "currentCommunicationPoint = inf s"),
     _step(
@@ -416,6 +417,13 @@ COMBINATIONS = [
     _driven("d", -1.0, 1e-4, "d moves from 1.4e-05 m to -8.6e-05 m", "at least 1e-12 m"),
     _driven("E", -1e15, 1e-4, "E moves from 58556936170 Pa", "at least 1 Pa"),
     _driven("V", 1e308, 1e3, "V moves from 0.005 m/s to inf m/s", "must stay finite"),
+    BadCall(
+        "a step of 1e10 s under a vibration of 20 kHz",
+        "step complete",
+        lambda i: i.step(0.0, 1e10),
+        ("fmi2DoStep: time = 1e+10 s is too large for vibration.f = 20000 Hz", "beyond 3.51843721e+09 s"),
+        prepare=lambda i: i.set({"vibration.V_1": 0.4}),
+    ),
     BadCall(
         "a step in which d moves to 1e-6 m while vibration.a_d = 1.1e-6 m",
         "step complete",
