@@ -266,11 +266,12 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcVariables* v = &before->variables;
     const FcSolverOptions options = solver_options(v);
     FcStepResult result;
-    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, v->delta, &result,
+    const double delta_0 = fc_method_start(&scene, v->delta);
+    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, delta_0, &result,
                         message)) {
         return false;
     }
-    add_damping(&scene, h, v->delta, &result);
+    add_damping(&scene, h, delta_0, &result);
 
     FcFrictionState after = *before;
     after.time = t + h;

@@ -1,7 +1,6 @@
 #include "model/scene.h"
 
 #include <assert.h>
-#include <float.h>
 
 // Where the surfaces rest at the time t [m], with contact.input = Load.
 static double rest_separation(const FcScene* scene, const FcContactAtModulus* at_E, double t) {
@@ -116,8 +115,8 @@ double fc_scene_bound_rate(const FcScene* scene, double t) {
     return at.limit / at.sigma * (rates.limit - rates.sigma);
 }
 
-// A bristle that slips has a deflection of g / sigma to the last bits only.
-static const double ON_THE_BOUND = 1.0 - 8.0 * DBL_EPSILON;
+// A bristle that slips has a deflection of g / sigma but for what rounds in the phase at the end of a step.
+static const double ON_THE_BOUND = 1.0 - 1e-12;
 
 double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
     const FcCoefficients at = fc_scene_coefficients(scene, t);

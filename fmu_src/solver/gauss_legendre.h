@@ -1,6 +1,6 @@
 // Gauss-Legendre quadrature: n nodes integrate polynomials of degree 2n - 1 exactly.
-#ifndef FC_GAUSS_LEGENDRE_H
-#define FC_GAUSS_LEGENDRE_H
+#ifndef FC_SOLVER_GAUSS_LEGENDRE_H
+#define FC_SOLVER_GAUSS_LEGENDRE_H
 
 typedef struct {
     int half_count;       // nodes lie at the middle +- half_length * node
@@ -9,6 +9,7 @@ typedef struct {
 } FcQuadrature;
 
 extern const FcQuadrature FC_GAUSS_8;
+extern const FcQuadrature FC_GAUSS_12;
 extern const FcQuadrature FC_GAUSS_16;
 
 #endif

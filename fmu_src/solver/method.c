@@ -5,11 +5,8 @@
 
 #include "solver/collocation.h"
 #include "solver/coulomb.h"
+#include "solver/elastic_plastic.h"
 #include "solver/fixed_step.h"
-
-static bool elastic_plastic_is_missing(FcMessage* message) {
-    return fc_message_set(message, "friction.model = ElasticPlastic is not in this build");
-}
 
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, double delta_0, FcStepResult* result, FcMessage* message) {
@@ -18,7 +15,7 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
         return fc_periods_step(fc_coulomb_interval, scene, options, h, delta_0, result, message);
     }
     if (scene->friction->model == FC_ELASTIC_PLASTIC) {
-        return elastic_plastic_is_missing(message);
+        return fc_elastic_plastic_step(scene, h, delta_0, result, message);
     }
     switch (method) {
     case FC_METHOD_COLLOCATION:
@@ -32,6 +29,10 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
     default:
         return fc_fixed_step(scene, method, options, h, delta_0, result, message);
     }
+}
+
+double fc_method_start(const FcScene* scene, double delta) {
+    return scene->friction->model == FC_ELASTIC_PLASTIC ? fc_elastic_plastic_reached(scene, delta) : delta;
 }
 
 // Dahl, LuGre: the fixed point of the affine map of a period.
@@ -49,6 +50,9 @@ double fc_method_settled(const FcScene* scene, const FcSolverOptions* options, d
     const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
     if (scene->friction->model == FC_COULOMB) {
         return 0.0;
+    }
+    if (scene->friction->model == FC_ELASTIC_PLASTIC) {
+        return fc_elastic_plastic_settled(scene, delta_0, evaluations);
     }
     if (fc_drive_vibrates(&scene->drive)) {
         return fixed_point(scene, options, delta_0, evaluations);

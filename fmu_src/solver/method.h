@@ -11,6 +11,10 @@
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, double delta_0, FcStepResult* result, FcMessage* message);
 
+// The deflection [m] that a step from delta [m] starts at: in ElasticPlastic at most the bound, beyond which inputs or
+// parameters may have left it.
+double fc_method_start(const FcScene* scene, double delta);
+
 // The deflection [m] that delta_0 [m] tends to after infinitely many periods of a scene with held inputs, at the phase
 // of its start; without vibration after sliding for ever. delta_0 where nothing moves. Adds what it spends to
 // *evaluations.

@@ -17,6 +17,17 @@ typedef enum { FC_MAP_THIS_START, FC_MAP_ANY_START } FcMapScope;
 typedef FcMap (*FcIntervalMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
                                double delta_0, FcMapScope scope, double* evaluations);
 
+// How a step of h [s] >= 0 divides: whole periods of the vibration, and what is left [s]. None without vibration.
+typedef struct {
+    double count;
+    double rest;
+} FcPeriods;
+FcPeriods fc_periods_in(const FcScene* scene, double h);
+
+// Whether a step of h [s] may be computed and has cost no more evaluations than FC_MOST_EVALUATIONS: false, with
+// *message filled, if not, or if it holds too many periods that differ.
+bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMessage* message);
+
 // The step [0, h], h [s] >= 0, from delta_0 [m]. Returns false, with *message filled and *result as it was, where the
 // periods or the evaluations are too many.
 bool fc_periods_step(FcIntervalMap interval, const FcScene* scene, const FcSolverOptions* options, double h,

@@ -1,0 +1,282 @@
+// The elastic-plastic law: formulas, the stop operator by brute force, many periods, the settled state, refusals.
+#include "solver/elastic_plastic.h"
+
+#include <string.h>
+
+#include "check.h"
+#include "model/constants.h"
+#include "solver/bound.h"
+#include "solver/stick_slip.h"
+#include "stop_operator.h"
+
+static const double F_C = 55.0;     // N
+static const double F = 16384.0;    // Hz, a power of 2: h f has no rounding
+static const double D_MEAN = 14e-6; // m
+static const double E = 58.556936170e9;
+
+static FcContactParameters contact;
+static FcFriction friction;
+
+// What a scene is made of, beside Table 1.
+typedef struct {
+    int model, limit;
+    double sigma; // N/m, at D_MEAN
+    double V, V_rate, d_rate;
+    double V_1, a_d, phase_d;
+    double sigma_1;
+} Setup;
+
+static FcScene scene_of(Setup setup) {
+    contact = (FcContactParameters){.model = setup.model,
+                                    .input = FC_CONTACT_SEPARATION,
+                                    .sigma = setup.sigma,
+                                    .stiffnessScale = 1.0,
+                                    .R_q = 6e-6,
+                                    .R = 1.7e-6,
+                                    .eta = 47e9,
+                                    .A_n = 1e-4,
+                                    .nu = 0.33,
+                                    .Y = 410e6,
+                                    .c = 17.0,
+                                    .lambda = 3.0};
+    FcContactAtModulus at_E = fc_contact_at_modulus(&contact, E);
+    friction = (FcFriction){.model = FC_ELASTIC_PLASTIC,
+                            .limit = setup.limit,
+                            .mu = F_C / fc_contact_response(&at_E, D_MEAN).F_n,
+                            .staticRatio = 1.0,
+                            .V_S = 0.01,
+                            .sigma_1 = setup.sigma_1};
+    contact.stiffnessScale = setup.sigma / fc_contact_stiffness(&at_E, D_MEAN);
+    at_E = fc_contact_at_modulus(&contact, E);
+    const FcVibration vibration = {F, setup.V_1, setup.a_d, setup.phase_d};
+    const FcDrive drive =
+        fc_drive_make((FcLinearInput){setup.V, setup.V_rate}, (FcLinearInput){D_MEAN, setup.d_rate},
+                      (FcLinearInput){E, 0.0}, (FcLinearInput){100.0, 0.0}, vibration, 0.0, 0.0);
+    return fc_scene_make(&contact, &at_E, &friction, F_C, &drive);
+}
+
+static FcStepResult step(const FcScene* scene, double h, double delta_0) {
+    FcStepResult result = {0};
+    FcMessage message;
+    CHECK(fc_elastic_plastic_step(scene, h, delta_0, &result, &message));
+    return result;
+}
+
+// From rest it sticks for D / V, then slips.
+static void at_constant_speed_it_sticks_then_slips(void) {
+    const double sigma = 1e7;
+    const double V = 0.02;
+    const FcScene scene = scene_of((Setup){
+        .model = FC_CONTACT_CONSTANT, .limit = FC_LIMIT_CONSTANT, .sigma = sigma, .V = V, .sigma_1 = 3.0});
+    const double D = F_C / sigma;
+    const FcStepResult stuck = step(&scene, 0.5 * D / V, 0.0);
+    CHECK_NEAR(stuck.delta, 0.5 * D, 1e-15);
+    CHECK_NEAR(stuck.impulse, 0.125 * F_C * D / V, 1e-15);
+    CHECK_NEAR(stuck.work, 0.125 * F_C * D, 1e-15);
+    CHECK(stuck.heat == 0.0);
+    CHECK_NEAR(stuck.drag, 0.5 * D * V, 1e-15);
+    const FcStepResult slipped = step(&scene, 3.0 * D / V, 0.0);
+    CHECK(slipped.delta == D);
+    CHECK_NEAR(slipped.impulse, 2.5 * F_C * D / V, 1e-15);
+    CHECK_NEAR(slipped.work, 2.5 * F_C * D, 1e-15);
+    CHECK_NEAR(slipped.heat, 2.0 * F_C * D, 1e-15);
+    CHECK_NEAR(slipped.drag, D * V, 1e-15);
+    // Beyond the bound it lies on it, and turns back without slipping.
+    CHECK(step(&scene, 0.0, 7.0 * D).delta == D && step(&scene, 0.0, -7.0 * D).delta == -D);
+}
+
+// Under the path a sin(omega t) a closed loop costs 4 F_C (a - D), and nothing while a is within D (Prandtl).
+static void closed_loops(void) {
+    const double V_1 = 0.7;
+    const double a = V_1 / (FC_TWO_PI * F);
+    const double ratio[] = {0.3, 0.999999, 1.000001, 1.7, 40.0, 1e6}; // a / D
+    for (int i = 0; i < 6; i++) {
+        const double D = a / ratio[i];
+        const FcScene scene = scene_of(
+            (Setup){.model = FC_CONTACT_CONSTANT, .limit = FC_LIMIT_CONSTANT, .sigma = F_C / D, .V_1 = V_1});
+        double evaluations = 0.0;
+        const double settled = fc_elastic_plastic_settled(&scene, 0.0, &evaluations);
+        const FcStepResult loop = step(&scene, 1.0 / F, settled);
+        const double lost = 4.0 * F_C * fmax(0.0, a - D);
+        CHECK_WITHIN(loop.delta, settled, 1e-14 * D);
+        CHECK_WITHIN(loop.heat, lost, 1e-13 * F_C * a);
+        CHECK_WITHIN(loop.work, lost, 1e-13 * F_C * a);
+        CHECK_WITHIN(loop.impulse, 0.0, 1e-13 * F_C / F);
+    }
+}
+
+// With V -> 0 and sigma a < F_C the mean of the force tends to F_C - sigma a (physics of the vibrating spring).
+static void slow_sliding_tends_to_the_limit_less_the_amplitude(void) {
+    const double sigma = 7.76e6;
+    const double a = 0.35e-6;
+    const double V = 1e-9;
+    const FcScene scene = scene_of((Setup){.model = FC_CONTACT_CONSTANT,
+                                           .limit = FC_LIMIT_CONSTANT,
+                                           .sigma = sigma,
+                                           .V = V,
+                                           .V_1 = a * FC_TWO_PI * F});
+    double evaluations = 0.0;
+    const double settled = fc_elastic_plastic_settled(&scene, 0.0, &evaluations);
+    CHECK_WITHIN(step(&scene, 1.0 / F, settled).impulse * F, F_C - sigma * a, sigma * V / F);
+}
+
+// A fixed sequence, so that every run checks the same scenes.
+static double random_01(void) {
+    static unsigned long long state = 88172645463325252ull;
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return (double)(state >> 11) / 9007199254740992.0;
+}
+
+static double random_log(double low, double high) { return low * pow(high / low, random_01()); }
+
+static double random_sign(void) { return random_01() < 0.5 ? -1.0 : 1.0; }
+
+// Bounds of a hundred-thousandth to thirty times the way; a tenth of the scenes with V = V_1, where V only touches
+// zero.
+static Setup random_setup(double h) {
+    Setup setup = {.model = 1 + (int)(3.0 * random_01()), .limit = 1 + (int)(2.0 * random_01())};
+    setup.V = random_sign() * random_log(1e-3, 3.0);
+    setup.V_1 = random_01() < 0.1 ? 0.0 : random_01() < 0.1 ? fabs(setup.V) : random_log(1e-3, 3.0);
+    setup.a_d = random_01() < 0.2   ? 0.0
+                : random_01() < 0.8 ? random_log(1e-8, 2e-6)
+                                    : random_log(2e-6, 13e-6);
+    setup.phase_d = FC_TWO_PI * random_01();
+    setup.sigma_1 = random_01() < 0.3 ? 1.0 : 0.0;
+    if (random_01() < 0.3) {
+        setup.V_rate = (random_01() - 0.5) * 4.0 * setup.V / h;
+        setup.d_rate = (random_01() - 0.5) * (D_MEAN - setup.a_d) / h;
+    }
+    const double way = (fabs(setup.V) + setup.V_1) / (FC_TWO_PI * F);
+    setup.sigma = F_C / (way * random_log(1e-5, 30.0));
+    return setup;
+}
+
+static void brute_force_agrees(void) {
+    for (int i = 0; i < 200; i++) {
+        const double h = random_log(0.02, 3.0) / F;
+        const FcScene scene = scene_of(random_setup(h));
+        const double delta_0 = (2.0 * random_01() - 1.0) * 1.5 * fmin(fc_bound(&scene, 0.0), 1e3);
+        const FcStepResult got = step(&scene, h, delta_0);
+        const StopOperator stop = stop_operator(&scene, h, delta_0, 100 + (int)(200.0 * h * F));
+        const double g = (double)stop.limit;
+        const double energy = g * (double)(stop.path + fabsl(stop.heat / stop.limit));
+        CHECK_WITHIN(got.delta, (double)stop.delta, 1e-12 * g / fc_scene_stiffness(&scene, h));
+        CHECK_WITHIN(got.impulse, (double)stop.impulse, 1e-11 * g * h);
+        CHECK_WITHIN(got.work, (double)stop.work, 1e-11 * energy);
+        CHECK_WITHIN(got.heat, (double)stop.heat, 1e-11 * energy);
+        if (friction.sigma_1 != 0.0) { // delta' jumps where sticking changes to slipping
+            CHECK_WITHIN(got.drag, (double)stop.drag, 1e-8 * (double)(stop.path * stop.path) / h);
+        }
+    }
+}
+
+static void many_periods_are_one_after_the_other(void) {
+    for (int i = 0; i < 300; i++) {
+        Setup setup = random_setup(1.0 / F);
+        setup.V_rate = setup.d_rate = 0.0;
+        setup.V_1 = fmax(setup.V_1, 1e-3);
+        setup.V = random_01() < 0.1 ? 0.0 : random_01() < 0.7 ? setup.V_1 * random_log(1e-6, 0.1) : setup.V;
+        const FcScene scene = scene_of(setup);
+        const double periods = floor(2.0 + 60.0 * random_01());
+        const double rest = 0.375 / F;
+        const double delta_0 = (2.0 * random_01() - 1.0) * 1.5 * fmin(fc_bound(&scene, 0.0), 1e3);
+        const FcStepResult all = step(&scene, periods / F + rest, delta_0);
+        FcStepResult sum = {.delta = delta_0};
+        double g = 0.0;
+        double dearest = 0.0;
+        for (double k = 0.0; k <= periods; k += 1.0) {
+            const FcStepResult one = step(&scene, k < periods ? 1.0 / F : rest, sum.delta);
+            sum.delta = one.delta;
+            sum.impulse += one.impulse;
+            sum.work += one.work;
+            sum.heat += one.heat;
+            dearest = fmax(dearest, one.evaluations);
+            g = fmax(g, fc_scene_coefficients(&scene, k / periods / F).limit);
+        }
+        const double h = periods / F + rest;
+        const double energy = g * (fabs(setup.V) + setup.V_1) * h + sum.heat;
+        CHECK_WITHIN(all.delta, sum.delta, 1e-12 * g / fc_scene_stiffness(&scene, rest));
+        CHECK_WITHIN(all.impulse, sum.impulse, 1e-12 * g * h);
+        CHECK_WITHIN(all.work, sum.work, 1e-11 * energy);
+        CHECK_WITHIN(all.heat, sum.heat, 1e-12 * energy);
+        CHECK(all.evaluations < 10.0 * dearest); // as a few periods, not as many
+
+        // The settled state is where 2^40 periods end, and a period leads back to it.
+        double evaluations = 0.0;
+        const double settled = fc_elastic_plastic_settled(&scene, delta_0, &evaluations);
+        const double allowed = 1e-12 * fmin(fc_bound(&scene, 0.0), 1e3) + 1e-13 * setup.V_1 / F;
+        CHECK_WITHIN(step(&scene, 1099511627776.0 / F, delta_0).delta, settled, allowed);
+        CHECK_WITHIN(step(&scene, 1.0 / F, settled).delta, settled, allowed);
+    }
+}
+
+// A bristle that creeps by s = V / f a period, n periods without touching: the sum of F over the periods in closed form.
+static void creeping_is_an_arithmetic_series(void) {
+    const double sigma = 1e6;
+    const double V = ldexp(1.0, -40);
+    const double V_1 = 0.01;
+    const FcScene scene = scene_of((Setup){
+        .model = FC_CONTACT_CONSTANT, .limit = FC_LIMIT_CONSTANT, .sigma = sigma, .V = V, .V_1 = V_1});
+    const double n = 1048576.0 * 16.0;
+    const double h = n / F;
+    const FcStepResult crept = step(&scene, h, 0.0);
+    CHECK_NEAR(crept.delta, V * h, 1e-14);
+    CHECK_NEAR(crept.impulse, 0.5 * sigma * V * h * h, 1e-12); // the vibration's sine has no mean
+    CHECK(crept.heat == 0.0 && crept.evaluations < 100.0);
+    CHECK_NEAR(crept.work, 0.5 * sigma * V * h * V * h, 1e-9);
+}
+
+// Mindlin's stiffness and mu F_n fall alike: the bound stands still, also where both have all but vanished.
+static void mindlin_with_a_load_has_a_constant_bound(void) {
+    FcScene scene = scene_of(
+        (Setup){.model = FC_CONTACT_MINDLIN, .limit = FC_LIMIT_LOAD, .sigma = 1e7, .V_1 = 1.0, .a_d = 1e-6});
+    CHECK(fc_bound_is_constant(&scene));
+    CHECK_NEAR(fc_bound(&scene, 0.0), F_C / 1e7, 1e-14);
+    scene.drive.d.value = 1.4e-3; // e^-700
+    CHECK_NEAR(fc_bound(&scene, 0.3 / F), F_C / 1e7, 1e-14);
+}
+
+// Without stiffness there is no bound and no force.
+static void without_stiffness_it_follows(void) {
+    FcScene scene = scene_of((Setup){.model = FC_CONTACT_ASPERITIES,
+                                     .limit = FC_LIMIT_CONSTANT,
+                                     .sigma = 1e7,
+                                     .V = 0.5,
+                                     .V_1 = 0.1,
+                                     .a_d = 1e-6});
+    scene.drive.d.value = 0.1; // e^-100000
+    const FcStepResult result = step(&scene, 100.0 / F, 1e-6);
+    CHECK_NEAR(result.delta, 1e-6 + 0.5 * 100.0 / F, 1e-14);
+    CHECK(result.impulse == 0.0 && result.work == 0.0 && result.heat == 0.0);
+    double evaluations = 0.0;
+    CHECK(fc_elastic_plastic_settled(&scene, 1e-6, &evaluations) == 1e-6);
+}
+
+static void too_many_changing_periods_are_refused(void) {
+    const FcScene scene = scene_of((Setup){.model = FC_CONTACT_CONSTANT,
+                                           .limit = FC_LIMIT_CONSTANT,
+                                           .sigma = 1e7,
+                                           .V = 0.5,
+                                           .V_rate = 1e-3,
+                                           .V_1 = 0.1});
+    FcStepResult result = {.delta = 42.0};
+    FcMessage message = {{0}};
+    CHECK(!fc_elastic_plastic_step(&scene, 2e6 / F, 0.0, &result, &message));
+    CHECK(result.delta == 42.0 && strstr(message.text, "vibration periods") != NULL);
+    CHECK(step(&scene, 1000.0 / F, 0.0).evaluations > 1000.0);
+}
+
+int main(void) {
+    at_constant_speed_it_sticks_then_slips();
+    closed_loops();
+    slow_sliding_tends_to_the_limit_less_the_amplitude();
+    brute_force_agrees();
+    many_periods_are_one_after_the_other();
+    creeping_is_an_arithmetic_series();
+    mindlin_with_a_load_has_a_constant_bound();
+    without_stiffness_it_follows();
+    too_many_changing_periods_are_refused();
+    return check_result();
+}
