@@ -16,14 +16,10 @@ from pathlib import Path
 
 from rich.progress import Progress
 
-from frictionlab.command import progress_bar
-from frictionlab.project import ROOT
+from frictionlab.command import finish, progress_bar
+from frictionlab.project import ROOT, UserError
 
 PERCENT = re.compile(r"^\[\s*(\d+)%\] (.*)")
-
-
-class BuildError(Exception):
-    """Configuring or compiling failed; the text says why."""
 
 
 def presets() -> dict[str, Path]:
@@ -62,7 +58,7 @@ def _run(command: list[str], progress: Progress, task: int) -> None:
             elif line.startswith("-- Fetching"):
                 progress.update(task, description="Fetching SUNDIALS")
     if process.returncode:
-        raise BuildError(_reason(lines))
+        raise UserError(_reason(lines))
 
 
 def _reason(lines: list[str]) -> str:
@@ -78,12 +74,7 @@ def _reason(lines: list[str]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(prog="frictionlab.build", description="Build FrictionContact.fmu.")
     parser.add_argument("--preset", choices=list(presets()), default="default", help="build preset")
-    arguments = parser.parse_args()
-    try:
-        fmu = build_fmu(arguments.preset)
-    except BuildError as error:
-        sys.exit(f"error: {error}")
-    print(f"built {fmu.relative_to(ROOT)}")
+    finish(lambda options: print(f"built {build_fmu(options.preset).relative_to(ROOT)}"), parser.parse_args())
 
 
 if __name__ == "__main__":

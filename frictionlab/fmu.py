@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+import zipfile
 from collections.abc import Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from pathlib import Path
@@ -30,12 +31,15 @@ from fmpy.fmi2 import (
     free,
 )
 
+from .project import UserError
+
 Value = float | int | str
+MODEL = "FrictionContact"
 INPUTS = ("V", "d", "E")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
 
-class FrictionError(RuntimeError):
+class FrictionError(UserError):
     """The FMU refused a call; the text is its message."""
 
 
@@ -44,8 +48,15 @@ class FrictionFmu:
 
     def __init__(self, path: str | Path) -> None:
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
-        self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))
+        try:
+            self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))
+        except zipfile.BadZipFile:
+            self.close()
+            raise UserError(f"{path} is not an FMU: not a zip archive") from None
         self.description = read_model_description(str(self.directory), validate=False)
+        if self.description.modelName != MODEL:
+            self.close()
+            raise UserError(f"{path} is another FMU: {self.description.modelName}")
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
         self._library = self._slave()  # keeps the shared library loaded between sessions
 
@@ -201,12 +212,3 @@ def simulate(
             session.step(step)
             rows[k + 1] = session.read(outputs)
     return {"time": start + step * np.arange(count + 1), **dict(zip(outputs, rows.T, strict=True))}
-
-
-def periodic_mean(fmu: FrictionFmu, start_values: Mapping[str, Value], settle: float = 1e6) -> float:
-    """F_t_mean [N] over one period of the vibration, after one step over settle periods."""
-    with fmu.session(start_values) as session:
-        period = 1.0 / session.get("vibration.f")
-        session.step(settle * period)
-        session.step(period)
-        return session.get("F_t_mean")

@@ -18,13 +18,11 @@ from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
 from lxml import etree
 
+from frictionlab.project import UserError
+
 SSV = "{http://ssp-standard.org/SSP1/SystemStructureParameterValues}"
 SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 Signal = tuple[str, str]  # component, variable
-
-
-class MasterError(RuntimeError):
-    """A run stopped; the text says where."""
 
 
 def write_ssp(description: str, fmus: Sequence[Path], output: Path) -> Path:
@@ -65,14 +63,14 @@ def run_libcosim(ssp: Path, step_ns: int, count: int, signals: Sequence[Signal])
         references[component, variable] = slave, names[variable]
         observer.start_time_series(slave, names[variable], CosimVariableType.REAL)
     if not execution.step(count):
-        raise MasterError(f"libcosim stopped at {execution.status().current_time * 1e-9:g} s")
+        raise UserError(f"libcosim stopped at {execution.status().current_time * 1e-9:g} s")
     samples = {
         signal: np.array(observer.time_series_real_samples(slave, reference, 1, count)[2])
         for signal, (slave, reference) in references.items()
     }
     for (component, variable), values in samples.items():
         if len(values) != count:
-            raise MasterError(f"{component}.{variable}: {len(values)} samples of {count}")
+            raise UserError(f"{component}.{variable}: {len(values)} samples of {count}")
     return samples
 
 

@@ -18,11 +18,11 @@ from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
 from frictionlab import style
-from frictionlab.build import BuildError, build_fmu
+from frictionlab.build import build_fmu
 from frictionlab.parameters import E_FULL, SEPARATION
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 from frictionlab.reference.contact import Contact, stiffness
-from frictionlab.systems import MasterError, parameters, run_fmpy, run_libcosim, write_ssp
+from frictionlab.systems import parameters, run_fmpy, run_libcosim, write_ssp
 
 HERE = Path(__file__).resolve().parent
 DURATION = 1.0  # s, two periods of the belt's unsteadiness
@@ -175,7 +175,7 @@ def main() -> None:
             writer.writeheader()
             writer.writerows(rows)
         draw(ssp, rows, options.output / "stick-slip.png")
-    except (BuildError, MasterError) as error:
+    except UserError as error:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")

@@ -17,11 +17,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from frictionlab import style
-from frictionlab.build import BuildError, build_fmu
+from frictionlab.build import build_fmu
 from frictionlab.parameters import E_REDUCED, SEPARATION
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 from frictionlab.reference.contact import Contact, stiffness
-from frictionlab.systems import MasterError, parameters, run_libcosim, write_ssp
+from frictionlab.systems import parameters, run_libcosim, write_ssp
 
 HERE = Path(__file__).resolve().parent
 DURATION = 0.1  # s
@@ -130,7 +130,7 @@ def main() -> None:
     options = parser.parse_args()
     try:
         run_example(build_fmu(), options)
-    except (BuildError, MasterError) as error:
+    except UserError as error:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,20 +15,19 @@ from frictionlab.bench import figures as bench_pictures
 from frictionlab.bench.cases import Case
 from frictionlab.bench.driver import (
     Bench,
-    command_line,
-    guarded,
+    bench_options,
     open_bench,
     renew_docs,
-    shown,
     wide_console,
-    write_csv,
     write_machine,
 )
 from frictionlab.bench.levels import ACCURACIES, OUTPUTS, Graded, best_of_each_kind, cheapest, grade, scenes
-from frictionlab.command import progress_bar
-from frictionlab.fmu import INPUTS, FrictionError, FrictionFmu, Value
+from frictionlab.command import finish, progress_bar, say_written, write_csv
+from frictionlab.fmu import INPUTS, FrictionFmu, Value
+from frictionlab.project import UserError
 from frictionlab.reference.scene import Scene
 from frictionlab.reference.start_values import scene_of, start_values_of
+from frictionlab.values import Variables, number
 
 DESCRIPTION = """\
 Finds what a scene needs: tries every level of the model (Coulomb or Dahl friction, constant or asperity
@@ -46,12 +44,8 @@ COUNT = 4  # communication steps tried where no inputs are given
 LONGEST = 400  # communication steps taken from a file of inputs
 
 
-class AdviceError(ValueError):
-    """What was asked can't be answered; the text says why."""
-
-
 def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
-    parser = command_line("advise", DESCRIPTION)
+    parser = bench_options("advise", DESCRIPTION)
     parser.add_argument("values", nargs="*", metavar="NAME=VALUE", help="start values of the scene")
     parser.add_argument("--accuracy", type=float, default=1e-3, help="largest error over F_C (1e-3)")
     parser.add_argument("--step", type=float, help="communication step, s (a vibration period)")
@@ -63,66 +57,54 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
 
 
 def start_values(words: Sequence[str], fmu: FrictionFmu) -> dict[str, Value]:
-    values: dict[str, Value] = {}
-    for word in words:
-        name, equals, text = word.partition("=")
-        if not equals:
-            raise AdviceError(f"{word}: must be NAME=VALUE")
+    variables = Variables(fmu.description)
+    values = dict(map(variables.assigned, words))
+    for name in values:
         if name not in SCENE_VARIABLES:
-            raise AdviceError(f"{name} does not describe a scene; these do: {', '.join(SCENE_VARIABLES)}")
-        variable = fmu.variables[name]
-        if variable.type == "Real":
-            try:
-                values[name] = float(text)
-            except ValueError:
-                raise AdviceError(f"{name} = {text}: must be a number") from None
-        else:
-            allowed = [item.name for item in variable.declaredType.items]
-            if text not in allowed:
-                raise AdviceError(f"{name} = {text}: must be one of {', '.join(allowed)}")
-            values[name] = text
+            raise UserError(f"{name} does not describe a scene; these do: {', '.join(SCENE_VARIABLES)}")
     return values
 
 
 def read_inputs(path: Path) -> tuple[float, float, dict[str, np.ndarray]]:
     """Start [s], step [s] and samples of the inputs."""
-    with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    names = [name for name in (rows[0] if rows else {}) if name in INPUTS]
-    if not names or "time" not in rows[0] or len(rows) < 2:
-        raise AdviceError(f"{path}: needs a column time, at least one of V, d, E, and at least two rows")
-    columns = {}
-    for name in ("time", *names):
-        values = []
-        for number, row in enumerate(rows[: LONGEST + 1], 2):
-            try:
-                values.append(float(row[name]))
-            except (TypeError, ValueError):
-                raise AdviceError(f"{path}, line {number}: {name} = {row[name]} must be a number") from None
-        columns[name] = np.array(values)
+    rows = list(csv_rows(path))
+    header = rows[0][1] if rows else []
+    names = [name for name in header if name in INPUTS]
+    if not names or "time" not in header or len(rows) < 3:
+        raise UserError(f"{path}: needs a column time, at least one of V, d, E, and at least two rows")
+    rows = rows[1 : LONGEST + 2]
+    for line, cells in rows:
+        if len(cells) != len(header):
+            raise UserError(f"{path}, line {line}: has {len(cells)} cells where the header has {len(header)}")
+    columns = {
+        name: np.array(
+            [number(cells[header.index(name)], f"{path}, line {line}, {name}") for line, cells in rows]
+        )
+        for name in ("time", *names)
+    }
     time = columns.pop("time")
     step = float(time[-1] - time[0]) / (len(time) - 1)
     uneven = np.abs(np.diff(time) - step) > 1e-6 * step
     if step <= 0 or uneven.any():
-        line = int(np.argmax(uneven)) + 3
-        raise AdviceError(f"{path}, line {line}: time must grow in even steps")
+        line = rows[int(np.argmax(uneven)) + 1][0]
+        raise UserError(f"{path}, line {line}: time must grow in even steps")
     return float(time[0]), step, columns
 
 
 def case_of(options: argparse.Namespace, fmu: FrictionFmu) -> Case:
     if not 1e-11 <= options.accuracy <= 1.0:
-        raise AdviceError(f"--accuracy {options.accuracy:g}: must lie between 1e-11 and 1")
+        raise UserError(f"--accuracy {options.accuracy:g}: must lie between 1e-11 and 1")
     values = start_values(options.values, fmu)
     if options.inputs:
         if options.step is not None:
-            raise AdviceError("--step and --inputs: the file's own time steps are used; leave --step out")
+            raise UserError("--step and --inputs: the file's own time steps are used; leave --step out")
         start, step, inputs = read_inputs(options.inputs)
         count = len(next(iter(inputs.values()))) - 1
         case = Case("scene", "scene", values, step, count, (start,), inputs, options.linear)
     else:
         step = 1.0 / scene_of(values).f if options.step is None else options.step
         if not (0.0 < step < float("inf")):
-            raise AdviceError(f"--step {step:g} s: must be a finite number above 0")
+            raise UserError(f"--step {step:g} s: must be a finite number above 0")
         case = Case("scene", "scene", values, step, COUNT)
     with fmu.session({**values, **{name: float(v[0]) for name, v in case.inputs.items()}}):
         return case  # the FMU has checked the values
@@ -144,7 +126,7 @@ def advise(bench: Bench, options: argparse.Namespace, progress: Progress) -> Non
     wide_console().print(table)
     best = cheapest(graded, options.accuracy, output)
     if best is None:
-        raise AdviceError(
+        raise UserError(
             f"no level and method reaches {options.accuracy:g} F_C here; the table says what each does"
         )
     print(text_of(best, case, options, per_step))
@@ -213,20 +195,16 @@ def table_of_scenes(bench: Bench, options: argparse.Namespace, progress: Progres
     for summary in names:
         table.add_row(*map(str, summary.values()))
     wide_console().print(table)
-    print("Written:", ", ".join(map(shown, written)))
+    say_written(written)
+
+
+def run(options: argparse.Namespace) -> None:
+    with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
+        (table_of_scenes if options.scenes else advise)(bench, options, progress)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = arguments(argv)
-
-    def run() -> None:
-        try:
-            with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
-                (table_of_scenes if options.scenes else advise)(bench, options, progress)
-        except AdviceError as error:
-            raise FrictionError(str(error)) from None
-
-    guarded(run)
+    finish(run, arguments(argv))
 
 
 if __name__ == "__main__":

@@ -6,13 +6,12 @@ A job is a scene with its communication steps; a result is its outputs, cost, or
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import os
 import platform
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,9 +23,10 @@ from PIL import Image
 from rich.console import Console
 from rich.progress import Progress
 
-from frictionlab.build import BuildError, build_fmu
-from frictionlab.fmu import FrictionError, FrictionFmu, Value
-from frictionlab.project import ROOT
+from frictionlab.build import build_fmu
+from frictionlab.command import add_output, command_line
+from frictionlab.fmu import FrictionFmu, Value
+from frictionlab.project import ROOT, UserError
 
 REPORT = ROOT / "build" / "report"
 TIME_LIMIT = 120.0  # s of wall time for one job
@@ -73,7 +73,7 @@ class Bench:
         identifier = fmu.description.coSimulation.modelIdentifier
         self.library = fmu.directory / "binaries" / fmpy.platform / f"{identifier}.so"
         if not self.library.is_file():
-            raise BuildError("the FMU holds no .so for this machine: the benchmarks run on Linux only")
+            raise UserError("the FMU holds no .so for this machine: the benchmarks run on Linux only")
 
     def run(self, job: Job, count_allocations: bool = False) -> Outcome:
         """The FMU through its FMI functions."""
@@ -168,7 +168,7 @@ def build_programs(build_dir: Path) -> None:
     command = [sys.executable, "-m", "cmake", "--build", str(build_dir), "--target", "bench"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise BuildError(f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}")
+        raise UserError(f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}")
 
 
 @contextmanager
@@ -181,13 +181,11 @@ def open_bench(build_dir: Path | None = None, progress: Progress | None = None) 
         yield Bench(fmu, build_dir / "bench")
 
 
-def command_line(name: str, description: str) -> argparse.ArgumentParser:
+def bench_options(name: str, description: str) -> argparse.ArgumentParser:
     """The options that all benchmark commands have."""
-    parser = argparse.ArgumentParser(
-        prog=f"scripts/{name}", description=description, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = command_line(name, description)
     parser.add_argument("--quick", action="store_true", help="fewer scenes, methods and repetitions")
-    parser.add_argument("--output", type=Path, default=REPORT, help="folder to write to (build/report)")
+    add_output(parser, REPORT)
     parser.add_argument(
         "--build-dir",
         type=Path,
@@ -213,33 +211,10 @@ def wide_console() -> Console:
     return console if console.is_terminal else Console(width=120)
 
 
-def guarded(run: Callable[[], None]) -> None:
-    """Runs a command; what a user can mend becomes one line."""
-    try:
-        run()
-    except (BuildError, FrictionError) as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error.filename or ''}: {error.strerror or error}")
-
-
-def write_csv(rows: Sequence[Mapping[str, object]], path: Path) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
-    return path
-
-
 def write_machine(path: Path) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(machine(), indent=2) + "\n")
     return path
-
-
-def shown(path: Path) -> str:
-    return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
 
 
 def machine() -> dict[str, str]:

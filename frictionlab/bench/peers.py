@@ -23,8 +23,7 @@ from scipy.integrate import solve_ivp
 
 from frictionlab.bench.cases import Case
 from frictionlab.bench.driver import Bench, Outcome, failed
-from frictionlab.build import BuildError
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 from frictionlab.reference.solution import stiffness
 from frictionlab.reference.start_values import scene_of
 
@@ -129,7 +128,7 @@ class PythonFmu:
         command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(ROOT / "bench" / "python_fmu.py")]
         done = subprocess.run([*command, "-d", str(folder)], capture_output=True, text=True, check=False)
         if done.returncode:
-            raise BuildError(f"PythonFMU can't build bench/python_fmu.py: {done.stderr[-1000:]}")
+            raise UserError(f"PythonFMU can't build bench/python_fmu.py: {done.stderr[-1000:]}")
         self.directory = extract(str(folder / "PythonFriction.fmu"), unzipdir=str(folder / "unzipped"))
         self.description = read_model_description(self.directory, validate=False)
         self.numbers = {v.name: v.valueReference for v in self.description.modelVariables}

@@ -6,7 +6,6 @@ import argparse
 from collections.abc import Sequence
 
 import numpy as np
-from rich.progress import Progress
 from rich.table import Table
 
 from frictionlab.bench import stability_figures as stability_pictures
@@ -19,17 +18,14 @@ from frictionlab.bench.coupling import (
     theoretical_edge,
 )
 from frictionlab.bench.driver import (
-    command_line,
-    guarded,
+    bench_options,
     open_bench,
     renew_docs,
-    shown,
     wide_console,
-    write_csv,
     write_machine,
 )
 from frictionlab.bench.stability_map import EDGES, METHODS, classify, measured_edge
-from frictionlab.command import progress_bar
+from frictionlab.command import finish, progress_bar, say_written, write_csv
 from frictionlab.fmu import FrictionFmu
 
 DESCRIPTION = """\
@@ -66,15 +62,13 @@ def edges(fmu: FrictionFmu) -> list[dict[str, object]]:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = command_line("stability", DESCRIPTION).parse_args(argv)
-    with progress_bar() as progress:
-        guarded(lambda: run(options, progress))
+    finish(run, bench_options("stability", DESCRIPTION).parse_args(argv))
 
 
-def run(options: argparse.Namespace, progress: Progress) -> None:
-    output, quick, build_dir = options.output, options.quick, options.build_dir
+def run(options: argparse.Namespace) -> None:
+    output, quick = options.output, options.quick
     belt = Belt()
-    with open_bench(build_dir, progress) as bench:
+    with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
         task = progress.add_task("Mapping z against method", total=4)
         behaviours = stability_map(bench.fmu, quick)
         progress.advance(task)
@@ -103,11 +97,10 @@ def run(options: argparse.Namespace, progress: Progress) -> None:
     written += stability_pictures.draw_coupled(errors, coupled, reference, belt, output)
     if options.docs:
         written += renew_docs(written)
-    progress.stop()
     console = wide_console()
     console.print(_table("Edges in z = sigma |V| h / F_C", found))
     console.print(_table("Mass on a belt: largest stable communication step [s] in stick", coupled))
-    print("Written:", ", ".join(shown(path) for path in written))
+    say_written(written)
 
 
 def _table(title: str, rows: Sequence[dict[str, object]]) -> Table:

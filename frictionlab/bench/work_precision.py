@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rich.progress import Progress
 from rich.table import Table
 
 from frictionlab.bench import figures as bench_pictures
@@ -17,17 +16,14 @@ from frictionlab.bench.driver import (
     Bench,
     Job,
     Outcome,
-    command_line,
-    guarded,
+    bench_options,
     open_bench,
     renew_docs,
-    shown,
     wide_console,
-    write_csv,
     write_machine,
 )
 from frictionlab.bench.peers import SCIPY, PythonFmu, plain_cvode, python_fmu, scipy_solver
-from frictionlab.command import progress_bar
+from frictionlab.command import finish, progress_bar, say_written, write_csv
 from frictionlab.fmu import Value
 from frictionlab.parameters import PERIOD
 
@@ -283,17 +279,20 @@ def _cheapest(row: dict[str, object], names: Sequence[str]) -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = command_line("work-precision", DESCRIPTION).parse_args(argv)
-    with progress_bar() as progress:
-        guarded(lambda: run(options, progress))
+    options = bench_options("work-precision", DESCRIPTION).parse_args(argv)
+    finish(run, options)
 
 
-def run(options: argparse.Namespace, progress: Progress) -> None:
-    output, quick, build_dir = options.output, options.quick, options.build_dir
+def run(options: argparse.Namespace) -> None:
+    output, quick = options.output, options.quick
     effort = QUICK if quick else FULL
     chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
     output.mkdir(parents=True, exist_ok=True)
-    with open_bench(build_dir, progress) as bench, python_fmu() as python:
+    with (
+        progress_bar() as progress,
+        open_bench(options.build_dir, progress) as bench,
+        python_fmu() as python,
+    ):
         task = progress.add_task("Measuring", total=len(chosen) + 3)
         points: list[Point] = []
         for case in chosen:
@@ -313,14 +312,12 @@ def run(options: argparse.Namespace, progress: Progress) -> None:
         write_csv(periods, output / "periods.csv"),
         write_machine(output / "machine.json"),
     ]
-    progress.update(task, description="Drawing")
     titles = {case.name: case.title for case in chosen}
     written += bench_pictures.work_precision(points, titles, output)
     written += bench_pictures.step_sizes(step_sizes, output)
     written += bench_pictures.periods(periods, output)
     if options.docs:
         written += renew_docs(written)
-    progress.stop()
     wide_console().print(ratio_table(compared))
     one, many = (
         row["cpu_s_per_step"]
@@ -329,7 +326,7 @@ def run(options: argparse.Namespace, progress: Progress) -> None:
     )
     print(f"One step over 1e6 periods costs {many / one:.2f} times one over 1 period.")
     print(f"Held inputs, no vibration: {1e9 * held.cpu:.0f} ns to set 3 inputs, step and get 2 outputs.")
-    print("Written:", ", ".join(shown(path) for path in written))
+    say_written(written)
 
 
 QUICK_CASES = (

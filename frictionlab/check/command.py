@@ -21,18 +21,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from frictionlab.build import BuildError, build_fmu, presets
+from frictionlab.build import build_fmu, presets
 from frictionlab.check.bad_input import write_page
 from frictionlab.check.mutants import check_mutations
 from frictionlab.check.random_mutants import check_random_mutants
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 
 FUZZERS = {"call_sequence": 100, "state_bytes": 420}  # name: longest input in bytes
 LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
-
-
-class CheckError(Exception):
-    """A check found something; the text says what."""
 
 
 class Skipped(Exception):
@@ -57,13 +53,13 @@ CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 4)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
-    """Runs a command in the project's root with its output shown; raises CheckError if it fails."""
+    """Runs a command in the project's root with its output shown; raises UserError if it fails."""
     if environment:
         print(" ".join(f"{name}={value}" for name, value in environment.items()))
     print("$ " + " ".join(command), flush=True)
     done = subprocess.run(command, cwd=ROOT, env={**os.environ, **(environment or {})}, check=False)
     if done.returncode:
-        raise CheckError(f"{Path(command[0]).name} ended with {done.returncode}")
+        raise UserError(f"{Path(command[0]).name} ended with {done.returncode}")
 
 
 def _tool(name: str, package: str) -> str:
@@ -175,14 +171,14 @@ def check_mutants(extent: Extent) -> None:
     """Each capability of modelDescription.xml has a test that fails when its function does nothing."""
     unnoticed = check_mutations()
     if unnoticed:
-        raise CheckError(f"no test notices: {', '.join(unnoticed)}")
+        raise UserError(f"no test notices: {', '.join(unnoticed)}")
 
 
 def check_mutants_random(extent: Extent) -> None:
     """Random single-token mutants of fmu_src, half of them in the solver: a test fails for each."""
     unnoticed = check_random_mutants(extent.mutants, extent.seed)
     if unnoticed:
-        raise CheckError(f"no test notices, and survivors.csv gives no reason: {'; '.join(unnoticed)}")
+        raise UserError(f"no test notices, and survivors.csv gives no reason: {'; '.join(unnoticed)}")
 
 
 def write_bad_input(extent: Extent) -> None:
@@ -233,7 +229,7 @@ def main() -> None:
             result = "nothing found"
         except Skipped as reason:
             result = f"skipped: {reason}"
-        except (CheckError, BuildError) as error:
+        except UserError as error:
             result = f"FAILED: {error}"
             failed.append(name)
         print(f"== {name}: {result} ({time.monotonic() - begin:.0f} s)", flush=True)

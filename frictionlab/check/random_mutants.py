@@ -17,10 +17,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from frictionlab.build import BuildError, build_fmu
+from frictionlab.build import build_fmu
 from frictionlab.check.tokens import Site, line_at, mutated, sites
 from frictionlab.check.workshop import ASSERTED, SHIPPED, Workshop
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 
 SOURCES = ROOT / "fmu_src"
 SURVIVORS = Path(__file__).with_name("survivors.csv")
@@ -139,7 +139,7 @@ def _killer(workshop: Workshop, site: Site | None) -> str | None:
         if workshop.object_code(site.file, SHIPPED) == before:
             return None
         return _unit_killer(workshop.units()) or _pytest_killer(workshop.fmu())
-    except BuildError:
+    except UserError:
         return None
     finally:
         workshop.write(site.file, text, SHIPPED, ASSERTED)

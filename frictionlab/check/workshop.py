@@ -11,8 +11,7 @@ from pathlib import Path
 
 import fmpy
 
-from frictionlab.build import BuildError
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 LIBRARY = "binaries/linux64/FrictionContact.so"
@@ -51,7 +50,7 @@ class Workshop:
             self._compile_all(variant)
 
     def write(self, name: str, text: str, *variants: tuple[str, ...]) -> None:
-        """Gives fmu_src/name this text and compiles what depends on it; BuildError if that can't be done."""
+        """Gives fmu_src/name this text and compiles what depends on it; UserError if that can't be done."""
         path = self.sources / name
         path.write_text(text)
         for variant in variants:
@@ -116,4 +115,4 @@ class Workshop:
         command = [*shlex.split(os.environ.get("CC", "cc")), *arguments]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise BuildError(done.stderr)
+            raise UserError(done.stderr)

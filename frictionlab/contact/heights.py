@@ -19,6 +19,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from frictionlab.parameters import E_FULL
+from frictionlab.project import UserError
 
 Density = Callable[[float], float]
 MODELS = ("exponential", "gaussian", "elastic")
@@ -125,16 +126,12 @@ def load(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponent
     return count * (hertz * elastic + flow * plastic)
 
 
-class GapError(ValueError):
-    """A load that no separation gives; the text names it and its bound."""
-
-
 def separation(surfaces: Surfaces, wanted: float, E: float = E_FULL, model: str = "exponential") -> float:
     """d [m] at which the surfaces carry the wanted load [N]."""
     nearest, farthest = SMALLEST_SEPARATION * surfaces.R_q, 12.0 * surfaces.R_q
     most, least = load(surfaces, nearest, E, model), load(surfaces, farthest, E, model)
     if not least <= wanted <= most:
-        raise GapError(
+        raise UserError(
             f"load = {wanted:g} N is out of reach: these surfaces carry {least:.3g} N at d = 12 R_q "
             f"and {most:.5g} N at d = {SMALLEST_SEPARATION:g} R_q"
         )

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from dataclasses import fields
 
 from rich.console import Console
 from rich.table import Table
 
-from frictionlab.contact.heights import MODELS, GapError, Surfaces, area, load, separation, stiffness
+from frictionlab.command import command_line, finish
+from frictionlab.contact.heights import MODELS, Surfaces, area, load, separation, stiffness
 from frictionlab.parameters import E_FULL
+from frictionlab.project import UserError
 
 DESCRIPTION = """\
 Prints the separation d at which two rough surfaces carry a normal load, or the load that they carry at a
@@ -54,26 +55,21 @@ def positive(text: str) -> float:
     return value
 
 
-def parser() -> argparse.ArgumentParser:
-    made = argparse.ArgumentParser(
-        prog="scripts/gap",
-        description=DESCRIPTION,
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    asked = made.add_mutually_exclusive_group()
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("gap", DESCRIPTION, EPILOG)
+    asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--load", type=positive, nargs="+", metavar="N", help="normal loads [N]")
     asked.add_argument("--separation", type=positive, nargs="+", metavar="M", help="separations d [m]")
-    made.add_argument("--E", type=positive, default=E_FULL, help="combined Young's modulus [Pa], Eq. 4")
-    made.add_argument(
+    parser.add_argument("--E", type=positive, default=E_FULL, help="combined Young's modulus [Pa], Eq. 4")
+    parser.add_argument(
         "--heights", choices=MODELS, default="exponential", help="height density and asperities"
     )
-    made.add_argument(
+    parser.add_argument(
         "--quick", action="store_true", help="accepted like by all commands; nothing here is slow"
     )
     for field in fields(Surfaces):
         name = field.name.rstrip("_")
-        made.add_argument(
+        parser.add_argument(
             f"--{name}",
             dest=field.name,
             type=positive,
@@ -81,13 +77,16 @@ def parser() -> argparse.ArgumentParser:
             metavar="X",
             help=f"{HELP[field.name]}; Table 1: {field.default:g}",
         )
-    return made
+    return parser.parse_args(argv)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = parser().parse_args(argv)
+    finish(run, arguments(argv))
+
+
+def run(options: argparse.Namespace) -> None:
     if options.nu > 0.5:
-        sys.exit(f"error: nu = {options.nu:g} must be at most 0.5")
+        raise UserError(f"nu = {options.nu:g} must be at most 0.5")
     surfaces = Surfaces(**{field.name: getattr(options, field.name) for field in fields(Surfaces)})
     try:
         if options.load:
@@ -95,8 +94,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         else:
             gaps = options.separation or [k * surfaces.R_q / 3.0 for k in range(3, 13)]
         table = as_text(surfaces, gaps, options.E, options.heights)
-    except (GapError, OverflowError) as error:
-        sys.exit(f"error: {error}")
+    except OverflowError as error:
+        raise UserError(str(error)) from None
     print(f"heights: {HEIGHTS[options.heights]}")
     Console().print(table)
     if options.load and len(options.load) == 1:

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.fmu import FrictionFmu
 from frictionlab.fmu_docs.page import FMU_DOCS
+from frictionlab.periodic import periodic_mean
 from frictionlab.project import ROOT
 
 F_C = 55.0  # N

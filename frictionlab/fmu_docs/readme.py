@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,11 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from frictionlab import style
-from frictionlab.build import BuildError, build_fmu
-from frictionlab.fmu import FrictionError, FrictionFmu, simulate
+from frictionlab.build import build_fmu
+from frictionlab.command import add_fmu, add_output, command_line, finish
+from frictionlab.fmu import FrictionFmu, simulate
 from frictionlab.paper import table2
 from frictionlab.paper import table2_figure as table2_picture
 from frictionlab.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
+from frictionlab.periodic import settle
 from frictionlab.project import ROOT
 
 FOLDER = ROOT / "docs" / "pictures"
@@ -125,7 +126,7 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
     phases = 60
     values = np.empty((len(steps), phases, 2))
     with fmu.session(SCENE) as session:
-        session.step(1000 * PERIOD)
+        settle(session, 1000)
         for k, step in enumerate(steps):
             for phase in range(phases):
                 session.step(PERIOD * (np.ceil(session.time / PERIOD) + phase / phases) - session.time)
@@ -163,17 +164,21 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     return sorted(folder / f"{name}.png" for name in ("table2", "overview", "fmpy_example", "step_sizes"))
 
 
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("pictures", __doc__)
+    add_fmu(parser)
+    add_output(parser, FOLDER)
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    with FrictionFmu(options.fmu or build_fmu()) as fmu:
+        for path in draw(fmu, options.output):
+            print(path)
+
+
 def main(argv: Sequence[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(prog="scripts/pictures", description=__doc__)
-    parser.add_argument("--fmu", type=Path, help="draw from this FMU instead of building one")
-    parser.add_argument("--output", type=Path, default=FOLDER, help="folder to write to (docs/pictures)")
-    options = parser.parse_args(argv)
-    try:
-        with FrictionFmu(options.fmu or build_fmu()) as fmu:
-            for path in draw(fmu, options.output):
-                print(path)
-    except (BuildError, FrictionError, OSError) as error:
-        sys.exit(f"error: {error}")
+    finish(run, arguments(argv))
 
 
 if __name__ == "__main__":

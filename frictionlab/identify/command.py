@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,12 +11,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from frictionlab.build import BuildError, build_fmu
-from frictionlab.fmu import FrictionError, FrictionFmu
-from frictionlab.identify.data import DataError, Measurements, read
+from frictionlab.build import build_fmu
+from frictionlab.command import add_fmu, add_output, command_line, finish
+from frictionlab.fmu import FrictionFmu
+from frictionlab.identify.data import Measurements, read
 from frictionlab.identify.fit import Experiment, Fit, Parameter, fit, parameter
 from frictionlab.parameters import E_FULL, SEPARATION
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
+from frictionlab.values import Variables, number
 
 DESCRIPTION = """\
 Fits any parameters of the FMU to measured mean friction forces by least squares, every model value being the
@@ -46,12 +47,7 @@ EXAMPLE = ROOT / "data" / "table2.csv"
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="scripts/identify",
-        description=DESCRIPTION,
-        epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = command_line("identify", DESCRIPTION, EPILOG)
     parser.add_argument("csv", type=Path, nargs="?", default=EXAMPLE, help="measurements (data/table2.csv)")
     parser.add_argument(
         "--fit",
@@ -68,24 +64,23 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help="start value for all rows, in SI units",
     )
     parser.add_argument("--quick", action="store_true", help="fewer starts of the search, no picture")
-    parser.add_argument("--fmu", type=Path, help="use this FMU instead of building one")
-    parser.add_argument("--output", type=Path, default=ROOT / "build", help="folder of the picture (build)")
+    add_fmu(parser)
+    add_output(parser, ROOT / "build")
     return parser.parse_args(argv)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = arguments(argv)
-    try:
-        with FrictionFmu(options.fmu or build_fmu()) as fmu:
-            run(fmu, options)
-    except (BuildError, DataError, FrictionError) as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")
+    finish(run, arguments(argv))
 
 
-def run(fmu: FrictionFmu, options: argparse.Namespace) -> None:
-    constants = dict(_constant(fmu, text) for text in options.set)
+def run(options: argparse.Namespace) -> None:
+    with FrictionFmu(options.fmu or build_fmu()) as fmu:
+        identify(fmu, options)
+
+
+def identify(fmu: FrictionFmu, options: argparse.Namespace) -> None:
+    variables = Variables(fmu.description)
+    constants = dict(variables.assigned(text, "--set") for text in options.set)
     rows = read(options.csv, fmu, constants)
     named = options.fit or ["contact.stiffnessScale", "vibration.phase_d"]
     parameters = [_parameter(fmu, text, constants) for text in named]
@@ -94,48 +89,23 @@ def run(fmu: FrictionFmu, options: argparse.Namespace) -> None:
         result = fit(experiment, samples=64 if options.quick else 256, starts=4 if options.quick else 8)
         show(Console(), fmu, rows, result)
         if not options.quick:
-            from frictionlab.identify import (
-                figures as identify_picture,  # takes a second, which --quick saves
-            )
+            from frictionlab.identify import figures  # takes a second, which --quick saves
 
             options.output.mkdir(parents=True, exist_ok=True)
-            picture = options.output / "identify.png"
-            identify_picture.draw(experiment, result, picture, picture.with_suffix(".svg"))
-            print(f"Written: {picture} and .svg")
-
-
-def _constant(fmu: FrictionFmu, text: str) -> tuple[str, float | str]:
-    name, _, value = text.partition("=")
-    variable = fmu.variables.get(name)
-    if variable is None or variable.causality not in ("input", "parameter"):
-        raise DataError(f"--set {text}: there is no input or parameter {name!r}")
-    if variable.type != "Real":
-        items = [item.name for item in variable.declaredType.items]
-        if value not in items:
-            raise DataError(f"--set {text}: {name} is one of {', '.join(items)}")
-        return name, value
-    return name, _number(f"--set {text}", value)
-
-
-def _number(where: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise DataError(f"{where}: {text!r} is not a finite number")
-    return value
+            path = options.output / "identify.png"
+            figures.draw(experiment, result, path, path.with_suffix(".svg"))
+            print(f"Written: {path} and .svg")
 
 
 def _parameter(fmu: FrictionFmu, text: str, constants: dict[str, float | str]) -> Parameter:
     name, _, value = text.partition("=")
     where = f"--fit {text}"
     if ".." in value:
-        low, high = (_number(where, part) for part in value.split("..", 1))
+        low, high = (number(part, where) for part in value.split("..", 1))
         if not low < high:
-            raise DataError(f"{where}: the range is empty")
+            raise UserError(f"{where}: the range is empty")
         return parameter(fmu, name, None, (low, high), constants)
-    return parameter(fmu, name, _number(where, value) if value else None, None, constants)
+    return parameter(fmu, name, number(value, where) if value else None, None, constants)
 
 
 def _check_names(
@@ -144,11 +114,11 @@ def _check_names(
     names = [p.name for p in parameters]
     for name in names:
         if names.count(name) > 1:
-            raise DataError(f"--fit names {name} twice")
+            raise UserError(f"--fit names {name} twice")
         if name in rows.names:
-            raise DataError(f"{name} is a column of the measurements and can't be fitted too")
+            raise UserError(f"{name} is a column of the measurements and can't be fitted too")
         if name in constants:
-            raise DataError(f"{name} is given by --set and can't be fitted too")
+            raise UserError(f"{name} is given by --set and can't be fitted too")
 
 
 def show(console: Console, fmu: FrictionFmu, rows: Measurements, result: Fit) -> None:

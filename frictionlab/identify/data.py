@@ -6,26 +6,22 @@ mean; F_t_mean.uncertainty its standard uncertainty, if known; load may stand in
 
 from __future__ import annotations
 
-import csv
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from frictionlab.contact.heights import GapError, Surfaces, separation
+from frictionlab.contact.heights import Surfaces, separation
 from frictionlab.fmu import FrictionFmu
 from frictionlab.parameters import E_FULL
+from frictionlab.project import UserError
+from frictionlab.values import csv_rows, number
 
 MEASURED = "F_t_mean"
 UNCERTAINTY = "F_t_mean.uncertainty"
 LOAD = "load"
 HEADING = re.compile(r"\s*([^\[\]]+?)\s*\[\s*([^\[\]]*?)\s*\]\s*")
-
-
-class DataError(ValueError):
-    """Measurements that can't be used; the text names row and column."""
 
 
 @dataclass(frozen=True)
@@ -73,16 +69,16 @@ def accepted(fmu: FrictionFmu) -> list[str]:
 
 def read(path: Path, fmu: FrictionFmu, constants: Mapping[str, Any]) -> Measurements:
     """The rows of a CSV file; constants are start values that all rows share and no column may repeat."""
-    lines = _lines(path)
+    lines = list(csv_rows(path))
     if not lines:
-        raise DataError(f"{path}: no header row")
+        raise UserError(f"{path}: no header row")
     header_line, header = lines[0]
     columns = [_column(fmu, path, header_line, k, cell) for k, cell in enumerate(header)]
     _check_columns(path, columns, constants)
     measured = {column.name: [] for column in columns}
-    for number, (line, cells) in enumerate(lines[1:], 1):
+    for row, (line, cells) in enumerate(lines[1:], 1):
         for column in columns:
-            measured[column.name].append(_value(path, number, line, column, cells, len(header)))
+            measured[column.name].append(_value(path, row, line, column, cells, len(header)))
     names = tuple(name for name in measured if name not in (MEASURED, UNCERTAINTY))
     conditions = [
         {**constants, **{name: measured[name][k] for name in names}} for k in range(len(measured[MEASURED]))
@@ -93,24 +89,11 @@ def read(path: Path, fmu: FrictionFmu, constants: Mapping[str, Any]) -> Measurem
     return Measurements(names, conditions, measured[MEASURED], measured.get(UNCERTAINTY))
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Line number and cells of each line that is neither empty nor a comment."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise DataError(f"{path}: not a text file in UTF-8") from None
-    found = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            found.append((number, next(csv.reader([line]))))
-    return found
-
-
 def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> _Column:
     where = f"{path}, line {line}, column {index + 1}"
     match = HEADING.fullmatch(cell)
     if not match:
-        raise DataError(f"{where}: heading {cell!r} is not of the form 'name [unit]', for example 'V [m/s]'")
+        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]', for example 'V [m/s]'")
     name, unit = match.groups()
     if name in (MEASURED, UNCERTAINTY, LOAD):
         known = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
@@ -118,9 +101,9 @@ def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> _
         known = units(fmu, name)
     else:
         others = ", ".join([MEASURED, UNCERTAINTY, LOAD, *accepted(fmu)])
-        raise DataError(f"{where}: there is no variable {name!r}; columns may be {others}")
+        raise UserError(f"{where}: there is no variable {name!r}; columns may be {others}")
     if unit not in known:
-        raise DataError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
+        raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
     return _Column(index, cell.strip(), name, known[unit])
 
 
@@ -128,32 +111,27 @@ def _check_columns(path: Path, columns: Sequence[_Column], constants: Mapping[st
     names = [column.name for column in columns]
     for name in names:
         if names.count(name) > 1:
-            raise DataError(f"{path}: column {name} is there twice")
+            raise UserError(f"{path}: column {name} is there twice")
         if name in constants:
-            raise DataError(f"{path}: {name} is a column and also set as a constant")
+            raise UserError(f"{path}: {name} is a column and also set as a constant")
     if MEASURED not in names:
-        raise DataError(f"{path}: column '{MEASURED} [N]' is missing")
+        raise UserError(f"{path}: column '{MEASURED} [N]' is missing")
     if "V" not in names and "V" not in constants:
-        raise DataError(f"{path}: column 'V [m/s]' is missing, and no --set V=... gives it")
+        raise UserError(f"{path}: column 'V [m/s]' is missing, and no --set V=... gives it")
     if LOAD in names and ("d" in names or "d" in constants):
-        raise DataError(f"{path}: load and d both give the separation; keep one")
+        raise UserError(f"{path}: load and d both give the separation; keep one")
 
 
 def _value(path: Path, row: int, line: int, column: _Column, cells: Sequence[str], width: int) -> float:
     where = f"{path}, row {row} (line {line}), column '{column.heading}'"
     if len(cells) > width:
-        raise DataError(f"{path}, row {row} (line {line}): {len(cells)} cells, but {width} columns")
+        raise UserError(f"{path}, row {row} (line {line}): {len(cells)} cells, but {width} columns")
     if column.index >= len(cells) or not cells[column.index].strip():
-        raise DataError(f"{where}: no value")
+        raise UserError(f"{where}: no value")
     text = cells[column.index].strip()
-    try:
-        value = float(text)
-    except ValueError:
-        raise DataError(f"{where}: {text!r} is not a number") from None
-    if not math.isfinite(value):
-        raise DataError(f"{where}: {text!r} is not a finite number")
+    value = number(text, where)
     if column.name in (UNCERTAINTY, LOAD) and value <= 0.0:
-        raise DataError(f"{where}: {text} must be positive")
+        raise UserError(f"{where}: {text} must be positive")
     return value * column.factor
 
 
@@ -166,6 +144,6 @@ def _loads_to_separations(path: Path, conditions: list[dict[str, Any]]) -> None:
         }
         try:
             d = separation(Surfaces(**given), condition.pop(LOAD), float(condition.get("E", E_FULL)))
-        except GapError as error:
-            raise DataError(f"{path}, row {row}, column 'load': {error}") from None
+        except UserError as error:
+            raise UserError(f"{path}, row {row}, column 'load': {error}") from None
         condition["d"] = d

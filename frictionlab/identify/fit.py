@@ -17,7 +17,9 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 from frictionlab.fmu import FrictionError, FrictionFmu, Session
-from frictionlab.identify.data import DataError, Measurements, accepted
+from frictionlab.identify.data import Measurements, accepted
+from frictionlab.periodic import settled_mean
+from frictionlab.project import UserError
 
 TOLERANCE = 1e-9  # of the FMU's solver: finite differences need a smooth F_t_mean
 SETTLING_PERIODS = 20_000  # in one communication step, before the one that is measured
@@ -101,7 +103,7 @@ def parameter(
 ) -> Parameter:
     """A parameter by its name in the FMU, with bounds and unit from the model description."""
     if name not in accepted(fmu):
-        raise DataError(f"{name} can't be fitted; these can: {', '.join(accepted(fmu))}")
+        raise UserError(f"{name} can't be fitted; these can: {', '.join(accepted(fmu))}")
     variable = fmu.variables[name]
     low = -math.inf if variable.min is None else float(variable.min)
     high = math.inf if variable.max is None else float(variable.max)
@@ -111,7 +113,7 @@ def parameter(
         search = SEARCH.get(name, (max(nominal / 3.0, low), min(nominal * 3.0, high)))
     for value in (*search, *([] if start is None else [start])):
         if not low <= value <= high:
-            raise DataError(f"{name} = {value:g} {variable.unit} must be from {low:g} to {high:g}")
+            raise UserError(f"{name} = {value:g} {variable.unit} must be from {low:g} to {high:g}")
     return Parameter(name, variable.unit, low, high, search, start)
 
 
@@ -153,10 +155,7 @@ class Experiment:
             else:
                 for name, value in values.items():
                     session.set(name, value)
-            period = 1.0 / session.get("vibration.f")
-            session.step(SETTLING_PERIODS * period)
-            session.step(period)
-            return session.get("F_t_mean")
+            return settled_mean(session, SETTLING_PERIODS)
         except FrictionError as error:
             self.close()
             raise FrictionError(f"row {k + 1}: {error}") from None
@@ -179,7 +178,7 @@ def fit(experiment: Experiment, samples: int = 256, starts: int = 4) -> Fit:
     rows, parameters = experiment.rows, tuple(experiment.parameters)
     if len(rows) < len(parameters):
         names = ", ".join(p.name for p in parameters)
-        raise DataError(f"{len(rows)} rows can't give {len(parameters)} parameters ({names})")
+        raise UserError(f"{len(rows)} rows can't give {len(parameters)} parameters ({names})")
     weight = np.ones(len(rows)) if rows.uncertainty is None else 1.0 / np.array(rows.uncertainty)
     measured = np.array(rows.force)
 

@@ -14,11 +14,11 @@ from frictionlab.paper.figures import (
     PRINTED_MEAN_SIGMA,
     PRINTED_SIGMA,
     STIFFNESSES,
-    periodic_wave,
     start,
 )
 from frictionlab.paper.table2 import mean_force, reduction
 from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2
+from frictionlab.periodic import periodic_waves
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def claims(fmu: FrictionFmu) -> list[Claim]:
 def mean_changes(fmu: FrictionFmu) -> tuple[float, float]:
     """Changes [%] of the time means of A_r and sigma under the paper's oscillation of d, from the FMU."""
     names = ("A_r", "sigma")
-    run = periodic_wave(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), names, periods=1)
+    run = periodic_waves(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), names, periods=1)
     with fmu.session(start(STIFFNESSES[0], PRINTED.V)) as session:
         still = session.read(names)
     means = np.array([np.mean(run[name][:-1]) for name in names])

@@ -14,7 +14,7 @@ import numpy as np
 
 from frictionlab.contact.heights import Surfaces, area, stiffness
 from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Level, Line, Panel, Picture
-from frictionlab.fmu import FrictionFmu, periodic_mean, simulate
+from frictionlab.fmu import FrictionFmu, simulate
 from frictionlab.paper.equations import force_eq_23, force_eq_25
 from frictionlab.parameters import (
     COULOMB_FORCE,
@@ -26,12 +26,12 @@ from frictionlab.parameters import (
     SEPARATION,
     STIFFNESS_PRINTED,
 )
+from frictionlab.periodic import periodic_mean, periodic_waves
 
 A_D = 1.1e-6  # m, amplitude of the separation in the paper's section 3.2
 PRINTED_AREA, PRINTED_MEAN_AREA = 1.397e-7, 1.341e-7  # m2, section 3.2
 PRINTED_SIGMA, PRINTED_MEAN_SIGMA = 2.326e11, 2.07e11  # N/m, section 3.2 (the print has 2.07e-7)
 FROZEN = 5.1  # sigma V t / F_C at which Eq. 23 gives the paper's 48 and 54 N
-SETTLING = 1_000_000  # periods
 
 PAPER, MODEL, MEAN, FORMULA = INK, BLUE, BLUE, ORANGE
 
@@ -65,26 +65,6 @@ def start(stiffness: Stiffness, V: float, V_1: float = 0.0, a_d: float = 0.0) ->
         "vibration.V_1": V_1,
         "vibration.a_d": a_d,
     }
-
-
-def periodic_wave(
-    fmu: FrictionFmu,
-    start_values: dict[str, float],
-    names: tuple[str, ...],
-    periods: int = 2,
-    samples: int = 240,
-) -> dict[str, np.ndarray]:
-    """Outputs over some periods of the periodic state, time from 0."""
-    rows = []
-    step = PERIOD / samples
-    with fmu.session(start_values) as session:
-        session.step(SETTLING * PERIOD)
-        rows.append(session.read(names))
-        for _ in range(periods * samples):
-            session.step(step)
-            rows.append(session.read(names))
-    columns = dict(zip(names, np.array(rows).T, strict=True))
-    return {"time": step * np.arange(len(rows)), **columns}
 
 
 def figure_2(fmu: FrictionFmu) -> Picture:
@@ -263,7 +243,7 @@ def _over_time(
     fmu: FrictionFmu, key: str, number: int, name: str, symbol: str, words: str, printed: float
 ) -> Picture:
     """Over its value at 14 um, since the paper's absolute values are off; printed is the paper's mean so."""
-    run = periodic_wave(fmu, start(STIFFNESSES[0], 0.005, a_d=A_D), (name,))
+    run = periodic_waves(fmu, start(STIFFNESSES[0], 0.005, a_d=A_D), (name,))
     with fmu.session(start(STIFFNESSES[0], 0.005)) as session:
         still = session.get(name)
     mean = float(np.mean(run[name][:-1])) / still
@@ -298,7 +278,7 @@ def figure_12(fmu: FrictionFmu) -> Picture:
             session.step(t)
             of_fmu.append(session.get("F_t"))
     formula = [float(force_eq_23(COULOMB_FORCE, stiffness(surfaces, d), PRINTED.V, t)) for d in gaps]
-    loop = periodic_wave(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D), ("F_t",), periods=1)
+    loop = periodic_waves(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D), ("F_t",), periods=1)
     d_loop = SEPARATION + A_D * np.cos(2.0 * math.pi * FREQUENCY * loop["time"])
     panels = [
         Panel(
@@ -331,10 +311,10 @@ def figure_12(fmu: FrictionFmu) -> Picture:
 
 
 def figure_13(fmu: FrictionFmu) -> Picture:
-    run = periodic_wave(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), ("F_t", "sigma"))
+    run = periodic_waves(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), ("F_t", "sigma"))
     formula = force_eq_23(COULOMB_FORCE, run["sigma"], PRINTED.V, frozen_time())
     middle = 0.5 * float(formula.max() + formula.min())
-    soft = periodic_wave(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D), ("F_t",))
+    soft = periodic_waves(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D), ("F_t",))
     mean = periodic_mean(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D))
     panels = [
         Panel(

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
-from zipfile import BadZipFile
 
 from rich.console import Console
 from rich.table import Table
 
-from frictionlab.build import BuildError, build_fmu
-from frictionlab.command import progress_bar
-from frictionlab.fmu import FrictionError, FrictionFmu
-from frictionlab.paper.table2 import Result, reduction, results, write_csv
+from frictionlab.build import build_fmu
+from frictionlab.command import (
+    add_fmu,
+    add_output,
+    command_line,
+    finish,
+    progress_bar,
+    say_written,
+    write_csv,
+)
+from frictionlab.fmu import FrictionFmu
+from frictionlab.paper.table2 import Result, csv_rows, reduction, results
 from frictionlab.parameters import IDENTIFIED, PRINTED, STIFFNESS_PRINTED, TABLE_2
 from frictionlab.project import ROOT
 
@@ -26,25 +32,15 @@ three informative rows. Writes table2.csv and table2.png to build/."""
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="scripts/run", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = command_line("run", DESCRIPTION)
     parser.add_argument("--quick", action="store_true", help="the table and table2.csv, without the picture")
-    parser.add_argument("--fmu", type=Path, help="simulate this FMU instead of building one")
-    parser.add_argument("--output", type=Path, default=ROOT / "build", help="folder to write to (build)")
+    add_fmu(parser)
+    add_output(parser, ROOT / "build")
     return parser.parse_args(argv)
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = arguments(argv)
-    try:
-        run(options)
-    except (BuildError, FrictionError) as error:
-        sys.exit(f"error: {error}")
-    except BadZipFile:
-        sys.exit(f"error: {options.fmu} is not an FMU: not a zip archive")
-    except OSError as error:
-        sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")
+    finish(run, arguments(argv))
 
 
 def run(options: argparse.Namespace) -> None:
@@ -53,27 +49,25 @@ def run(options: argparse.Namespace) -> None:
         path = options.fmu or build_fmu(progress=progress)
         written = [options.output / "table2.csv"]
         with FrictionFmu(path) as fmu:
-            if fmu.description.modelName != "FrictionContact":
-                sys.exit(f"error: {path} is another FMU: {fmu.description.modelName}")
             task = progress.add_task("Simulating Table 2", total=len(TABLE_2) + 1)
             table = []
             for result in results(fmu):
                 table.append(result)
                 progress.advance(task)
-            write_csv(table, written[0])
+            write_csv(csv_rows(table), written[0])
             if not options.quick:
                 progress.update(task, description="Drawing")
                 written.append(options.output / "table2.png")
                 draw(fmu, table, written[1])
     Console().print(as_text(table))
     print(remarks())
-    print("Written:", ", ".join(shown(name) for name in [path, *written]))
+    say_written([path, *written])
 
 
 def draw(fmu: FrictionFmu, table: Sequence[Result], path: Path) -> None:
-    from frictionlab.paper import table2_figure as table2_picture  # takes a second, which --quick saves
+    from frictionlab.paper import table2_figure  # takes a second, which --quick saves
 
-    table2_picture.draw(fmu, table, path)
+    table2_figure.draw(fmu, table, path)
 
 
 def as_text(table: Sequence[Result]) -> Table:
@@ -119,12 +113,6 @@ identified  Eq. 1-2 with {fitted}, and V {IDENTIFIED.V} m/s, the velocity of Fig
             equations can reach these rows, which does not show that they are right. Rows 4 and 5
             are out of their reach: with V constant and positive the mean is F_C.
 """
-
-
-def shown(path: Path) -> str:
-    """The path as a person in the project's folder would type it."""
-    path = path.resolve()
-    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
 
 
 if __name__ == "__main__":

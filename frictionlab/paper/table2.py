@@ -7,34 +7,22 @@ shows that the equations can reach those rows. It does not show that they are ri
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.fmu import FrictionFmu
 from frictionlab.parameters import (
     E_1_REDUCTION,
     IDENTIFIED,
-    PERIOD,
     PRINTED,
     TABLE_2,
     ParameterSet,
     Row,
     start_values,
 )
-
-SETTLING_PERIODS = 1_000_000  # in one communication step: what stays then is periodic
-
-
-@dataclass(frozen=True)
-class Wave:
-    """F_t over time in the periodic state."""
-
-    time: np.ndarray  # s, from the start of a vibration period
-    force: np.ndarray  # N
+from frictionlab.periodic import periodic_mean, periodic_waves
 
 
 @dataclass(frozen=True)
@@ -54,20 +42,12 @@ def results(fmu: FrictionFmu) -> Iterator[Result]:
 
 def mean_force(fmu: FrictionFmu, row: Row, parameters: ParameterSet) -> float:
     """F_t_mean [N] of one period in the periodic state."""
-    return periodic_mean(fmu, start_values(row, parameters), SETTLING_PERIODS)
+    return periodic_mean(fmu, start_values(row, parameters))
 
 
-def wave(fmu: FrictionFmu, row: Row, parameters: ParameterSet, periods: int = 2, samples: int = 400) -> Wave:
-    """F_t at samples points a period."""
-    step = PERIOD / samples
-    force = []
-    with fmu.session(start_values(row, parameters)) as session:
-        session.step(SETTLING_PERIODS * PERIOD)
-        force.append(session.get("F_t"))
-        for _ in range(periods * samples):
-            session.step(step)
-            force.append(session.get("F_t"))
-    return Wave(step * np.arange(len(force)), np.array(force))
+def waves(fmu: FrictionFmu, row: Row, parameters: ParameterSet, samples: int = 400) -> dict[str, np.ndarray]:
+    """ "time" [s] and F_t [N] over two periods of the periodic state, at samples points a period."""
+    return periodic_waves(fmu, start_values(row, parameters), ("F_t",), samples=samples)
 
 
 def reduction(mean: float, without: float) -> float:
@@ -75,42 +55,24 @@ def reduction(mean: float, without: float) -> float:
     return 100.0 * (without - mean) / without
 
 
-CSV_COLUMNS = (
-    "row",
-    "E_1_reduction_percent",
-    "a_d_um",
-    "V_1_m_per_s",
-    "paper_N",
-    "paper_reduction_percent",
-    "exact_N",
-    "exact_reduction_percent",
-    "identified_N",
-    "identified_reduction_percent",
-)
-
-
-def write_csv(table: Sequence[Result], path: Path) -> None:
-    """One line a row; columns as in CSV_COLUMNS."""
+def csv_rows(table: Sequence[Result]) -> list[dict[str, float]]:
+    """One row of table2.csv for each of the table."""
     first = table[0]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(CSV_COLUMNS)
-        for result in table:
-            row = result.row
-            writer.writerow(
-                [
-                    row.number,
-                    100.0 * E_1_REDUCTION * row.softened,
-                    round(1e6 * row.a_d, 6),
-                    row.V_1,
-                    row.paper_force,
-                    row.paper_reduction,
-                    result.exact,
-                    reduction(result.exact, first.exact),
-                    result.identified,
-                    reduction(result.identified, first.identified),
-                ]
-            )
+    return [
+        {
+            "row": result.row.number,
+            "E_1_reduction_percent": 100.0 * E_1_REDUCTION * result.row.softened,
+            "a_d_um": round(1e6 * result.row.a_d, 6),
+            "V_1_m_per_s": result.row.V_1,
+            "paper_N": result.row.paper_force,
+            "paper_reduction_percent": result.row.paper_reduction,
+            "exact_N": result.exact,
+            "exact_reduction_percent": reduction(result.exact, first.exact),
+            "identified_N": result.identified,
+            "identified_reduction_percent": reduction(result.identified, first.identified),
+        }
+        for result in table
+    ]
 
 
 def conditions(row: Row, separator: str = ", ") -> str:

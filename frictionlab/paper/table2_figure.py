@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from frictionlab import style
 from frictionlab.fmu import FrictionFmu
-from frictionlab.paper.table2 import Result, Wave, conditions, wave
+from frictionlab.paper.table2 import Result, conditions, waves
 from frictionlab.parameters import COULOMB_FORCE, IDENTIFIED, PRINTED
 
 PARAMETERS = {"exact": PRINTED, "identified": IDENTIFIED}
@@ -54,15 +54,15 @@ def draw(fmu: FrictionFmu, table: Sequence[Result], *paths: Path) -> None:
 
 def _draw_waves(axes: Axes, fmu: FrictionFmu, result: Result) -> None:
     for name, parameters in PARAMETERS.items():
-        one: Wave = wave(fmu, result.row, parameters)
-        axes.plot(1e6 * one.time, one.force, color=style.SOURCE[name], lw=1.7)
+        run = waves(fmu, result.row, parameters)
+        axes.plot(1e6 * run["time"], run["F_t"], color=style.SOURCE[name], lw=1.7)
     axes.axhline(result.row.paper_force, color=style.SOURCE["paper"], ls=":", lw=1.8)
     axes.axhline(0.0, color=style.GREY, lw=0.8, zorder=0.5)
     axes.set_title(f"Row {result.row.number}", pad=18)
     axes.text(0.0, 1.025, conditions(result.row), transform=axes.transAxes)
     axes.set_ylim(-70.0, 150.0)
     axes.set_yticks([-55, 0, 55, 110])
-    axes.set_xlim(0.0, 1e6 * one.time[-1])
+    axes.set_xlim(0.0, 1e6 * run["time"][-1])
 
 
 def _draw_means(axes: Axes, table: Sequence[Result]) -> None:

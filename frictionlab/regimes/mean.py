@@ -17,6 +17,7 @@ import numpy as np
 
 from frictionlab.fmu import FrictionFmu, Session
 from frictionlab.parameters import COULOMB_FORCE, E_FULL, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
+from frictionlab.periodic import settled_mean
 
 R_Q = 6e-6  # m, Table 1
 DECAY = 3.0  # lambda, Eq. 17
@@ -74,9 +75,7 @@ class Probe:
         self._calls += 1
         for name, value in regime.start_values().items():
             self._session.set(name, value)
-        self._session.step(SETTLING_PERIODS / FREQUENCY)
-        self._session.step(1.0 / FREQUENCY)
-        return self._session.get("F_t_mean") / COULOMB_FORCE
+        return settled_mean(self._session, SETTLING_PERIODS) / COULOMB_FORCE
 
     def sensitivity(self, regime: Regime, name: str) -> float:
         """d(mean) / d(ln p) over F_C; for phase_d per rad."""

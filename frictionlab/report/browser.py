@@ -15,6 +15,8 @@ from typing import Any
 
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
+from frictionlab.project import UserError
+
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 OPTIONS = (
     "--headless",
@@ -31,10 +33,6 @@ OPTIONS = (
 DEADLINE = 60.0  # s, for anything the browser is asked
 WIDTHS = {"phone": 390, "tablet": 820, "desktop": 1440}
 DRAW_ALL = "boxes.forEach(draw); boxes.every((box) => box.querySelector('.main-svg'))"
-
-
-class BrowserError(RuntimeError):
-    """The browser is missing or does not answer."""
 
 
 @dataclass
@@ -57,7 +55,7 @@ def visit(
     """Opens the page at a width [px]; a screenshot is of the whole page or of its first tall px."""
     browser = find_browser()
     if browser is None:
-        raise BrowserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")
+        raise UserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")
     profile = Path(tempfile.mkdtemp(prefix="report-browser-"))
     process = subprocess.Popen(
         [browser, *OPTIONS, f"--user-data-dir={profile}", "about:blank"],
@@ -83,7 +81,7 @@ def _address(file: Path, process: subprocess.Popen) -> str:
         if len(lines) >= 2:
             return f"ws://127.0.0.1:{lines[0]}{lines[1]}"
         time.sleep(0.05)
-    raise BrowserError("Chromium does not start")
+    raise UserError("Chromium does not start")
 
 
 class _Tab:
@@ -103,7 +101,7 @@ class _Tab:
             answer = await self._receive()
             if answer.get("id") == self.number:
                 if "error" in answer:
-                    raise BrowserError(f"{method}: {answer['error']['message']}")
+                    raise UserError(f"{method}: {answer['error']['message']}")
                 return answer["result"]
 
     async def wait_for(self, event: str) -> None:
@@ -113,13 +111,13 @@ class _Tab:
     async def evaluate(self, script: str) -> Any:
         result = await self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
-            raise BrowserError(result["exceptionDetails"]["exception"].get("description", script))
+            raise UserError(result["exceptionDetails"]["exception"].get("description", script))
         return result["result"].get("value")
 
     async def _receive(self) -> dict[str, Any]:
         text = await asyncio.wait_for(self.socket.read_message(), DEADLINE)
         if text is None:
-            raise BrowserError("Chromium closed the connection")
+            raise UserError("Chromium closed the connection")
         message = json.loads(text)
         if "method" in message:
             self.events.append(message)

@@ -5,23 +5,22 @@ from __future__ import annotations
 import argparse
 import platform
 import shutil
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
 from rich.progress import Progress
 
-from frictionlab.build import BuildError, build_fmu
-from frictionlab.command import progress_bar
+from frictionlab.build import build_fmu
+from frictionlab.command import add_fmu, add_output, command_line, finish, progress_bar
 from frictionlab.contact import figures as contact_figures
 from frictionlab.figure import Picture
-from frictionlab.fmu import FrictionError, FrictionFmu
+from frictionlab.fmu import FrictionFmu
 from frictionlab.identify import recovery
 from frictionlab.paper import figures as paper_figures
 from frictionlab.paper.claims import claims
 from frictionlab.paper.table2 import results
-from frictionlab.project import ROOT
+from frictionlab.project import ROOT, UserError
 from frictionlab.regimes import figures as regime_figures
 from frictionlab.regimes.mean import Probe
 from frictionlab.report import browser, images, text
@@ -38,14 +37,10 @@ IN_DOCS = ("fig-04", "fig-13", "heights", "mean", "regimes", "reduction", "sensi
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="scripts/report", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = command_line("report", DESCRIPTION)
     parser.add_argument("--quick", action="store_true", help="coarser maps, the page without the image files")
-    parser.add_argument("--fmu", type=Path, help="use this FMU instead of building one")
-    parser.add_argument(
-        "--output", type=Path, default=ROOT / "build" / "report", help="folder to write to (build/report)"
-    )
+    add_fmu(parser)
+    add_output(parser, ROOT / "build" / "report")
     parser.add_argument(
         "--docs",
         action="store_true",
@@ -60,13 +55,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = arguments(argv)
-    try:
-        run(options)
-    except (BuildError, FrictionError, browser.BrowserError) as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")
+    finish(run, arguments(argv))
 
 
 def run(options: argparse.Namespace) -> None:
@@ -162,7 +151,7 @@ def _screenshots(index: Path, progress: Progress) -> list[Path]:
                 problems.append(f"{name}, {theme}: {seen.scroll_width} px wide, the window has {width}")
             progress.advance(task)
     if problems:
-        raise browser.BrowserError("; ".join(problems))
+        raise UserError("; ".join(problems))
     return written
 
 

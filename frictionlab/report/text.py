@@ -10,7 +10,7 @@ from markdown_it import MarkdownIt
 from frictionlab.figure import BLUE, INK, ORANGE, Level, Line, Panel, Picture
 from frictionlab.fmu import FrictionFmu
 from frictionlab.paper.claims import Claim
-from frictionlab.paper.table2 import Result, conditions, reduction, wave
+from frictionlab.paper.table2 import Result, conditions, reduction, waves
 from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2
 from frictionlab.project import ROOT
 from frictionlab.report.page import Section, Table
@@ -168,8 +168,8 @@ def table_2_waves(fmu: FrictionFmu) -> Picture:
     for row in TABLE_2:
         items = []
         for parameters, colour, label in ((PRINTED, BLUE, "exact"), (IDENTIFIED, ORANGE, "identified")):
-            one = wave(fmu, row, parameters, samples=160)
-            items.append(Line(1e6 * one.time, one.force, label, colour))
+            run = waves(fmu, row, parameters, samples=160)
+            items.append(Line(1e6 * run["time"], run["F_t"], label, colour))
         items.append(Level(row.paper_force, "paper's mean", INK, "dot"))
         title = f"Row {row.number}: " + conditions(row).replace("$", "")
         limits = (0.0, 150.0) if row.number == 4 else (-62.0, 62.0)

@@ -22,7 +22,6 @@ from distributed.comm import CommClosedError
 from distributed.scheduler import KilledWorker
 
 from frictionlab.project import UserError
-from frictionlab.sweep.plan import PlanError
 from frictionlab.sweep.scenario import RESULTS, Results
 from frictionlab.sweep.spans import Chunks, Span
 
@@ -49,10 +48,10 @@ def connected(scheduler: str | None, workers: int, folder: Path) -> Iterator[Cli
         client = Client(scheduler, timeout=CONNECT_SECONDS)
     except (OSError, ValueError) as error:
         reason = str(error).splitlines()[0] if isinstance(error, ValueError) else "nothing answers there"
-        raise PlanError(f"--scheduler {scheduler}: {reason}") from None
+        raise UserError(f"--scheduler {scheduler}: {reason}") from None
     with client:
         if not client.scheduler_info(n_workers=-1)["workers"]:
-            raise PlanError(f"--scheduler {scheduler}: has no workers")
+            raise UserError(f"--scheduler {scheduler}: has no workers")
         yield client
 
 
@@ -73,7 +72,7 @@ def _local(workers: int, folder: Path) -> Iterator[Client]:
     try:
         cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
     except (OSError, RuntimeError) as error:
-        raise PlanError(
+        raise UserError(
             "worker processes here can't be reached through the loopback interface: "
             f"{error.__cause__ or error}"
         ) from None

@@ -16,22 +16,25 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
+from fmpy.model_description import ModelDescription
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 
 from frictionlab.batch.many import built_runner
 from frictionlab.batch.prepare import MOST_SAMPLES
-from frictionlab.build import BuildError, build_fmu
+from frictionlab.batch.unpacked import description_and_library
+from frictionlab.build import build_fmu
 from frictionlab.project import ROOT, UserError
 from frictionlab.sweep import cluster, scenario
 from frictionlab.sweep import plan as sweep_plan
 from frictionlab.sweep.cluster import ClusterError
-from frictionlab.sweep.plan import PlanError, Scenarios, Variables
+from frictionlab.sweep.plan import Scenarios
 from frictionlab.sweep.scenario import RESULTS, Results
 from frictionlab.sweep.shipping import shipped
 from frictionlab.sweep.spans import MOST, Chunks, missing
 from frictionlab.sweep.store import Store, opened
+from frictionlab.values import Variables
 
 DESCRIPTION = """\
 Runs the FMU to its periodic state in many scenarios and writes one row for each to results.parquet.
@@ -98,14 +101,12 @@ def scenarios_of(options: argparse.Namespace, fmu: Path) -> Scenarios:
         value = getattr(options, name)
         if value is not None and not least <= value <= most:
             bound = f"at least {least}" if not value >= least else f"at most {most}"
-            raise PlanError(f"--{name} {value}: must be {bound}")
+            raise UserError(f"--{name} {value}: must be {bound}")
     if not options.csv and not options.vary:
-        raise PlanError("nothing to sweep: give --vary NAME=VALUES or --csv FILE (see --help)")
+        raise UserError("nothing to sweep: give --vary NAME=VALUES or --csv FILE (see --help)")
     if options.csv and (options.vary or options.random):
-        raise PlanError("--csv does not go with --vary or --random: the file names all scenarios")
-    if not fmu.is_file():
-        raise PlanError(f"--fmu {fmu}: is not there")
-    variables = Variables(fmu)
+        raise UserError("--csv does not go with --vary or --random: the file names all scenarios")
+    variables = Variables(described(fmu))
     if options.csv:
         scenarios = sweep_plan.from_csv(variables, options.csv)
     elif options.random:
@@ -113,6 +114,14 @@ def scenarios_of(options: argparse.Namespace, fmu: Path) -> Scenarios:
     else:
         scenarios = sweep_plan.grid(variables, options.vary)
     return sweep_plan.with_fixed(variables, scenarios, options.set)
+
+
+def described(fmu: Path) -> ModelDescription:
+    try:
+        content = fmu.read_bytes()
+    except OSError as error:
+        raise UserError(f"--fmu {fmu}: {error.strerror}") from None
+    return description_and_library(content, f"--fmu {fmu}")[0]
 
 
 def sweep(options: argparse.Namespace, console: Console) -> str:
@@ -223,7 +232,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         print(sweep(options, console))
     except ClusterError as error:
         sys.exit(f"error: {error}; {again}")
-    except (BuildError, UserError) as error:
+    except UserError as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
         sys.exit(f"stopped; {again}")

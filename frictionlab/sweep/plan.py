@@ -6,8 +6,6 @@ enumeration's values are the names of its items. Rows of a grid are made where t
 
 from __future__ import annotations
 
-import csv
-import difflib
 import hashlib
 import math
 from array import array
@@ -16,70 +14,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from fmpy.model_description import ScalarVariable
 
-from frictionlab.batch.unpacked import description_and_library
 from frictionlab.project import UserError
+from frictionlab.values import Value, Variables, assignment, csv_rows, items_of, number, shown
 
-Value = float | str
 MOST_SCENARIOS = 10_000_000
-SHOWN = 40  # characters of a wrong value in a message
-
-
-class PlanError(UserError):
-    """The sweep that was asked for can't be run; the text is one line that says why."""
-
-
-def shown(text: str) -> str:
-    return repr(text if len(text) <= SHOWN else text[:SHOWN] + "...")
-
-
-class Variables:
-    """The FMU's variables that a scenario can set."""
-
-    def __init__(self, fmu: Path) -> None:
-        try:
-            content = fmu.read_bytes()
-        except OSError as error:
-            raise PlanError(f"--fmu {fmu}: {error.strerror}") from None
-        description, _ = description_and_library(content, f"--fmu {fmu}")
-        self._all = {variable.name: variable for variable in description.modelVariables}
-        self.settable = [v.name for v in description.modelVariables if v.causality in ("input", "parameter")]
-
-    def find(self, name: str, where: str) -> ScalarVariable:
-        if name in self.settable:
-            return self._all[name]
-        if name in self._all:
-            raise PlanError(f"{where}: {name} is an {self._all[name].causality} of the FMU and can't be set")
-        close = difflib.get_close_matches(name[:SHOWN], self.settable, 1, 0.5)
-        by_case = [known for known in self.settable if known.lower() == name.lower()]
-        hint = f"; did you mean {(by_case or close)[0]}?" if by_case or close else ""
-        named = name if len(name) <= SHOWN else shown(name)
-        raise PlanError(f"{where}: {named or 'a variable without a name'} is no variable of the FMU{hint}")
-
-    def items(self, name: str) -> dict[str, float] | None:
-        """Names and numbers of the items of an enumeration."""
-        variable = self._all[name]
-        if variable.type != "Enumeration":
-            return None
-        return {item.name: float(item.value) for item in variable.declaredType.items}
-
-    def value(self, name: str, text: str, where: str) -> Value:
-        """The value that a text stands for, as the named variable takes it. Bounds are left to the FMU."""
-        self.find(name, where)
-        items = self.items(name)
-        if items is None:
-            return number(text, where)
-        if text not in items:
-            raise PlanError(f"{where}: {shown(text)} is not one of {', '.join(items)}")
-        return text
-
-    def column(
-        self, name: str, values: Sequence[Value], repeat: int = 1, picks: np.ndarray | None = None
-    ) -> Column:
-        items = self.items(name)
-        numbers = np.array(values if items is None else [items[value] for value in values], dtype=float)
-        return Column(numbers, None if items is None else np.array(values, dtype=object), repeat, picks)
 
 
 @dataclass(frozen=True)
@@ -114,6 +53,18 @@ class Column:
         yield b"" if self.picks is None else self.picks.tobytes()
 
 
+def _column(
+    variables: Variables,
+    name: str,
+    values: Sequence[Value],
+    repeat: int = 1,
+    picks: np.ndarray | None = None,
+) -> Column:
+    items = items_of(variables.find(name, name))
+    numbers = np.array(values if items is None else [items[value] for value in values], dtype=float)
+    return Column(numbers, None if items is None else np.array(values, dtype=object), repeat, picks)
+
+
 @dataclass(frozen=True)
 class Scenarios:
     """So many scenarios of named columns."""
@@ -141,31 +92,14 @@ class Scenarios:
         return state.hexdigest()
 
 
-def number(text: str, where: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        raise PlanError(f"{where}: {shown(text)} is not a number") from None
-    if not math.isfinite(value):
-        raise PlanError(f"{where}: {shown(text)} is not a finite number")
-    return value
-
-
-def assignment(text: str, option: str) -> tuple[str, str]:
-    name, equals, rest = text.partition("=")
-    if not equals or not rest:
-        raise PlanError(f"{option} {text}: is not of the form NAME=VALUE")
-    return name.strip(), rest.strip()
-
-
 def _bounds(parts: Sequence[str], where: str) -> tuple[float, float, bool]:
     """Lower and upper end of a range, and whether it is logarithmic."""
     low, high = number(parts[0], where), number(parts[1], where)
     logarithmic = parts[-1] == "log"
     if high < low:
-        raise PlanError(f"{where}: the range ends at {high:g}, before it begins at {low:g}")
+        raise UserError(f"{where}: the range ends at {high:g}, before it begins at {low:g}")
     if logarithmic and low <= 0.0:
-        raise PlanError(f"{where}: a logarithmic range must begin above 0, not at {low:g}")
+        raise UserError(f"{where}: a logarithmic range must begin above 0, not at {low:g}")
     return low, high, logarithmic
 
 
@@ -178,11 +112,11 @@ def grid_values(variables: Variables, text: str) -> tuple[str, list[Value]]:
     if len(parts) == 1:
         return name, [variables.value(name, item.strip(), where) for item in rest.split(",")]
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise PlanError(f"{where}: {shown(rest)} is neither low:high:count nor low:high:count:log nor a,b,c")
+        raise UserError(f"{where}: {shown(rest)} is neither low:high:count nor low:high:count:log nor a,b,c")
     low, high, logarithmic = _bounds(parts, where)
     is_whole = parts[2].isascii() and parts[2].isdecimal()
     if not is_whole or len(parts[2]) > 9 or not 1 <= int(parts[2]) <= MOST_SCENARIOS:
-        raise PlanError(
+        raise UserError(
             f"{where}: the count {shown(parts[2])} is not a whole number from 1 to {MOST_SCENARIOS}"
         )
     spaced = np.geomspace if logarithmic else np.linspace
@@ -194,11 +128,11 @@ def grid(variables: Variables, texts: Iterable[str]) -> Scenarios:
     axes = dict(_once(grid_values(variables, text) for text in texts))
     count = math.prod(len(values) for values in axes.values())
     if count > MOST_SCENARIOS:
-        raise PlanError(f"the grid has {count} scenarios; the most that a sweep runs is {MOST_SCENARIOS}")
+        raise UserError(f"the grid has {count} scenarios; the most that a sweep runs is {MOST_SCENARIOS}")
     columns, repeat = {}, count
     for name, values in axes.items():
         repeat //= len(values)
-        columns[name] = variables.column(name, values, repeat)
+        columns[name] = _column(variables, name, values, repeat)
     return Scenarios(count, columns)
 
 
@@ -206,7 +140,7 @@ def _once(columns: Iterable[tuple[str, object]]) -> Iterable[tuple[str, object]]
     seen = set()
     for name, values in columns:
         if name in seen:
-            raise PlanError(f"--vary {name}: is given twice")
+            raise UserError(f"--vary {name}: is given twice")
         seen.add(name)
         yield name, values
 
@@ -214,7 +148,7 @@ def _once(columns: Iterable[tuple[str, object]]) -> Iterable[tuple[str, object]]
 def random(variables: Variables, texts: Iterable[str], count: int, seed: int) -> Scenarios:
     """count rows, each value drawn by itself from "NAME=low:high", "NAME=low:high:log" or "NAME=a,b,c"."""
     if count > MOST_SCENARIOS:
-        raise PlanError(f"--random {count}: the most that a sweep runs is {MOST_SCENARIOS}")
+        raise UserError(f"--random {count}: the most that a sweep runs is {MOST_SCENARIOS}")
     generator = np.random.default_rng(seed)
 
     def column(text: str) -> tuple[str, Column]:
@@ -225,9 +159,9 @@ def random(variables: Variables, texts: Iterable[str], count: int, seed: int) ->
         if len(parts) == 1:
             values = [variables.value(name, item.strip(), where) for item in rest.split(",")]
             picks = generator.integers(0, len(values), count)
-            return name, variables.column(name, values, picks=picks.astype(np.int32))
+            return name, _column(variables, name, values, picks=picks.astype(np.int32))
         if len(parts) > 3 or (len(parts) == 3 and parts[2] != "log"):
-            raise PlanError(
+            raise UserError(
                 f"{where}: {shown(rest)} is neither low:high nor low:high:log nor a,b,c (with --random)"
             )
         low, high, logarithmic = _bounds(parts, where)
@@ -243,64 +177,51 @@ def from_csv(variables: Variables, path: Path) -> Scenarios:
 
     Errors name row (the header is 1) and column.
     """
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            return _read_rows(variables, str(path), csv.reader(file, strict=True))
-    except OSError as error:
-        raise PlanError(f"{path}: {error.strerror}") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise PlanError(f"{path}: is not a CSV file: {error}") from None
-
-
-def _read_rows(variables: Variables, path: str, rows: Iterable[list[str]]) -> Scenarios:
-    numbered = enumerate(rows, 1)
-    _, header = next(numbered, (1, []))
-    if not header:
-        raise PlanError(f"{path}: is empty; row 1 must name the variables")
-    names = [name.strip() for name in header]
+    rows = csv_rows(path)
+    _, names = next(rows, (1, []))
+    if not names:
+        raise UserError(f"{path}: is empty; row 1 must name the variables")
     for place, name in enumerate(names, 1):
         variables.find(name, f"{path}: row 1, column {place}")
         if name in names[: place - 1]:
-            raise PlanError(f"{path}: row 1, column {place}: {name} is there twice")
-    items = [variables.items(name) for name in names]
+            raise UserError(f"{path}: row 1, column {place}: {name} is there twice")
+    items = [items_of(variables.find(name, str(path))) for name in names]
     columns = [array("d") for _ in names]
-    for row, cells in numbered:
-        if not cells:
-            continue
+    for row, cells in rows:
         if len(cells) != len(names):
-            raise PlanError(f"{path}: row {row}: has {len(cells)} cells where the header has {len(names)}")
+            raise UserError(f"{path}: row {row}: has {len(cells)} cells where the header has {len(names)}")
         for name, cell, known, column in zip(names, cells, items, columns, strict=True):
-            value = variables.value(name, cell.strip(), f"{path}: row {row}, column {name}")
+            value = variables.value(name, cell, f"{path}: row {row}, column {name}")
             column.append(value if known is None else known[value])
         if len(columns[0]) > MOST_SCENARIOS:
-            raise PlanError(f"{path}: has more than {MOST_SCENARIOS} rows, the most that a sweep runs")
+            raise UserError(f"{path}: has more than {MOST_SCENARIOS} rows, the most that a sweep runs")
     if not columns[0]:
-        raise PlanError(f"{path}: has no row below the header")
+        raise UserError(f"{path}: has no row below the header")
     return Scenarios(
         len(columns[0]),
         {
-            name: _column_of(variables, name, np.array(column), known)
+            name: _column_of_numbers(variables, name, np.array(column), known)
             for name, column, known in zip(names, columns, items, strict=True)
         },
     )
 
 
-def _column_of(
+def _column_of_numbers(
     variables: Variables, name: str, numbers: np.ndarray, items: Mapping[str, float] | None
 ) -> Column:
     if items is None:
         return Column(numbers)
     by_number = {value: item for item, value in items.items()}
     used, picks = np.unique(numbers, return_inverse=True)
-    return variables.column(name, [by_number[value] for value in used], picks=picks.astype(np.int32))
+    return _column(variables, name, [by_number[value] for value in used], picks=picks.astype(np.int32))
 
 
 def with_fixed(variables: Variables, scenarios: Scenarios, texts: Iterable[str]) -> Scenarios:
     """The scenarios with columns for "NAME=VALUE", the same in all rows."""
     columns = dict(scenarios.columns)
     for text in texts:
-        name, rest = assignment(text, "--set")
+        name, value = variables.assigned(text, "--set")
         if name in columns:
-            raise PlanError(f"--set {name}: is given twice")
-        columns[name] = variables.column(name, [variables.value(name, rest, f"--set {name}")])
+            raise UserError(f"--set {name}: is given twice")
+        columns[name] = _column(variables, name, [value])
     return Scenarios(scenarios.count, columns)

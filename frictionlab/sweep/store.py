@@ -25,9 +25,10 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from pyarrow import csv
 
-from frictionlab.sweep.plan import PlanError, Value
+from frictionlab.project import UserError
 from frictionlab.sweep.scenario import Results
 from frictionlab.sweep.spans import Span
+from frictionlab.values import Value
 
 GROUP = 100_000  # rows of a group in the joined files, at least
 
@@ -44,15 +45,15 @@ class Store:
             (folder / "parts").mkdir(parents=True, exist_ok=True)
             self._lock = (folder / "lock").open("w")
         except OSError as error:
-            raise PlanError(f"{folder}: can't be written to: {error.strerror}") from None
+            raise UserError(f"{folder}: can't be written to: {error.strerror}") from None
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self._lock.close()
-            raise PlanError(f"{folder}: another sweep is writing there") from None
+            raise UserError(f"{folder}: another sweep is writing there") from None
         try:
             self._take_up(fresh)
-        except PlanError:
+        except UserError:
             self.close()
             raise
 
@@ -66,7 +67,7 @@ class Store:
         shutil.rmtree(self.work, ignore_errors=True)
         if (self.folder / "sweep.json").exists():
             if self._begun_digest() != self.plan["digest"]:
-                raise PlanError(
+                raise UserError(
                     f"{self.folder}: holds another sweep (other scenarios, sampling or FMU); "
                     "choose another --output, or --fresh to discard it"
                 )
@@ -81,7 +82,7 @@ class Store:
             begun = json.loads(record.read_text())
             return begun["digest"]
         except (OSError, ValueError, KeyError, TypeError):
-            raise PlanError(
+            raise UserError(
                 f"{record}: is damaged; choose another --output, or --fresh to discard what the folder holds"
             ) from None
 
@@ -106,7 +107,7 @@ class Store:
         except OSError as error:
             with contextlib.suppress(OSError):
                 unfinished.unlink()
-            raise PlanError(f"{self.folder / name}: can't be written: {error.strerror or error}") from None
+            raise UserError(f"{self.folder / name}: can't be written: {error.strerror or error}") from None
 
     def is_whole(self) -> bool:
         return (self.folder / "results.parquet").exists()

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from scipy.special import i0
 
 from frictionlab.contact.heights import Surfaces, area, closed_form_area, load, stiffness
-from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.fmu import FrictionFmu
 from frictionlab.identify.command import EXAMPLE
 from frictionlab.identify.data import read
 from frictionlab.identify.fit import Experiment, fit, parameter
@@ -39,6 +39,7 @@ from frictionlab.parameters import (
     TABLE_2,
     start_values,
 )
+from frictionlab.periodic import periodic_mean
 from frictionlab.regimes.mean import coulomb_limit, soft_limit
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")

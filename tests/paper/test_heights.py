@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from frictionlab.contact.heights import (
-    GapError,
     Surfaces,
     area,
     closed_form_area,
@@ -21,6 +20,7 @@ from frictionlab.contact.heights import (
 )
 from frictionlab.fmu import FrictionFmu
 from frictionlab.parameters import E_FULL, E_REDUCED
+from frictionlab.project import UserError
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 TABLE_1 = Surfaces()
@@ -96,5 +96,5 @@ def test_separation_inverts_load(model: str, wanted: float) -> None:
 
 
 def test_impossible_load_names_its_bound() -> None:
-    with pytest.raises(GapError, match=r"load = 1e\+12 N is out of reach.*3\.41"):
+    with pytest.raises(UserError, match=r"load = 1e\+12 N is out of reach.*3\.41"):
         separation(TABLE_1, 1e12)

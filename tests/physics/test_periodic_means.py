@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.fmu import FrictionFmu
 from frictionlab.parameters import IDENTIFIED, IDENTIFIED_ABSOLUTE, PRINTED, TABLE_2, Row, start_values
+from frictionlab.periodic import periodic_mean
 from frictionlab.reference import constant as reference_constant
 from frictionlab.reference import solution as reference
 from frictionlab.reference.solution import MP
@@ -54,7 +55,7 @@ def test_soft_limit(fmu: FrictionFmu, zeta: float) -> None:
     turn = MP.acos(-MP.mpf(zeta))
     mean_speed = MP.quad(lambda x: abs(zeta + MP.cos(x)), [0, turn, 2 * MP.pi - turn, 2 * MP.pi])
     expected = float(zeta * 2 * MP.pi / mean_speed)
-    mean = periodic_mean(fmu, constant_stiffness(1e-5, zeta), settle=1e8)
+    mean = periodic_mean(fmu, constant_stiffness(1e-5, zeta), settling=1e8)
     assert mean / 55.0 == pytest.approx(expected, abs=1e-8)
 
 

@@ -11,10 +11,11 @@ from scipy import stats
 
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify import command as identify
-from frictionlab.identify.data import DataError, Measurements, read
+from frictionlab.identify.data import Measurements, read
 from frictionlab.identify.fit import Experiment, Fit, fit, parameter
 from frictionlab.identify.recovery import NOISE, TRUTH, fits, held, measurements, true_forces
 from frictionlab.parameters import STIFFNESS_PRINTED
+from frictionlab.project import UserError
 
 SEEDS = 100
 
@@ -150,7 +151,7 @@ def test_bad_data_are_refused_by_row_and_column(
 ) -> None:
     path = tmp_path / "bad.csv"
     path.write_text(text)
-    with pytest.raises(DataError, match=message):
+    with pytest.raises(UserError, match=message):
         read(path, fmu, {})
 
 
@@ -171,7 +172,10 @@ def test_units_and_loads_are_converted(fmu: FrictionFmu, tmp_path: Path) -> None
         (["--fit", "sigma"], "sigma can't be fitted; these can: V, d, E, F_C"),
         (["--fit", "F_C=-3"], r"F_C = -3 N must be from 1e-12"),
         (["--fit", "F_C=3..2"], "the range is empty"),
-        (["--fit", "F_C", "--set", "friction.model=Stribeck"], "friction.model is one of Dahl, Coulomb"),
+        (
+            ["--fit", "F_C", "--set", "friction.model=Stribeck"],
+            "friction.model: 'Stribeck' is not one of Dahl, Coulomb",
+        ),
         (["--fit", "F_C", "--set", "F_C=50"], "F_C is given by --set"),
         (["--fit", "F_C", "--set", "vibration.a_d=20e-6"], "row 1: .*"),
     ],

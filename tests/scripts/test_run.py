@@ -10,7 +10,6 @@ from pathlib import Path
 import matplotlib.image
 import pytest
 
-from frictionlab.paper.table2 import CSV_COLUMNS
 from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
 from frictionlab.reference import solution as reference
 from frictionlab.reference.start_values import scene_of
@@ -47,7 +46,10 @@ def read_table(folder: Path) -> list[dict[str, float]]:
 def test_csv_holds_the_means_of_the_reference(written: tuple[Path, str]) -> None:
     table = read_table(written[0])
     assert [line["row"] for line in table] == [1, 2, 3, 4, 5, 6]
-    assert tuple(table[0]) == CSV_COLUMNS
+    assert list(table[0]) == [
+        "row", "E_1_reduction_percent", "a_d_um", "V_1_m_per_s", "paper_N", "paper_reduction_percent",
+        "exact_N", "exact_reduction_percent", "identified_N", "identified_reduction_percent",
+    ]  # fmt: skip
     for line, row in zip(table, TABLE_2, strict=True):
         for name, parameters in {"exact": PRINTED, "identified": IDENTIFIED}.items():
             mean = exact_mean(row.number, parameters)
