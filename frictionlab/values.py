@@ -88,7 +88,7 @@ class Variables:
             raise UserError(f"{where}: {shown(text)} is not one of {', '.join(items)}")
         return text
 
-    def assigned(self, text: str, option: str = "") -> tuple[str, Value]:
+    def assigned(self, text: str, option: str) -> tuple[str, Value]:
         """Name and value of "NAME=VALUE"."""
         name, rest = assignment(text, option)
-        return name, self.value(name, rest, f"{option} {name}".lstrip())
+        return name, self.value(name, rest, f"{option} {name}")

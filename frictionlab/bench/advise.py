@@ -27,7 +27,7 @@ from frictionlab.fmu import INPUTS, FrictionFmu, Value
 from frictionlab.project import UserError
 from frictionlab.reference.scene import Scene
 from frictionlab.reference.start_values import scene_of, start_values_of
-from frictionlab.values import Variables, number
+from frictionlab.values import Variables, assignment, csv_rows, number
 
 DESCRIPTION = """\
 Finds what a scene needs: tries every level of the model (Coulomb or Dahl friction, constant or asperity
@@ -58,10 +58,11 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
 
 def start_values(words: Sequence[str], fmu: FrictionFmu) -> dict[str, Value]:
     variables = Variables(fmu.description)
-    values = dict(map(variables.assigned, words))
-    for name in values:
+    values: dict[str, Value] = {}
+    for name, text in map(assignment, words):
         if name not in SCENE_VARIABLES:
             raise UserError(f"{name} does not describe a scene; these do: {', '.join(SCENE_VARIABLES)}")
+        values[name] = variables.value(name, text, name)
     return values
 
 
