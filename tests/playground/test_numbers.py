@@ -9,7 +9,8 @@ import pytest
 from native_wave import wave
 from playground_page import Playground
 
-from frictionlab.fmu import FrictionFmu, periodic_mean
+from frictionlab.fmu import FrictionFmu
+from frictionlab.periodic import periodic_mean
 from frictionlab.presets import Preset
 
 LIMIT = 1e-12  # of the largest force: another C library rounds exp and cos otherwise
