@@ -266,12 +266,11 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcVariables* v = &before->variables;
     const FcSolverOptions options = solver_options(v);
     FcStepResult result;
-    const double delta_0 = fc_method_start(&scene, v->delta);
-    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, delta_0, &result,
+    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, v->delta, &result,
                         message)) {
         return false;
     }
-    add_damping(&scene, h, delta_0, &result);
+    add_damping(&scene, h, fc_method_start(&scene, v->delta), &result);
 
     FcFrictionState after = *before;
     after.time = t + h;

@@ -137,6 +137,12 @@ double fc_elastic_plastic_reached(const FcScene* scene, double delta) {
     return fmax(-D, fmin(D, delta));
 }
 
+// What a bristle beyond the bound loses on its way there, at once [J].
+static double heat_onto_bound(const FcScene* scene, double delta, double reached) {
+    return delta != reached ? 0.5 * fc_scene_stiffness(scene, 0.0) * (delta - reached) * (delta + reached)
+                            : 0.0;
+}
+
 bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcStepResult* result,
                              FcMessage* message) {
     if (!fc_periods_check(scene, h, 0.0, message)) {
@@ -157,6 +163,7 @@ bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcS
     if (!fc_periods_check(scene, h, progress.evaluations, message)) {
         return false;
     }
+    progress.totals.heat += heat_onto_bound(scene, delta_0, fc_elastic_plastic_reached(scene, delta_0));
     *result = (FcStepResult){
         .delta = progress.delta,
         .impulse = progress.totals.impulse,

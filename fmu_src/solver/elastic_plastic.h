@@ -15,8 +15,9 @@
 
 #include "solver/solver.h"
 
-// The step [0, h], h [s] >= 0, from delta_0 [m], which is taken onto the bound where it lies beyond. Returns false,
-// with *message filled and *result as it was, where the periods or the evaluations are too many.
+// The step [0, h], h [s] >= 0, from delta_0 [m]. Where it lies beyond the bound it is taken onto it at once, and what
+// the bristle loses, sigma (delta_0^2 - D^2) / 2, is heat. Returns false, with *message filled and *result as it was,
+// where the periods or the evaluations are too many.
 bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcStepResult* result,
                              FcMessage* message);
 
