@@ -1,0 +1,50 @@
+"""Deep in presliding the bristle gives back nearly all it takes: what it keeps must not drown in the rest.
+
+V = V_1 cos, sigma X << F_C with the path's amplitude X = V_1 / omega. The deflection follows the path, so a
+period dissipates the integral of (sigma x)^2 |dx| / F_C = (4/3) sigma^2 X^3 / F_C, and that is its work too: at
+the ends of a period the bristle is relaxed. The next terms are smaller by (sigma X / F_C)^2.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import pi
+
+import pytest
+
+from frictionlab.fmu import FrictionFmu
+
+F, V_1 = 20e3, 1e-4
+X = V_1 / (2.0 * pi * F)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize(("sigma", "F_C"), [(1e6, 1e4), (1e6, 55.0), (1e4, 1e4)])
+def test_work_and_heat_of_every_period(fmu: FrictionFmu, sigma: float, F_C: float, tolerance: float) -> None:
+    start = {
+        "V": 0.0,
+        "vibration.V_1": V_1,
+        "contact.model": "Constant",
+        "contact.sigma": sigma,
+        "F_C": F_C,
+        "solver.tolerance": tolerance,
+    }
+    expected = 4.0 / 3.0 * sigma**2 * X**3 / F_C
+    swing = 0.5 * sigma * X**2  # J, stored and given back; the sum of the work is rounded like it
+    with fmu.session(start) as session:
+        sums = [(0.0, 0.0)]
+        for _ in range(4):
+            session.step(1.0 / F)
+            sums.append(tuple(session.read(("W_f", "Q_f"))))
+    for (work, heat), (work_after, heat_after) in pairwise(sums):
+        assert heat_after - heat == pytest.approx(expected, rel=1e-8)
+        assert work_after - work == pytest.approx(expected, rel=1e-8, abs=1e-14 * swing)
+
+
+def test_a_thousand_periods_at_once(fmu: FrictionFmu) -> None:
+    start = {"V": 0.0, "vibration.V_1": V_1, "contact.model": "Constant", "contact.sigma": 1e6, "F_C": 1e4}
+    with fmu.session(start) as session:
+        session.step(1000.0 / F)
+        work, heat = session.read(("W_f", "Q_f"))
+    assert heat == pytest.approx(1000 * 4.0 / 3.0 * 1e12 * X**3 / 1e4, rel=1e-8)
+    assert work == pytest.approx(heat, rel=1e-6)
