@@ -239,12 +239,27 @@ static void accumulate(double* sum, double* rest, double part) {
     *sum += all;
 }
 
-static void set_outputs(FcVariables* v, const FcScene* now) {
-    const FcContactResponse response = fc_scene_contact(now, 0.0);
-    v->sigma = response.sigma;
-    v->A_r = response.A_r;
-    v->F_n = response.F_n;
-    v->F_t = fc_scene_force(now, 0.0, v->delta);
+static void set_outputs(FcVariables* v, const FcOutputs* now) {
+    v->F_t = now->F_t;
+    v->F_n = now->F_n;
+    v->sigma = now->sigma;
+    v->A_r = now->A_r;
+}
+
+// The inputs where they end, the deflection, the sums; the rates of the next step are those of the last one now.
+static void commit(FcFrictionState* state, double h, const FcStepResult* result) {
+    FcVariables* v = &state->variables;
+    v->V += state->next_rate[FC_INPUT_V] * h;
+    v->d += state->next_rate[FC_INPUT_D] * h;
+    v->E += state->next_rate[FC_INPUT_E] * h;
+    v->load += state->next_rate[FC_INPUT_LOAD] * h;
+    v->delta = result->delta;
+    v->solver.evaluations += result->evaluations;
+    accumulate(&v->W_f, &state->W_f_rest, result->work);
+    accumulate(&v->Q_f, &state->Q_f_rest, result->heat);
+    memcpy(state->rate, state->next_rate, sizeof state->rate);
+    memset(state->next_rate, 0, sizeof state->next_rate);
+    state->next_rate_set = 0;
 }
 
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
@@ -272,44 +287,37 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     add_damping(&scene, h, fc_method_start(&scene, v->delta), &result);
 
-    FcFrictionState after = *before;
-    after.time = t + h;
-    after.time_rest = rounding_of_sum(t, h);
-    memcpy(after.rate, before->next_rate, sizeof after.rate);
-    memcpy(after.next_rate, HELD, sizeof after.next_rate);
-    after.next_rate_set = 0;
-    FcVariables* next = &after.variables;
-    next->V += after.rate[FC_INPUT_V] * h;
-    next->d += after.rate[FC_INPUT_D] * h;
-    next->E += after.rate[FC_INPUT_E] * h;
-    next->load += after.rate[FC_INPUT_LOAD] * h;
-    next->delta = result.delta;
-    next->solver.evaluations += result.evaluations;
-    accumulate(&next->W_f, &after.W_f_rest, result.work);
-    accumulate(&next->Q_f, &after.Q_f_rest, result.heat);
     // Evaluated at the phase of t + h itself, which is also that of the next step: a phase that is carried on from the
     // step's start loses digits with every period of it.
-    const FcScene end = scene_from(contact, after.time, after.time_rest, after.rate, h);
-    set_outputs(next, &end);
-    next->F_t_mean = h > 0.0 ? result.impulse / h : next->F_t;
-    if (!isfinite(next->sigma) || !isfinite(next->A_r)) {
+    const double time_rest = rounding_of_sum(t, h);
+    const bool moves = !fc_drive_is_constant(&scene.drive);
+    const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
+    const FcOutputs now = fc_scene_outputs(&end, 0.0, result.delta);
+    const double F_t_mean = h > 0.0 ? result.impulse / h : now.F_t;
+    if (!isfinite(now.sigma) || !isfinite(now.A_r)) {
         return fail_stiffness(message, v->d, v->E);
     }
-    if (!isfinite(next->F_t) || !isfinite(next->F_n) || !isfinite(next->F_t_mean) || !isfinite(next->W_f) ||
-        !isfinite(next->Q_f) || !isfinite(next->delta)) {
+    if (!isfinite(now.F_t) || !isfinite(now.F_n) || !isfinite(F_t_mean) || !isfinite(result.delta) ||
+        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat)) {
         return fc_message_set(
             message,
             "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
             "d = %.9g m",
             h, v->V, v->d);
     }
-    contact->state = after;
+    commit(&contact->state, h, &result);
+    set_outputs(&contact->state.variables, &now);
+    contact->state.variables.F_t_mean = F_t_mean;
+    contact->state.time = t + h;
+    contact->state.time_rest = time_rest;
     return true;
 }
 
 void fc_friction_contact_update_outputs(FcFrictionContact* contact) {
+    FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    set_outputs(&contact->state.variables, &scene);
+    const FcOutputs now = fc_scene_outputs(&scene, 0.0, v->delta);
+    set_outputs(v, &now);
 }
 
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h) {

@@ -69,19 +69,20 @@ FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
     return fc_contact_response(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
 }
 
+static FcCoefficients coefficients(const FcScene* scene, const FcContactResponse* response, double V) {
+    const double limit = limit_follows_load(scene) ? scene->friction->mu * response->F_n : scene->F_C;
+    return (FcCoefficients){
+        .V = V, .sigma = response->sigma, .limit = limit * fc_stribeck(scene->friction, V)};
+}
+
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
     const FcDriveValues now = fc_drive_values(&scene->drive, t);
-    FcCoefficients at = {.V = now.V, .sigma = scene->at_E.stiffness_0, .limit = scene->F_C};
-    if (scene->at_E.model != FC_CONTACT_CONSTANT || limit_follows_load(scene)) {
-        const FcContactAtModulus at_E = contact_at(scene, t);
-        const FcContactResponse response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
-        at.sigma = response.sigma;
-        if (limit_follows_load(scene)) {
-            at.limit = scene->friction->mu * response.F_n;
-        }
+    if (scene->at_E.model == FC_CONTACT_CONSTANT && !limit_follows_load(scene)) {
+        return coefficients(scene, &(FcContactResponse){.sigma = scene->at_E.stiffness_0}, now.V);
     }
-    at.limit *= fc_stribeck(scene->friction, now.V);
-    return at;
+    const FcContactAtModulus at_E = contact_at(scene, t);
+    const FcContactResponse response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
+    return coefficients(scene, &response, now.V);
 }
 
 double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coefficients(scene, t).sigma; }
@@ -145,20 +146,30 @@ double fc_scene_deflection_rate(const FcScene* scene, double t, double delta) {
     }
 }
 
-double fc_scene_force(const FcScene* scene, double t, double delta) {
+static double force(const FcScene* scene, double t, const FcCoefficients* at, double delta) {
     const FcFriction* friction = scene->friction;
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double viscous = friction->sigma_2 != 0.0 ? friction->sigma_2 * at.V : 0.0;
+    const double viscous = friction->sigma_2 != 0.0 ? friction->sigma_2 * at->V : 0.0;
     if (friction->model == FC_COULOMB) {
-        return fc_sign(at.V) * at.limit + viscous;
+        return fc_sign(at->V) * at->limit + viscous;
     }
     const double damping =
         friction->sigma_1 != 0.0 ? friction->sigma_1 * fc_scene_deflection_rate(scene, t, delta) : 0.0;
-    double elastic = at.sigma * delta; // Eq. 1
+    double elastic = at->sigma * delta; // Eq. 1
     if (friction->model == FC_ELASTIC_PLASTIC) {
-        elastic = fmax(-at.limit, fmin(at.limit, elastic));
+        elastic = fmax(-at->limit, fmin(at->limit, elastic));
     }
     return elastic + damping + viscous;
+}
+
+FcOutputs fc_scene_outputs(const FcScene* scene, double t, double delta) {
+    const FcContactAtModulus at_E = contact_at(scene, t);
+    const FcDriveValues now = fc_drive_values(&scene->drive, t);
+    const FcContactResponse response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
+    const FcCoefficients at = coefficients(scene, &response, now.V);
+    return (FcOutputs){.F_t = force(scene, t, &at, delta),
+                       .F_n = response.F_n,
+                       .sigma = response.sigma,
+                       .A_r = response.A_r};
 }
 
 // Bounds of the separation where the surfaces rest.

@@ -71,8 +71,14 @@ double fc_scene_slip_side(const FcScene* scene, double t, double delta);
 // limit of ElasticPlastic lies on it.
 double fc_scene_deflection_rate(const FcScene* scene, double t, double delta);
 
-// F_t [N] of that bristle, damping and viscous friction included.
-double fc_scene_force(const FcScene* scene, double t, double delta);
+// What can be seen of the scene, with a bristle deflected by delta [m]: F_t with damping and viscous friction.
+typedef struct {
+    double F_t;   // N
+    double F_n;   // N
+    double sigma; // N/m
+    double A_r;   // m2
+} FcOutputs;
+FcOutputs fc_scene_outputs(const FcScene* scene, double t, double delta);
 
 // Bounds over [0, h], h [s] >= 0.
 double fc_scene_smallest_d(const FcScene* scene, double h);          // m
