@@ -47,6 +47,7 @@ class FrictionFmu:
     """The unzipped FMU and its model description."""
 
     def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
         try:
             self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))

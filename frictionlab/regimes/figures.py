@@ -30,9 +30,8 @@ from frictionlab.regimes.mean import (
     Regime,
     coulomb_limit,
     coulomb_sensitivity,
-    mean_map,
+    on_map,
     regime_map,
-    sensitivity_map,
     soft_limit,
     soft_sensitivity,
 )
@@ -54,12 +53,12 @@ def means(probe: Probe, quick: bool) -> Picture:
     """Mean friction over kappa and zeta without and with normal vibration, and cuts against the limits."""
     kappas, zetas = grids(quick)
     levels = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
-    still = mean_map(probe, kappas, zetas)
-    moving = mean_map(probe, kappas, zetas, ALPHA, PHASE)
+    still = probe.mean(on_map(kappas, zetas))
+    moving = probe.mean(on_map(kappas, zetas, ALPHA, PHASE))
     cuts = []
     fine = np.linspace(0.005, 1.5, 120)
     for kappa, colour in zip((0.3, 1.0, 3.0, 10.0), (SKY, GREEN, AMBER, PINK), strict=True):
-        cuts.append(Line(fine, [probe.mean(Regime(kappa, z)) for z in fine], f"FMU, κ = {kappa:g}", colour))
+        cuts.append(Line(fine, probe.mean(Regime(kappa, fine)), f"FMU, κ = {kappa:g}", colour))
     cuts += [
         Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dash"),
         Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", INK, "dash"),
@@ -98,7 +97,7 @@ def sensitivities(probe: Probe, quick: bool) -> Picture:
     kappas, zetas = np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 0.99, n)
     panels = []
     for name in PARAMETERS:
-        values = sensitivity_map(probe, name, kappas, zetas, ALPHA, PHASE)
+        values = probe.sensitivity(on_map(kappas, zetas, ALPHA, PHASE), name)
         top = 2.0 if name == "d" else 0.5
         levels = (-1.0, -0.1, 0.1, 1.0) if name == "d" else (-0.2, -0.1, 0.0, 0.1, 0.2)
         unit = "per rad" if name == "phase_d" else "per 100 %"
@@ -127,7 +126,7 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Picture:
             items.append(
                 Line(
                     kappas,
-                    [probe.sensitivity(Regime(k, zeta, ALPHA, PHASE), name) for k in kappas],
+                    probe.sensitivity(Regime(kappas, zeta, ALPHA, PHASE), name),
                     f"FMU, to {SYMBOLS[name]}",
                     colour,
                 )
@@ -152,9 +151,7 @@ def phases(probe: Probe, quick: bool) -> Picture:
     angles, alphas = np.linspace(0.0, 360.0, n), np.linspace(0.0, 0.5, n)
     panels = []
     for kappa, zeta in ((0.5, 0.35), (5.0, 0.1), (50.0, 0.02)):
-        values = np.array(
-            [[probe.mean(Regime(kappa, zeta, a, math.radians(p))) for p in angles] for a in alphas]
-        )
+        values = probe.mean(Regime(kappa, zeta, alphas[:, None], np.radians(angles)))
         top = max(0.1, round(float(np.max(np.abs(values))), 1))
         item = Map(
             angles, alphas, values, "mean F_t / F_C", -top, top, (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4), True
@@ -218,7 +215,7 @@ def reduction(probe: Probe, quick: bool) -> Picture:
         Line(zetas, [100.0 * (1.0 - coulomb_limit(z)) for z in zetas], "Coulomb limit, κ → ∞", INK, "dash")
     ]
     for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY)):
-        values = [100.0 * (1.0 - probe.mean(Regime(kappa, z))) for z in zetas]
+        values = 100.0 * (1.0 - probe.mean(Regime(kappa, zetas)))
         lines.append(Line(zetas, values, f"FMU, κ = {kappa:g}", colour))
     lines.append(
         Line(zetas, [100.0 * (1.0 - soft_limit(z)) for z in zetas], "soft limit, κ → 0", BLUE, "dash")

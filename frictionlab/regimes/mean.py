@@ -12,30 +12,33 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
-from frictionlab.fmu import FrictionFmu, Session
+from frictionlab.batch import simulate_many
 from frictionlab.parameters import COULOMB_FORCE, E_FULL, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
-from frictionlab.periodic import settled_mean
 
 R_Q = 6e-6  # m, Table 1
 DECAY = 3.0  # lambda, Eq. 17
 V_1 = 1.0  # m/s: any value gives the same maps
 SETTLING_PERIODS = 20_000  # kappa >= 1e-3 has forgotten its start by e^-80
-CALLS_PER_SESSION = 2_000
 STEP = 1e-3  # of the central differences, relative or in rad
+Numbers = float | np.ndarray
 PARAMETERS = ("V", "V_1", "d", "a_d", "phase_d", "E", "F_C")
 
 
 @dataclass(frozen=True)
 class Regime:
-    """A vibrating contact at d = 14 um and the full modulus, and factors on what a sensitivity changes."""
+    """Vibrating contacts at d = 14 um and the full modulus, and factors on what a sensitivity changes.
 
-    kappa: float
-    zeta: float
-    alpha: float = 0.0
-    phase_d: float = 0.0  # rad
+    Each field is a number or an array; arrays broadcast, to as many regimes.
+    """
+
+    kappa: Numbers
+    zeta: Numbers
+    alpha: Numbers = 0.0
+    phase_d: Numbers = 0.0  # rad
     V: float = 1.0
     V_1: float = 1.0
     d: float = 1.0
@@ -43,7 +46,7 @@ class Regime:
     E: float = 1.0
     F_C: float = 1.0
 
-    def start_values(self) -> dict[str, float]:
+    def start_values(self) -> dict[str, Numbers]:
         sigma = self.kappa * 2.0 * math.pi * FREQUENCY * COULOMB_FORCE / V_1
         return {
             "V": self.V * self.zeta * V_1,
@@ -58,26 +61,20 @@ class Regime:
         }
 
 
+@dataclass(frozen=True)
 class Probe:
-    """Mean forces of many regimes in one session after another, since opening one costs more than a mean."""
+    """Mean forces of many regimes at once."""
 
-    def __init__(self, fmu: FrictionFmu, tolerance: float = 1e-6) -> None:
-        self.fmu, self.tolerance = fmu, tolerance
-        self._session: Session | None = None
-        self._calls = 0
+    fmu: Path
+    tolerance: float = 1e-6
 
-    def mean(self, regime: Regime) -> float:
-        """Mean force over F_C of the unchanged regime."""
-        if self._session is None or self._calls >= CALLS_PER_SESSION:
-            self.close()
-            self._session = self.fmu.session({"solver.tolerance": self.tolerance})
-            self._calls = 0
-        self._calls += 1
-        for name, value in regime.start_values().items():
-            self._session.set(name, value)
-        return settled_mean(self._session, SETTLING_PERIODS) / COULOMB_FORCE
+    def mean(self, regime: Regime) -> np.ndarray:
+        """Mean forces over F_C of the unchanged regime, of the shape of the regimes."""
+        values = {**regime.start_values(), "solver.tolerance": self.tolerance}
+        force = simulate_many(self.fmu, values, ["F_t_mean"], settle=SETTLING_PERIODS)["F_t_mean"]
+        return force / COULOMB_FORCE
 
-    def sensitivity(self, regime: Regime, name: str) -> float:
+    def sensitivity(self, regime: Regime, name: str) -> np.ndarray:
         """d(mean) / d(ln p) over F_C; for phase_d per rad."""
         if name == "phase_d":
             above, below = (replace(regime, phase_d=regime.phase_d + h) for h in (STEP, -STEP))
@@ -85,30 +82,12 @@ class Probe:
             above, below = (replace(regime, **{name: math.exp(h)}) for h in (STEP, -STEP))
         return (self.mean(above) - self.mean(below)) / (2.0 * STEP)
 
-    def close(self) -> None:
-        if self._session is not None:
-            self._session.close()
-            self._session = None
 
-    def __enter__(self) -> Probe:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-
-def mean_map(
-    probe: Probe, kappas: Sequence[float], zetas: Sequence[float], alpha: float = 0.0, phase_d: float = 0.0
-) -> np.ndarray:
-    """Rows over zeta, columns over kappa."""
-    return np.array([[probe.mean(Regime(k, z, alpha, phase_d)) for k in kappas] for z in zetas])
-
-
-def sensitivity_map(
-    probe: Probe, name: str, kappas: Sequence[float], zetas: Sequence[float], alpha: float, phase_d: float
-) -> np.ndarray:
-    """Rows over zeta, columns over kappa."""
-    return np.array([[probe.sensitivity(Regime(k, z, alpha, phase_d), name) for k in kappas] for z in zetas])
+def on_map(
+    kappas: Sequence[float], zetas: Sequence[float], alpha: float = 0.0, phase_d: float = 0.0
+) -> Regime:
+    """Regimes in rows over zeta, columns over kappa."""
+    return Regime(np.asarray(kappas), np.asarray(zetas)[:, None], alpha, phase_d)
 
 
 def coulomb_limit(zeta: float) -> float:
@@ -172,20 +151,14 @@ def regime_map(
     phases: int = 12,
 ) -> np.ndarray:
     """Index into REGIMES: the simplest model whose mean is within threshold F_C at every phase."""
-    found = np.zeros((len(zetas), len(kappas)), dtype=int)
-    angles = 2.0 * math.pi * np.arange(phases) / phases
-    for i, zeta in enumerate(zetas):
-        for j, kappa in enumerate(kappas):
-            constant = probe.mean(Regime(kappa, zeta))
-            moving = np.array([probe.mean(Regime(kappa, zeta, alpha, angle)) for angle in angles])
-            if not alpha:
-                moving = np.array([constant])
-            if moving.min() < -threshold:
-                found[i, j] = 3
-            elif np.max(np.abs(moving - coulomb_limit(zeta))) <= threshold:
-                found[i, j] = 0
-            elif np.max(np.abs(moving - constant)) <= threshold:
-                found[i, j] = 1
-            else:
-                found[i, j] = 2
-    return found
+    angles = 2.0 * math.pi * np.arange(phases if alpha else 1) / phases
+    regimes = on_map(kappas, zetas)
+    constant = probe.mean(regimes)
+    moving = probe.mean(replace(regimes, alpha=alpha, phase_d=angles[:, None, None]))
+    coulomb = np.array([coulomb_limit(zeta) for zeta in zetas])[:, None]
+    classes = (
+        (np.min(moving, axis=0) < -threshold, 3),
+        (np.max(np.abs(moving - coulomb), axis=0) <= threshold, 0),
+        (np.max(np.abs(moving - constant), axis=0) <= threshold, 1),
+    )
+    return np.select([holds for holds, _ in classes], [index for _, index in classes], 2)

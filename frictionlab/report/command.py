@@ -96,15 +96,14 @@ def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], 
 
 
 def _pictures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Picture]:
-    with Probe(fmu) as probe:
-        jobs = list(_jobs(fmu, probe, quick))
-        task = progress.add_task("Simulating", total=len(jobs))
-        found = {}
-        for job in jobs:
-            picture = job()
-            found[picture.key] = picture
-            progress.advance(task)
-        progress.remove_task(task)
+    jobs = list(_jobs(fmu, Probe(fmu.path), quick))
+    task = progress.add_task("Simulating", total=len(jobs))
+    found = {}
+    for job in jobs:
+        picture = job()
+        found[picture.key] = picture
+        progress.advance(task)
+    progress.remove_task(task)
     return found
 
 

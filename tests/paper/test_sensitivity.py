@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from frictionlab.fmu import FrictionFmu
 from frictionlab.parameters import COULOMB_FORCE, FREQUENCY
 from frictionlab.reference.constant import periodic_mean
 from frictionlab.regimes.mean import (
@@ -28,9 +27,8 @@ ALPHA, PHASE = 1.1 / 6.0, 2.0
 
 
 @pytest.fixture(scope="module")
-def probe(fmu: FrictionFmu) -> Iterator[Probe]:
-    with Probe(fmu, tolerance=1e-9) as made:
-        yield made
+def probe(fmu_path: Path) -> Probe:
+    return Probe(fmu_path, tolerance=1e-9)
 
 
 def closed_form(kappa: float, zeta: float) -> float:
