@@ -1,6 +1,7 @@
 """Chunks of scenarios on the workers of a Dask cluster: processes of this machine, or a scheduler's.
 
-A chunk whose worker dies is halved at the end, until only the scenario that kills its workers is given up.
+A chunk whose worker dies runs at the end in a process of its own here, and is halved each time that this
+dies too, until only the scenario that kills its process is given up.
 """
 
 from __future__ import annotations
@@ -12,6 +13,9 @@ import logging
 import os
 import signal
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
 from pathlib import Path
 
 import dask
@@ -70,7 +74,7 @@ def _local(workers: int, folder: Path) -> Iterator[Client]:
     # Control-C is this process's to handle: what it starts inherits that it is ignored.
     handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+        cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="localhost:0")
     except (OSError, RuntimeError) as error:
         raise UserError(
             "worker processes here can't be reached through the loopback interface: "
@@ -129,22 +133,39 @@ def run(
         for new, of_it in more(1).items():
             submitted[new] = of_it
             completed.add(new)
+    yield from _alone(function, work, values, suspects)
+
+
+def _alone(
+    function: Callable[[object, Mapping[str, np.ndarray]], Results],
+    work: object,
+    values: Callable[[Span], Mapping[str, np.ndarray]],
+    suspects: list[Span],
+) -> Iterator[tuple[Span, Results]]:
+    """Chunks whose workers died, in processes of their own here; halved each time that one dies."""
+    ignored = (signal.SIGINT, signal.SIG_IGN)
     while suspects:
-        first, stop = suspects.pop()
-        results = _result(submit((first, stop)))
-        middle = (first + stop) // 2
-        if results is not None:
-            yield (first, stop), results
-        elif middle == first:
+        with ProcessPoolExecutor(1, get_context("spawn"), signal.signal, ignored) as pool:
+            while suspects:
+                first, stop = suspects.pop()
+                try:
+                    results = pool.submit(function, work, values((first, stop))).result()
+                except BrokenProcessPool:
+                    break
+                yield (first, stop), results
+            else:
+                return
+        if stop - first == 1:
             yield (first, stop), given_up()
         else:
+            middle = (first + stop) // 2
             suspects += [(middle, stop), (first, middle)]
 
 
 def given_up() -> Results:
     """Of a scenario that no worker survives."""
     columns = {name: np.full(1, np.nan) for name in RESULTS}
-    return Results(columns, {0: "every worker that ran this scenario died"})
+    return Results(columns, {0: "every process that ran this scenario died"})
 
 
 def _result(future: Future) -> Results | None:

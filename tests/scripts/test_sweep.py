@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
@@ -14,6 +15,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pandas as pd
+import psutil
 import pytest
 from batch.one_by_one import sampled_period
 from distributed import Client
@@ -92,6 +94,16 @@ def check_grid(output: Path, fmu: FrictionFmu) -> None:
             assert row[name] == here[name], name
 
 
+def processes_of_group(group: int) -> list[int]:
+    """Processes that have not ended, whether or not their parent has looked after them."""
+    found = []
+    for process in psutil.process_iter(["pid", "status"]):
+        with contextlib.suppress(ProcessLookupError):
+            if os.getpgid(process.pid) == group and process.info["status"] != psutil.STATUS_ZOMBIE:
+                found.append(process.pid)
+    return found
+
+
 def evaluate(fmu_path: Path, values: dict[str, float], samples: int) -> dict[str, float]:
     """A scenario as a worker runs it."""
     work = Work(fmu_path.read_bytes(), built_runner().read_bytes(), fmpy.platform, 1e6, samples)
@@ -102,6 +114,13 @@ def evaluate(fmu_path: Path, values: dict[str, float], samples: int) -> dict[str
 
 def table_of(scenarios: Scenarios) -> pd.DataFrame:
     return pd.DataFrame(scenarios.shown(0, scenarios.count))
+
+
+def deadly(work: object, values: dict[str, np.ndarray]) -> Results:
+    """Scenario 3 kills its process."""
+    if 3 in values["number"]:
+        os._exit(1)
+    return Results({"seconds": values["number"] * 1e-3})
 
 
 @pytest.fixture
@@ -207,6 +226,8 @@ class TestPlan:
             ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
             ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
             ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
+            (f"V\n{'1' * 131073}\n", "is not a CSV file: field larger than field limit (131072)"),
+            (f"V\n{'x' * 131070}\n", f"row 2, column V: '{'x' * 40}...' is not a number"),
             ("V\n", "has no row below the header"),
             ("", "is empty; row 1 must name the variables"),
             ('V\n"0.1\n', "is not a CSV file"),
@@ -229,6 +250,17 @@ class TestPlan:
             (["--vary", "V=1:2"], "'1:2' is neither low:high:count"),
             (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
             (["--vary", "V=0:1:3:log"], "must begin above 0"),
+            (["--vary", "V=0:1:²"], "the count '²' is not a whole number"),
+            (["--vary", f"V=0:1:{'9' * 5000}"], "is not a whole number"),
+            (
+                ["--vary", "V=1", "--samples", "100000000000"],
+                "must be at most 1000000",
+            ),
+            (["--vary", "V=1", "--settle", "inf"], "--settle inf: must be at most"),
+            (
+                ["--vary", "V=0:1", "--random", "99999999999"],
+                "must be at most 10000000",
+            ),
             (["--vary", "V=0:1:-3"], "the count '-3' is not a whole number"),
             (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
             (["--vary", "V=1", "--set", "V=2"], "--set V: is given twice"),
@@ -308,6 +340,69 @@ class TestRuns:
         check_grid(output, fmu)
         assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
 
+    def test_hundred_thousand_scenarios_and_a_kill(
+        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
+    ) -> None:
+        """Chunks of a size of their own before and after; no row is lost, done twice or out of order."""
+        count, output = 100_000, tmp_path / "sweep"
+        arguments = [
+            "--random", str(count), "--seed", "3", "--vary", "V=0.01:1:log", "--vary", "d=13e-6:15e-6",
+            "--vary", "friction.model=Dahl,Coulomb", "--set", "vibration.V_1=1.44",
+            "--samples", "1", "--workers", "2",
+        ]  # fmt: skip
+        first = started(command(fmu_path, output, *arguments), env=environment())
+        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 12)
+        os.killpg(first.pid, signal.SIGKILL)
+        first.wait()
+        kept = kept_rows(output)
+        assert 0 < kept < count
+        damaged = max(output.glob("parts/*.parquet"))  # as a failing disk leaves it
+        lost = len(pd.read_parquet(damaged))
+        damaged.write_bytes(damaged.read_bytes()[:-20])
+        second = run(fmu_path, output, *arguments)
+        assert second.returncode == 0, second.stderr
+        assert f"{kept - lost} scenarios were there from an earlier run" in second.stdout
+        table = pd.read_parquet(output / "results.parquet")
+        assert np.array_equal(table["scenario"], np.arange(count))
+        scenarios = table_of(sweep.scenarios_of(sweep.arguments(arguments), fmu_path))
+        assert table[list(scenarios)].equals(scenarios)
+        for row in (0, 1234, 99_999):
+            values = {name: table[name][row] for name in scenarios}
+            assert table["F_mean"][row] == sampled_period(fmu, values, 1e6, 1)["F_mean"]
+        coulomb = table[table["friction.model"] == "Coulomb"]
+        expected = 55.0 * 2 / np.pi * np.arcsin(coulomb["V"] / 1.44)
+        assert np.allclose(coulomb["F_mean"], expected, rtol=1e-9, atol=0.0)
+
+    @pytest.mark.parametrize("to_all", [True, False], ids=["group", "alone"])
+    @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+    def test_nothing_is_left_but_the_rows(
+        self,
+        fmu_path: Path,
+        tmp_path: Path,
+        started: Callable[..., subprocess.Popen],
+        by: signal.Signals,
+        to_all: bool,
+    ) -> None:
+        """Control-C on a terminal reaches the workers too. What is killed leaves only its folder."""
+        output, temporary = tmp_path / "sweep", tmp_path / "temporary"
+        temporary.mkdir()
+        sweeping = started(
+            command(fmu_path, output, "--random", "1000000", "--vary", "V=0.01:1", "--workers", "2"),
+            env={**environment(), "TMPDIR": str(temporary)}, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 4)
+        (os.killpg if to_all else os.kill)(sweeping.pid, by)
+        _, said = sweeping.communicate(timeout=60)
+        wait_for(lambda: not processes_of_group(sweeping.pid))
+        assert list(temporary.iterdir()) == []
+        left = sorted(path.name for path in output.iterdir())
+        if by == signal.SIGKILL:
+            assert said == ""
+            assert left == ["lock", "parts", "sweep.json", "work"]
+        else:
+            assert len(said.splitlines()) == 1 and said.startswith("stopped; what was computed is kept"), said
+            assert left == ["parts", "sweep.json"]
+
     def test_dask_cluster_that_loses_a_worker(
         self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
     ) -> None:
@@ -375,11 +470,6 @@ class TestRuns:
     def test_scenario_that_kills_its_worker(self, tmp_path: Path) -> None:
         """It alone is given up."""
 
-        def deadly(work: object, values: dict[str, np.ndarray]) -> Results:
-            if 3 in values["number"]:
-                os._exit(1)
-            return Results({"seconds": values["number"] * 1e-3})
-
         kept: dict[int, str | None] = {}
         with sweep_cluster.connected(None, 1, tmp_path) as client:
             for (first, stop), results in sweep_cluster.run(
@@ -389,7 +479,7 @@ class TestRuns:
                     assert first + row not in kept
                     kept[first + row] = results.reasons.get(row)
         assert sorted(kept) == list(range(9))
-        assert kept.pop(3) == "every worker that ran this scenario died"
+        assert kept.pop(3) == "every process that ran this scenario died"
         assert not any(kept.values())
 
 
@@ -410,6 +500,36 @@ class TestNothingHalfWritten:
         assert done.stdout == ""
         assert len(done.stderr.strip().splitlines()) == 1, done.stderr
         assert done.stderr.startswith("error: ") and message in done.stderr
+        assert list(tmp_path.iterdir()) == []
+
+    def test_not_an_fmu(self, tmp_path: Path) -> None:
+        (tmp_path / "text.fmu").write_text("no zip")
+        done = run(tmp_path / "text.fmu", tmp_path / "sweep", "--vary", "V=0.1,0.2")
+        assert done.returncode == 1
+        assert done.stderr == f"error: --fmu {tmp_path / 'text.fmu'}: is no FMU: File is not a zip file\n"
+        assert not (tmp_path / "sweep").exists()
+
+    @pytest.mark.parametrize("record", ['{"digest": "abc', "[]", "{}", "\xff"])
+    def test_damaged_record(self, fmu_path: Path, tmp_path: Path, record: str) -> None:
+        (tmp_path / "sweep.json").write_text(record, encoding="latin-1")
+        done = run(fmu_path, tmp_path, "--vary", "V=0.1,0.2")
+        assert done.returncode == 1
+        assert len(done.stderr.splitlines()) == 1
+        assert done.stderr.startswith(f"error: {tmp_path / 'sweep.json'}: is damaged; choose another")
+        assert (tmp_path / "sweep.json").read_text(encoding="latin-1") == record
+
+    def test_no_loopback(self, fmu_path: Path, tmp_path: Path) -> None:
+        """In a network of its own whose loopback is down, as in some containers."""
+        alone = ["unshare", "--net", "--map-root-user"]
+        if subprocess.run([*alone, "true"], capture_output=True).returncode:
+            pytest.skip("no network namespaces here")
+        done = subprocess.run(
+            [*alone, *command(fmu_path, tmp_path / "sweep", "--vary", "V=0.1", "--workers", "1")],
+            capture_output=True, text=True, timeout=120, env={**environment(), "TMPDIR": str(tmp_path)},
+        )  # fmt: skip
+        assert done.returncode == 1
+        assert len(done.stderr.splitlines()) == 1, done.stderr
+        assert done.stderr.startswith("error: worker processes here can't be reached through the loopback")
         assert list(tmp_path.iterdir()) == []
 
     def test_unwritable_output(self, fmu_path: Path, tmp_path: Path) -> None:
