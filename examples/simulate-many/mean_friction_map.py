@@ -1,0 +1,86 @@
+# %% [markdown]
+# # A map of a million scenarios
+#
+# How does the mean friction depend on the stiffness of the contact and on the sliding velocity? Every point
+# of the map is a simulation of FrictionContact.fmu in its periodic state. `simulate_many` runs them all at
+# once: arrays broadcast as in NumPy, so a row of stiffnesses against a column of velocities is the whole map.
+
+# %%
+import argparse
+import time
+from pathlib import Path
+
+import numpy as np
+
+from frictionlab import style
+from frictionlab.batch import simulate_many
+from frictionlab.build import build_fmu
+from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
+from frictionlab.project import ROOT
+
+parser = argparse.ArgumentParser(
+    description="Mean friction over stiffness and velocity, a million scenarios."
+)
+parser.add_argument("--points", type=int, default=1000, help="along each axis of the map (1000)")
+parser.add_argument("--quick", action="store_true", help="60 points along each axis")
+parser.add_argument("--fmu", type=Path, help="use this FMU instead of building one")
+parser.add_argument("--output", type=Path, default=ROOT / "build" / "examples" / "mean-friction-map.png")
+options = parser.parse_args()
+points = 60 if options.quick else options.points
+
+# %% [markdown]
+# The vibration moves the surfaces along the sliding and apart, with the paper's amplitude and about its
+# identified phase: `kappa` says how often the bristle would saturate in one swing, `zeta` is the velocity
+# over that of the vibration.
+
+# %%
+V_1 = 1.44  # m/s
+R_q = 6e-6  # m, Table 1
+kappa = np.geomspace(1e-2, 1e4, points)
+zeta = np.geomspace(1e-2, 1.5, points)[:, None]
+scenarios = {
+    "V": zeta * V_1,
+    "d": SEPARATION,
+    "vibration.f": FREQUENCY,
+    "vibration.V_1": V_1,
+    "vibration.a_d": 0.18 * R_q,
+    "vibration.phase_d": np.radians(225.0),
+    "contact.stiffnessScale": kappa * 2 * np.pi * FREQUENCY * COULOMB_FORCE / V_1 / STIFFNESS_PRINTED,
+    "F_C": COULOMB_FORCE,
+}
+
+# %% [markdown]
+# `settled` starts each scenario where its state tends to after infinitely many periods of the vibration; one
+# period more gives the mean. Work and heat of that period come along.
+
+# %%
+began = time.perf_counter()
+results = simulate_many(
+    options.fmu or build_fmu(),
+    scenarios,
+    {"mean": "F_t_mean", "work": ("W_f", "change"), "heat": ("Q_f", "change")},
+    settled=True,
+    progress=True,
+)
+mean = results["mean"] / COULOMB_FORCE
+print(f"{mean.size} scenarios in {time.perf_counter() - began:.1f} s")
+print(f"mean friction from {mean.min():.3f} to {mean.max():.3f} F_C")
+
+# %% [markdown]
+# Below zero the vibration drives the sliding, as in an ultrasonic motor.
+
+# %%
+figure, axis = style.subplots(1, 1, size=(7.0, 5.0))
+shown = axis.pcolormesh(kappa, zeta.ravel(), mean, cmap="RdBu_r", vmin=-1.0, vmax=1.0, rasterized=True)
+lines = axis.contour(
+    kappa, zeta.ravel(), mean, (-0.1, 0.0, 0.1, 0.2, 0.4, 0.6, 0.8), colors="black", linewidths=0.6
+)
+axis.clabel(lines, fontsize=7)
+axis.set_xscale("log")
+axis.set_yscale("log")
+axis.set_xlabel("κ = σ V$_1$ / (2π f F$_C$)")
+axis.set_ylabel("ζ = V / V$_1$")
+figure.colorbar(shown, label="mean F$_t$ / F$_C$")
+options.output.parent.mkdir(parents=True, exist_ok=True)
+style.save(figure, options.output)
+print(f"wrote {options.output}")

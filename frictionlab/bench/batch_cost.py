@@ -1,0 +1,157 @@
+"""What a scenario costs in a batch and in a sweep, against the bare C loop over the same FMI calls.
+
+All in one run, one after the other, so that the ratios hold on any machine; the machine should be idle.
+The cost of a sweep is that of all its processes: what N scenarios more take, so that starting them does not
+count.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from frictionlab.batch import simulate_many
+from frictionlab.build import BuildError, build_fmu
+from frictionlab.fmu import FrictionFmu
+from frictionlab.project import ROOT, UserError
+from frictionlab.sweep.scenario import OUTPUTS
+
+SETTLE = 1e6  # periods
+SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
+AROUND = ("W_f", "solver.evaluations")
+RANGES = {"V": (0.005, 0.5), "vibration.V_1": (0.1, 1.5), "d": (12e-6, 17e-6)}
+MEMORY_SCENARIOS = 1_000_000
+
+
+def scenarios(count: int) -> dict[str, np.ndarray]:
+    random = np.random.default_rng(1)
+    return {name: random.uniform(*ends, count) for name, ends in RANGES.items()}
+
+
+def bare_loop(fmu: FrictionFmu, program: Path, count: int, samples: int) -> tuple[float, float]:
+    """Processor time [s] per scenario, and the mean force [N] over all."""
+    reference = {name: variable.valueReference for name, variable in fmu.variables.items()}
+    values = scenarios(count)
+    numbers = [reference["vibration.f"]]
+    for names in (tuple(values), SAMPLED, AROUND):
+        numbers += [len(names), *(reference[name] for name in names)]
+    rows = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(values.values())).tolist())
+    description = fmu.description
+    library = next((fmu.directory / "binaries").glob(f"*/{description.coSimulation.modelIdentifier}.so"))
+    done = subprocess.run(
+        [program, library, description.guid, repr(SETTLE), str(samples)],
+        input=" ".join(map(str, [*numbers, count])) + "\n" + rows,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode:
+        raise UserError(f"{program}: {done.stderr.strip()}")
+    seconds, force, *_ = map(float, done.stdout.split())
+    return seconds / count, force
+
+
+def one_batch(fmu: Path, count: int, samples: int) -> tuple[float, float]:
+    """The same of one call of simulate_many on one thread."""
+    began = time.process_time()
+    results = simulate_many(fmu, scenarios(count), OUTPUTS, settle=SETTLE, samples=samples, threads=1)
+    return (time.process_time() - began) / count, float(np.mean(results["F_mean"]))
+
+
+def sessions(fmu: FrictionFmu, count: int, samples: int) -> float:
+    """The same of one session in Python for each scenario."""
+    values = scenarios(count)
+    began = time.process_time()
+    for row in range(count):
+        with fmu.session({name: column[row] for name, column in values.items()}) as session:
+            period = 1.0 / session.get("vibration.f")
+            session.step(SETTLE * period)
+            session.read(AROUND)
+            for _ in range(samples):
+                session.step(period / samples)
+                session.read(SAMPLED)
+            session.read(AROUND)
+    return (time.process_time() - began) / count
+
+
+@dataclass(frozen=True)
+class Sweep:
+    processor: float  # s, of all its processes
+    elapsed: float  # s, from the first scenario to the last
+    memory: float  # bytes, of its largest process
+
+
+def sweep(fmu: Path, count: int, samples: int, workers: int) -> Sweep:
+    """scripts/sweep, in processes of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = ["--random", count, "--samples", samples, "--workers", workers, "--settle", SETTLE]
+        for name, (low, high) in RANGES.items():
+            arguments += ["--vary", f"{name}={low}:{high}"]
+        command = [sys.executable, "-m", "frictionlab.sweep.command", "--fmu", fmu, "--output", folder]
+        process = subprocess.Popen(
+            [*map(str, command), *map(str, arguments)], stdout=subprocess.PIPE, text=True
+        )
+        printed = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        if status:
+            raise UserError("the sweep failed: see above")
+    elapsed = re.search(r"scenarios in ([\d.]+) s", printed)
+    return Sweep(usage.ru_utime + usage.ru_stime, float(elapsed[1]), 1024.0 * usage.ru_maxrss)
+
+
+def measure(fmu_path: Path, program: Path, count: int, memory: bool) -> None:
+    print(f"{'processor time per scenario':40}{'us':>9}{'ratio':>8}")
+    with FrictionFmu(fmu_path) as fmu:
+        for samples in (64, 1):
+            bare, force = bare_loop(fmu, program, count, samples)
+            batch, batch_force = one_batch(fmu_path, count, samples)
+            if not np.isclose(force, batch_force, rtol=1e-12):
+                raise UserError(f"the bare loop gives {force!r} N, the batch {batch_force!r} N")
+            few, many = (sweep(fmu_path, n, samples, 1) for n in (count, 4 * count))
+            two_few, two_many = (sweep(fmu_path, n, samples, 2) for n in (count, 4 * count))
+            swept = (many.processor - few.processor) / (3 * count)
+            one = sessions(fmu, max(1, count // 100), samples)
+            words = f"{samples} samples" if samples > 1 else "mean only"
+            for name, cost in (
+                ("bare C loop", bare),
+                ("simulate_many", batch),
+                ("scripts/sweep, all processes", swept),
+                ("one session each in Python", one),
+            ):
+                print(f"{words + ', ' + name:40}{1e6 * cost:9.1f}{cost / bare:8.2f}")
+            speedup = (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
+            print(f"{words}, throughput of two workers over one: {speedup:.2f}")
+        if memory:
+            largest = sweep(fmu_path, MEMORY_SCENARIOS, 1, 2).memory
+            print(f"largest process of a sweep of {MEMORY_SCENARIOS} scenarios: {largest / 2**20:.0f} MiB")
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(prog="bench/batch-cost", description=__doc__.splitlines()[0])
+    parser.add_argument("--scenarios", type=int, default=50_000, help="of each measurement (50000)")
+    parser.add_argument("--quick", action="store_true", help="2000 scenarios, without the memory")
+    options = parser.parse_args(argv)
+    count = 2000 if options.quick else options.scenarios
+    if count < 100:
+        sys.exit(f"error: --scenarios {count}: must be at least 100")
+    try:
+        fmu = build_fmu()
+        command = [sys.executable, "-m", "cmake", "--build", str(ROOT / "build"), "--target", "bare_loop"]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        measure(fmu, ROOT / "build" / "bench" / "bare_loop", count, not options.quick)
+    except (BuildError, UserError, subprocess.CalledProcessError) as error:
+        sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("stopped")
+
+
+if __name__ == "__main__":
+    main()
