@@ -41,6 +41,7 @@ class Store:
         self.folder = folder
         self.plan = dict(plan)
         self._made = not folder.exists()
+        self._is_ours = False  # what is in the folder is of this sweep
         try:
             (folder / "parts").mkdir(parents=True, exist_ok=True)
             self._lock = (folder / "lock").open("w")
@@ -75,6 +76,7 @@ class Store:
             text = json.dumps(self.plan, indent=2) + "\n"
             self._write("sweep.json", lambda path: path.write_text(text))
         self.work.mkdir()
+        self._is_ours = True
 
     def _begun_digest(self) -> object:
         record = self.folder / "sweep.json"
@@ -193,7 +195,7 @@ class Store:
         self._lock.close()
         if not self._parts():
             shutil.rmtree(self.folder / "parts", ignore_errors=True)
-            if not self.is_whole():
+            if self._is_ours and not self.is_whole():
                 self._remove("sweep.json")
         if self._made and not any(self.folder.iterdir()):
             self.folder.rmdir()

@@ -226,7 +226,7 @@ class TestPlan:
             ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
             ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
             ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
-            (f"V\n{'1' * 131073}\n", "is not a CSV file: field larger than field limit (131072)"),
+            (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
             (f"V\n{'x' * 131070}\n", f"row 2, column V: '{'x' * 40}...' is not a number"),
             ("V\n", "has no row below the header"),
             ("", "is empty; row 1 must name the variables"),
