@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import csv
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, Row, start_values
+from frictionlab.project import ROOT
+
+DRY_ROWS = ROOT / "data" / "measurements" / "luo2024.csv"
+SETTLED: dict[str, float | str] = {"initialState": "Settled"}
 
 
 @dataclass(frozen=True)
@@ -18,12 +24,13 @@ class Preset:
     title: str
     note: str  # HTML
     values: dict[str, float | str]
-    paper: float | None = None  # N, mean force that the paper prints
+    known: float | None = None  # N, mean force
+    known_from: str | None = None
     measured: tuple[tuple[float, float, str], ...] | None = None  # V / V_1, force over that without, text
 
 
 def presets() -> list[Preset]:
-    return [*table_2(IDENTIFIED), *table_2(PRINTED), *scenes()]
+    return [*table_2(IDENTIFIED), *table_2(PRINTED), *dry_rows(), *scenes()]
 
 
 def possible(presets: Sequence[Preset], variables: Sequence[Mapping[str, Any]]) -> list[Preset]:
@@ -57,8 +64,9 @@ def table_2(parameters: ParameterSet) -> list[Preset]:
             group,
             f"Row {row.number} {name}: {_conditions(row)}",
             _table_2_note(parameters),
-            start_values(row, parameters),
-            paper=row.paper_force,
+            SETTLED | start_values(row, parameters),
+            known=row.paper_force,
+            known_from="Paper",
         )
         for row in TABLE_2
     ]
@@ -83,6 +91,44 @@ def _table_2_note(parameters: ParameterSet) -> str:
     return "The equations at the printed parameters: where the paper's number differs, they do not give it."
 
 
+def dry_rows() -> list[Preset]:
+    """Luo et al. 2024, Fig. 5b: each row that slides, with its measured force without vibration as F_C."""
+    f, amplitude = 26e3, 0.35e-6  # Hz, m
+    V_1 = 2.0 * math.pi * f * amplitude
+    with DRY_ROWS.open(newline="", encoding="utf-8") as file:
+        lines = [line for line in csv.DictReader(file) if line["lubrication"] == "dry"]
+    rows = [tuple(float(line[name]) for name in ("V_m_per_s", "F_without_N", "F_with_N")) for line in lines]
+    rows = [row for row in rows if row[0] > 0.0]  # at rest the mean of every law is 0
+    points = tuple(
+        (V / V_1, force / without, f"{1e3 * V:g} mm/s: {force:g} of {without:g} N")
+        for V, without, force in rows
+    )
+    return [
+        Preset(
+            f"luo2024-dry-{1e3 * V:g}mm-s",
+            "Measured: dry steel, 26 kHz along the sliding",
+            f"{1e3 * V:g} mm/s, {without:g} N without vibration",
+            "L. Luo et al., <i>Sci. Rep.</i> 14:25847 (2024), Fig. 5b. The limit is the force measured "
+            "without vibration at this velocity; one stiffness, 7.76 MN/m, is fitted to all five rows. Their "
+            "ratios are the points of figure c.",
+            SETTLED
+            | {
+                "friction.model": "ElasticPlastic",
+                "contact.model": "Constant",
+                "contact.sigma": 7.76e6,
+                "F_C": without,
+                "V": V,
+                "vibration.f": f,
+                "vibration.V_1": V_1,
+            },
+            known=force,
+            known_from="Measured",
+            measured=points,
+        )
+        for V, without, force in rows
+    ]
+
+
 def scenes() -> list[Preset]:
     group = "Scenes"
     return [
@@ -90,13 +136,38 @@ def scenes() -> list[Preset]:
             "stick-slip",
             group,
             "Stick and slip: a belt that moves to and fro",
-            "A resting body on a belt of 10 mm/s + 50 mm/s cos(2π 2 Hz t), as in the example of a mass on a "
-            "belt: after each turn the contact sticks and is loaded like a spring, then it slips.",
-            {
+            "A resting body on a belt of 10 mm/s + 50 mm/s cos(2π 2 Hz t), LuGre's law. Where the belt slows "
+            "below the Stribeck velocity the friction rises towards the static one; after each turn the "
+            "contact sticks and is loaded like a spring.",
+            SETTLED
+            | {
+                "friction.model": "LuGre",
+                "friction.staticRatio": 1.5,
+                "friction.V_S": 0.005,
+                "contact.stiffnessScale": IDENTIFIED.stiffnessScale,
                 "V": 0.01,
                 "vibration.V_1": 0.05,
                 "vibration.f": 2.0,
-                "contact.stiffnessScale": IDENTIFIED.stiffnessScale,
+            },
+        ),
+        Preset(
+            "ultrasonic-motor",
+            group,
+            "Ultrasonic motor: a stator that moves in ellipses",
+            "The slider runs at 0.1 m/s over a stator of 40 kHz. While the stator moves with the slider it "
+            "is pressed on harder, so the mean friction is negative: it drives. Figure c is the motor's "
+            "force over its speed.",
+            SETTLED
+            | {
+                "friction.limit": "Load",
+                "friction.mu": 0.2,
+                "contact.model": "Mindlin",
+                "contact.input": "Load",
+                "load": 100.0,
+                "V": 0.1,
+                "vibration.V_1": 0.3,
+                "vibration.f": 40e3,
+                "vibration.a_d": 1.5e-6,
             },
         ),
     ]

@@ -24,10 +24,11 @@ def rows(experiment: Experiment) -> Iterator[list[float]]:
     """A row for each communication point, in the order and units of COLUMNS."""
     scene = scene_of(experiment.values)
     count = round(experiment.stop / experiment.step)
-    delta, work = MP.mpf(0), MP.mpf(0)
+    settled = experiment.values.get("initialState") == "Settled"
+    delta, work = multiprecision(reference.periodic_deflection(scene) if settled else 0), MP.mpf(0)
     for k in range(count + 1):
         t = experiment.step * k
-        mean = reference.force(scene, 0, 0)
+        mean = reference.force(scene, 0, delta)
         if k:
             before = experiment.step * (k - 1)
             delta, impulse, step_work = map(multiprecision, reference.solve(scene, before, t, delta))

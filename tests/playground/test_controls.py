@@ -17,6 +17,10 @@ VARIABLES = {variable["name"]: variable for variable in description(XML)["variab
 CONTEXT = {
     "contact.sigma": {"contact.model": "Constant"},
     "vibration.phase_d": {"vibration.a_d": 1e-6},
+    "friction.mu": {"friction.limit": "Load"},
+    "friction.staticRatio": {"friction.model": "LuGre"},
+    "friction.V_S": {"friction.model": "LuGre", "friction.staticRatio": 1.5},
+    "load": {"contact.input": "Load"},
 }
 START = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 5e-7}
 

@@ -136,7 +136,7 @@ class Chart {
     const at = this.y(y);
     svg("line", { x1: MARGIN.left, x2: width - MARGIN.right, y1: at, y2: at, class: `rule ${kind}` }, this.data);
     if (!text) return;
-    const label = { x: width - MARGIN.right - 6, y: at - 6, "text-anchor": "end", class: `rule-text ${kind}` };
+    const label = { x: width - MARGIN.right - 6, y: y < 0 ? at + 15 : at - 6, "text-anchor": "end", class: `rule-text ${kind}` };
     svg("text", label, this.marks).textContent = text;
   }
 

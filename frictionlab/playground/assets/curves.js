@@ -4,25 +4,16 @@
 
 const SAMPLES = 240; // a period
 const PERIODS_SHOWN = 2;
-const SETTLING_PERIODS = 1e4; // in one step, where the FMU can't start settled
-const SETTLING_TIME = 1e9; // s, without vibration
-
-function start(fmu, values) {
-  fmu.start(values);
-  if (fmu.has("initialState")) return;
-  const [V_1, a_d, f] = fmu.read(["vibration.V_1", "vibration.a_d", "vibration.f"]);
-  fmu.step(V_1 > 0 || a_d > 0 ? SETTLING_PERIODS / f : SETTLING_TIME);
-}
 
 // The two periods that are shown: time [s] from their start, force [N], velocity [m/s], displacement of the
 // vibration [m], and numbers of the whole: mean [N], work and heat a period [J].
 function wave(fmu, values) {
-  start(fmu, values);
+  fmu.start(values);
   const [f, V, V_1] = fmu.read(["vibration.f", "V", "vibration.V_1"]);
   const count = SAMPLES * PERIODS_SHOWN;
   const step = 1 / f / SAMPLES;
   const outputs = ["F_t", "F_t_mean"];
-  const sums = ["W_f", "Q_f"].filter((name) => fmu.has(name));
+  const sums = ["W_f", "Q_f"];
   const before = fmu.read(sums);
   const time = new Float64Array(count + 1);
   const force = new Float64Array(count + 1);
@@ -45,9 +36,9 @@ function wave(fmu, values) {
   return { time, force, velocity, displacement, mean: sum / count, ...perPeriod };
 }
 
-// Mean force [N] over a period of the vibration.
+// Mean force [N] over a period of the vibration in the periodic state.
 function meanForce(fmu, values) {
-  start(fmu, values);
+  fmu.start({ ...values, initialState: "Settled" });
   fmu.step(1 / fmu.get("vibration.f"));
   return fmu.get("F_t_mean");
 }
@@ -56,15 +47,14 @@ function withoutVibration(values) {
   return { ...values, "vibration.V_1": 0, "vibration.a_d": 0 };
 }
 
-// The scene at rest: stiffness [N/m], normal force [N], contact area [m2], limit of friction [N], and the two
+// The scene at rest: stiffness [N/m], normal force [N], limit of friction [N], and the two
 // numbers of the regime: kappa = sigma V_1 / (2 pi f limit), zeta = V / V_1.
 function regime(fmu, values) {
   fmu.start(withoutVibration(values));
-  const [sigma, A_r, f, F_C, V] = fmu.read(["sigma", "A_r", "vibration.f", "F_C", "V"]);
-  const F_n = fmu.has("F_n") ? fmu.get("F_n") : NaN;
-  const limit = values["friction.limit"] === "Load" ? fmu.get("friction.mu") * F_n : F_C;
+  const [sigma, F_n, f, F_C, mu, V] = fmu.read(["sigma", "F_n", "vibration.f", "F_C", "friction.mu", "V"]);
+  const limit = values["friction.limit"] === "Load" ? mu * F_n : F_C;
   const V_1 = values["vibration.V_1"] ?? 0;
-  return { sigma, A_r, F_n, limit, kappa: (sigma * V_1) / (2 * Math.PI * f * limit), zeta: V / V_1 };
+  return { sigma, F_n, limit, kappa: (sigma * V_1) / (2 * Math.PI * f * limit), zeta: V / V_1 };
 }
 
 function between(low, high, count) {

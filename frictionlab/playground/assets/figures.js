@@ -90,7 +90,7 @@ class Figures {
     this.curve = curve;
   }
 
-  // here: {ratio, V, mean, without}; measured: points of the preset, or none.
+  // here: {ratio, V, mean, without, isCoulombs: whether a rigid contact would give Coulomb's mean}; measured: points of the preset, or none.
   showMean(here, measured) {
     const { curve } = this;
     if (!curve) return;
@@ -104,13 +104,13 @@ class Figures {
     this.mean.draw({
       x: extent(curve.x),
       y: [bottom, top],
-      lines: [...(curve.isRatio ? [coulomb] : []), { x: curve.x, y: curve.y, kind: "force" }],
+      lines: [...(here.isCoulombs ? [coulomb] : []), { x: curve.x, y: curve.y, kind: "force" }],
       points: [...points, ...(isShown ? [{ ...own, kind: "here", title: "this scene" }] : [])],
       summary: `Mean friction against the velocity ratio; this scene at ${readable(own.x)} has ${readable(own.y)}`,
     });
     setHtml("mean-y", curve.isRatio ? "Mean friction over that without vibration" : "Friction force in N");
     setHtml("mean-x", curve.isRatio ? "Velocity ratio <var>V</var>/<var>V</var><sub>1</sub>" : "Sliding velocity <var>V</var> in m/s");
-    document.getElementById("mean-key").hidden = !curve.isRatio;
+    document.getElementById("mean-key").hidden = !here.isCoulombs;
     document.getElementById("measured-key").hidden = points.length === 0;
   }
 
@@ -155,8 +155,7 @@ function setHtml(id, html) {
 // Shows a number in a handy unit; the value attribute holds it in full, in SI.
 function setNumber(id, value, unit, units) {
   const element = document.getElementById(id);
-  element.value = value === undefined ? "" : String(value);
-  element.closest("div").hidden = value === undefined || (id === "normal-force" && Number.isNaN(value));
+  element.value = String(value);
   const [factor, text] = units && value ? handy(units, Math.abs(value)) : [1, unit];
   setText(id, withUnit(value * factor, Number.isFinite(value) ? text : ""));
 }

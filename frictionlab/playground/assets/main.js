@@ -118,7 +118,7 @@ class Page {
 
   // The scene with the variables that the figures ask for by name, also where they are at their start.
   full() {
-    const named = ["vibration.V_1", "friction.limit", "contact.model"].filter((name) => this.fmu.has(name));
+    const named = ["vibration.V_1", "friction.limit", "contact.model"];
     return { ...Object.fromEntries(named.map((name) => [name, this.valueOf(name)])), ...this.values };
   }
 
@@ -131,10 +131,9 @@ class Page {
   show() {
     this.frame = 0;
     const begin = performance.now();
-    const known = (name) => this.fmu.has(name);
     for (const [name, control] of this.controls) {
       control.show(this.valueOf(name));
-      control.root.hidden = !control.matters((other) => (known(other) ? this.valueOf(other) : undefined));
+      control.root.hidden = !control.matters((other) => this.valueOf(other));
     }
     try {
       this.compute();
@@ -161,13 +160,20 @@ class Page {
     const without = meanForce(this.fmu, withoutVibration(values));
     const V_1 = this.valueOf("vibration.V_1");
     const V = this.valueOf("V");
-    this.state = { wave: shown, here: { ratio: V / V_1, V, mean: shown.mean, without } };
+    const isCoulombs = V_1 > 0 && this.hasConstantLimit();
+    this.state = { wave: shown, here: { ratio: V / V_1, V, mean: shown.mean, without, isCoulombs } };
     this.figures.showNumbers(shown, here, without);
     this.figures.showWave(shown, here, V_1);
     this.figures.showMean(this.state.here, this.preset?.measured);
     this.figures.showRegime(here);
     document.body.dataset.worker = "busy";
     this.worker.postMessage({ id: ++this.sent, values });
+  }
+
+  // Whether the friction of steady sliding depends on nothing.
+  hasConstantLimit() {
+    const hasStribeck = this.valueOf("friction.model") === "LuGre" && this.valueOf("friction.staticRatio") > 1;
+    return this.valueOf("friction.limit") === "Constant" && !hasStribeck && this.valueOf("friction.sigma_2") === 0;
   }
 
   // At the control that was moved; for a scene that came whole, at the one that the message names.
@@ -189,9 +195,11 @@ class Page {
     document.getElementById("preset").value = preset?.id ?? "";
     setText("changed", preset && !same ? "changed" : "");
     setHtml("note", preset?.note ?? "");
-    const paper = preset?.paper;
-    document.getElementById("paper").closest("div").hidden = paper === undefined;
-    if (paper !== undefined) setNumber("paper", paper, "N");
+    document.getElementById("known").closest("div").hidden = !preset?.known;
+    if (preset?.known) {
+      setText("known-from", preset.known_from);
+      setNumber("known", preset.known, "N");
+    }
   }
 
   isUnchanged(values) {
