@@ -24,6 +24,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 from fmpy import extract, read_model_description, simulate_fmu
+from fmpy.model_description import ModelDescription
 
 FOLDER = Path("extra") / "org.fmi-standard.fmi-ls-ref"
 MANIFEST = FOLDER / "fmi-ls-manifest.xml"
@@ -78,7 +79,7 @@ def _experiment_files(folder: Path) -> list[Path]:
 
 
 def _compare(
-    folder: Path, description: object, here: Path, experiment: ElementTree.Element
+    folder: Path, description: ModelDescription, here: Path, experiment: ElementTree.Element
 ) -> Iterator[Column]:
     name = experiment.attrib["name"]
     start, stop, tolerance, step = (
@@ -98,7 +99,9 @@ def _compare(
             stop_time=stop,
             relative_tolerance=tolerance,
             output_interval=step,
-            start_values={} if parameters is None else _parameters(here / parameters.attrib["source"]),
+            start_values={}
+            if parameters is None
+            else _parameters(here / parameters.attrib["source"], description),
             output=columns,
             logger=lambda environment, instance, status, category, text: messages.append(text.decode()),
         )
@@ -111,12 +114,19 @@ def _compare(
         yield Column(name, column, deviation, tolerance * float(np.max(np.abs(expected[column]))))
 
 
-def _parameters(path: Path) -> dict[str, str]:
+def _parameters(path: Path, description: ModelDescription) -> dict[str, str]:
+    """Start values as fmpy takes them: of an enumeration the number of the item, where SSP has its name."""
+    items = {
+        variable.name: {item.name: item.value for item in variable.declaredType.items}
+        for variable in description.modelVariables
+        if variable.type == "Enumeration"
+    }
     root = _read(ElementTree.parse, path).getroot()
-    return {
+    values = {
         parameter.attrib["name"]: parameter[0].attrib["value"]
         for parameter in root.iterfind(f"{SSV}Parameters/{SSV}Parameter")
     }
+    return {name: items.get(name, {}).get(value, value) for name, value in values.items()}
 
 
 def _read_csv(path: Path) -> np.ndarray:

@@ -48,7 +48,7 @@ def test_the_mean_is_that_of_one_long_step(
     for preset in offered:
         playground.choose(preset)
         limit = fmu.variables["F_C"].start if "F_C" not in preset.values else preset.values["F_C"]
-        expected = periodic_mean(fmu, preset.values, settle=1e4)
+        expected = periodic_mean(fmu, preset.values, settling=1e4)
         assert playground.number("mean-force") == pytest.approx(expected, abs=2 * TOLERANCE * float(limit))
 
 
@@ -83,7 +83,7 @@ def test_the_map_is_the_mean_at_each_of_its_places(playground: Playground, fmu: 
         for kappa, found in zip(kappas, row, strict=True):
             sigma = kappa * 2 * math.pi * 20e3 * 55.0
             expected = periodic_mean(
-                fmu, CONSTANT_STIFFNESS | {"V": zeta, "contact.sigma": sigma}, settle=1e4
+                fmu, CONSTANT_STIFFNESS | {"V": zeta, "contact.sigma": sigma}, settling=1e4
             )
             assert found == pytest.approx(expected / 55.0, abs=4 * TOLERANCE)
 

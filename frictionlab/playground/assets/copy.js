@@ -8,17 +8,25 @@ function escapeXml(text) {
   return text.replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
 }
 
-// scene: {name, values, valueOf, hash, wave}
+// fmpy takes the number of an enumeration's item.
+function numberOf(variable, value) {
+  return variable.items ? variable.items.findIndex((item) => item.name === value) + 1 : value;
+}
+
+// scene: {name, values, valueOf, variables, settles, hash, wave}
 const COPIES = {
-  fmpy: ({ values, valueOf }) => {
+  fmpy: ({ values, valueOf, variables }) => {
     const period = 1 / valueOf("vibration.f");
-    const words = Object.entries(values).map(([name, value]) => `${name} ${value}`);
+    const words = Object.entries(values).map(([name, value]) => `${name} ${numberOf(variables.get(name), value)}`);
     const start = words.length ? ` --start-values ${words.join(" ")}` : "";
     return `fmpy simulate ${FMU_FILE}${start} --stop-time ${PERIODS_SHOWN * period} --output-interval ${period / STEPS_A_PERIOD} --show-plot`;
   },
 
-  Python: ({ values, valueOf, settles }) => {
-    const lines = Object.entries(values).map(([name, value]) => `    ${JSON.stringify(name)}: ${JSON.stringify(value)},`);
+  Python: ({ values, valueOf, variables, settles }) => {
+    const lines = Object.entries(values).map(([name, value]) => {
+      const remark = variables.get(name).items ? `  # ${value}` : "";
+      return `    ${JSON.stringify(name)}: ${numberOf(variables.get(name), value)},${remark}`;
+    });
     const periods = settles ? PERIODS_SHOWN : 1000;
     return [
       "from fmpy import simulate_fmu",

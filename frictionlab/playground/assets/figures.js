@@ -105,7 +105,7 @@ class Figures {
       x: extent(curve.x),
       y: [bottom, top],
       lines: [...(here.isCoulombs ? [coulomb] : []), { x: curve.x, y: curve.y, kind: "force" }],
-      points: [...points, ...(isShown ? [{ ...own, kind: "here", title: "this scene" }] : [])],
+      points: [...(isShown ? [{ ...own, kind: "here", title: "this scene" }] : []), ...points],
       summary: `Mean friction against the velocity ratio; this scene at ${readable(own.x)} has ${readable(own.y)}`,
     });
     setHtml("mean-y", curve.isRatio ? "Mean friction over that without vibration" : "Friction force in N");
