@@ -94,6 +94,25 @@ static fmi2Status set_reals(Bytes* input, fmi2Component c) {
     return fmi2SetReal(c, vr, count, value);
 }
 
+static fmi2Status choose(Bytes* input, fmi2Component c) {
+    static const size_t enumerations[] = {
+        offsetof(FcVariables, solver.method),  offsetof(FcVariables, friction.model),
+        offsetof(FcVariables, contact.model),  offsetof(FcVariables, initialState),
+        offsetof(FcVariables, friction.limit), offsetof(FcVariables, contact.input)};
+    const unsigned byte = next_byte(input);
+    const fmi2ValueReference vr = reference_of(enumerations[byte < 64 ? 0 : byte / 8 % 6]);
+    const int item = (int)(byte % 8);
+    return fmi2SetInteger(c, &vr, 1, &item);
+}
+
+// An input, or F_t, which is none.
+static fmi2ValueReference next_input(Bytes* input) {
+    static const size_t inputs[] = {offsetof(FcVariables, V), offsetof(FcVariables, d),
+                                    offsetof(FcVariables, E), offsetof(FcVariables, F_t),
+                                    offsetof(FcVariables, load)};
+    return reference_of(inputs[next_byte(input) % 5]);
+}
+
 static fmi2Status directional(Bytes* input, fmi2Component c) {
     const fmi2ValueReference unknown = next_reference(input);
     const fmi2ValueReference known = next_reference(input);
@@ -157,9 +176,7 @@ static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
         integer = (int)next_byte(input) - 2;
         return fmi2SetInteger(c, &vr, 1, &integer);
     case 9:
-        vr = reference_of(offsetof(FcVariables, solver.method));
-        integer = (int)(next_byte(input) % 8);
-        return fmi2SetInteger(c, &vr, 1, &integer);
+        return choose(input, c);
     case 10:
     case 11:
         return fmi2GetFMUstate(c, &bench->slot[next_byte(input) % SLOTS]);
@@ -178,7 +195,7 @@ static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
         return fmi2GetRealOutputDerivatives(c, &vr, 1, &integer, &real);
     case 18:
     case 19:
-        vr = next_byte(input) % 4;
+        vr = next_input(input);
         integer = next_byte(input) % 16 ? 1 : 2;
         real = next_real(input);
         return fmi2SetRealInputDerivatives(c, &vr, 1, &integer, &real);
