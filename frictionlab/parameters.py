@@ -1,6 +1,6 @@
 """Table 1 and Table 2 of the paper: the one place where their numbers stand in Python.
 
-A scenario is a dictionary of start values under the names of the FMU's variables.
+A scene is given to the FMU as a dictionary of start values under the names of its variables.
 """
 
 from __future__ import annotations
@@ -31,6 +31,33 @@ def combined_modulus(E_1: float = E_1, nu_1: float = NU_1, E_2: float = E_2, nu_
 
 E_FULL = combined_modulus()
 E_REDUCED = combined_modulus((1.0 - E_1_REDUCTION) * E_1)
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """Two rough surfaces as one, under the names of the FMU's variables; start values of Table 1."""
+
+    R_q: float = 6e-6  # m
+    R: float = 1.7e-6  # m
+    eta: float = 47e9  # 1/m2
+    A_n: float = 1e-4  # m2
+    nu: float = NU_1
+    Y: float = 410e6  # Pa
+    c: float = 17.0
+    lambda_: float = 3.0
+
+    @property
+    def beta(self) -> float:
+        return self.eta * self.R * self.R_q
+
+    @property
+    def yield_pressure(self) -> float:
+        """p_m [Pa], Eq. 12 and 14."""
+        return (1.234 + 1.256 * self.nu) * (1.0 - self.nu**2) * self.Y
+
+    def critical_interference(self, E: float) -> float:
+        """omega_c [m], Eq. 13."""
+        return (math.pi * self.yield_pressure / (2.0 * E)) ** 2 * self.R
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictionlab.bench.driver import Job
 from frictionlab.fmu import Value
-from frictionlab.parameters import PERIOD, STIFFNESS_PRINTED
+from frictionlab.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from frictionlab.reference import solution as reference
 from frictionlab.reference.scene import Scene
 from frictionlab.reference.solution import MP
@@ -89,7 +89,7 @@ def sampled(samples_per_period: int, sigma: float, linear: bool, periods: int = 
         {"contact.stiffnessScale": sigma / STIFFNESS_PRINTED},
         step=PERIOD / samples_per_period,
         count=count,
-        inputs={"V": 0.005 + 1.44 * np.cos(angle), "d": 14e-6 + 1.1e-6 * np.cos(angle)},
+        inputs={"V": 0.005 + 1.44 * np.cos(angle), "d": SEPARATION + 1.1e-6 * np.cos(angle)},
         linear=linear,
     )
 

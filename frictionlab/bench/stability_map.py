@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from frictionlab.fmu import FrictionError, FrictionFmu
+from frictionlab.parameters import COULOMB_FORCE, VELOCITY_IDENTIFIED
 
-SIGMA, V, F_C = 2.5e6, 0.5, 55.0
+SIGMA, V, F_C = 2.5e6, VELOCITY_IDENTIFIED, COULOMB_FORCE
 STEPS = 40
 TOLERANCE = 1e-6
 ROUNDING = 1e-12

@@ -25,7 +25,7 @@ from frictionlab.bench.driver import (
 from frictionlab.bench.peers import SCIPY, PythonFmu, plain_cvode, python_fmu, scipy_solver
 from frictionlab.command import finish, progress_bar, say_written, write_csv
 from frictionlab.fmu import Value
-from frictionlab.parameters import PERIOD
+from frictionlab.parameters import PERIOD, SEPARATION
 
 DESCRIPTION = """\
 Measures speed against accuracy. For each scene, every method of the FMU and its peers (CVODE with its
@@ -238,7 +238,7 @@ def held_step(bench: Bench, quick: bool) -> Outcome:
     k = np.arange(64)
     inputs = {
         "V": 0.005 + 0.001 * np.cos(k),
-        "d": 14e-6 + 1e-8 * np.sin(k),
+        "d": SEPARATION + 1e-8 * np.sin(k),
         "E": 58e9 + 1e7 * np.sin(k),
     }
     return bench.run(Job({}, 1e-6, 200_000, inputs=inputs, budget=0.1 if quick else 1.0))

@@ -22,7 +22,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from frictionlab.build import build_fmu, presets
-from frictionlab.check.bad_input import write_page
 from frictionlab.check.mutants import check_mutations
 from frictionlab.check.random_mutants import check_random_mutants
 from frictionlab.project import ROOT, UserError
@@ -183,7 +182,8 @@ def check_mutants_random(extent: Extent) -> None:
 
 def write_bad_input(extent: Extent) -> None:
     """Writes docs/bad-input.md anew from the tests' bad calls."""
-    write_page()
+    build_fmu()
+    _run([sys.executable, "tests/fmi2/bad_input_page.py"])
 
 
 CHECKS: dict[str, Callable[[Extent], None]] = {

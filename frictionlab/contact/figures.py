@@ -6,7 +6,6 @@ import numpy as np
 
 from frictionlab.contact.heights import (
     SMALLEST_SEPARATION,
-    Surfaces,
     area,
     gaussian,
     load,
@@ -14,7 +13,7 @@ from frictionlab.contact.heights import (
     stiffness,
 )
 from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Level, Line, Panel, Picture, Span
-from frictionlab.parameters import SEPARATION
+from frictionlab.parameters import SEPARATION, Surfaces
 
 NAMES = {
     "exponential": "exponential, elastic-plastic (the FMU)",

@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from frictionlab.parameters import E_FULL
+from frictionlab.parameters import E_FULL, Surfaces
 from frictionlab.project import UserError
 
 Density = Callable[[float], float]
@@ -26,33 +25,6 @@ MODELS = ("exponential", "gaussian", "elastic")
 # Where both densities have fallen below 1e-17 of the integrals' values at the separation.
 TAIL = 14.0
 SMALLEST_SEPARATION = 1e-3  # in units of R_q: below, mean planes touch and no asperity theory holds
-
-
-@dataclass(frozen=True)
-class Surfaces:
-    """Two rough surfaces as one, under the names of the FMU's variables; start values of Table 1."""
-
-    R_q: float = 6e-6  # m
-    R: float = 1.7e-6  # m
-    eta: float = 47e9  # 1/m2
-    A_n: float = 1e-4  # m2
-    nu: float = 0.33
-    Y: float = 410e6  # Pa
-    c: float = 17.0
-    lambda_: float = 3.0
-
-    @property
-    def beta(self) -> float:
-        return self.eta * self.R * self.R_q
-
-    @property
-    def yield_pressure(self) -> float:
-        """p_m [Pa], Eq. 12 and 14."""
-        return (1.234 + 1.256 * self.nu) * (1.0 - self.nu**2) * self.Y
-
-    def critical_interference(self, E: float) -> float:
-        """omega_c [m], Eq. 13."""
-        return (math.pi * self.yield_pressure / (2.0 * E)) ** 2 * self.R
 
 
 def gaussian(s: float) -> float:

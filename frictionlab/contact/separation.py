@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.table import Table
 
 from frictionlab.command import command_line, finish
-from frictionlab.contact.heights import MODELS, Surfaces, area, load, separation, stiffness
-from frictionlab.parameters import E_FULL
+from frictionlab.contact.heights import MODELS, area, load, separation, stiffness
+from frictionlab.parameters import E_FULL, Surfaces
 from frictionlab.project import UserError
 
 DESCRIPTION = """\

@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from frictionlab.contact.heights import Surfaces, separation
+from frictionlab.contact.heights import separation
 from frictionlab.fmu import FrictionFmu
-from frictionlab.parameters import E_FULL
+from frictionlab.parameters import E_FULL, Surfaces
 from frictionlab.project import UserError
 from frictionlab.values import csv_rows, number
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from scipy.integrate import quad
 
-from frictionlab.contact.heights import Surfaces
+from frictionlab.parameters import Surfaces
 
 
 def force_eq_23(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frictionlab.contact.heights import Surfaces, area, stiffness
+from frictionlab.contact.heights import area, stiffness
 from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Level, Line, Panel, Picture
 from frictionlab.fmu import FrictionFmu, simulate
 from frictionlab.paper.equations import force_eq_23, force_eq_25
@@ -25,6 +25,7 @@ from frictionlab.parameters import (
     PRINTED,
     SEPARATION,
     STIFFNESS_PRINTED,
+    Surfaces,
 )
 from frictionlab.periodic import periodic_mean, periodic_waves
 

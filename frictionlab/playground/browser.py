@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 import statistics
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
-from frictionlab.project import UserError
-
-NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 SIZES = {"desktop": (1440, 900), "phone": (390, 844)}  # pixels of CSS
 SCHEMES = ("light", "dark")
 FRAMES = 120  # that are timed
@@ -29,18 +23,6 @@ DRAG = """async ([variable, frames]) => {
     }
     return performance.getEntriesByName("frame").map(({ duration }) => duration);
 }"""
-
-
-@contextmanager
-def chromium() -> Iterator[Browser]:
-    """UserError where none is installed."""
-    executable = next((found for name in NAMES if (found := shutil.which(name))), None)
-    if executable is None:
-        raise UserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 def opened(browser: Browser, html: Path, size: str, scheme: str) -> Page:

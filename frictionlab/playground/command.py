@@ -17,8 +17,9 @@ sys.path.insert(0, str(ROOT / "cmake"))
 import generate_variables
 import model_description
 
+from frictionlab.browser import chromium
 from frictionlab.description import description
-from frictionlab.playground.browser import chromium, measure, take_pictures
+from frictionlab.playground.browser import measure, take_pictures
 from frictionlab.playground.core import core
 from frictionlab.playground.page import page
 from frictionlab.presets import presets

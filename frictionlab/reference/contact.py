@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from frictionlab.parameters import Surfaces
 from frictionlab.reference.arithmetic import MP
 
 
@@ -15,15 +16,15 @@ class Contact:
     model: str = "Asperities"
     sigma: float = 2.5e6  # N/m, when model is Constant
     stiffnessScale: float = 1.0
-    R_q: float = 6e-6  # m
-    R: float = 1.7e-6  # m
-    eta: float = 47e9  # 1/m2
-    A_n: float = 1e-4  # m2
-    nu: float = 0.33
-    Y: float = 410e6  # Pa
-    c: float = 17.0
+    R_q: float = Surfaces.R_q  # m
+    R: float = Surfaces.R  # m
+    eta: float = Surfaces.eta  # 1/m2
+    A_n: float = Surfaces.A_n  # m2
+    nu: float = Surfaces.nu
+    Y: float = Surfaces.Y  # Pa
+    c: float = Surfaces.c
     # the FMU's contact.lambda
-    lambda_: float = 3.0
+    lambda_: float = Surfaces.lambda_
 
 
 def combined_modulus(E_1: float, nu_1: float, E_2: float, nu_2: float) -> Any:

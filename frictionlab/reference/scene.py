@@ -10,24 +10,25 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, SEPARATION, VELOCITY_PRINTED
 from frictionlab.reference.arithmetic import MP, Arithmetic
 from frictionlab.reference.contact import Contact, critical_interference, roughness
 
 
 @dataclass(frozen=True)
 class Scene:
-    V: float = 0.005  # m/s
-    d: float = 14e-6  # m
+    V: float = VELOCITY_PRINTED  # m/s
+    d: float = SEPARATION  # m
     E: float = 58.556936170e9  # Pa
     V_rate: float = 0.0  # m/s2
     d_rate: float = 0.0  # m/s
     E_rate: float = 0.0  # Pa/s
     start: float = 0.0  # s, when the inputs have the values above
-    f: float = 20e3  # Hz
+    f: float = FREQUENCY  # Hz
     V_1: float = 0.0  # m/s
     a_d: float = 0.0  # m
     phase_d: float = 0.0  # rad
-    F_C: float = 55.0  # N
+    F_C: float = COULOMB_FORCE  # N
     friction: str = "Dahl"
     contact: Contact = field(default_factory=Contact)
 

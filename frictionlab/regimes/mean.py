@@ -17,10 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from frictionlab.batch import simulate_many
-from frictionlab.parameters import COULOMB_FORCE, E_FULL, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
+from frictionlab.parameters import COULOMB_FORCE, E_FULL, FREQUENCY, SEPARATION, STIFFNESS_PRINTED, Surfaces
 
-R_Q = 6e-6  # m, Table 1
-DECAY = 3.0  # lambda, Eq. 17
+R_Q, DECAY = Surfaces.R_q, Surfaces.lambda_
 V_1 = 1.0  # m/s: any value gives the same maps
 SETTLING_PERIODS = 20_000  # kappa >= 1e-3 has forgotten its start by e^-80
 STEP = 1e-3  # of the central differences, relative or in rad

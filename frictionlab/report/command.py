@@ -11,6 +11,7 @@ from pathlib import Path
 
 from rich.progress import Progress
 
+from frictionlab.browser import find_browser
 from frictionlab.build import build_fmu
 from frictionlab.command import add_fmu, add_output, command_line, finish, progress_bar
 from frictionlab.contact import figures as contact_figures
@@ -73,7 +74,7 @@ def run(options: argparse.Namespace) -> None:
         if options.screenshots:
             written += _screenshots(index, progress)
     print(f"Written: {index} and {len(written) - 1} pictures")
-    if browser.find_browser() is None:
+    if find_browser() is None:
         print("No Chromium on this machine: the page was not looked at in a browser.")
 
 

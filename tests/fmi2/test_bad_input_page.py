@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from frictionlab.check.bad_input import PAGE, page
+from bad_input_page import PAGE, page
 
 
 def test_the_page_is_what_the_fmu_does(unzipped_fmu: Path) -> None:

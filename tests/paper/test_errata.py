@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import i0
 
-from frictionlab.contact.heights import Surfaces, area, closed_form_area, load, stiffness
+from frictionlab.contact.heights import area, closed_form_area, load, stiffness
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify.command import EXAMPLE
 from frictionlab.identify.data import read
@@ -37,6 +37,7 @@ from frictionlab.parameters import (
     SEPARATION,
     STIFFNESS_PRINTED,
     TABLE_2,
+    Surfaces,
     start_values,
 )
 from frictionlab.periodic import periodic_mean

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from frictionlab.contact.heights import (
-    Surfaces,
     area,
     closed_form_area,
     exponential,
@@ -19,7 +18,7 @@ from frictionlab.contact.heights import (
     stiffness,
 )
 from frictionlab.fmu import FrictionFmu
-from frictionlab.parameters import E_FULL, E_REDUCED
+from frictionlab.parameters import E_FULL, E_REDUCED, Surfaces
 from frictionlab.project import UserError
 
 DATA = Path(__file__).resolve().parents[2] / "data"

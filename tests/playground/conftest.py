@@ -9,8 +9,8 @@ import pytest
 from playground_page import Playground
 from playwright.sync_api import Browser
 
+from frictionlab.browser import chromium
 from frictionlab.description import description
-from frictionlab.playground.browser import chromium
 from frictionlab.playground.command import XML, page_text
 from frictionlab.presets import Preset, possible, presets
 from frictionlab.project import UserError

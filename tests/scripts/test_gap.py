@@ -7,7 +7,8 @@ import re
 import pytest
 
 from frictionlab.contact import separation as gap
-from frictionlab.contact.heights import Surfaces, load
+from frictionlab.contact.heights import load
+from frictionlab.parameters import Surfaces
 
 
 def test_load_gives_start_values_that_carry_it(capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from frictionlab.browser import find_browser
 from frictionlab.report import browser as report_browser
 from frictionlab.report import command as report
 
@@ -91,7 +92,7 @@ def test_page_loads_nothing(body: str) -> None:
     ],
 )
 def test_browser_draws_it_all(index: Path, width: int, dark: bool) -> None:
-    if report_browser.find_browser() is None:
+    if find_browser() is None:
         pytest.skip("no Chromium on this machine: the report page is not looked at")
     seen = report_browser.visit(index, width, dark)
     assert seen.problems == []
@@ -100,7 +101,7 @@ def test_browser_draws_it_all(index: Path, width: int, dark: bool) -> None:
 
 
 def test_browser_finds_what_is_wrong(tmp_path: Path) -> None:
-    if report_browser.find_browser() is None:
+    if find_browser() is None:
         pytest.skip("no Chromium on this machine: the report page is not looked at")
     page = tmp_path / "broken.html"
     page.write_text(

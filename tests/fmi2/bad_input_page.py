@@ -1,19 +1,21 @@
 """docs/bad-input.md: what each wrong call or value gets, from the very calls that the tests make.
 
-.venv/bin/python -m frictionlab.check.bad_input     writes the page
+.venv/bin/python tests/fmi2/bad_input_page.py     writes the page
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
+
+from bad_calls import GROUPS
+from fmi_library import MODEL_EXCHANGE, Instance, Library
+from test_call_order import TABLE
 
 from frictionlab.build import build_fmu
 from frictionlab.fmu import FrictionFmu
 from frictionlab.project import ROOT
 
 PAGE = ROOT / "docs" / "bad-input.md"
-TESTS = ROOT / "tests" / "fmi2"
 STATUS = ("fmi2OK", "fmi2Warning", "fmi2Discard", "fmi2Error", "fmi2Fatal", "fmi2Pending")
 
 HEAD = """\
@@ -53,9 +55,7 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("%%", "%")
 
 
-def _instantiation(library: object) -> list[str]:
-    from fmi_library import MODEL_EXCHANGE, Instance
-
+def _instantiation(library: Library) -> list[str]:
     cases = {
         "another FMU's guid": {"guid": "{00000000-0000-0000-0000-000000000000}"},
         "fmuType = fmi2ModelExchange": {"kind": MODEL_EXCHANGE},
@@ -74,12 +74,6 @@ def _instantiation(library: object) -> list[str]:
 
 def page(folder: Path) -> str:
     """The text of the page, from the unpacked FMU."""
-    if str(TESTS) not in sys.path:
-        sys.path.insert(0, str(TESTS))
-    from bad_calls import GROUPS
-    from fmi_library import Instance, Library
-    from test_call_order import TABLE
-
     library = Library(folder)
     lines = [HEAD]
     for group, calls in GROUPS.items():
