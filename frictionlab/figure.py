@@ -1,4 +1,4 @@
-"""A picture without a plotting package: what the web page and the image files draw alike.
+"""A figure without a plotting package: what the web page and the image files draw alike.
 
 Labels write subscripts as F_t or V_1; each renderer turns them into its own form.
 """
@@ -100,7 +100,7 @@ class Panel:
 
 
 @dataclass(frozen=True)
-class Picture:
+class Figure:
     key: str  # names the files
     title: str
     caption: str

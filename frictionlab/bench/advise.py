@@ -11,7 +11,7 @@ import numpy as np
 from rich.progress import Progress
 from rich.table import Table
 
-from frictionlab.bench import figures as bench_pictures
+from frictionlab.bench import figures
 from frictionlab.bench.cases import Case
 from frictionlab.bench.driver import (
     Bench,
@@ -181,7 +181,7 @@ def table_of_scenes(bench: Bench, options: argparse.Namespace, progress: Progres
         write_csv(rows, options.output / "levels.csv"),
         write_csv(names, options.output / "levels-cheapest.csv"),
         write_machine(options.output / "machine.json"),
-        *bench_pictures.levels(rows, {case.name: case.title for case in cases}, options.output),
+        *figures.levels(rows, {case.name: case.title for case in cases}, options.output),
     ]
     if options.docs:
         written += renew_docs(written)

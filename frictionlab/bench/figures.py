@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from frictionlab import style
-
-if TYPE_CHECKING:
-    from frictionlab.bench.work_precision import Point
+from frictionlab.bench.grade import Point
 
 COLOUR = {
     **style.METHOD,

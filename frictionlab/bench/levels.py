@@ -13,7 +13,7 @@ import numpy as np
 from frictionlab.bench.cases import Case, expected, sampled, vibrating
 from frictionlab.bench.coupling import Belt, monolithic
 from frictionlab.bench.driver import Bench
-from frictionlab.bench.work_precision import FIXED_STEP, Point, point
+from frictionlab.bench.grade import FIXED_STEP, Point, grade_point
 from frictionlab.fmu import Value
 from frictionlab.parameters import E_FULL, E_REDUCED, PERIOD, STIFFNESS_PRINTED, TABLE_2
 from frictionlab.reference.solution import stiffness
@@ -92,7 +92,7 @@ def grade(bench: Bench, case: Case, quick: bool) -> list[Graded]:
     for level in levels(case, quick):
         settings = {name.replace(".", "__"): value for name, value in level.settings(case).items()}
         budget = 0.003 if quick else 0.02
-        measured = point(
+        measured = grade_point(
             case,
             references,
             level.method,

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from rich.table import Table
 
-from frictionlab.bench import stability_figures as stability_pictures
+from frictionlab.bench import stability_figures
 from frictionlab.bench.coupling import (
     COUPLINGS,
     Belt,
@@ -93,8 +93,8 @@ def run(options: argparse.Namespace) -> None:
         write_csv(errors, output / "coupled-errors.csv"),
         write_machine(output / "machine.json"),
     ]
-    written += stability_pictures.draw_map(behaviours, found, output)
-    written += stability_pictures.draw_coupled(errors, coupled, reference, belt, output)
+    written += stability_figures.draw_map(behaviours, found, output)
+    written += stability_figures.draw_coupled(errors, coupled, reference, belt, output)
     if options.docs:
         written += renew_docs(written)
     console = wide_console()

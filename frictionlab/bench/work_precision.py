@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from rich.table import Table
 
-from frictionlab.bench import figures as bench_pictures
+from frictionlab.bench import figures
 from frictionlab.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
 from frictionlab.bench.driver import (
     Bench,
@@ -22,6 +22,7 @@ from frictionlab.bench.driver import (
     wide_console,
     write_machine,
 )
+from frictionlab.bench.grade import FIXED_STEP, Point, grade_point
 from frictionlab.bench.peers import SCIPY, PythonFmu, plain_cvode, python_fmu, scipy_solver
 from frictionlab.command import finish, progress_bar, say_written, write_csv
 from frictionlab.fmu import Value
@@ -34,63 +35,7 @@ time, evaluations of the right-hand side, and the largest error of F_t and of it
 independent reference. Then the error against the communication step for held and linear inputs, and the
 cost of one step against the number of vibration periods in it."""
 
-FIXED_STEP = ("backwardEuler", "trapezoid", "rk4", "explicitEuler")
 MATCHED_ERROR = 1e-9
-
-
-@dataclass(frozen=True)
-class Point:
-    """One method at one setting on one case; errors over F_C, times in s per vibration period."""
-
-    case: str
-    method: str
-    setting: float  # tolerance, or internal steps per communication step
-    error_F: float
-    error_mean: float
-    cpu: float
-    wall: float
-    evaluations: float
-    failure: str = ""
-
-    @property
-    def error(self) -> float:
-        return max(self.error_F, self.error_mean)
-
-    def row(self) -> dict[str, object]:
-        return {
-            "case": self.case,
-            "method": self.method,
-            "setting": self.setting,
-            "error_F_t": self.error_F,
-            "error_F_t_mean": self.error_mean,
-            "cpu_s_per_period": self.cpu,
-            "wall_s_per_period": self.wall,
-            "evaluations_per_period": self.evaluations,
-            "failure": self.failure,
-        }
-
-
-References = dict[float, tuple[np.ndarray, np.ndarray]]
-
-
-def point(
-    case: Case, references: References, method: str, setting: float, run: Callable[[float], Outcome]
-) -> Point:
-    """Runs a method from each start for which there is a reference."""
-    outcomes = {start: run(start) for start in references}
-    for outcome in outcomes.values():
-        if outcome.failure:
-            return Point(case.name, method, setting, *[math.nan] * 5, outcome.failure)
-    error_F, error_mean = 0.0, 0.0
-    for start, (F, F_mean) in references.items():
-        error_F = max(error_F, float(np.abs(outcomes[start].F - F).max()) / case.F_C)
-        error_mean = max(error_mean, float(np.abs(outcomes[start].F_mean - F_mean).max()) / case.F_C)
-    scale = PERIOD / case.step
-    cpu, wall, evaluations = (
-        scale * float(np.median([getattr(outcome, name) for outcome in outcomes.values()]))
-        for name in ("cpu", "wall", "evaluations")
-    )
-    return Point(case.name, method, setting, error_F, error_mean, cpu, wall, evaluations)
 
 
 @dataclass(frozen=True)
@@ -126,8 +71,8 @@ def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iter
     for tolerance in effort.tolerances:
         for method in ("collocation", "cvode"):
             run = fmu(solver__method=method, solver__tolerance=tolerance)
-            yield point(case, references, method, tolerance, run)
-        yield point(
+            yield grade_point(case, references, method, tolerance, run)
+        yield grade_point(
             case,
             references,
             "plain CVODE",
@@ -137,10 +82,10 @@ def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iter
     for steps in effort.steps:
         for method in FIXED_STEP:
             run = fmu(solver__method=method, solver__stepSize=case.step / steps)
-            yield point(case, references, method, steps, run)
+            yield grade_point(case, references, method, steps, run)
     for tolerance in effort.slow_tolerances:
         for method in effort.scipy:
-            yield point(
+            yield grade_point(
                 case,
                 one,
                 f"scipy {method}",
@@ -149,7 +94,7 @@ def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iter
                     case, start, method, tolerance, effort.most_evaluations
                 ),
             )
-        yield point(
+        yield grade_point(
             case,
             one,
             "PythonFMU",
@@ -313,9 +258,9 @@ def run(options: argparse.Namespace) -> None:
         write_machine(output / "machine.json"),
     ]
     titles = {case.name: case.title for case in chosen}
-    written += bench_pictures.work_precision(points, titles, output)
-    written += bench_pictures.step_sizes(step_sizes, output)
-    written += bench_pictures.periods(periods, output)
+    written += figures.work_precision(points, titles, output)
+    written += figures.step_sizes(step_sizes, output)
+    written += figures.periods(periods, output)
     if options.docs:
         written += renew_docs(written)
     wide_console().print(ratio_table(compared))

@@ -1,4 +1,4 @@
-"""Pictures of the height statistics: what the exponential density costs, and load against separation."""
+"""Figures of the height statistics: what the exponential density costs, and load against separation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from frictionlab.contact.heights import (
     separation,
     stiffness,
 )
-from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Level, Line, Panel, Picture, Span
+from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel, Span
 from frictionlab.parameters import SEPARATION, Surfaces
 
 NAMES = {
@@ -25,7 +25,7 @@ DASHES = {"exponential": "solid", "gaussian": "dash", "elastic": "dot"}
 TESTED_LOADS = (40.0, 240.0)  # N, Dong and Dapino 2014
 
 
-def areas(points: int = 61) -> Picture:
+def areas(points: int = 61) -> Figure:
     """Density, contact area and its error over d / R_q."""
     surfaces = Surfaces()
     h = np.linspace(0.25, 4.5, points)
@@ -72,10 +72,10 @@ def areas(points: int = 61) -> Picture:
         "for d / R_q from 0.55 to 4.1, and useless near zero. Nearly all touching asperities yield "
         "here, which doubles the elastic area."
     )
-    return Picture("heights", "What the exponential height density costs", caption, panels, 3, (14.0, 4.8))
+    return Figure("heights", "What the exponential height density costs", caption, panels, 3, (14.0, 4.8))
 
 
-def loads(points: int = 61) -> Picture:
+def loads(points: int = 61) -> Figure:
     """Normal load over separation, and the stiffness over load."""
     surfaces = Surfaces()
     gaps = np.linspace(SMALLEST_SEPARATION + 0.25, 4.5, points) * surfaces.R_q
@@ -98,4 +98,4 @@ def loads(points: int = 61) -> Picture:
         "yielding begins, so the load of a single asperity jumps there by a factor of 3/2; the critical "
         "interference is so small here that the sum does not show it."
     )
-    return Picture("load", "Load against separation", caption, panels, 2, (11.0, 4.8))
+    return Figure("load", "Load against separation", caption, panels, 2, (11.0, 4.8))

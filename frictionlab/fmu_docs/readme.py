@@ -14,8 +14,7 @@ from frictionlab import style
 from frictionlab.build import build_fmu
 from frictionlab.command import add_fmu, add_output, command_line, finish
 from frictionlab.fmu import FrictionFmu, simulate
-from frictionlab.paper import table2
-from frictionlab.paper import table2_figure as table2_picture
+from frictionlab.paper import table2, table2_figure
 from frictionlab.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictionlab.periodic import settle
 from frictionlab.project import ROOT
@@ -158,7 +157,7 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
 
 def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     """All pictures; gives their paths."""
-    table2_picture.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
+    table2_figure.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
     for drawing in (overview, fmpy_example, step_sizes):
         drawing(fmu, folder / f"{drawing.__name__}.png")
     return sorted(folder / f"{name}.png" for name in ("table2", "overview", "fmpy_example", "step_sizes"))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from frictionlab.figure import BLUE, INK, ORANGE, Level, Line, Panel, Picture
+from frictionlab.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify.data import Measurements
 from frictionlab.identify.fit import Experiment, Fit, Parameter, fit, parameter
@@ -55,7 +55,7 @@ def held(found: list[Fit], name: str) -> int:
     return sum(low <= TRUTH[name] <= high for low, high in (one.interval(k) for one in found))
 
 
-def picture(fmu: FrictionFmu, seeds: int) -> Picture:
+def figure(fmu: FrictionFmu, seeds: int) -> Figure:
     """The intervals of every seed against the truth."""
     found = list(fits(fmu, seeds))
     panels = []
@@ -82,4 +82,4 @@ def picture(fmu: FrictionFmu, seeds: int) -> Picture:
         f"Twelve synthetic mean forces with normal noise of {NOISE:g} N, fitted for three parameters, with "
         f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should hold the truth."
     )
-    return Picture("recovery", "Known parameters, recovered from noisy data", caption, panels, 3, (15.0, 4.6))
+    return Figure("recovery", "Known parameters, recovered from noisy data", caption, panels, 3, (15.0, 4.6))

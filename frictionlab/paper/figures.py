@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictionlab.contact.heights import area, stiffness
-from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Level, Line, Panel, Picture
+from frictionlab.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel
 from frictionlab.fmu import FrictionFmu, simulate
 from frictionlab.paper.equations import force_eq_23, force_eq_25
 from frictionlab.parameters import (
@@ -68,15 +68,15 @@ def start(stiffness: Stiffness, V: float, V_1: float = 0.0, a_d: float = 0.0) ->
     }
 
 
-def figure_2(fmu: FrictionFmu) -> Picture:
+def figure_2(fmu: FrictionFmu) -> Figure:
     return _steady(fmu, "fig-02", 2, 0.005)
 
 
-def figure_3(fmu: FrictionFmu) -> Picture:
+def figure_3(fmu: FrictionFmu) -> Figure:
     return _steady(fmu, "fig-03", 3, 0.5)
 
 
-def _steady(fmu: FrictionFmu, key: str, number: int, V: float) -> Picture:
+def _steady(fmu: FrictionFmu, key: str, number: int, V: float) -> Figure:
     panels = []
     for contact in STIFFNESSES:
         relaxation = COULOMB_FORCE / (contact.sigma * V)
@@ -109,7 +109,7 @@ def _steady(fmu: FrictionFmu, key: str, number: int, V: float) -> Picture:
         f"{_shown(COULOMB_FORCE / (PRINTED.stiffness * V))}, at the identified stiffness within "
         f"{_shown(COULOMB_FORCE / (IDENTIFIED.stiffness * V))} (F_C / (σ V))."
     )
-    return Picture(key, f"Figure {number}: constant velocity of {V:g} m/s", caption, panels)
+    return Figure(key, f"Figure {number}: constant velocity of {V:g} m/s", caption, panels)
 
 
 def _time_unit(t: float) -> tuple[float, str]:
@@ -124,19 +124,19 @@ def _shown(t: float) -> str:
     return f"{factor * t:.3g} {unit}"
 
 
-def figure_4(fmu: FrictionFmu) -> Picture:
+def figure_4(fmu: FrictionFmu) -> Figure:
     return _vibrating(fmu, "fig-04", 4, 0.5, 1.4)
 
 
-def figure_5(fmu: FrictionFmu) -> Picture:
+def figure_5(fmu: FrictionFmu) -> Figure:
     return _vibrating(fmu, "fig-05", 5, 0.005, 1.4)
 
 
-def figure_6(fmu: FrictionFmu) -> Picture:
+def figure_6(fmu: FrictionFmu) -> Figure:
     return _vibrating(fmu, "fig-06", 6, 0.005, 14.5)
 
 
-def _vibrating(fmu: FrictionFmu, key: str, number: int, V: float, V_1: float) -> Picture:
+def _vibrating(fmu: FrictionFmu, key: str, number: int, V: float, V_1: float) -> Figure:
     panels, means = [], []
     samples, periods = 200, 3
     for contact in STIFFNESSES:
@@ -167,10 +167,10 @@ def _vibrating(fmu: FrictionFmu, key: str, number: int, V: float, V_1: float) ->
         "the two can't be told apart by eye."
     )
     title = f"Figure {number}: velocity {V:g} m/s with a vibration of {V_1:g} m/s"
-    return Picture(key, title, caption, panels)
+    return Figure(key, title, caption, panels)
 
 
-def figure_8(fmu: FrictionFmu) -> Picture:
+def figure_8(fmu: FrictionFmu) -> Figure:
     gaps = np.linspace(10e-6, 20e-6, 101)
     surfaces = Surfaces()
     of_fmu = _against_gap(fmu, gaps, "A_r")
@@ -192,10 +192,10 @@ def figure_8(fmu: FrictionFmu) -> Picture:
         "in."
     )
     panel = Panel("Real contact area", "separation d [µm]", "A_r [mm²]", items, y_log=True)
-    return Picture("fig-08", "Figure 8: contact area against separation", caption, [panel], 1, (6.0, 4.4))
+    return Figure("fig-08", "Figure 8: contact area against separation", caption, [panel], 1, (6.0, 4.4))
 
 
-def figure_10(fmu: FrictionFmu) -> Picture:
+def figure_10(fmu: FrictionFmu) -> Figure:
     gaps = np.linspace(10e-6, 20e-6, 101)
     surfaces = Surfaces()
     items = [
@@ -215,7 +215,7 @@ def figure_10(fmu: FrictionFmu) -> Picture:
         "3.3."
     )
     panel = Panel("Tangential stiffness", "separation d [µm]", "σ [N/m]", items, y_log=True)
-    return Picture(
+    return Figure(
         "fig-10", "Figure 10: contact stiffness against separation", caption, [panel], 1, (6.0, 4.4)
     )
 
@@ -230,19 +230,19 @@ def _against_gap(fmu: FrictionFmu, gaps: np.ndarray, name: str) -> np.ndarray:
     return np.array(values)
 
 
-def figure_9(fmu: FrictionFmu) -> Picture:
+def figure_9(fmu: FrictionFmu) -> Figure:
     ratio = PRINTED_MEAN_AREA / PRINTED_AREA
     return _over_time(fmu, "fig-09", 9, "A_r", "A_r", "contact area", ratio)
 
 
-def figure_11(fmu: FrictionFmu) -> Picture:
+def figure_11(fmu: FrictionFmu) -> Figure:
     ratio = PRINTED_MEAN_SIGMA / PRINTED_SIGMA
     return _over_time(fmu, "fig-11", 11, "sigma", "σ", "contact stiffness", ratio)
 
 
 def _over_time(
     fmu: FrictionFmu, key: str, number: int, name: str, symbol: str, words: str, printed: float
-) -> Picture:
+) -> Figure:
     """Over its value at 14 um, since the paper's absolute values are off; printed is the paper's mean so."""
     run = periodic_waves(fmu, start(STIFFNESSES[0], 0.005, a_d=A_D), (name,))
     with fmu.session(start(STIFFNESSES[0], 0.005)) as session:
@@ -260,7 +260,7 @@ def _over_time(
         f"a symmetric oscillation rises: {change:+.2f} %. The paper has it fall by {-printed_change:.0f} %."
     )
     panel = Panel(f"Oscillating {words}", "time [µs]", f"{symbol} over its value at 14 µm", items)
-    return Picture(key, f"Figure {number}: {words} over time", caption, [panel], 1, (6.4, 4.6))
+    return Figure(key, f"Figure {number}: {words} over time", caption, [panel], 1, (6.4, 4.6))
 
 
 def frozen_time() -> float:
@@ -268,7 +268,7 @@ def frozen_time() -> float:
     return FROZEN * COULOMB_FORCE / (PRINTED.stiffness * PRINTED.V)
 
 
-def figure_12(fmu: FrictionFmu) -> Picture:
+def figure_12(fmu: FrictionFmu) -> Figure:
     """F against d: at one instant of Eq. 23, as the paper must have drawn it, and while d moves."""
     gaps = np.linspace(12.0e-6, 16.5e-6, 46)
     t = frozen_time()
@@ -308,10 +308,10 @@ def figure_12(fmu: FrictionFmu) -> Picture:
         "moves, the deflection lags and the force goes around a loop, beyond F_C on one side and below it "
         "on the other."
     )
-    return Picture("fig-12", "Figure 12: friction force against separation", caption, panels)
+    return Figure("fig-12", "Figure 12: friction force against separation", caption, panels)
 
 
-def figure_13(fmu: FrictionFmu) -> Picture:
+def figure_13(fmu: FrictionFmu) -> Figure:
     run = periodic_waves(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), ("F_t", "sigma"))
     formula = force_eq_23(COULOMB_FORCE, run["sigma"], PRINTED.V, frozen_time())
     middle = 0.5 * float(formula.max() + formula.min())
@@ -346,10 +346,10 @@ def figure_13(fmu: FrictionFmu) -> Picture:
         "comes out of Eq. 23 with d(t) put in at one frozen instant, and of (max + min) / 2 instead of a "
         "mean."
     )
-    return Picture("fig-13", "Figure 13: friction force over time with moving separation", caption, panels)
+    return Figure("fig-13", "Figure 13: friction force over time with moving separation", caption, panels)
 
 
-FIGURES: tuple[Callable[[FrictionFmu], Picture], ...] = (
+FIGURES: tuple[Callable[[FrictionFmu], Figure], ...] = (
     figure_2,
     figure_3,
     figure_4,

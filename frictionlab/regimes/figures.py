@@ -1,4 +1,4 @@
-"""Pictures of the regimes: mean friction, sensitivities, friction reduction, and which model is enough."""
+"""Figures of the regimes: mean friction, sensitivities, friction reduction, and which model is enough."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from frictionlab.figure import (
     PINK,
     SKY,
     Classes,
+    Figure,
     Level,
     Line,
     Map,
     Panel,
-    Picture,
     Span,
 )
 from frictionlab.regimes.mean import (
@@ -49,7 +49,7 @@ def grids(quick: bool) -> tuple[np.ndarray, np.ndarray]:
     return np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 1.5, n)
 
 
-def means(probe: Probe, quick: bool) -> Picture:
+def means(probe: Probe, quick: bool) -> Figure:
     """Mean friction over kappa and zeta without and with normal vibration, and cuts against the limits."""
     kappas, zetas = grids(quick)
     levels = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
@@ -88,10 +88,10 @@ def means(probe: Probe, quick: bool) -> Picture:
         "deflection and have a limit of their own: π²/4 times Coulomb's mean at small ζ. Beyond ζ = 1 "
         "nothing reverses and, with d constant, the mean is F_C."
     )
-    return Picture("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
+    return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
 
 
-def sensitivities(probe: Probe, quick: bool) -> Picture:
+def sensitivities(probe: Probe, quick: bool) -> Figure:
     """A map per parameter."""
     n = STEPS_QUICK if quick else 33
     kappas, zetas = np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 0.99, n)
@@ -109,10 +109,10 @@ def sensitivities(probe: Probe, quick: bool) -> Picture:
         "of it changes the mean by 0.1 % of F_C. Note the wider scale of d: the stiffness follows its 17th "
         "power here. E acts through the stiffness alone, so it shows minus a seventeenth of what d shows."
     )
-    return Picture("sensitivity", "What the mean friction is sensitive to", caption, panels, 4, (18.0, 9.0))
+    return Figure("sensitivity", "What the mean friction is sensitive to", caption, panels, 4, (18.0, 9.0))
 
 
-def sensitivity_cuts(probe: Probe, quick: bool) -> Picture:
+def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
     """Along kappa at one zeta, against the closed-form limits at both ends."""
     kappas = np.geomspace(1e-3, 1e5, 33 if quick else 97)
     zeta = 0.3
@@ -142,10 +142,10 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Picture:
         "where only V, V_1 and F_C matter, and the soft limit ζ ⟨σ⟩ / ⟨σ |ζ + cos|⟩ to the left, where the "
         "phase matters and the stiffness no more."
     )
-    return Picture("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
+    return Figure("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
 
 
-def phases(probe: Probe, quick: bool) -> Picture:
+def phases(probe: Probe, quick: bool) -> Figure:
     """Mean friction over phase and amplitude of the separation."""
     n = 25 if quick else 73
     angles, alphas = np.linspace(0.0, 360.0, n), np.linspace(0.0, 0.5, n)
@@ -162,10 +162,10 @@ def phases(probe: Probe, quick: bool) -> Picture:
         "in one direction and soft on the way back. Blue is negative mean friction: the vibration drives "
         "the sliding, as in an ultrasonic motor."
     )
-    return Picture("phase", "Phase and amplitude of the moving separation", caption, panels, 3, (15.0, 4.6))
+    return Figure("phase", "Phase and amplitude of the moving separation", caption, panels, 3, (15.0, 4.6))
 
 
-def regimes(probe: Probe, quick: bool) -> Picture:
+def regimes(probe: Probe, quick: bool) -> Figure:
     """Which model is enough, over kappa and zeta, for three amplitudes of the separation."""
     n = 21 if quick else 61
     kappas, zetas = np.geomspace(1e-2, 1e7, n), np.geomspace(1e-3, 1.5, n)
@@ -186,7 +186,7 @@ def regimes(probe: Probe, quick: bool) -> Picture:
         "Where the mean may be negative, some phase drives the sliding. Marked: row 3 of Table 2 at the "
         "printed parameters (κ = 1.2e6, ζ = 0.0035) and as identified (κ = 0.53, ζ = 0.35)."
     )
-    return Picture("regimes", "Which model a scene needs", caption, panels, 3, (15.0, 5.6))
+    return Figure("regimes", "Which model a scene needs", caption, panels, 3, (15.0, 5.6))
 
 
 def _table_2_points() -> list[Line]:
@@ -208,7 +208,7 @@ MEASURED = (
 UP_TO = (60.0, "Dong, Dapino 2014 [9]: up to 60 %, both directions")
 
 
-def reduction(probe: Probe, quick: bool) -> Picture:
+def reduction(probe: Probe, quick: bool) -> Figure:
     """Friction reduction over V / V_1 with the limits, and what others measured."""
     zetas = np.geomspace(1e-3, 2.0, 60 if quick else 160)
     lines = [
@@ -253,7 +253,7 @@ def reduction(probe: Probe, quick: bool) -> Picture:
         "343–350 (2014), the paper's reference 9. The printed V / V_1 of Table 2 is 0.0035: there every "
         "stiffness gives at least 99.4 %, not 51 %."
     )
-    return Picture(
+    return Figure(
         "reduction",
         "Friction reduction against the velocity ratio",
         caption,

@@ -15,7 +15,7 @@ from frictionlab.browser import find_browser
 from frictionlab.build import build_fmu
 from frictionlab.command import add_fmu, add_output, command_line, finish, progress_bar
 from frictionlab.contact import figures as contact_figures
-from frictionlab.figure import Picture
+from frictionlab.figure import Figure
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify import recovery
 from frictionlab.paper import figures as paper_figures
@@ -30,10 +30,10 @@ from frictionlab.report.page import Section, page
 DESCRIPTION = """\
 Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the
 equations give, the height statistics, the regimes and sensitivities of the mean friction, and the
-identification. Writes build/report/index.html, one page that needs no network, and each picture as SVG and
+identification. Writes build/report/index.html, one page that needs no network, and each figure as SVG and
 PNG beside it."""
 
-# Pictures that the README and the documents show, and their names there.
+# Figures that the README and the documents show, and their names there.
 IN_DOCS = ("fig-04", "fig-13", "heights", "mean", "regimes", "reduction", "sensitivity-cuts", "recovery")
 
 
@@ -45,7 +45,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--docs",
         action="store_true",
-        help="also renew the pictures that docs/ shows, docs/pictures/paper-*.png",
+        help="also renew the figures that docs/ shows, docs/pictures/paper-*.png",
     )
     parser.add_argument(
         "--screenshots",
@@ -64,27 +64,27 @@ def run(options: argparse.Namespace) -> None:
     with progress_bar() as progress:
         path = options.fmu or build_fmu(progress=progress)
         with FrictionFmu(path) as fmu:
-            pictures = _pictures(fmu, options.quick, progress)
-            sections = text.sections(list(results(fmu)), claims(fmu), pictures)
+            figures = _figures(fmu, options.quick, progress)
+            sections = text.sections(list(results(fmu)), claims(fmu), figures)
         index = options.output / "index.html"
         _write(index, sections, options.quick)
         written = [index]
         if not options.quick or options.docs:
-            written += _draw(pictures, options, progress)
+            written += _draw(figures, options, progress)
         if options.screenshots:
             written += _screenshots(index, progress)
-    print(f"Written: {index} and {len(written) - 1} pictures")
+    print(f"Written: {index} and {len(written) - 1} figures")
     if find_browser() is None:
         print("No Chromium on this machine: the page was not looked at in a browser.")
 
 
-def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Picture]]:
-    for figure in paper_figures.FIGURES:
-        yield lambda figure=figure: figure(fmu)
+def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Figure]]:
+    for draw in paper_figures.FIGURES:
+        yield lambda draw=draw: draw(fmu)
     yield lambda: text.table_2_waves(fmu)
     yield contact_figures.areas
     yield contact_figures.loads
-    for figure in (
+    for draw in (
         regime_figures.means,
         regime_figures.regimes,
         regime_figures.reduction,
@@ -92,17 +92,17 @@ def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], 
         regime_figures.sensitivity_cuts,
         regime_figures.phases,
     ):
-        yield lambda figure=figure: figure(probe, quick)
-    yield lambda: recovery.picture(fmu, 20 if quick else 100)
+        yield lambda draw=draw: draw(probe, quick)
+    yield lambda: recovery.figure(fmu, 20 if quick else 100)
 
 
-def _pictures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Picture]:
+def _figures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Figure]:
     jobs = list(_jobs(fmu, Probe(fmu.path), quick))
     task = progress.add_task("Simulating", total=len(jobs))
     found = {}
     for job in jobs:
-        picture = job()
-        found[picture.key] = picture
+        figure = job()
+        found[figure.key] = figure
         progress.advance(task)
     progress.remove_task(task)
     return found
@@ -120,12 +120,12 @@ def _write(path: Path, sections: Sequence[Section], quick: bool) -> None:
     partial.replace(path)
 
 
-def _draw(pictures: dict[str, Picture], options: argparse.Namespace, progress: Progress) -> list[Path]:
-    task = progress.add_task("Drawing", total=len(pictures))
+def _draw(figures: dict[str, Figure], options: argparse.Namespace, progress: Progress) -> list[Path]:
+    task = progress.add_task("Drawing", total=len(figures))
     written = []
-    for key, picture in pictures.items():
+    for key, figure in figures.items():
         paths = [options.output / f"{key}.svg", options.output / f"{key}.png"]
-        images.draw(picture, *paths)
+        images.draw(figure, *paths)
         written += paths
         if options.docs and key in IN_DOCS:
             written.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
@@ -146,7 +146,7 @@ def _screenshots(index: Path, progress: Progress) -> list[Path]:
             written.append(path)
             problems += [f"{name}, {theme}: {problem}" for problem in seen.problems]
             if not seen.drawn:
-                problems.append(f"{name}, {theme}: not all pictures are drawn")
+                problems.append(f"{name}, {theme}: not all figures are drawn")
             if seen.scroll_width > width:
                 problems.append(f"{name}, {theme}: {seen.scroll_width} px wide, the window has {width}")
             progress.advance(task)

@@ -1,4 +1,4 @@
-"""Pictures of the report as SVG and PNG."""
+"""Figures of the report as SVG and PNG."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
 
 from frictionlab import style
-from frictionlab.figure import Classes, Level, Line, Map, Panel, Picture, Span, subscripts
+from frictionlab.figure import Classes, Figure, Level, Line, Map, Panel, Span, subscripts
 
 COLOURS = {
     "ink": style.BLACK,
@@ -34,16 +34,16 @@ def text(label: str) -> str:
     return subscripts(label, r"$_{\\mathrm{", "}}$")
 
 
-def draw(picture: Picture, *paths: Path) -> None:
-    """Writes the picture under each path."""
-    rows = -(-len(picture.panels) // picture.columns)
-    figure, grid = style.subplots(rows, picture.columns, size=picture.size, squeeze=False)
-    for axes, panel in zip(grid.flat, picture.panels, strict=False):
+def draw(figure: Figure, *paths: Path) -> None:
+    """Writes the figure under each path."""
+    rows = -(-len(figure.panels) // figure.columns)
+    drawing, grid = style.subplots(rows, figure.columns, size=figure.size, squeeze=False)
+    for axes, panel in zip(grid.flat, figure.panels, strict=False):
         _panel(axes, panel)
-    for axes in grid.flat[len(picture.panels) :]:
+    for axes in grid.flat[len(figure.panels) :]:
         axes.remove()
-    figure.suptitle(text(picture.title), x=0.01, ha="left", fontweight="bold", fontsize=12)
-    style.save(figure, *paths)
+    drawing.suptitle(text(figure.title), x=0.01, ha="left", fontweight="bold", fontsize=12)
+    style.save(drawing, *paths)
 
 
 def _panel(axes: Axes, panel: Panel) -> None:

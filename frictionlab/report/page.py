@@ -10,7 +10,7 @@ from pathlib import Path
 
 from plotly.offline import get_plotlyjs
 
-from frictionlab.figure import Picture
+from frictionlab.figure import Figure
 from frictionlab.report.panels import panel_data, text
 
 ASSETS = Path(__file__).parent / "assets"
@@ -31,7 +31,7 @@ class Section:
     key: str
     title: str
     intro: str  # HTML
-    parts: Sequence[Table | Picture]
+    parts: Sequence[Table | Figure]
 
 
 def page(title: str, lede: str, sections: Sequence[Section], footer: str) -> str:
@@ -60,7 +60,7 @@ def page(title: str, lede: str, sections: Sequence[Section], footer: str) -> str
 
 
 def _section(section: Section, panels: dict[str, object]) -> str:
-    parts = [_picture(part, panels) if isinstance(part, Picture) else _table(part) for part in section.parts]
+    parts = [_figure(part, panels) if isinstance(part, Figure) else _table(part) for part in section.parts]
     return (
         f'<section id="{section.key}"><h2>{html.escape(section.title)}</h2>\n{section.intro}\n'
         + "\n".join(parts)
@@ -83,19 +83,19 @@ def _table(table: Table) -> str:
     )
 
 
-def _picture(picture: Picture, panels: dict[str, object]) -> str:
+def _figure(figure: Figure, panels: dict[str, object]) -> str:
     boxes = []
-    for k, panel in enumerate(picture.panels):
-        key = f"{picture.key}-{k}"
+    for k, panel in enumerate(figure.panels):
+        key = f"{figure.key}-{k}"
         panels[key] = panel_data(panel)
         title = text(html.escape(panel.title, quote=False))
         boxes.append(
             f'<div class="panel"><h4>{title}</h4><div class="plot" data-panel="{key}" role="img" '
-            f'aria-label="{html.escape(picture.title)}: {html.escape(panel.title)}"></div></div>'
+            f'aria-label="{html.escape(figure.title)}: {html.escape(panel.title)}"></div></div>'
         )
-    columns = min(picture.columns, 3)
+    columns = min(figure.columns, 3)
     return (
-        f'<figure id="{picture.key}"><h3>{text(html.escape(picture.title, quote=False))}</h3>'
+        f'<figure id="{figure.key}"><h3>{text(html.escape(figure.title, quote=False))}</h3>'
         f'<div class="panels columns-{columns}">{"".join(boxes)}</div>'
-        f"<figcaption>{text(html.escape(picture.caption, quote=False))}</figcaption></figure>"
+        f"<figcaption>{text(html.escape(figure.caption, quote=False))}</figcaption></figure>"
     )

@@ -1,4 +1,4 @@
-"""Pictures of the report as plotly traces and layouts; the page's script knows the roles' colours."""
+"""Figures of the report as plotly traces and layouts; the page's script knows the roles' colours."""
 
 from __future__ import annotations
 

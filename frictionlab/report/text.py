@@ -1,4 +1,4 @@
-"""What the report says: its sections, tables and the words between the pictures."""
+"""What the report says: its sections, tables and the words between the figures."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from markdown_it import MarkdownIt
 
-from frictionlab.figure import BLUE, INK, ORANGE, Level, Line, Panel, Picture
+from frictionlab.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
 from frictionlab.fmu import FrictionFmu
 from frictionlab.paper.claims import Claim
 from frictionlab.paper.table2 import Result, conditions, reduction, waves
@@ -35,41 +35,37 @@ contact of asperities. FrictionContact.fmu computes that model. This page sets w
 what the paper prints.</p>{LAW}"""
 
 
-def sections(
-    table: Sequence[Result], made: Sequence[Claim], pictures: Mapping[str, Picture]
-) -> list[Section]:
+def sections(table: Sequence[Result], made: Sequence[Claim], figures: Mapping[str, Figure]) -> list[Section]:
     """The report, top to bottom."""
     return [
         Section("claims", "The claims", CLAIMS_INTRO, [_claims(made)]),
-        Section("table-2", "Table 2", TABLE_2_INTRO, [_table_2(table), pictures["table-2"]]),
+        Section("table-2", "Table 2", TABLE_2_INTRO, [_table_2(table), figures["table-2"]]),
         Section(
             "figures",
             "The figures",
             FIGURES_INTRO,
-            [picture for key, picture in pictures.items() if key.startswith("fig-")],
+            [figure for key, figure in figures.items() if key.startswith("fig-")],
         ),
-        Section(
-            "heights-and-load", "Heights and load", HEIGHTS_INTRO, [pictures["heights"], pictures["load"]]
-        ),
+        Section("heights-and-load", "Heights and load", HEIGHTS_INTRO, [figures["heights"], figures["load"]]),
         Section(
             "regimes-and-limits",
             "Regimes",
             REGIMES_INTRO,
-            [pictures[key] for key in ("regimes", "mean", "reduction", "phase")],
+            [figures[key] for key in ("regimes", "mean", "reduction", "phase")],
         ),
         Section(
             "sensitivities",
             "Sensitivities",
             SENSITIVITY_INTRO,
-            [pictures["sensitivity-cuts"], pictures["sensitivity"]],
+            [figures["sensitivity-cuts"], figures["sensitivity"]],
         ),
         Section("errata", "Errata", errata(), []),
-        Section("identification", "Identification", IDENTIFY_INTRO, [pictures["recovery"]]),
+        Section("identification", "Identification", IDENTIFY_INTRO, [figures["recovery"]]),
     ]
 
 
 def errata() -> str:
-    """docs/errata.md as a part of the page, without its title, links and pictures."""
+    """docs/errata.md as a part of the page, without its title, links and figures."""
     text = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
     text = text[text.index("The FMU computes") :]
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)\n", "", text)
@@ -162,7 +158,7 @@ def _html_conditions(row: object) -> str:
     return re.sub(r"_(\w)", r"<sub>\1</sub>", plain)
 
 
-def table_2_waves(fmu: FrictionFmu) -> Picture:
+def table_2_waves(fmu: FrictionFmu) -> Figure:
     """F_t over two periods for each row, at the printed and at the identified parameters."""
     panels = []
     for row in TABLE_2:
@@ -179,4 +175,4 @@ def table_2_waves(fmu: FrictionFmu) -> Picture:
         "stiffness passes 2 F_C: while the separation shrinks the contact stiffens faster than its "
         "deflection can follow. Its mean is 55 N all the same."
     )
-    return Picture("table-2", "Friction force of the six rows", caption, panels, 3, (15.0, 8.4))
+    return Figure("table-2", "Friction force of the six rows", caption, panels, 3, (15.0, 8.4))

@@ -10,7 +10,8 @@ import pytest
 
 from frictionlab.bench import stability, work_precision
 from frictionlab.bench.driver import Bench
-from frictionlab.bench.work_precision import Point, cost_at, step_size_points
+from frictionlab.bench.grade import Point
+from frictionlab.bench.work_precision import cost_at, step_size_points
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:

@@ -100,7 +100,13 @@ def test_lugre_breaks_away_above_its_sliding_friction(fmu: FrictionFmu) -> None:
 
 def test_damping_does_nothing_in_steady_sliding_and_viscous_friction_adds(fmu: FrictionFmu) -> None:
     for law in ("Dahl", "LuGre", "ElasticPlastic"):
-        scene = {"friction.model": law, "V": 0.2, "friction.sigma_1": 50.0, "friction.sigma_2": 7.0, **SETTLED}
+        scene = {
+            "friction.model": law,
+            "V": 0.2,
+            "friction.sigma_1": 50.0,
+            "friction.sigma_2": 7.0,
+            **SETTLED,
+        }
         with fmu.session(scene) as session:
             session.step(1e-3)
             assert session.get("F_t") == pytest.approx(55.0 + 7.0 * 0.2, rel=1e-9)
