@@ -1,161 +1,126 @@
 """Draws the plots of the documentation inside the FMU: docs/fmu/force.svg and mean.svg.
 
-    python -m frictionlab.fmu_documentation_plots
+    python -m frictionlab.fmu_docs.plots
 
 They are simulated with build/FrictionContact.fmu. The colours are CSS variables of the page that shows them,
-so that they follow its light or dark scheme; by itself a picture has those of the light one.
+so that they follow its light or dark scheme; by itself a plot has those of the light one.
 """
 
 from __future__ import annotations
 
+import io
 import math
-from dataclasses import dataclass, field
-from pathlib import Path
+import re
+from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from frictionlab.fmu import FrictionFmu
+from frictionlab import style
+from frictionlab.fmu import FrictionFmu, Value
 from frictionlab.fmu_docs.page import FMU_DOCS
-from frictionlab.periodic import periodic_mean
+from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, TABLE_2
+from frictionlab.periodic import periodic_mean, periodic_waves
 from frictionlab.project import ROOT
 
-F_C = 55.0  # N
-FREQUENCY = 20e3  # Hz
-V_1 = 1.44  # m/s
-COLOURS = ("var(--c1, #0072b2)", "var(--c2, #d55e00)", "var(--c3, #00835f)", "var(--c4, #a23e86)")
-INK, GRID = "var(--ink, #222)", "var(--grid, #d0d0d0)"
-WIDTH, HEIGHT = 480, 320
-LEFT, RIGHT, TOP, BOTTOM = 56, 14, 14, 50
+V_1 = TABLE_2[1].V_1
+COLOURS = ("#0072b2", "#d55e00", "#00835f", "#a23e86")
+INK, GRID = "#222222", "#d0d0d0"
+VARIABLES = {**dict(zip(COLOURS, ("c1", "c2", "c3", "c4"), strict=True)), INK: "ink", GRID: "grid"}
+SIZE = (4.6, 3.1)  # inches
 
 
-@dataclass
-class Chart:
-    """Two axes and lines over them, written as SVG."""
-
-    title: str
-    x_label: str
-    y_label: str
-    x_ticks: list[float]
-    y_ticks: list[float]
-    body: list[str] = field(default_factory=list)
-
-    def x(self, value: float) -> float:
-        return LEFT + (value - self.x_ticks[0]) / (self.x_ticks[-1] - self.x_ticks[0]) * (
-            WIDTH - LEFT - RIGHT
-        )
-
-    def y(self, value: float) -> float:
-        return (
-            HEIGHT
-            - BOTTOM
-            - (value - self.y_ticks[0]) / (self.y_ticks[-1] - self.y_ticks[0]) * (HEIGHT - TOP - BOTTOM)
-        )
-
-    def line(self, xs: np.ndarray, ys: np.ndarray, colour: str, dashed: bool = False) -> None:
-        points = " ".join(f"{self.x(x):.1f},{self.y(y):.1f}" for x, y in zip(xs, ys, strict=True))
-        dash = ' stroke-dasharray="6 4"' if dashed else ""
-        self.body.append(
-            f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"{dash}/>'
-        )
-
-    def text(self, x: float, y: float, text: str, colour: str, anchor: str = "start") -> None:
-        self.body.append(_label(self.x(x), self.y(y), text, colour, anchor))
-
-    def svg(self) -> str:
-        lines = [
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
-            f'font-family="system-ui, sans-serif" font-size="14">',
-            f"<title>{self.title}</title>",
-        ]
-        for tick in self.x_ticks:
-            x = f"{self.x(tick):.1f}"
-            lines.append(f'<path d="M{x} {TOP}V{HEIGHT - BOTTOM}" stroke="{GRID}"/>')
-            lines.append(_label(self.x(tick), HEIGHT - BOTTOM + 18, _number(tick), INK, "middle"))
-        for tick in self.y_ticks:
-            y = self.y(tick)
-            lines.append(f'<path d="M{LEFT} {y:.1f}H{WIDTH - RIGHT}" stroke="{GRID}"/>')
-            lines.append(_label(LEFT - 6, y + 5, _number(tick), INK, "end"))
-        lines.append(_label((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 12, self.x_label, INK, "middle"))
-        middle = (TOP + HEIGHT - BOTTOM) / 2
-        turned = _label(0, 0, self.y_label, INK, "middle")
-        lines.append(f'<g transform="translate(15 {middle}) rotate(-90)">{turned}</g>')
-        return "\n".join([*lines, *self.body, "</svg>"]) + "\n"
-
-
-def _label(x: float, y: float, text: str, colour: str, anchor: str) -> str:
-    return f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}" text-anchor="{anchor}">{text}</text>'
-
-
-def _number(value: float) -> str:
-    return f"{value:g}".replace("-", "−")
-
-
-def with_stiffness(kappa: float, V: float) -> dict[str, float | str]:
+def start_values(kappa: float, V: float) -> dict[str, Value]:
     """Start values at a constant stiffness of kappa = sigma V_1 / (2 pi f F_C)."""
     return {
         "V": V,
-        "F_C": F_C,
+        "F_C": COULOMB_FORCE,
         "contact.model": "Constant",
-        "contact.sigma": kappa * 2.0 * math.pi * FREQUENCY * F_C / V_1,
+        "contact.sigma": kappa * 2.0 * math.pi * FREQUENCY * COULOMB_FORCE / V_1,
         "vibration.f": FREQUENCY,
         "vibration.V_1": V_1,
     }
 
 
+def new_axes() -> tuple[Figure, Axes]:
+    figure, axes = style.subplots(size=SIZE)
+    axes.tick_params(colors=INK, length=0)
+    axes.grid(color=GRID)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    return figure, axes
+
+
+def label_lines(axes: Axes, x: float, heights: Mapping[str, float]) -> None:
+    """Names the lines in their order and colours, one below the other."""
+    for line, (text, y) in zip(axes.get_lines(), heights.items(), strict=True):
+        axes.text(x, y, text, color=line.get_color())
+
+
+def as_svg(figure: Figure, title: str) -> str:
+    """The figure as an element of a page: colours by variables, no ids but those that are referred to."""
+    buffer = io.StringIO()
+    with style.plt.rc_context({"svg.fonttype": "none"}):
+        figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+    style.plt.close(figure)
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"\s*<(metadata|defs)>.*?</\1>", "", text, count=2, flags=re.DOTALL)
+    text = re.sub(r"\s*<!--.*?-->", "", text, flags=re.DOTALL)
+    used = set(re.findall(r"#([\w-]+)[\")]", text))
+    text = re.sub(r' id="([\w.-]+)"', lambda match: match[0] if match[1] in used else "", text)
+    text = text.replace(" font-family: 'DejaVu Sans';", "")
+    for colour, variable in VARIABLES.items():
+        text = text.replace(colour, f"var(--{variable}, {colour})")
+    head, _, rest = text.partition(">")
+    head = re.sub(r' (width|height|version|xmlns:xlink)="[^"]*"', "", head)
+    return f'{head} role="img" font-family="system-ui, sans-serif">\n <title>{title}</title>{rest}'
+
+
 def force(fmu: FrictionFmu) -> str:
-    """F_t over two periods, after many, for three stiffnesses."""
-    chart = Chart(
-        "Friction force over two periods of the vibration for three contact stiffnesses",
-        "time in periods of the vibration",
-        "F_t / F_C",
-        [0, 0.5, 1, 1.5, 2],
-        [-1, -0.5, 0, 0.5, 1],
-    )
-    period, count = 1.0 / FREQUENCY, 400
+    """F_t over two periods of the periodic state, for three stiffnesses."""
+    figure, axes = new_axes()
     for kappa, colour in zip((0.5, 5.0, 100.0), COLOURS, strict=False):
-        with fmu.session(with_stiffness(kappa, 0.5)) as session:
-            session.step(1000 * period)
-            forces = [session.get("F_t")]
-            for _ in range(count):
-                session.step(2.0 * period / count)
-                forces.append(session.get("F_t"))
-        chart.line(np.linspace(0.0, 2.0, count + 1), np.array(forces) / F_C, colour)
-    for y, kappa, colour in (
-        (-0.62, "0.5", COLOURS[0]),
-        (-0.74, "5", COLOURS[1]),
-        (-0.86, "100", COLOURS[2]),
-    ):
-        chart.text(0.03, y, f"κ = {kappa}", colour)
-    return chart.svg()
+        run = periodic_waves(fmu, start_values(kappa, 0.5), ("F_t",), samples=200)
+        axes.plot(FREQUENCY * run["time"], run["F_t"] / COULOMB_FORCE, color=colour, lw=2.0)
+    label_lines(axes, 0.03, {"κ = 0.5": -0.66, "κ = 5": -0.8, "κ = 100": -0.94})
+    axes.set_xlabel("time in periods of the vibration", color=INK)
+    axes.set_ylabel("F_t / F_C", color=INK)
+    axes.set_xlim(0.0, 2.0)
+    axes.set_xticks([0.0, 0.5, 1.0, 1.5, 2.0])
+    axes.set_yticks([-1.0, -0.5, 0.0, 0.5, 1.0])
+    return as_svg(figure, "Friction force over two periods of the vibration for three contact stiffnesses")
 
 
 def mean(fmu: FrictionFmu) -> str:
     """The mean friction over V / V_1 for four stiffnesses, and the Coulomb limit."""
-    chart = Chart(
-        "Mean friction against the velocity over the vibration's amplitude for four contact stiffnesses",
-        "V / V_1",
-        "F_t_mean / F_C",
-        [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5],
-        [0, 0.25, 0.5, 0.75, 1],
-    )
+    figure, axes = new_axes()
     ratios = np.concatenate(
         [np.linspace(0.0, 0.9, 37), np.linspace(0.91, 1.09, 19), np.linspace(1.1, 1.5, 9)]
     )
     for kappa, colour in zip((0.2, 1.0, 5.0, 100.0), COLOURS, strict=True):
-        means = [periodic_mean(fmu, with_stiffness(kappa, ratio * V_1)) / F_C for ratio in ratios]
-        chart.line(ratios, np.array(means), colour)
+        means = [periodic_mean(fmu, start_values(kappa, ratio * V_1)) / COULOMB_FORCE for ratio in ratios]
+        axes.plot(ratios, means, color=colour, lw=2.0)
     coulomb = [2.0 / math.pi * math.asin(min(ratio, 1.0)) for ratio in ratios]
-    chart.line(ratios, np.array(coulomb), INK, dashed=True)
-    for y, kappa, colour in zip((0.48, 0.4, 0.32, 0.24), ("0.2", "1", "5", "100"), COLOURS, strict=True):
-        chart.text(1.12, y, f"κ = {kappa}", colour)
-    chart.text(1.12, 0.16, "Coulomb", INK)
-    return chart.svg()
+    axes.plot(ratios, coulomb, color=INK, lw=2.0, ls="--")
+    heights = {"κ = 0.2": 0.5, "κ = 1": 0.42, "κ = 5": 0.34, "κ = 100": 0.26, "Coulomb": 0.18}
+    label_lines(axes, 1.12, heights)
+    axes.set_xlabel("V / V_1", color=INK)
+    axes.set_ylabel("F_t_mean / F_C", color=INK)
+    axes.set_xlim(0.0, 1.5)
+    axes.set_ylim(0.0, 1.05)
+    axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0])
+    return as_svg(
+        figure,
+        "Mean friction against the velocity over the vibration's amplitude for four contact stiffnesses",
+    )
 
 
 def main() -> None:
     with FrictionFmu(ROOT / "build" / "FrictionContact.fmu") as fmu:
         for name, plot in (("force", force), ("mean", mean)):
-            path = Path(FMU_DOCS / f"{name}.svg")
+            path = FMU_DOCS / f"{name}.svg"
             path.write_text(plot(fmu), encoding="utf-8")
             print(f"wrote {path.relative_to(ROOT)}")
 
