@@ -21,7 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from frictionlab.batch import simulate_many
-from frictionlab.build import BuildError, build_fmu
+from frictionlab.build import build_fmu
+from frictionlab.command import finish
 from frictionlab.fmu import FrictionFmu
 from frictionlab.project import ROOT, UserError
 from frictionlab.sweep.scenario import OUTPUTS
@@ -138,19 +139,23 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="bench/batch-cost", description=__doc__.splitlines()[0])
     parser.add_argument("--scenarios", type=int, default=50_000, help="of each measurement (50000)")
     parser.add_argument("--quick", action="store_true", help="2000 scenarios, without the memory")
-    options = parser.parse_args(argv)
-    count = 2000 if options.quick else options.scenarios
-    if count < 100:
-        sys.exit(f"error: --scenarios {count}: must be at least 100")
     try:
-        fmu = build_fmu()
-        command = [sys.executable, "-m", "cmake", "--build", str(ROOT / "build"), "--target", "bare_loop"]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-        measure(fmu, ROOT / "build" / "bench" / "bare_loop", count, not options.quick)
-    except (BuildError, UserError, subprocess.CalledProcessError) as error:
-        sys.exit(f"error: {error}")
+        finish(run, parser.parse_args(argv))
     except KeyboardInterrupt:
         sys.exit("stopped")
+
+
+def run(options: argparse.Namespace) -> None:
+    count = 2000 if options.quick else options.scenarios
+    if count < 100:
+        raise UserError(f"--scenarios {count}: must be at least 100")
+    fmu = build_fmu()
+    command = [sys.executable, "-m", "cmake", "--build", str(ROOT / "build"), "--target", "bare_loop"]
+    try:
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    except subprocess.CalledProcessError as error:
+        raise UserError(str(error)) from None
+    measure(fmu, ROOT / "build" / "bench" / "bare_loop", count, not options.quick)
 
 
 if __name__ == "__main__":

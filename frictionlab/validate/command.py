@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,9 +11,9 @@ from rich.table import Table
 
 from frictionlab import style
 from frictionlab.build import build_fmu
-from frictionlab.command import progress_bar
-from frictionlab.fmu import FrictionError, FrictionFmu
-from frictionlab.project import ROOT, UserError
+from frictionlab.command import finish, progress_bar
+from frictionlab.fmu import FrictionFmu
+from frictionlab.project import ROOT
 from frictionlab.validate import figures, longitudinal, loop, measurements, normal
 
 DESCRIPTION = """\
@@ -139,13 +138,7 @@ def _made(folder: Path) -> Path:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = arguments(argv)
-    try:
-        run(options)
-    except (UserError, FrictionError) as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error.filename or options.output}: {error.strerror or error}")
+    finish(run, arguments(argv))
 
 
 if __name__ == "__main__":
