@@ -6,6 +6,7 @@ The same input gives the same bytes: names are sorted and timestamps fixed.
 from __future__ import annotations
 
 import argparse
+import hashlib
 import os
 import zipfile
 from pathlib import Path
@@ -13,6 +14,7 @@ from pathlib import Path
 import model_description
 
 FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+CHECKSUMS = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
 BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": ".dylib"}
 
 
@@ -50,6 +52,12 @@ def packaged_xml(path: Path, sources: list[str]) -> bytes:
     return text.replace(f'guid="{model_description.GUID_PLACEHOLDER}"', f'guid="{guid}"').encode()
 
 
+def checksums(entries: dict[str, bytes]) -> bytes:
+    """One line for each entry, as sha256sum writes and reads it."""
+    lines = (f"{hashlib.sha256(entries[name]).hexdigest()}  {name}\n" for name in sorted(entries))
+    return "".join(lines).encode()
+
+
 def write_fmu(
     output: Path, xml: Path, binaries: dict[str, Path], sources: dict[str, Path], others: dict[str, Path]
 ) -> None:
@@ -63,6 +71,7 @@ def write_fmu(
     entries |= {binary_name(platform, identifier): path.read_bytes() for platform, path in binaries.items()}
     entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
     entries |= {name: path.read_bytes() for name, path in others.items()}
+    entries[CHECKSUMS] = checksums(entries)
     unfinished = output.with_suffix(f".{os.getpid()}.part")
     try:
         with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -21,6 +21,7 @@ STANDARD = "org.fmi-standard.fmi-ls-ref"
 FOLDER = f"extra/{STANDARD}"
 MANIFEST = "fmi-ls-manifest.xml"
 EXPERIMENTS = "validation.exp"
+CHECKSUMS = "sha256sums.txt"  # added by cmake/package_fmu.py, which knows the other files
 SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 LAYERED = "http://fmi-standard.org/fmi-ls-manifest"
 
@@ -95,6 +96,7 @@ def manifest(sets: Sequence[Preset], runs: Sequence[Experiment]) -> bytes:
         "experiment/validation",
         "Runs whose results the FMU must give within solver.tolerance",
     )
+    related(CHECKSUMS, "text/plain", "meta-data", "SHA-256 of every other file of the FMU, as it was packed")
     for preset in sets:
         related(f"{preset.id}.ssv", "application/x-ssp-parameter-set", "parameter", preset.title)
     return _bytes(root)

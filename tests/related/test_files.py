@@ -17,7 +17,7 @@ from frictionlab.description import description
 from frictionlab.fmu import FrictionFmu
 from frictionlab.presets import possible, presets
 from frictionlab.related.experiments import XML, Experiment, experiments
-from frictionlab.related.files import EXPERIMENTS, FOLDER, LAYERED, MANIFEST, STANDARD, files
+from frictionlab.related.files import CHECKSUMS, EXPERIMENTS, FOLDER, LAYERED, MANIFEST, STANDARD, files
 from frictionlab.related.results import COLUMNS, rows
 
 SSV_SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
@@ -26,6 +26,7 @@ TYPES = {
     "result": "text/csv",
     "parameter": "application/x-ssp-parameter-set",
     "experiment/validation": "application/x-ma-ls-experiments",
+    "meta-data": "text/plain",
 }
 RUNS = [pytest.param(run, id=run.name) for run in experiments()]
 
@@ -42,7 +43,7 @@ def packed(fmu_path: Path) -> dict[str, bytes]:
 
 
 def test_the_fmu_holds_them(packed: dict[str, bytes]) -> None:
-    assert packed == files()
+    assert packed == files() | {CHECKSUMS: packed[CHECKSUMS]}
 
 
 def test_the_manifest_lists_every_file_once_by_its_role_and_type(packed: dict[str, bytes]) -> None:
