@@ -18,6 +18,7 @@ import generate_variables
 import model_description
 
 from frictionlab.browser import chromium
+from frictionlab.command import shown
 from frictionlab.description import description
 from frictionlab.playground.browser import measure, take_pictures
 from frictionlab.playground.core import core
@@ -85,10 +86,6 @@ def look(browser: Browser, options: argparse.Namespace) -> None:
     if options.pictures:
         for path in take_pictures(browser, options.output, options.pictures):
             print(shown(path))
-
-
-def shown(path: Path) -> Path:
-    return path.relative_to(ROOT) if path.is_relative_to(ROOT) else path
 
 
 if __name__ == "__main__":
