@@ -83,6 +83,7 @@ class Figures {
       rules: [{ y: wave.mean, kind: "mean" }],
       summary: `Friction force against displacement over ${readable((high - low) * lengthFactor)} ${lengthUnit}`,
     });
+    setText("loop-text", V_1 > 0 ? "The area is the work of the vibration." : "The area is the work.");
     setText("loop-x", `${V_1 > 0 ? "Displacement of the vibration" : "Sliding distance"} in ${lengthUnit}`);
   }
 
