@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
 from frictionlab import style
+from frictionlab.bench.stuck_mass import JACOBI, light_damping
 from frictionlab.build import build_fmu
 from frictionlab.parameters import E_FULL, SEPARATION
 from frictionlab.project import ROOT, UserError
@@ -30,9 +31,17 @@ SIGNALS = (("mass", "x"), ("mass", "v"), ("contact", "F_t"))
 STEPS_NS = (2_000_000, 1_000_000, 500_000, 200_000, 100_000, 50_000, 20_000, 10_000)
 
 
-def make_ssp(fmu: Path, output: Path) -> Path:
-    """fmu: FrictionContact.fmu; MassOnBelt.fmu lies in examples/ beside it."""
+NO_DAMPING = '<ssv:Parameter name="friction.sigma_1"><ssv:Real value="0"'
+
+
+def make_ssp(fmu: Path, output: Path, sigma_1: float = 0.0) -> Path:
+    """fmu: FrictionContact.fmu; MassOnBelt.fmu lies in examples/ beside it.
+
+    sigma_1 [N s/m] damps the stuck contact.
+    """
     description = (HERE / "SystemStructure.ssd").read_text()
+    assert NO_DAMPING in description
+    description = description.replace(NO_DAMPING, NO_DAMPING.replace('"0"', f'"{sigma_1!r}"'))
     return write_ssp(description, [fmu, fmu.parent / "examples" / "MassOnBelt.fmu"], output)
 
 
@@ -91,6 +100,18 @@ def measure(ssp: Path, steps_ns: Sequence[int]) -> list[dict[str, float]]:
                 "rms error of F_t over F_C": float(np.sqrt(np.mean((run["contact", "F_t"] - F) ** 2)) / F_C),
             }
         )
+    return rows
+
+
+def measure_damped(fmu: Path, folder: Path, steps_ns: Sequence[int]) -> list[dict[str, float]]:
+    """The same errors against the undamped system, with the friction.sigma_1 advised for each step."""
+    p = parameters((HERE / "SystemStructure.ssd").read_text())
+    _, sigma = one_system()
+    rows = []
+    for step_ns in steps_ns:
+        sigma_1 = light_damping(p["mass", "m"], sigma, JACOBI, step_ns * 1e-9)
+        ssp = make_ssp(fmu, folder / f"damped-{step_ns}.ssp", sigma_1)
+        rows.append(measure(ssp, [step_ns])[0] | {"sigma_1 [N s/m]": sigma_1})
     return rows
 
 
@@ -170,6 +191,10 @@ def main() -> None:
         print(f"{'step':>10}{'error of x over F_C/k':>24}{'error of F_t over F_C':>24}")
         for step, x, F in (row.values() for row in rows):
             print(f"{step * 1e3:>7g} ms{x:>24.2e}{F:>24.2e}")
+        damped = measure_damped(build_fmu(), options.output, STEPS_NS[2 : 5 if options.quick else None])
+        print("\nwith friction.sigma_1 as scripts/advise recommends for the step:")
+        for step, x, F, sigma_1 in (row.values() for row in damped):
+            print(f"{step * 1e3:>7g} ms{x:>24.2e}{F:>24.2e}{sigma_1:>12.4g} N s/m")
         with (options.output / "errors.csv").open("w", newline="") as file:
             writer = csv.DictWriter(file, rows[0])
             writer.writeheader()

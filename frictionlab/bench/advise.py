@@ -22,8 +22,10 @@ from frictionlab.bench.driver import (
     write_machine,
 )
 from frictionlab.bench.levels import ACCURACIES, OUTPUTS, Graded, best_of_each_kind, cheapest, grade, scenes
+from frictionlab.bench.stuck_mass import MASTERS, advice
+from frictionlab.build import build_fmu
 from frictionlab.command import finish, progress_bar, say_written, write_csv
-from frictionlab.fmu import INPUTS, FrictionFmu, Value
+from frictionlab.fmu import INPUTS, FrictionFmu, Session, Value
 from frictionlab.project import UserError
 from frictionlab.reference.scene import Scene
 from frictionlab.reference.start_values import scene_of, start_values_of
@@ -37,7 +39,12 @@ cheapest within the wanted accuracy as start values for fmpy.
   scripts/advise --accuracy 1e-3 vibration.V_1=1.44 vibration.a_d=1.1e-6 V=0.005
   scripts/advise --accuracy 1e-2 --step 1e-3 --output-of F_t_mean vibration.V_1=1.44
   scripts/advise --inputs drive.csv --linear contact.stiffnessScale=1e-6
-  scripts/advise --scenes       the table of levels for typical scenes, with its CSV and picture"""
+  scripts/advise --scenes       the table of levels for typical scenes, with its CSV and picture
+
+With --mass it says how to couple the contact to a mass while it sticks: the damping friction.sigma_1 that
+keeps the master's exchange stable at the communication step, and the largest step.
+
+  scripts/advise --mass 1 --step 1e-4 contact.model=Constant contact.sigma=1e6"""
 
 SCENE_VARIABLES = tuple(start_values_of(Scene()))
 COUNT = 4  # communication steps tried where no inputs are given
@@ -49,6 +56,12 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("values", nargs="*", metavar="NAME=VALUE", help="start values of the scene")
     parser.add_argument("--accuracy", type=float, default=1e-3, help="largest error over F_C (1e-3)")
     parser.add_argument("--step", type=float, help="communication step, s (a vibration period)")
+    parser.add_argument(
+        "--mass", type=float, help="mass that moves with the contact, kg: advise on the coupling"
+    )
+    parser.add_argument(
+        "--master", choices=MASTERS, default=MASTERS[0], help="how the master exchanges values"
+    )
     parser.add_argument("--output-of", choices=OUTPUTS, default="both", help="which output must be accurate")
     parser.add_argument("--inputs", type=Path, help="CSV with time, in even steps, and any of V, d, E")
     parser.add_argument("--linear", action="store_true", help="inputs move linearly between their samples")
@@ -199,7 +212,32 @@ def table_of_scenes(bench: Bench, options: argparse.Namespace, progress: Progres
     say_written(written)
 
 
+def advise_on_coupling(options: argparse.Namespace) -> None:
+    if not 0.0 < options.mass < float("inf"):
+        raise UserError(f"--mass {options.mass:g} kg: must be a finite number above 0")
+    if options.step is None or not 0.0 < options.step < float("inf"):
+        raise UserError("--mass needs --step, the communication step: a finite number of seconds above 0")
+    with progress_bar() as progress, FrictionFmu(build_fmu(progress=progress)) as fmu:
+        values = start_values(options.values, fmu)
+        with fmu.session(values) as session:
+            sigma = stiffest(session)
+    print(advice(options.mass, sigma, options.master, options.step, values))
+
+
+def stiffest(session: Session) -> float:
+    """The largest stiffness [N/m] over a period of the vibration, at 64 of its moments."""
+    found = session.get("sigma")
+    if session.get("vibration.a_d") > 0.0:
+        for _ in range(64):
+            session.step(1.0 / (64.0 * session.get("vibration.f")))
+            found = max(found, session.get("sigma"))
+    return found
+
+
 def run(options: argparse.Namespace) -> None:
+    if options.mass is not None:
+        advise_on_coupling(options)
+        return
     with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
         (table_of_scenes if options.scenes else advise)(bench, options, progress)
 
