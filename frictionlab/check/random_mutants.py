@@ -24,21 +24,18 @@ from frictionlab.project import ROOT, UserError
 
 SOURCES = ROOT / "fmu_src"
 SURVIVORS = Path(__file__).with_name("survivors.csv")
-# Those that notice most, and soon, come first.
-TESTS = (
-    "tests/fmi2",
-    "tests/solver",
-    "tests/physics",
-    "-m",
-    "not slow",
-    "--deselect",
-    "tests/fmi2/test_mutants.py",
-)
-FIRST = (
+# What must notice a mutant of the boundary, and of what lies below it; what notices most, and soon, first.
+OF_BOUNDARY = ("tests/fmi2",)
+OF_CORE = (
     "tests/fmi2/test_steps.py",
     "tests/fmi2/test_time_derivatives.py",
     "tests/solver/test_fixed_step_methods.py",
+    "tests/solver",
+    "tests/physics",
+    "tests/fmi2",
 )
+OPTIONS = ("-q", "-x", "-p", "no:cacheprovider", "--tb=no", "-m", "not slow")
+NOT_OF_CODE = ("--deselect", "tests/fmi2/test_mutants.py")
 TIME_LIMIT = 900.0  # s; a mutant that hangs is noticed
 UNIT_TIME_LIMIT = 60.0  # s
 
@@ -96,19 +93,8 @@ def _unit_killer(programs: Sequence[Path]) -> str:
     return ""
 
 
-def _pytest_killer(fmu: Path) -> str:
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-q",
-        "-x",
-        "-p",
-        "no:cacheprovider",
-        "--tb=no",
-        *FIRST,
-        *TESTS,
-    ]
+def _pytest_killer(fmu: Path, tests: Sequence[str]) -> str:
+    command = [sys.executable, "-m", "pytest", *OPTIONS, *NOT_OF_CODE, *tests]
     environment = {**os.environ, "FRICTION_FMU": str(fmu)}
     try:
         done = subprocess.run(
@@ -131,14 +117,15 @@ def _pytest_killer(fmu: Path) -> str:
 def _killer(workshop: Workshop, site: Site | None) -> str | None:
     """What notices the mutant; "" if nothing does, None if it is the same program or does not compile."""
     if site is None:
-        return _unit_killer(workshop.units()) or _pytest_killer(workshop.fmu())
+        return _unit_killer(workshop.units()) or _pytest_killer(workshop.fmu(), OF_CORE)
     text = (SOURCES / site.file).read_text()
     before = workshop.object_code(site.file, SHIPPED)
     try:
         workshop.write(site.file, mutated(text, site), SHIPPED, ASSERTED)
         if workshop.object_code(site.file, SHIPPED) == before:
             return None
-        return _unit_killer(workshop.units()) or _pytest_killer(workshop.fmu())
+        tests = OF_BOUNDARY if site.file.startswith("fmi2/") else OF_CORE
+        return _unit_killer(workshop.units()) or _pytest_killer(workshop.fmu(), tests)
     except UserError:
         return None
     finally:
@@ -172,8 +159,9 @@ def check_random_mutants(count: int, seed: int) -> list[str]:
         tempfile.TemporaryDirectory(prefix="friction-mutants-") as folder,
         ThreadPoolExecutor(workers) as pool,
     ):
-        workshops = [Workshop(Path(folder) / str(k), built) for k in range(workers)]
-        list(pool.map(lambda workshop: workshop.compile(SHIPPED, ASSERTED), workshops))
+        first = Workshop(Path(folder) / "0", built)
+        first.compile(SHIPPED, ASSERTED)
+        workshops = [first, *(first.copy(Path(folder) / str(k)) for k in range(1, workers))]
         if killer := _killer(workshops[0], None):
             return [f"the sources as they are: {killer} fails already"]
         chosen = draw(seed)

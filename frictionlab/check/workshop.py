@@ -49,6 +49,13 @@ class Workshop:
         for variant in variants:
             self._compile_all(variant)
 
+    def copy(self, folder: Path) -> Workshop:
+        """Another workshop with the same objects."""
+        other = Workshop(folder, self.built)
+        for compiled in self.folder.glob("*.o"):
+            shutil.copy(compiled, folder)
+        return other
+
     def write(self, name: str, text: str, *variants: tuple[str, ...]) -> None:
         """Gives fmu_src/name this text and compiles what depends on it; UserError if that can't be done."""
         path = self.sources / name
