@@ -11,7 +11,7 @@ from rich.table import Table
 
 from frictionlab import style
 from frictionlab.build import build_fmu
-from frictionlab.command import finish, progress_bar
+from frictionlab.command import add_fmu, add_output, command_line, finish, progress_bar
 from frictionlab.fmu import FrictionFmu
 from frictionlab.project import ROOT
 from frictionlab.validate import figures, longitudinal, loop, measurements, normal
@@ -24,13 +24,9 @@ What it means: docs/validation.md."""
 
 
 def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="scripts/validate", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--fmu", type=Path, help="an FMU instead of the one that is built")
-    parser.add_argument(
-        "--output", type=Path, default=ROOT / "build" / "validation", help="folder of the pictures"
-    )
+    parser = command_line("validate", DESCRIPTION)
+    add_fmu(parser)
+    add_output(parser, ROOT / "build" / "validation")
     parser.add_argument("--docs", action="store_true", help="also write the pictures of docs/validation.md")
     parser.add_argument("--quick", action="store_true", help="without the loop, which takes some 10 s")
     return parser.parse_args(argv)

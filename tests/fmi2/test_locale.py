@@ -13,10 +13,9 @@ import pytest
 HOST = """
 import locale, sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[2])
 from fmi_library import Instance, Library
-locale.setlocale(locale.LC_ALL, sys.argv[3])
-assert locale.localeconv()["decimal_point"] == sys.argv[4]
+locale.setlocale(locale.LC_ALL, sys.argv[2])
+assert locale.localeconv()["decimal_point"] == sys.argv[3]
 with Instance(Library(Path(sys.argv[1]))) as instance:
     instance.set({"d": -1.5e-6})
     instance.set({"vibration.a_d": 20.5e-6})
@@ -32,9 +31,14 @@ with Instance(Library(Path(sys.argv[1]))) as instance:
 
 
 def run_host(folder: Path, name: str, decimal_point: str, locales: Path) -> list[str]:
-    command = [sys.executable, "-c", HOST, str(folder), str(Path(__file__).parent), name, decimal_point]
+    command = [sys.executable, "-c", HOST, str(folder), name, decimal_point]
     host = subprocess.run(
-        command, env={**os.environ, "LOCPATH": str(locales)}, capture_output=True, text=True, check=False
+        command,
+        cwd=Path(__file__).parent,  # where fmi_library is
+        env={**os.environ, "LOCPATH": str(locales)},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert host.returncode == 0, host.stderr
     return host.stdout.splitlines()

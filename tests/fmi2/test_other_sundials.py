@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 from sksundae.cvode import CVODE
 from sksundae import SUNDIALS_VERSION
-sys.path.insert(0, sys.argv[2])
 from fmi_library import OK, Instance, Library
 
 host = ctypes.CDLL(None)
@@ -54,8 +53,9 @@ with Instance(library) as instance, Instance(library) as reference:
 
 
 def test_two_sundials_in_one_process(unzipped_fmu: Path) -> None:
-    command = [sys.executable, "-c", HOST, str(unzipped_fmu), str(Path(__file__).parent)]
-    host = subprocess.run(command, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-c", HOST, str(unzipped_fmu)]
+    folder = Path(__file__).parent  # where fmi_library is
+    host = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if host.returncode == 77:
         pytest.skip(host.stdout)
     assert host.returncode == 0, host.stderr
