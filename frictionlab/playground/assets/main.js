@@ -13,14 +13,16 @@ class Page {
     this.preset = null;
     this.touched = null; // the variable that a person last set
     this.frame = 0;
+    this.worker = null;
+    this.asked = { id: 0, values: {} };
     this.figures = new Figures((kind, at) => this.drag(kind, at));
     this.controls = new Map();
     this.makeControls();
     this.makePresets();
     this.makeCopies();
+    this.restore(); // the first picture, before anything that is not needed for it
     this.startWorker(bytes);
     addEventListener("hashchange", () => this.restore());
-    this.restore();
   }
 
   startWorker(bytes) {
@@ -28,16 +30,23 @@ class Page {
     this.worker = new Worker(URL.createObjectURL(new Blob(source, { type: "text/javascript" })));
     this.worker.postMessage({ bytes, description });
     this.worker.onmessage = ({ data }) => this.receive(data);
-    this.sent = 0;
+    this.worker.postMessage(this.asked);
+  }
+
+  // Asks the worker for the curve and the map of a scene.
+  ask(values) {
+    this.asked = { id: this.asked.id + 1, values };
+    document.body.dataset.worker = "busy";
+    this.worker?.postMessage(this.asked);
   }
 
   receive({ id, curve: newCurve, map, done }) {
-    if (newCurve && id === this.sent) {
+    if (newCurve && id === this.asked.id) {
       this.figures.setCurve(newCurve);
       if (this.state) this.figures.showMean(this.state.here, this.preset?.measured);
     }
     if (map !== undefined) this.figures.map.setMap(map);
-    if (done && id === this.sent) document.body.dataset.worker = "done";
+    if (done && id === this.asked.id) document.body.dataset.worker = "done";
   }
 
   valueOf(name) {
@@ -166,8 +175,7 @@ class Page {
     this.figures.showWave(shown, here, V_1);
     this.figures.showMean(this.state.here, this.preset?.measured);
     this.figures.showRegime(here);
-    document.body.dataset.worker = "busy";
-    this.worker.postMessage({ id: ++this.sent, values });
+    this.ask(values);
   }
 
   // Whether the friction of steady sliding depends on nothing.
@@ -288,7 +296,8 @@ function reachable(element) {
 
 async function main() {
   const text = atob(document.getElementById("wasm").textContent.trim());
-  const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
+  const bytes = new Uint8Array(text.length);
+  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
   const page = new Page(await Fmu.load(bytes, description), bytes);
   document.querySelectorAll("#numbers, .figures").forEach(reachable);
   document.body.classList.add("ready");
