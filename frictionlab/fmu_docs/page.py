@@ -31,12 +31,13 @@ TYPOGRAPHY = {
 }
 
 
-def page(xml: Path) -> str:
-    """The text of index.html."""
+def page(xml: Path, playground: bool = False) -> str:
+    """The text of index.html; with a link to the page of the live FMU if that lies beside it."""
     root = ElementTree.parse(xml).getroot()
     text = (FMU_DOCS / "page.html").read_text(encoding="utf-8")
     parts = {"variables": variable_tables(root), "version": escape(root.attrib["version"])}
     parts |= {f"plot_{name}": (FMU_DOCS / f"{name}.svg").read_text(encoding="utf-8") for name in PLOTS}
+    parts["playground"] = '<a href="playground.html">Try it live</a>' if playground else ""
     for name, part in parts.items():
         placeholder = f"<!-- {name} -->"
         if text.count(placeholder) != 1:
