@@ -109,7 +109,7 @@ def remarks() -> str:
 paper       as printed
 exact       Eq. 1-2 at the printed parameters: {printed}
 identified  Eq. 1-2 with {fitted}, and V {IDENTIFIED.V} m/s, the velocity of Fig. 3-4.
-            Stiffness and phase are two numbers fitted to three informative rows (2, 3 and 6): the
+            Stiffness, phase and V are three numbers adjusted to three informative rows (2, 3, 6): the
             equations can reach these rows, which does not show that they are right. Rows 4 and 5
             are out of their reach: with V constant and positive the mean is F_C.
 """

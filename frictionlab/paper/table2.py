@@ -1,7 +1,7 @@
 """Table 2 of the paper from the FMU: the mean friction force of its six rows, and the force over time.
 
 Three numbers a row. The paper's; the exact one, which is what Eq. 1-2 give at the printed parameters; and the
-identified one, with two numbers (stiffness, phase) fitted to the table's three informative rows. The last
+identified one, with three numbers (stiffness, phase, V) adjusted to the three informative rows. The last
 shows that the equations can reach those rows. It does not show that they are right.
 """
 

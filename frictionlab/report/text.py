@@ -81,10 +81,11 @@ The proofs are under <a href="#errata">Errata</a>.</p>"""
 
 TABLE_2_INTRO = f"""<p>Mean friction force of the six rows. <b>Exact</b> is what Eq. 1–2 give as periodic
 means at the printed parameters. <b>Identified</b> uses the velocity of Figures 3 and 4, {IDENTIFIED.V} m/s,
-and two numbers chosen so that rows 2, 3 and 6 are missed by the same 0.56 N: a stiffness of
-{IDENTIFIED.stiffness / 1e6:.4f} MN/m at 14 µm and a phase of {IDENTIFIED.phase_d}° between the separation's
-and the velocity's vibration. Two numbers for three informative rows: an identification, not a validation.
-Rows 4 and 5 can't be reached: V is constant there, and the mean is F<sub>C</sub>.</p>"""
+a hundred times
+that of Table 1, and a stiffness and a phase chosen so that rows 2, 3 and 6 are missed by the same 0.56 N:
+{IDENTIFIED.stiffness / 1e6:.4f} MN/m at 14 µm and {IDENTIFIED.phase_d}° between the separation's
+and the velocity's vibration. Three adjusted numbers for three informative rows: an identification, not a
+validation. Rows 4 and 5 can't be reached: V is constant there, and the mean is F<sub>C</sub>.</p>"""
 
 FIGURES_INTRO = """<p>Each from the FMU, at the printed parameters and at the identified stiffness of 2.5366
 MN/m. Figures 1, 7 and 14 of the paper are sketches and a measurement by others.</p>"""
