@@ -1,4 +1,4 @@
-"""What each law of friction is for, by the FMU, against formulas and against numbers computed apart from it."""
+"""What each law of friction is for, by the FMU, against formulas and numbers computed apart from it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from frictionlab.fmu import FrictionError, FrictionFmu, Session, Value
 
 SETTLED = {"initialState": "Settled"}
 
-# L. Luo et al., Scientific Reports 14:25847 (2024), Fig. 5b, dry: V [m/s] and the friction without vibration [N]; the
-# means that a spring of 7.76 N/um and a slider give under their vibration, from an integration in another program.
+# L. Luo et al., Scientific Reports 14:25847 (2024), Fig. 5b, dry: V [m/s], the friction without vibration
+# [N], and the mean that a spring of 7.76 N/um and a slider give, from an integration in another program.
 DRY = [
     (0.05e-3, 3.27, 0.5613),
     (0.1e-3, 3.23, 0.5285),
@@ -45,7 +45,7 @@ def test_elastic_plastic_means_of_the_dry_measurements(
 
 
 def test_elastic_plastic_tends_to_the_limit_less_the_swing(fmu: FrictionFmu) -> None:
-    """F_C - k a as V -> 0; the mean lies below by less than the path of a period lets the bristle move, k V T."""
+    """F_C - k a as V -> 0; the mean lies below by less than what the path of a period moves, k V T."""
     F_C, swing = 3.0, 7.76e6 * 0.35e-6
     for V in (1e-6, 1e-9):
         mean = mean_of_a_period(fmu, DRY_SCENE | {"V": V, "F_C": F_C})
@@ -88,7 +88,7 @@ def test_lugre_without_static_excess_is_dahl_bit_for_bit(
 
 
 def test_lugre_breaks_away_above_its_sliding_friction(fmu: FrictionFmu) -> None:
-    """Slow sliding has nearly the static friction, fast sliding the Coulomb friction: the Stribeck curve itself."""
+    """Slow sliding has nearly the static friction, fast sliding the Coulomb friction."""
     for V in (1e-5, 5e-3, 0.02, 1.0):
         scene = {"friction.model": "LuGre", "friction.staticRatio": 1.4, "V": V, **SETTLED}
         with fmu.session(scene) as session:
@@ -189,7 +189,7 @@ def test_settled_without_any_motion_is_delta_0(fmu: FrictionFmu) -> None:
 def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:
     """Mean position [m] in each cycle of a mass of 1 kg under a load of 30 N + 10 N cos, at 50 Hz.
 
-    The mass goes first, then the contact with its new velocity: stable up to a step of 2 sqrt(m / sigma) = 2 ms.
+    The mass goes first, then the contact with its new velocity: stable up to 2 sqrt(m / sigma) = 2 ms.
     """
     h, per_cycle, mass = 2e-4, 100, 1.0
     velocity = position = 0.0

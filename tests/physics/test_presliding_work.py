@@ -1,7 +1,7 @@
 """Deep in presliding the bristle gives back nearly all it takes: what it keeps must not drown in the rest.
 
 V = V_1 cos, sigma X << F_C with the path's amplitude X = V_1 / omega. The deflection follows the path, so a
-period dissipates the integral of (sigma x)^2 |dx| / F_C = (4/3) sigma^2 X^3 / F_C, and that is its work too: at
+period dissipates the integral of (sigma x)^2 |dx| / F_C = (4/3) sigma^2 X^3 / F_C, which is its work too: at
 the ends of a period the bristle is relaxed. The next terms are smaller by (sigma X / F_C)^2.
 """
 
