@@ -84,7 +84,7 @@ static void nothing_is_left_behind(int method) {
 
 static void every_failure_is_told(void) {
     bool lived = false;
-    for (failing = 1; !lived; failing++) {
+    for (failing = 1; !lived && failing < 10; failing++) {
         Fmi2Instance contact;
         fmi2FMUstate saved = NULL;
         allocations = 0;
