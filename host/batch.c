@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L // clock_gettime
+#define _POSIX_C_SOURCE 200809L // clock_gettime  NOLINT(bugprone-reserved-identifier)
 #include "batch.h"
 
 #include <math.h>
@@ -75,7 +75,7 @@ Batch* batch_begin(const Fmi2Library* library, const BatchPlan* plan) {
     }
     batch->fmu = library;
     batch->plan = *plan;
-    batch->reason = calloc(plan->scenarios + 1, sizeof *batch->reason);
+    batch->reason = (char**)calloc(plan->scenarios + 1, sizeof *batch->reason);
     batch->status = calloc(plan->scenarios + 1, sizeof *batch->status);
     atomic_init(&batch->limit, plan->scenarios);
     if (!batch->reason || !batch->status) {
@@ -92,7 +92,7 @@ void batch_end(Batch* batch) {
     for (size_t i = 0; batch->reason && i < batch->plan.scenarios; i++) {
         free(batch->reason[i]);
     }
-    free(batch->reason);
+    free((void*)batch->reason);
     free(batch->status);
     free(batch);
 }
@@ -101,10 +101,15 @@ void batch_stop(Batch* batch) { atomic_store(&batch->is_stopped, true); }
 size_t batch_finished(const Batch* batch) { return atomic_load(&batch->finished); }
 size_t batch_refusals(const Batch* batch) { return atomic_load(&batch->refusals); }
 const unsigned char* batch_statuses(const Batch* batch) { return batch->status; }
-const char* batch_reason(const Batch* batch, size_t scenario) { return batch->reason[scenario]; }
+
+const char* batch_reason(const Batch* batch, size_t scenario) {
+    const bool is_lost = batch->status[scenario] == BATCH_REFUSED && !batch->reason[scenario];
+    return is_lost ? "refused; no memory for the reason" : batch->reason[scenario];
+}
 
 // Sum by halves with eight accumulators at the ends: the rounding error grows like log n. In the order that NumPy sums
 // in, so that means here and there agree to the last bit.
+// NOLINTNEXTLINE(misc-no-recursion): as deep as log n
 static double sum(const double* x, size_t stride, size_t n) {
     if (n < 8) {
         double total = 0.0;
@@ -181,7 +186,7 @@ static bool accepted(fmi2Status status) { return status <= fmi2Warning; }
 static bool initialize(Worker* w, size_t scenario) {
     const Fmi2Library* fmu = w->batch->fmu;
     const BatchPlan* plan = &w->batch->plan;
-    const fmi2Component c = w->instance.component;
+    fmi2Component c = w->instance.component;
     size_t reals = 0;
     size_t integers = 0;
     for (size_t i = 0; i < plan->starts; i++) {
@@ -206,7 +211,7 @@ static bool read_variables(const Worker* w, double* value) {
 static bool simulate(Worker* w, size_t scenario) {
     const Fmi2Library* fmu = w->batch->fmu;
     const BatchPlan* plan = &w->batch->plan;
-    const fmi2Component c = w->instance.component;
+    fmi2Component c = w->instance.component;
     double unit = 1.0; // s
     if (plan->frequency) {
         double f = 0.0;
@@ -241,9 +246,10 @@ static bool simulate(Worker* w, size_t scenario) {
 static void refuse(Worker* w, size_t scenario) {
     Batch* batch = w->batch;
     const char* said = w->instance.said[0] ? w->instance.said : "refused without a message";
-    batch->reason[scenario] = malloc(strlen(said) + 1);
+    const size_t size = strlen(said) + 1;
+    batch->reason[scenario] = malloc(size);
     if (batch->reason[scenario]) {
-        strcpy(batch->reason[scenario], said);
+        memcpy(batch->reason[scenario], said, size);
     }
     batch->status[scenario] = BATCH_REFUSED;
     atomic_fetch_add(&batch->refusals, 1);

@@ -59,7 +59,7 @@ static void* open_handle(const char* path, char* why, size_t size) {
 // ISO C has no conversion from what the loader gives to a function.
 static void find_function(void* handle, const char* name, void* target) {
     void* function = dlsym(handle, name);
-    memcpy(target, &function, sizeof function);
+    memcpy(target, (const void*)&function, sizeof function);
 }
 
 static void close_handle(void* handle) { dlclose(handle); }

@@ -54,7 +54,7 @@ scenarios = {
 # period more gives the mean. Work and heat of that period come along.
 
 # %%
-began = time.perf_counter()
+began, processor_began = time.perf_counter(), time.process_time()
 results = simulate_many(
     options.fmu or build_fmu(),
     scenarios,
@@ -63,7 +63,8 @@ results = simulate_many(
     progress=True,
 )
 mean = results["mean"] / COULOMB_FORCE
-print(f"{mean.size} scenarios in {time.perf_counter() - began:.1f} s")
+elapsed, processor = time.perf_counter() - began, time.process_time() - processor_began
+print(f"{mean.size} scenarios in {elapsed:.1f} s, {processor:.1f} s of processor time")
 print(f"mean friction from {mean.min():.3f} to {mean.max():.3f} F_C")
 
 # %% [markdown]
@@ -71,13 +72,13 @@ print(f"mean friction from {mean.min():.3f} to {mean.max():.3f} F_C")
 
 # %%
 figure, axis = style.subplots(1, 1, size=(7.0, 5.0))
+axis.set_xscale("log")
+axis.set_yscale("log")
 shown = axis.pcolormesh(kappa, zeta.ravel(), mean, cmap="RdBu_r", vmin=-1.0, vmax=1.0, rasterized=True)
 lines = axis.contour(
     kappa, zeta.ravel(), mean, (-0.1, 0.0, 0.1, 0.2, 0.4, 0.6, 0.8), colors="black", linewidths=0.6
 )
 axis.clabel(lines, fontsize=7)
-axis.set_xscale("log")
-axis.set_yscale("log")
 axis.set_xlabel("κ = σ V$_1$ / (2π f F$_C$)")
 axis.set_ylabel("ζ = V / V$_1$")
 figure.colorbar(shown, label="mean F$_t$ / F$_C$")
