@@ -141,15 +141,15 @@ class Store:
                 "reason": pa.array(reasons, pa.string()),
             }
         )
-        self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: pq.write_table(table, path))
+        self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: _write_table(table, path))
 
     def finish(self, results: Sequence[str]) -> tuple[int, int]:
         """Joins the parts; the numbers of good and failed scenarios."""
         good = bad = 0
         if any(pc.any(pc.is_valid(table["reason"])).as_py() for table in self._groups()):
-            bad = self._join("failed.parquet", pq.ParquetWriter, lambda table: _failed(table, results))
+            bad = self._join("failed.parquet", _parquet_writer, lambda table: _failed(table, results))
             self._join("failed.csv", csv.CSVWriter, lambda table: _failed(table, results))
-        good = self._join("results.parquet", pq.ParquetWriter, _good)
+        good = self._join("results.parquet", _parquet_writer, _good)
         shutil.rmtree(self.folder / "parts")
         return good, bad
 
@@ -163,7 +163,7 @@ class Store:
         if tables:
             yield pa.concat_tables(tables).combine_chunks()
 
-    def _join(self, name: str, writer: type, chosen: Callable[[pa.Table], pa.Table]) -> int:
+    def _join(self, name: str, writer: Callable, chosen: Callable[[pa.Table], pa.Table]) -> int:
         """Writes the chosen rows of all groups, a group at a time; how many they are."""
         rows = 0
 
@@ -204,6 +204,17 @@ class Store:
 def _span(part: Path) -> Span:
     first, _, last = part.stem.partition("-")
     return int(first), int(last) + 1
+
+
+def _parquet_writer(path: str | Path, schema: pa.Schema) -> pq.ParquetWriter:
+    """Dictionaries serve names alone: numbers seldom come twice."""
+    names = [field.name for field in schema if pa.types.is_string(field.type)]
+    return pq.ParquetWriter(str(path), schema, use_dictionary=names)
+
+
+def _write_table(table: pa.Table, path: Path) -> None:
+    with _parquet_writer(path, table.schema) as file:
+        file.write_table(table)
 
 
 def _arrow(column: np.ndarray) -> pa.Array:
