@@ -1,36 +1,43 @@
-# Compiler and linker options. Contraction to fused multiply-add is off and fast math never on, so that every
-# platform computes the same numbers.
+# Compiler and linker options, the same for every target. Contraction to fused multiply-add is off and fast math
+# never on, so that every platform computes the same numbers.
 
+# What decides the numbers and the code: fc_numbers. With warnings, for the project's own code: fc_options.
+add_library(fc_numbers INTERFACE)
+target_compile_options(fc_numbers INTERFACE
+    -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections $<$<CONFIG:Release>:-O3>)
 add_library(fc_options INTERFACE)
 target_compile_options(fc_options INTERFACE
-    -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${FC_WERROR}>:-Werror>
-    -ffp-contract=off -fno-math-errno $<$<CONFIG:Release>:-O3>)
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow $<$<BOOL:${FC_WERROR}>:-Werror>)
+target_link_libraries(fc_options INTERFACE fc_numbers)
 
+# Shared libraries export the fmi2 functions: ELF by the version script, Windows and macOS by what the FMI headers
+# declare so while all else is hidden.
 add_library(fc_shared INTERFACE)
 if(APPLE)
-    target_link_options(fc_shared INTERFACE "LINKER:-exported_symbols_list,${CMAKE_SOURCE_DIR}/cmake/exports.txt")
+    target_link_options(fc_shared INTERFACE LINKER:-dead_strip)
 elseif(UNIX)
     target_link_options(fc_shared INTERFACE
-        "LINKER:--version-script=${CMAKE_SOURCE_DIR}/cmake/exports.map" LINKER:--exclude-libs,ALL)
+        "LINKER:--version-script=${CMAKE_SOURCE_DIR}/cmake/exports.map" LINKER:--gc-sections)
     if(NOT FC_SANITIZE)
         target_link_options(fc_shared INTERFACE LINKER:-z,defs)
     endif()
 endif()
 
 if(FC_SANITIZE)
-    target_compile_options(fc_options INTERFACE -fsanitize=${FC_SANITIZE} -fno-omit-frame-pointer -g)
-    target_link_options(fc_options INTERFACE -fsanitize=${FC_SANITIZE})
+    target_compile_options(fc_numbers INTERFACE -fsanitize=${FC_SANITIZE} -fno-omit-frame-pointer -g)
+    target_link_options(fc_numbers INTERFACE -fsanitize=${FC_SANITIZE})
 endif()
 if(FC_FUZZ)
     # Work that is refused is refused soon, so that a fuzzer can tell a hang.
-    target_compile_options(fc_options INTERFACE -fsanitize=fuzzer-no-link -DFC_MOST_EVALUATIONS=2e3)
+    target_compile_options(fc_numbers INTERFACE -fsanitize=fuzzer-no-link -DFC_MOST_EVALUATIONS=2e3)
 endif()
 if(FC_COVERAGE)
     target_compile_options(fc_options INTERFACE --coverage -O0 -g)
     target_link_options(fc_options INTERFACE --coverage)
 endif()
 
-if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT FC_SANITIZE AND NOT FC_COVERAGE)
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT FC_SANITIZE AND NOT FC_COVERAGE
+   AND NOT DEFINED CMAKE_INTERPROCEDURAL_OPTIMIZATION)
     include(CheckIPOSupported)
     check_ipo_supported(RESULT link_time_optimization LANGUAGES C)
     set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ${link_time_optimization})
