@@ -7,8 +7,6 @@ if(FC_FUZZ AND NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "FC_FUZZ needs clang, which libFuzzer is part of (Debian: clang libclang-rt-14-dev); "
                         "name it with CC=clang")
 endif()
-add_custom_target(variables DEPENDS "${variable_table}")
-add_dependencies(FrictionContact variables)
 foreach(name call_sequence state_bytes)
     foreach(kind replay fuzz)
         set(program ${kind}_${name})

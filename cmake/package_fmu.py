@@ -8,6 +8,8 @@ from __future__ import annotations
 import argparse
 import hashlib
 import os
+import struct
+import sys
 import zipfile
 from pathlib import Path
 
@@ -15,6 +17,8 @@ import model_description
 
 FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 CHECKSUMS = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
+# ELF, PE, Mach-O, universal Mach-O
+BINARY_BEGINNINGS = (b"\x7fELF", b"MZ", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
 BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": ".dylib"}
 
 
@@ -36,6 +40,19 @@ def binary_name(platform: str, identifier: str) -> str:
     if system not in BINARY_SUFFIXES:
         raise ValueError(f"unknown FMI platform {platform}")
     return f"binaries/{platform}/{identifier}{BINARY_SUFFIXES[system]}"
+
+
+def whole_binary(path: Path) -> bytes:
+    """The bytes of a shared library; ValueError if it is none, or was not written to its end."""
+    content = path.read_bytes()
+    if not content.startswith(BINARY_BEGINNINGS):
+        raise ValueError(f"{path} is no shared library: remove it and build again")
+    if content.startswith(b"\x7fELF\x02\x01"):  # little-endian, 64 bits: the section headers stand last
+        header = content[:64].ljust(64, b"\xff")
+        (offset,), (size, count) = struct.unpack_from("<Q", header, 40), struct.unpack_from("<HH", header, 58)
+        if offset + size * count > len(content):
+            raise ValueError(f"{path} is cut short: remove it and build again")
+    return content
 
 
 def packaged_xml(path: Path, sources: list[str]) -> bytes:
@@ -68,7 +85,7 @@ def write_fmu(
     identifier = model_description.read(xml).model_identifier
     c_files = sorted(name for name in sources if name.endswith(".c"))
     entries = {"modelDescription.xml": packaged_xml(xml, c_files)}
-    entries |= {binary_name(platform, identifier): path.read_bytes() for platform, path in binaries.items()}
+    entries |= {binary_name(platform, identifier): whole_binary(path) for platform, path in binaries.items()}
     entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
     entries |= {name: path.read_bytes() for name, path in others.items()}
     entries[CHECKSUMS] = checksums(entries)
@@ -94,7 +111,10 @@ def _pair(text: str) -> tuple[str, Path]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Pack an FMU.")
+    parser = argparse.ArgumentParser(
+        description="Pack an FMU. @FILE stands for the arguments in FILE, one a line.",
+        fromfile_prefix_chars="@",
+    )
     parser.add_argument("output", type=Path)
     parser.add_argument("--xml", type=Path, required=True, help="modelDescription.xml with its placeholder")
     parser.add_argument("--sources", type=Path, required=True, help="folder of the C sources")
@@ -117,4 +137,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {error}")

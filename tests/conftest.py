@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,19 @@ import pytest
 from frictionlab.fmu import FrictionFmu
 
 ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def copy_project() -> Callable[[Path], Path]:
+    """Copies the project as a clean checkout has it: without .venv and build."""
+
+    def copy(target: Path) -> Path:
+        left_out = shutil.ignore_patterns("build", ".git", ".venv*", ".*cache*", "__pycache__", "*.png")
+        shutil.copytree(ROOT, target, ignore=left_out)
+        shutil.copy(ROOT / "docs/fmu/model.png", target / "docs/fmu")
+        return target
+
+    return copy
 
 
 @pytest.fixture(scope="session")

@@ -10,13 +10,6 @@ from pathlib import Path
 
 from playwright.sync_api import Browser
 
-from frictionlab.project import ROOT, UserError
-
-sys.path.insert(0, str(ROOT / "cmake"))
-
-import generate_variables
-import model_description
-
 from frictionlab.browser import chromium
 from frictionlab.command import shown
 from frictionlab.description import description
@@ -24,16 +17,14 @@ from frictionlab.playground.browser import measure, take_pictures
 from frictionlab.playground.core import core
 from frictionlab.playground.page import page
 from frictionlab.presets import presets
-from frictionlab.release.targets import ReleaseError
+from frictionlab.project import ROOT, UserError
 
 DEFAULT = ROOT / "build" / "playground.html"
 XML = ROOT / "modelDescription.xml"
-CACHE = ROOT / "build" / "zig-cache"
 
 
 def page_text() -> str:
-    wasm = core(generate_variables.table(model_description.read(XML)), CACHE)
-    return page(wasm, description(XML), presets())
+    return page(core(), description(XML), presets())
 
 
 def write(output: Path, text: str) -> None:
@@ -71,7 +62,7 @@ def main() -> None:
         if options.measure or options.pictures:
             with chromium() as browser:
                 look(browser, options)
-    except (ReleaseError, UserError) as error:
+    except UserError as error:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {options.output} can't be written: {error.strerror}")

@@ -10,34 +10,25 @@ from __future__ import annotations
 import argparse
 import hashlib
 import importlib.metadata
+import re
+import subprocess
 import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-import fmpy
 from fmpy.validation import validate_fmu
 from rich.progress import Progress
 
-from frictionlab.project import ROOT
-
-sys.path.insert(0, str(ROOT / "cmake"))
-
-import generate_variables
-import model_description
-import package_fmu
-
-from frictionlab.command import progress_bar
-from frictionlab.fmu_docs import page as fmu_documentation
+from frictionlab.command import finish, progress_bar, shown
+from frictionlab.project import ROOT, UserError
 from frictionlab.release import inspect as release_inspect
-from frictionlab.release.sundials import SundialsSource, fetched
-from frictionlab.release.targets import TARGETS, ReleaseError, compile_library, zig
+from frictionlab.release.targets import CACHE, SUFFIXES, build, zig
 from frictionlab.release.universal import universal
 
 QUICK = ("linux64", "aarch64-linux")
 SUNDIALS = ROOT / "build" / "sundials-source"
-CACHE = ROOT / "build" / "zig-cache"
 # Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
 TOOLCHAIN_LICENSES = {
     "zig-license.txt": "LICENSE",
@@ -45,38 +36,19 @@ TOOLCHAIN_LICENSES = {
 }
 
 
-def fmi_headers() -> Path:
-    return Path(fmpy.__file__).parent / "c-code"
-
-
 def compile_platforms(
     platforms: Iterable[str],
     folder: Path,
-    sundials: SundialsSource,
     cache: Path = CACHE,
     root: Path = ROOT,
     tell: Callable[[str], None] = lambda platform: None,
 ) -> dict[str, Path]:
-    """Libraries under folder, one a platform, each inspected; root holds the sources."""
-    table = folder / "variables.c"
-    table.write_text(generate_variables.table(model_description.read(root / "modelDescription.xml")))
-    sources = [
-        *sorted((root / "fmu_src").rglob("*.c")),
-        table,
-    ]
-    includes = [root / "fmu_src", fmi_headers(), *sundials.includes]
+    """Libraries in folders of CMake under folder, one a platform, each inspected; root holds the sources."""
     libraries = {}
     for platform in platforms:
         tell(platform)
-        (folder / platform).mkdir()
-        libraries[platform] = compile_library(
-            TARGETS[platform],
-            [*sources, *sundials.sources],
-            includes,
-            root / "cmake" / "exports.map",
-            cache,
-            folder / platform,
-        )
+        build(platform, "fmu_parts", folder / platform, cache, root)
+        libraries[platform] = folder / platform / f"FrictionContact{SUFFIXES[platform]}"
         release_inspect.check(platform, libraries[platform])
     return libraries
 
@@ -92,28 +64,22 @@ def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str,
     return {**libraries, "darwin64": path}
 
 
-def pack(
-    output: Path, libraries: dict[str, Path], table: Path, sundials: SundialsSource, folder: Path
-) -> None:
-    """Writes output, if the validator finds nothing in it; folder is scratch."""
-    page = folder / "index.html"
-    page.write_text(fmu_documentation.page(ROOT / "modelDescription.xml"), encoding="utf-8")
-    others = fmu_documentation.files(page)
-    others |= {
-        f"documentation/licenses/{name}": zig().parent / path for name, path in TOOLCHAIN_LICENSES.items()
-    }
+def pack(output: Path, libraries: dict[str, Path], parts: Path) -> None:
+    """Writes output, if the validator finds nothing in it. parts: CMake's folder of one of the platforms."""
+    arguments = [f"@{parts / 'generated' / 'package.txt'}"]
+    for platform, library in libraries.items():
+        arguments += ["--binary", f"{platform}={library}"]
+    for name, path in TOOLCHAIN_LICENSES.items():
+        arguments += ["--file", f"documentation/licenses/{name}={zig().parent / path}"]
     unchecked = output.with_name(f".{output.stem}.unchecked.fmu")
+    packer = [sys.executable, "-B", "cmake/package_fmu.py", str(unchecked.absolute()), *arguments]
     try:
-        package_fmu.write_fmu(
-            unchecked,
-            ROOT / "modelDescription.xml",
-            libraries,
-            package_fmu.source_files(ROOT / "fmu_src", table, fmi_headers()),
-            others,
-        )
+        run = subprocess.run(packer, cwd=ROOT, capture_output=True, text=True)
+        if run.returncode:
+            raise UserError(f"packing fails: {' '.join(run.stderr.split())[-300:]}")
         problems = validate_fmu(str(unchecked))
         if problems:
-            raise ReleaseError(f"the validator finds: {' '.join(problems[0].split())}")
+            raise UserError(f"the validator finds: {' '.join(problems[0].split())}")
         unchecked.replace(output)
     finally:
         unchecked.unlink(missing_ok=True)
@@ -136,31 +102,37 @@ def size_table(fmu: Path) -> str:
     return "\n".join(lines)
 
 
-def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> SundialsSource:
-    """Writes output whole or not at all; ReleaseError says why not."""
+def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> None:
+    """Writes output whole or not at all; UserError says why not."""
     platforms = list(platforms)
     zig()
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
         if output.is_dir():
-            raise ReleaseError(f"{output} can't be written: it is a folder")
+            raise UserError(f"{output} can't be written: it is a folder")
         with tempfile.TemporaryFile(dir=output.parent):
             pass
     except OSError as error:
-        raise ReleaseError(f"{output} can't be written: {error.strerror}") from None
-    task = progress.add_task("SUNDIALS' source", total=len(platforms) + 2)
-    sundials = fetched(SUNDIALS)
+        raise UserError(f"{output} can't be written: {error.strerror}") from None
+    task = progress.add_task("Compiling", total=len(platforms) + 1)
 
     def tell(platform: str) -> None:
         progress.update(task, advance=1, description=f"Compiling for {platform}")
 
     with tempfile.TemporaryDirectory(prefix="release-") as temporary:
         folder = Path(temporary)
-        libraries = compile_platforms(platforms, folder, sundials, tell=tell)
+        libraries = compile_platforms(platforms, folder, tell=tell)
         progress.update(task, advance=1, description="Packing and validating")
-        pack(output, with_universal_darwin(libraries, folder), folder / "variables.c", sundials, folder)
+        pack(output, with_universal_darwin(libraries, folder), folder / platforms[0])
     progress.remove_task(task)
-    return sundials
+
+
+def sundials_version() -> str:
+    """Of the source that cmake/Sundials.cmake fetched: its number and the checksum of its archive."""
+    numbers = re.findall(
+        r'set\(PACKAGE_VERSION_(?:MAJOR|MINOR|PATCH) "(\d+)"\)', (SUNDIALS / "CMakeLists.txt").read_text()
+    )
+    return f"{'.'.join(numbers)} (sha256 {(SUNDIALS / 'archive.sha256').read_text().strip()})"
 
 
 def main() -> None:
@@ -172,31 +144,27 @@ def main() -> None:
         "-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu"
     )
     parser.add_argument(
-        "--platforms", nargs="+", choices=list(TARGETS), metavar="PLATFORM", help=", ".join(TARGETS)
+        "--platforms", nargs="+", choices=list(SUFFIXES), metavar="PLATFORM", help=", ".join(SUFFIXES)
     )
     parser.add_argument(
         "--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick"
     )
-    arguments = parser.parse_args()
-    output = (
-        arguments.output
-        or ROOT / "build" / ("release-quick" if arguments.quick else "release") / "FrictionContact.fmu"
-    )
-    platforms = arguments.platforms or (QUICK if arguments.quick else list(TARGETS))
+    finish(_release, parser.parse_args())
+
+
+def _release(options: argparse.Namespace) -> None:
+    name = "release-quick" if options.quick else "release"
+    output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
+    platforms = options.platforms or (QUICK if options.quick else list(SUFFIXES))
     try:
         with progress_bar() as progress:
-            sundials = make_release(output, platforms, progress)
+            make_release(output, platforms, progress)
     except KeyboardInterrupt:
-        sys.exit("error: interrupted; nothing was written")
-    except ReleaseError as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error.filename}: {error.strerror}")
+        raise UserError("interrupted; nothing was written") from None
     print(size_table(output))
-    print(f"SUNDIALS {sundials.version} (sha256 {sundials.sha256})")
+    print(f"SUNDIALS {sundials_version()}")
     print(f"zig {importlib.metadata.version('ziglang')}")
-    shown = output.relative_to(ROOT) if output.is_relative_to(ROOT) else output
-    print(f"{shown} (sha256 {hashlib.sha256(output.read_bytes()).hexdigest()})")
+    print(f"{shown(output)} (sha256 {hashlib.sha256(output.read_bytes()).hexdigest()})")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import lief
 
-from frictionlab.release.targets import ReleaseError
+from frictionlab.project import UserError
 
 lief.logging.disable()  # it reports on harmless oddities of the files
 
@@ -52,29 +52,29 @@ def inspect(path: Path) -> Library:
         return _pe(binary)
     if isinstance(binary, lief.MachO.Binary):
         return _macho(binary, path.read_bytes())
-    raise ReleaseError(f"{path} is no shared library")
+    raise UserError(f"{path} is no shared library")
 
 
 def check(platform: str, path: Path) -> Library:
-    """The facts of a library of the release; ReleaseError names the first that is not as it must be."""
+    """The facts of a library of the release; UserError names the first that is not as it must be."""
     library = inspect(path)
     darwin = platform in MINIMUM_MACOS
     foreign = {name for name in library.exports if not name.startswith("fmi2")}
     if foreign:
-        raise ReleaseError(f"{platform}: {sorted(foreign)[0]} is exported, and only fmi2 functions may be")
+        raise UserError(f"{platform}: {sorted(foreign)[0]} is exported, and only fmi2 functions may be")
     if library.processor != PROCESSORS[platform]:
-        raise ReleaseError(f"{platform}: built for {library.processor}, not for {PROCESSORS[platform]}")
+        raise UserError(f"{platform}: built for {library.processor}, not for {PROCESSORS[platform]}")
     if library.glibc > NEWEST_GLIBC:
-        raise ReleaseError(f"{platform}: needs GLIBC_{'.'.join(map(str, library.glibc))}, later than 2.17")
+        raise UserError(f"{platform}: needs GLIBC_{'.'.join(map(str, library.glibc))}, later than 2.17")
     strange = {name for name in library.needs if not SYSTEM_LIBRARIES.fullmatch(name)}
     if strange:
-        raise ReleaseError(f"{platform}: needs {sorted(strange)[0]}, which not every system has")
+        raise UserError(f"{platform}: needs {sorted(strange)[0]}, which not every system has")
     if darwin and library.minimum_macos != MINIMUM_MACOS[platform]:
-        raise ReleaseError(f"{platform}: minimum macOS is {library.minimum_macos}")
+        raise UserError(f"{platform}: minimum macOS is {library.minimum_macos}")
     if platform == "aarch64-darwin" and library.signature != "ad hoc":
-        raise ReleaseError(f"{platform}: signature: {library.signature}; macOS on ARM loads signed code only")
+        raise UserError(f"{platform}: signature: {library.signature}; macOS on ARM loads signed code only")
     if library.debug_sections:
-        raise ReleaseError(f"{platform}: not stripped, holds {sorted(library.debug_sections)[0]}")
+        raise UserError(f"{platform}: not stripped, holds {sorted(library.debug_sections)[0]}")
     return library
 
 

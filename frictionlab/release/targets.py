@@ -1,64 +1,33 @@
-"""The platforms of a release, and how each one's library is compiled and linked with zig.
-
-Folder names as in FMI 2.0.5, section 2.3: linux64, win64, darwin64 mean x86-64; every other platform has the
-platform tuple of FMI 3.0, section 2.5.1.4.1.
-"""
+"""The platforms of a release; cmake/zig.cmake holds how each is compiled, CMakeLists.txt what."""
 
 from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import subprocess
-from dataclasses import dataclass
+import sys
 from pathlib import Path
 
-IDENTIFIER = "FrictionContact"
+from frictionlab.project import ROOT, UserError
 
-# Contraction is off and fast math never on: every platform computes the same numbers.
-COMPILE = (
-    "-std=c11",
-    "-O3",
-    "-DNDEBUG",
-    "-ffp-contract=off",
-    "-fvisibility=hidden",
-    "-ffunction-sections",
-    "-fdata-sections",
-)
-LINUX = ("-flto", "-Wl,-z,defs", "-Wl,--gc-sections", f"-Wl,-soname,{IDENTIFIER}.so", "-lm")
-MACOS = ("-Wl,-dead_strip", f"-Wl,-install_name,@rpath/{IDENTIFIER}.dylib")
-
-
-class ReleaseError(Exception):
-    """The release can't be made; the text is one line that says why."""
-
-
-@dataclass(frozen=True)
-class Target:
-    """One platform of the FMU."""
-
-    platform: str  # folder under binaries/
-    triple: str  # as zig takes it
-    suffix: str
-    link: tuple[str, ...]  # and -flto, which zig's linkers for the other formats do not take
-
-
-TARGETS = {
-    target.platform: target
-    for target in (
-        Target("linux64", "x86_64-linux-gnu.2.17", ".so", LINUX),
-        Target("aarch64-linux", "aarch64-linux-gnu.2.17", ".so", LINUX),
-        Target("win64", "x86_64-windows-gnu", ".dll", ()),
-        Target("darwin64", "x86_64-macos.10.15", ".dylib", MACOS),
-        Target("aarch64-darwin", "aarch64-macos.11.0", ".dylib", MACOS),
-    )
+# Folders under binaries/, as FMI 2.0.5, section 2.3, and FMI 3.0, section 2.5.1.4.1, name them.
+SUFFIXES = {
+    "linux64": ".so",
+    "aarch64-linux": ".so",
+    "win64": ".dll",
+    "darwin64": ".dylib",
+    "aarch64-darwin": ".dylib",
 }
+CACHE = ROOT / "build" / "zig-cache"
+CMAKE_ERROR = re.compile(r"CMake Error at [^\n]*:\n(.*?)(?:Call Stack|-- Configuring|\Z)", re.DOTALL)
 
 
 def zig() -> Path:
     """The zig of the ziglang package."""
     found = importlib.util.find_spec("ziglang")
     if found is None or not found.submodule_search_locations:
-        raise ReleaseError(
+        raise UserError(
             "the cross compiler is missing: the Python package ziglang of requirements-release.txt is not "
             "installed; scripts/setup release installs it"
         )
@@ -66,38 +35,37 @@ def zig() -> Path:
     for name in ("zig", "zig.exe"):
         if (folder / name).is_file():
             return folder / name
-    raise ReleaseError(f"the cross compiler is missing: no zig in the package ziglang, {folder}")
+    raise UserError(f"the cross compiler is missing: no zig in the package ziglang, {folder}")
 
 
-def run_zig(arguments: list[str], cache: Path, folder: Path) -> None:
-    """Runs zig cc in a folder; ReleaseError holds the first error it gives."""
-    environment = {**os.environ, "ZIG_GLOBAL_CACHE_DIR": str(cache), "ZIG_LOCAL_CACHE_DIR": str(cache)}
-    command = [str(zig()), "cc", *arguments]
-    run = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, errors="replace"
-    )
-    if run.returncode:
-        lines = [line for line in run.stderr.splitlines() if "error" in line] or run.stderr.splitlines()
-        raise ReleaseError(f"zig cc fails: {lines[0] if lines else f'exit status {run.returncode}'}")
+def build(platform: str, target: str, folder: Path, cache: Path = CACHE, root: Path = ROOT) -> None:
+    """Builds a target of CMake for a platform in folder, which is made if it is new.
 
-
-def compile_library(
-    target: Target, sources: list[Path], includes: list[Path], exports: Path, cache: Path, folder: Path
-) -> Path:
-    """folder/FrictionContact.so and its like, stripped, exporting the fmi2 functions only.
-
-    exports: the linker's version script, for ELF; the other formats export what the FMI headers declare so.
+    root holds the sources. platform: one of SUFFIXES, or wasm32-wasi. UserError holds the first error.
     """
-    library = folder / f"{IDENTIFIER}{target.suffix}"
-    version_script = [f"-Wl,--version-script={exports}"] if target.suffix == ".so" else []
-    run_zig(
-        [
-            *("-target", target.triple, *COMPILE, "-w", "-DFC_WITH_SUNDIALS"),
-            *(f"-I{include}" for include in includes),
-            *(str(source) for source in sources),
-            *("-shared", "-s", "-o", library.name, *version_script, *target.link),
-        ],
-        cache,
-        folder,
-    )
-    return library
+    if not (folder / "Makefile").is_file():
+        options = {
+            "CMAKE_TOOLCHAIN_FILE": root / "cmake" / "zig.cmake",
+            "CMAKE_BUILD_TYPE": "Release",
+            "FMI_PLATFORM": platform,
+            "FC_SUNDIALS_SOURCE": ROOT / "build" / "sundials-source",
+            "WITH_SUNDIALS": "OFF" if platform == "wasm32-wasi" else "ON",
+            "Python3_EXECUTABLE": sys.executable,
+            "ZIG": zig(),
+        }
+        defined = [f"-D{name}={value}" for name, value in options.items()]
+        _cmake(["-S", str(root), "-B", str(folder), "-G", "Unix Makefiles", *defined], cache)
+    jobs = str(os.cpu_count() or 1)
+    _cmake(["--build", str(folder), "--target", target, "--parallel", jobs], cache)
+
+
+def _cmake(arguments: list[str], cache: Path) -> None:
+    environment = {**os.environ, "ZIG_GLOBAL_CACHE_DIR": str(cache), "ZIG_LOCAL_CACHE_DIR": str(cache)}
+    command = [sys.executable, "-m", "cmake", *arguments]
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, errors="replace")
+    if run.returncode:
+        if match := CMAKE_ERROR.search(run.stderr):
+            raise UserError(" ".join(match[1].split()))
+        lines = run.stderr.splitlines()
+        errors = [line for line in lines if re.search(r"\berror:", line)] or lines
+        raise UserError(f"the build fails: {errors[0] if errors else f'exit status {run.returncode}'}")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from frictionlab.playground import command
-from frictionlab.release.targets import ReleaseError
+from frictionlab.project import UserError
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> None:
@@ -43,7 +43,7 @@ def test_an_output_that_can_t_be_written_is_one_line(
 
 def test_a_missing_compiler_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def no_page() -> str:
-        raise ReleaseError("the cross compiler is missing: install it")
+        raise UserError("the cross compiler is missing: install it")
 
     monkeypatch.setattr(command, "page_text", no_page)
     with pytest.raises(SystemExit, match="error: the cross compiler is missing: install it"):

@@ -6,35 +6,25 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+from fmpy.model_description import ModelDescription
 
 from frictionlab.parameters import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
-from frictionlab.release.command import CACHE, fmi_headers, model_description
-from frictionlab.release.targets import TARGETS, run_zig
+from frictionlab.release.targets import build
 
-ROOT = Path(__file__).resolve().parents[2]
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 METHODS = ("collocation", "cvode", "backwardEuler", "trapezoid", "rk4", "explicitEuler")
 
 
-def build_host(platform: str, folder: Path) -> Path:
-    """run_scenarios for a platform."""
+def build_host(platform: str, library: Path) -> Path:
+    """run_scenarios for a platform, beside the library of that platform in CMake's folder."""
+    build(platform, "run_scenarios", library.parent)
     suffix = ".exe" if platform == "win64" else ""
-    libraries = [] if platform == "win64" else ["-ldl"]
-    sources = [str(Path(__file__).with_name("run_scenarios.c")), str(ROOT / "host" / "fmi2_library.c")]
-    host = folder / f"run_scenarios{suffix}"
-    options = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{fmi_headers()}", f"-I{ROOT / 'host'}"]
-    run_zig(
-        ["-target", TARGETS[platform].triple, *options, *sources, "-o", host.name, *libraries],
-        CACHE,
-        folder,
-    )
-    return host
+    return library.parent / "tests" / "release" / f"run_scenarios{suffix}"
 
 
-def commands() -> tuple[str, str]:
-    """The input of run_scenarios, and the GUID of the model."""
-    description = model_description.read(ROOT / "modelDescription.xml")
-    reference = {variable.name: k for k, variable in enumerate(description.variables)}
+def commands(description: ModelDescription) -> str:
+    """The input of run_scenarios."""
+    reference = {variable.name: variable.valueReference for variable in description.modelVariables}
     first, last = reference[OUTPUTS[0]], reference[OUTPUTS[-1]]
     assert last - first + 1 == len(OUTPUTS)
     lines: list[str] = []
@@ -71,14 +61,14 @@ def commands() -> tuple[str, str]:
         lines.append(f"rate {reference['V']} {(-40.0 if k % 20 < 10 else 40.0).hex()}")
         lines.append(f"rate {reference['d']} {(1e-3 if k % 10 < 5 else -1e-3).hex()}")
         step(1e-4, 1)
-    return "\n".join(lines) + "\n", description.guid
+    return "\n".join(lines) + "\n"
 
 
-def run(start: list[str], library: Path) -> dict[str, np.ndarray]:
+def run(start: list[str], library: Path, description: ModelDescription) -> dict[str, np.ndarray]:
     """Runs all scenarios with a host program; one array a scenario, columns time and OUTPUTS."""
-    text, guid = commands()
+    text = commands(description)
     done = subprocess.run(
-        [*start, str(library), guid], input=text, capture_output=True, text=True, timeout=300
+        [*start, str(library), description.guid], input=text, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr[-2000:]
     rows: dict[str, list[list[float]]] = {}

@@ -24,10 +24,9 @@ LIMIT = 1e-12  # of the largest value of each output in the scenario
 
 
 @pytest.fixture(scope="module")
-def linux_runs(
-    library: Callable[[str], Path], tmp_path_factory: pytest.TempPathFactory
-) -> dict[str, np.ndarray]:
-    return run([str(build_host("linux64", tmp_path_factory.mktemp("host")))], library("linux64"))
+def linux_runs(library: Callable[[str], Path], fmu: FrictionFmu) -> dict[str, np.ndarray]:
+    path = library("linux64")
+    return run([str(build_host("linux64", path))], path, fmu.description)
 
 
 def test_linux_agrees_with_the_default_build(linux_runs: dict[str, np.ndarray], fmu: FrictionFmu) -> None:
@@ -42,12 +41,11 @@ def test_linux_agrees_with_the_default_build(linux_runs: dict[str, np.ndarray], 
     not QEMU or not ARM_LIBRARIES.is_dir(), reason="qemu-user or libc6-arm64-cross is missing"
 )
 def test_linux_on_arm(
-    library: Callable[[str], Path], linux_runs: dict[str, np.ndarray], tmp_path: Path
+    library: Callable[[str], Path], linux_runs: dict[str, np.ndarray], fmu: FrictionFmu
 ) -> None:
-    host = build_host("aarch64-linux", tmp_path)
-    differences = largest_difference(
-        linux_runs, run([str(QEMU), "-L", str(ARM_LIBRARIES), str(host)], library("aarch64-linux"))
-    )
+    path = library("aarch64-linux")
+    start = [str(QEMU), "-L", str(ARM_LIBRARIES), str(build_host("aarch64-linux", path))]
+    differences = largest_difference(linux_runs, run(start, path, fmu.description))
     assert max(differences.values()) <= LIMIT, differences
 
 
@@ -56,11 +54,13 @@ def test_linux_on_arm(
 def test_windows(
     library: Callable[[str], Path],
     linux_runs: dict[str, np.ndarray],
+    fmu: FrictionFmu,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(os.environ, "WINEPREFIX", str(tmp_path / "wine"))
     monkeypatch.setitem(os.environ, "WINEDEBUG", "-all")
-    host = build_host("win64", tmp_path)
-    differences = largest_difference(linux_runs, run([str(WINE), str(host)], library("win64")))
+    path = library("win64")
+    start = [str(WINE), str(build_host("win64", path))]
+    differences = largest_difference(linux_runs, run(start, path, fmu.description))
     assert max(differences.values()) <= LIMIT, differences

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,17 +15,15 @@ from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 from rich.progress import Progress
 
+from frictionlab.project import UserError
 from frictionlab.release import command as release
-from frictionlab.release import sundials as release_sundials
 from frictionlab.release import targets as release_targets
-from frictionlab.release.sundials import SundialsSource
-from frictionlab.release.targets import ReleaseError
 
 QUIET = {"transient": True, "disable": True}
 
 
 @pytest.fixture(scope="module")
-def released(tmp_path_factory: pytest.TempPathFactory, sundials: SundialsSource) -> Path:
+def released(tmp_path_factory: pytest.TempPathFactory) -> Path:
     output = tmp_path_factory.mktemp("released") / "FrictionContact.fmu"
     with Progress(**QUIET) as progress:
         release.make_release(output, ["linux64"], progress)
@@ -85,7 +83,7 @@ def test_libcosim_runs_it(released: Path) -> None:
 
 
 def refuse(output: Path) -> str:
-    with Progress(**QUIET) as progress, pytest.raises(ReleaseError) as refusal:
+    with Progress(**QUIET) as progress, pytest.raises(UserError) as refusal:
         release.make_release(output, ["linux64"], progress)
     text = str(refusal.value)
     assert "\n" not in text
@@ -137,27 +135,15 @@ def test_output_on_a_read_only_file_system() -> None:
 
 
 def test_code_that_does_not_compile(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, sundials: SundialsSource, released: Path
+    monkeypatch: pytest.MonkeyPatch, copy_project: Callable[[Path], Path], tmp_path: Path, released: Path
 ) -> None:
     """The compiler's first error in one line; an older release stays as it was."""
-    broken = tmp_path / "broken"
-    for name in ("fmu_src", "cmake"):
-        shutil.copytree(release.ROOT / name, broken / name)
-    shutil.copy(release.ROOT / "modelDescription.xml", broken)
+    broken = copy_project(tmp_path / "broken")
     (broken / "fmu_src" / "model" / "contact.c").write_text("int contact(void) { return surprise; }\n")
-    work = tmp_path / "work"
-    work.mkdir()
-    with pytest.raises(ReleaseError, match=r"zig cc fails: .*contact\.c:1:.*surprise"):
-        release.compile_platforms(["linux64"], work, sundials, root=broken)
+    with pytest.raises(UserError, match=r"the build fails: .*contact\.c:1:.*surprise"):
+        release.compile_platforms(["linux64"], tmp_path / "work", root=broken)
     before = released.read_bytes()
     monkeypatch.setattr(release, "validate_fmu", lambda path: ["a made-up problem\nof two lines"])
     assert refuse(released) == "the validator finds: a made-up problem of two lines"
     assert released.read_bytes() == before
     assert [path.name for path in released.parent.iterdir()] == ["FrictionContact.fmu"]
-
-
-def test_sundials_can_not_be_fetched(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(release_sundials.shutil, "which", lambda name: None)
-    with pytest.raises(ReleaseError, match="apt-get is missing"):
-        release_sundials.fetched(tmp_path / "sundials-source")
-    assert list(tmp_path.iterdir()) == []
