@@ -42,3 +42,9 @@ if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT FC_SANITIZE AND NOT FC_COVERAGE
     check_ipo_supported(RESULT link_time_optimization LANGUAGES C)
     set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ${link_time_optimization})
 endif()
+
+# A link that is killed leaves no file under the library's name, which make would take for current.
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND NOT CMAKE_CROSSCOMPILING)
+    string(REPLACE "<TARGET>" "<TARGET>.part" CMAKE_C_CREATE_SHARED_LIBRARY "${CMAKE_C_CREATE_SHARED_LIBRARY}")
+    list(APPEND CMAKE_C_CREATE_SHARED_LIBRARY "\"${CMAKE_COMMAND}\" -E rename <TARGET>.part <TARGET>")
+endif()

@@ -2,7 +2,7 @@
 
 usage: fetch_sundials.py FOLDER
 
-FOLDER appears when it is complete; archive.sha256 in it holds the checksum of the archive it was unpacked from.
+FOLDER appears when it is complete; archive.sha256 in it holds the checksum of the archive it came from.
 Neither the system's package lists nor its packages change.
 """
 

@@ -6,15 +6,18 @@ CMAKE_ARGS in the environment is passed on when configuring, e.g. CMAKE_ARGS=-DW
 from __future__ import annotations
 
 import argparse
+import fcntl
 import json
 import os
 import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
-from rich.progress import Progress
+from rich.progress import Progress, TaskID
 
 from frictionlab.command import finish, progress_bar
 from frictionlab.project import ROOT, UserError
@@ -33,20 +36,68 @@ def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path
 
     Shows a bar in the given progress, or in one of its own.
     """
+    return build_targets(preset, (), progress) / "FrictionContact.fmu"
+
+
+def build_targets(
+    preset: str, targets: Sequence[str], progress: Progress | None = None, options: Sequence[str] = ()
+) -> Path:
+    """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
+
+    Commands that are started together build one after the other. What a killed or failed build left, and what
+    came along with a copied or renamed project, is built anew.
+    """
     if progress is None:
         with progress_bar() as own:
-            return build_fmu(preset, own)
+            return build_targets(preset, targets, own, options)
     folder = presets()[preset]
-    task = progress.add_task("Configuring", total=100)
-    cmake = [sys.executable, "-m", "cmake"]
-    options = [f"-DPython3_EXECUTABLE={sys.executable}", *shlex.split(os.environ.get("CMAKE_ARGS", ""))]
-    _run([*cmake, "--preset", preset, *options], progress, task)
-    _run([*cmake, "--build", str(folder), "--parallel", str(os.cpu_count() or 1)], progress, task)
+    task = progress.add_task("Waiting for another build", total=100)
+    with _locked(folder):
+        progress.update(task, description="Configuring")
+        cmake = [sys.executable, "-m", "cmake"]
+        unfinished = folder / "unfinished"
+        anew = unfinished.exists() or _is_of_another_folder(folder)
+        unfinished.touch()
+        settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
+        settings += shlex.split(os.environ.get("CMAKE_ARGS", ""))
+        _run([*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])], progress, task)
+        chosen = ["--target", *targets] if targets else []
+        chosen += ["--parallel", str(os.cpu_count() or 1), *(["--clean-first"] if anew else [])]
+        _run([*cmake, "--build", str(folder), *chosen], progress, task)
+        unfinished.unlink()
     progress.remove_task(task)
-    return folder / "FrictionContact.fmu"
+    return folder
 
 
-def _run(command: list[str], progress: Progress, task: int) -> None:
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Holds the lock of a build folder, which is made if it is new."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = (folder / "lock").open("w")
+    except OSError as error:
+        raise UserError(f"{error.filename} can't be written: {error.strerror}") from None
+    with lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _is_of_another_folder(folder: Path) -> bool:
+    """Whether CMake's cache in folder was made for sources that are elsewhere."""
+    try:
+        cache = (folder / "CMakeCache.txt").read_text(errors="replace")
+    except FileNotFoundError:
+        return False
+    home = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", cache, re.MULTILINE)
+    made_in = re.search(r"^CMAKE_CACHEFILE_DIR:INTERNAL=(.*)$", cache, re.MULTILINE)
+    return not (_is_folder(home, ROOT) and _is_folder(made_in, folder))
+
+
+def _is_folder(entry: re.Match[str] | None, folder: Path) -> bool:
+    return entry is not None and Path(entry[1]).exists() and Path(entry[1]).samefile(folder)
+
+
+def _run(command: list[str], progress: Progress, task: TaskID) -> None:
     lines: list[str] = []
     with subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
@@ -65,7 +116,7 @@ def _reason(lines: list[str]) -> str:
     """CMake's own error message as one line, or else the compiler's output."""
     text = "".join(lines)
     if match := re.search(
-        r"CMake Error at [^\n]*\(message\):\n(.*?)(?:Call Stack|-- Configuring|\Z)", text, re.DOTALL
+        r"CMake Error(?: at [^\n]*)?:\s*\n?(.*?)(?:Call Stack|-- Configuring|\Z)", text, re.DOTALL
     ):
         return " ".join(match[1].split())
     return "".join(line for line in lines if not PERCENT.match(line))[-6000:].strip()

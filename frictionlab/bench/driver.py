@@ -10,7 +10,6 @@ import json
 import os
 import platform
 import subprocess
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -23,7 +22,7 @@ from PIL import Image
 from rich.console import Console
 from rich.progress import Progress
 
-from frictionlab.build import build_fmu
+from frictionlab.build import build_targets
 from frictionlab.command import add_output, command_line
 from frictionlab.fmu import FrictionFmu, Value
 from frictionlab.project import ROOT, UserError
@@ -164,19 +163,11 @@ def _parse(text: str, job: Job) -> Outcome:
     return Outcome(F, F_mean, *costs, **counted)
 
 
-def build_programs(build_dir: Path) -> None:
-    command = [sys.executable, "-m", "cmake", "--build", str(build_dir), "--target", "bench"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise UserError(f"the benchmark programs can't be built: {done.stdout[-2000:]}{done.stderr[-2000:]}")
-
-
 @contextmanager
 def open_bench(build_dir: Path | None = None, progress: Progress | None = None) -> Iterator[Bench]:
     """Builds the FMU and the programs in build/; takes them as they are from a folder given."""
     if build_dir is None:
-        build_dir = build_fmu(progress=progress).parent
-        build_programs(build_dir)
+        build_dir = build_targets("default", ["all", "bench"], progress)
     with FrictionFmu(build_dir / "FrictionContact.fmu") as fmu:
         yield Bench(fmu, build_dir / "bench")
 

@@ -21,7 +21,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from frictionlab.build import build_fmu, presets
+from frictionlab.build import build_fmu, build_targets
 from frictionlab.check.mutants import check_mutations
 from frictionlab.check.random_mutants import check_random_mutants
 from frictionlab.project import ROOT, UserError
@@ -68,15 +68,6 @@ def _tool(name: str, package: str) -> str:
     return found
 
 
-def _build_target(preset: str, *targets: str, configure: tuple[str, ...] = ()) -> Path:
-    cmake = [sys.executable, "-m", "cmake"]
-    python = f"-DPython3_EXECUTABLE={sys.executable}"
-    _run([*cmake, "--preset", preset, python, *configure, "--log-level=WARNING"])
-    folder = presets()[preset]
-    _run([*cmake, "--build", str(folder), "--parallel", "2", "--target", *targets, "--", "-s"])
-    return folder
-
-
 def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | None = None) -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
     _run(command, {"FRICTION_FMU": str(fmu), **(environment or {})})
@@ -121,7 +112,7 @@ def check_fuzz(extent: Extent) -> None:
         raise Skipped("clang is missing (Debian: apt-get install clang libclang-rt-14-dev)")
     os.environ["CC"] = clang
     try:
-        folder = _build_target("fuzz", *(f"fuzz_{name}" for name in FUZZERS))
+        folder = build_targets("fuzz", [*(f"fuzz_{name}" for name in FUZZERS)])
     finally:
         del os.environ["CC"]
     for name, longest in FUZZERS.items():
@@ -141,14 +132,14 @@ def check_fuzz(extent: Extent) -> None:
 
 def check_soak(extent: Extent) -> None:
     """Very many steps: the work does not drift from the cycle identity."""
-    folder = _build_target("default", "soak")
+    folder = build_targets("default", ["soak"])
     _run([str(folder / "soak"), *extent.soak])
 
 
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
     valgrind = _tool("valgrind", "valgrind")
-    folder = _build_target("debug", "soak", *(f"replay_{name}" for name in FUZZERS))
+    folder = build_targets("debug", ["soak", *(f"replay_{name}" for name in FUZZERS)])
     options = ["--quiet", "--leak-check=full", "--show-leak-kinds=all", "--error-exitcode=1"]
     for name in FUZZERS:
         seeds = sorted(str(seed.relative_to(ROOT)) for seed in (ROOT / "tests/fuzz/corpus" / name).iterdir())

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from frictionlab.bench.driver import Bench, build_programs
+from frictionlab.bench.driver import Bench
+from frictionlab.build import build_targets
 from frictionlab.fmu import FrictionFmu
 
 
 @pytest.fixture(scope="session")
-def bench(fmu: FrictionFmu, fmu_path: Path) -> Bench:
-    build_programs(fmu_path.parent)
-    return Bench(fmu, fmu_path.parent / "bench")
+def bench(fmu: FrictionFmu) -> Bench:
+    return Bench(fmu, build_targets("default", ["bench"]) / "bench")

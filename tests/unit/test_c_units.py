@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.build import presets
+from frictionlab.build import build_targets
 
 PROGRAMS = sorted(path.stem for path in Path(__file__).parent.glob("test_*.c"))
 TOOLS = Path(sys.executable).parent
@@ -22,10 +22,8 @@ def run(tool: str, *arguments: str) -> str:
 
 @pytest.fixture(scope="session")
 def build_folder() -> str:
-    """The folder of the default build, configured already, with the unit tests' programs."""
-    folder = str(presets()["default"])
-    run("cmake", "--build", folder, "--target", "unit_tests", "--parallel", "2")
-    return folder
+    """The folder of the default build, with the unit tests' programs."""
+    return str(build_targets("default", ["unit_tests"]))
 
 
 @pytest.mark.parametrize("program", PROGRAMS)

@@ -1,0 +1,173 @@
+"""The build succeeds whatever came before it: another command at once, a kill, a renamed project."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from frictionlab import build
+from frictionlab.project import ROOT, UserError
+
+FMU = "build/debug/FrictionContact.fmu"
+BINARY = "binaries/linux64/FrictionContact.so"
+COMMAND = [sys.executable, "-m", "frictionlab.build", "--preset", "debug"]
+LINUX_ONLY = pytest.mark.skipif(sys.platform != "linux", reason="shared libraries are loaded as on Linux")
+
+# A compiler that is killed, with all that called it, when it has begun to write the library.
+COMPILER = """#!/bin/bash
+if [[ -e $KILL_WHILE_LINKING && " $* " == *" -shared "* && " $* " == *"FrictionContact"* ]]; then
+    while [[ $1 != -o ]]; do shift; done
+    : >"$2"
+    kill -KILL 0
+fi
+exec cc "$@"
+"""
+
+
+@pytest.fixture
+def project(copy_project: Callable[[Path], Path], tmp_path: Path) -> Path:
+    """A clean checkout."""
+    return copy_project(tmp_path / "checkout")
+
+
+def start(project: Path, **variables: str) -> subprocess.Popen[str]:
+    """Builds in a process group of its own; without SUNDIALS, which would only take time."""
+    environment = {**os.environ, "CMAKE_ARGS": "-DWITH_SUNDIALS=OFF", **variables}
+    pipe = subprocess.PIPE
+    return subprocess.Popen(
+        COMMAND, cwd=project, env=environment, stdout=pipe, stderr=pipe, text=True, start_new_session=True
+    )
+
+
+def check_built(process: subprocess.Popen[str]) -> None:
+    output, errors = process.communicate(timeout=600)
+    assert process.returncode == 0, output + errors
+    assert output == f"built {FMU}\n"
+
+
+def check_loads(project: Path, folder: Path) -> None:
+    """The FMU's library has the functions of FMI."""
+    with zipfile.ZipFile(project / FMU) as archive:
+        library = archive.extract(BINARY, folder)
+    ctypes.CDLL(library).fmi2GetVersion.restype = ctypes.c_char_p
+
+
+@LINUX_ONLY
+@pytest.mark.slow
+def test_commands_at_once(project: Path, tmp_path: Path) -> None:
+    for process in [start(project) for _ in range(3)]:
+        check_built(process)
+    check_loads(project, tmp_path)
+
+
+@LINUX_ONLY
+@pytest.mark.slow
+def test_killed_while_linking(project: Path, tmp_path: Path) -> None:
+    compiler, kill = tmp_path / "compiler", tmp_path / "kill"
+    compiler.write_text(COMPILER)
+    compiler.chmod(0o755)
+    kill.touch()
+    variables = {"CC": str(compiler), "KILL_WHILE_LINKING": str(kill)}
+    killed = start(project, **variables)
+    killed.communicate(timeout=600)
+    assert killed.returncode == -9
+    assert not (project / "build/debug/FrictionContact.so").exists()
+    kill.unlink()
+    check_built(start(project, **variables))
+    check_loads(project, tmp_path)
+
+
+@LINUX_ONLY
+@pytest.mark.slow
+def test_cut_files_of_a_killed_build(project: Path, tmp_path: Path) -> None:
+    """What a kill can leave of an object and of an archive, and make takes for current."""
+    check_built(start(project))
+    folder = project / "build/debug"
+    (folder / "unfinished").touch()
+    for path in (*folder.rglob("contact.c.o"), *folder.rglob("libfriction_core.a")):
+        path.write_bytes(path.read_bytes()[:100])
+    (project / FMU).unlink()
+    check_built(start(project))
+    check_loads(project, tmp_path)
+
+
+@LINUX_ONLY
+@pytest.mark.slow
+def test_renamed_project(project: Path, tmp_path: Path) -> None:
+    check_built(start(project))
+    renamed = project.rename(tmp_path / "renamed")
+    check_built(start(renamed))
+    (renamed / FMU).unlink()
+    check_built(start(renamed))
+    check_loads(renamed, tmp_path)
+    cache = (renamed / "build/debug/CMakeCache.txt").read_text()
+    assert f"{project}/" not in cache
+
+
+def refusal(library: Path) -> str:
+    """What the packer says of a library that it does not pack."""
+    output = library.with_suffix(".fmu")
+    arguments = ["--xml", "modelDescription.xml", "--sources", "fmu_src", "--table", "LICENSE"]
+    packer = [
+        sys.executable,
+        "-B",
+        "cmake/package_fmu.py",
+        str(output),
+        *arguments,
+        "--fmi-headers",
+        "fmu_src",
+    ]
+    done = subprocess.run(
+        [*packer, "--binary", f"linux64={library}"], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    assert list(library.parent.iterdir()) == [library]
+    return done.stderr
+
+
+def test_what_is_no_library_is_not_packed(fmu_path: Path, tmp_path: Path) -> None:
+    """Empty, cut anywhere, or something else."""
+    with zipfile.ZipFile(fmu_path) as archive:
+        content = archive.read(BINARY)
+    library = tmp_path / "FrictionContact.so"
+    for part in (content[:length] for length in (0, 3, 6, 50, 63, 64, len(content) // 2, len(content) - 1)):
+        library.write_bytes(part)
+        assert refusal(library).startswith(f"error: {library} is ")
+    library.write_bytes(b"#!/bin/sh\n")
+    assert refusal(library) == f"error: {library} is no shared library: remove it and build again\n"
+
+
+def test_a_folder_that_can_not_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    if not Path("/proc/version").exists():
+        pytest.skip("there is no read-only file system at hand")
+    monkeypatch.setattr(build, "presets", lambda: {"default": Path("/proc/build")})
+    with pytest.raises(UserError, match=r"^/proc/build can't be written: [^\n]+$"):
+        build.build_fmu()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the rights are POSIX's")
+def test_a_project_that_can_not_be_written() -> None:
+    """One line of the set-up's own. Root may write everywhere, so it is another user who tries."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "scripts").mkdir()
+        for name in ("scripts/setup", "requirements.txt", "constraints.txt"):
+            shutil.copy(ROOT / name, Path(folder, name))
+        for path in (Path(folder), Path(folder, "scripts")):
+            path.chmod(0o555)
+        other = {"user": 65534, "group": 65534, "extra_groups": ()} if os.geteuid() == 0 else {}
+        done = subprocess.run(
+            ["bash", "scripts/setup", "run"], cwd=folder, capture_output=True, text=True, **other
+        )
+        Path(folder).chmod(0o755)
+        Path(folder, "scripts").chmod(0o755)
+    assert done.returncode == 1
+    assert done.stderr == f"error: {folder} can't be written: .venv and build go there\n"
