@@ -44,8 +44,8 @@ def build_targets(
 ) -> Path:
     """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
 
-    Commands that are started together build one after the other. What a killed or failed build left, and what
-    came along with a copied or renamed project, is built anew.
+    Commands that are started together build one after the other. What a killed build left, and what came along
+    with a copied or renamed project, is built anew.
     """
     if progress is None:
         with progress_bar() as own:
@@ -57,14 +57,12 @@ def build_targets(
         cmake = [sys.executable, "-m", "cmake"]
         unfinished = folder / "unfinished"
         anew = unfinished.exists() or _is_of_another_folder(folder)
-        unfinished.touch()
         settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
         settings += shlex.split(os.environ.get("CMAKE_ARGS", ""))
-        _run([*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])], progress, task)
+        _run([*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])], progress, task, unfinished)
         chosen = ["--target", *targets] if targets else []
         chosen += ["--parallel", str(os.cpu_count() or 1), *(["--clean-first"] if anew else [])]
-        _run([*cmake, "--build", str(folder), *chosen], progress, task)
-        unfinished.unlink()
+        _run([*cmake, "--build", str(folder), *chosen], progress, task, unfinished)
     progress.remove_task(task)
     return folder
 
@@ -97,8 +95,10 @@ def _is_folder(entry: re.Match[str] | None, folder: Path) -> bool:
     return entry is not None and Path(entry[1]).exists() and Path(entry[1]).samefile(folder)
 
 
-def _run(command: list[str], progress: Progress, task: TaskID) -> None:
+def _run(command: list[str], progress: Progress, task: TaskID, unfinished: Path) -> None:
+    """Runs a command of CMake. The file `unfinished` stays if it is killed; one that fails tidies up itself."""
     lines: list[str] = []
+    unfinished.touch()
     with subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
     ) as process:
@@ -108,6 +108,8 @@ def _run(command: list[str], progress: Progress, task: TaskID) -> None:
                 progress.update(task, completed=int(match[1]), description=match[2].strip()[:50])
             elif line.startswith("-- Fetching"):
                 progress.update(task, description="Fetching SUNDIALS")
+    if process.returncode >= 0:
+        unfinished.unlink()
     if process.returncode:
         raise UserError(_reason(lines))
 
