@@ -44,8 +44,8 @@ def build_targets(
 ) -> Path:
     """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
 
-    Commands that are started together build one after the other. What a killed build left, and what came along
-    with a copied or renamed project, is built anew.
+    Commands that are started together build one after the other. What a killed build left, and what came with
+    a copied or renamed project, is built anew.
     """
     if progress is None:
         with progress_bar() as own:
@@ -59,7 +59,12 @@ def build_targets(
         anew = unfinished.exists() or _is_of_another_folder(folder)
         settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
         settings += shlex.split(os.environ.get("CMAKE_ARGS", ""))
-        _run([*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])], progress, task, unfinished)
+        _run(
+            [*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])],
+            progress,
+            task,
+            unfinished,
+        )
         chosen = ["--target", *targets] if targets else []
         chosen += ["--parallel", str(os.cpu_count() or 1), *(["--clean-first"] if anew else [])]
         _run([*cmake, "--build", str(folder), *chosen], progress, task, unfinished)
@@ -96,7 +101,7 @@ def _is_folder(entry: re.Match[str] | None, folder: Path) -> bool:
 
 
 def _run(command: list[str], progress: Progress, task: TaskID, unfinished: Path) -> None:
-    """Runs a command of CMake. The file `unfinished` stays if it is killed; one that fails tidies up itself."""
+    """Runs a command of CMake. The file `unfinished` stays if it is killed; if it fails, it tidies up."""
     lines: list[str] = []
     unfinished.touch()
     with subprocess.Popen(

@@ -69,18 +69,18 @@ static void forces_of_the_laws(void) {
         const FcFriction coulomb = law(FC_COULOMB, FC_LIMIT_CONSTANT);
         const FcScene sliding = moving_scene(&contact, &coulomb, 0.0);
         const double V = fc_drive_V(&sliding.drive, t);
-        CHECK_NEAR(fc_scene_force(&sliding, t, delta), (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-15);
+        CHECK_NEAR(fc_scene_outputs(&sliding, t, delta).F_t, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-15);
 
         const FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
         const FcScene sticking = moving_scene(&contact, &plastic, 0.0);
-        CHECK_NEAR(fc_scene_force(&sticking, t, delta), 20.0 + 40.0 * V + 3.0 * V, 1e-14);
+        CHECK_NEAR(fc_scene_outputs(&sticking, t, delta).F_t, 20.0 + 40.0 * V + 3.0 * V, 1e-14);
 
         const FcFriction lugre = law(FC_LUGRE, FC_LIMIT_CONSTANT);
         const FcScene bristle = moving_scene(&contact, &lugre, 0.0);
         const double g = 55.0 * (1.0 + 0.5 * exp(-(V / 0.2) * (V / 0.2)));
         const double rate = V - 2.5e6 * fabs(V) * delta / g;
         CHECK_NEAR(fc_scene_deflection_rate(&bristle, t, delta), rate, 1e-14);
-        CHECK_NEAR(fc_scene_force(&bristle, t, delta), 20.0 + 40.0 * rate + 3.0 * V, 1e-14);
+        CHECK_NEAR(fc_scene_outputs(&bristle, t, delta).F_t, 20.0 + 40.0 * rate + 3.0 * V, 1e-14);
     }
 }
 
@@ -95,7 +95,7 @@ static void an_elastic_plastic_bristle_slips(void) {
     CHECK(fc_scene_slip_side(&scene, 0.0, bound) == 1.0 && fc_scene_slip_side(&scene, 0.0, -bound) == 0.0);
     CHECK(fc_scene_slip_side(&scene, 0.0, 0.99 * bound) == 0.0);
     CHECK(fc_scene_deflection_rate(&scene, 0.0, bound) == 0.0);
-    CHECK_NEAR(fc_scene_force(&scene, 0.0, 2.0 * bound), 55.0, 1e-15);
+    CHECK_NEAR(fc_scene_outputs(&scene, 0.0, 2.0 * bound).F_t, 55.0, 1e-15);
 }
 
 // The mean of F_n over a period, at the rest separation of the time t, by the trapezoidal rule.
