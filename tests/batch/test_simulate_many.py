@@ -97,6 +97,24 @@ class TestNumbers:
         )
         assert got["work"] == pytest.approx(F_C * 0.3 / f, rel=1e-9)
 
+    def test_settled_start_is_where_settling_ends(self, fmu_path: Path) -> None:
+        """And a period of it turns all work into heat: the bristle stores none, d does not move."""
+        values = {
+            "V": np.array([0.05, 0.4, 1.2])[:, None],
+            "contact.stiffnessScale": [1e-7, 1e-6],
+            "solver.tolerance": 1e-9,
+            **VIBRATING,
+        }
+        outputs = {"mean": "F_t_mean", "work": ("W_f", "change"), "heat": ("Q_f", "change")}
+        settled = simulate_many(fmu_path, values, outputs, settled=True)
+        waited = simulate_many(fmu_path, values, outputs)
+        assert settled["mean"] == pytest.approx(waited["mean"], abs=1e-7 * F_C)
+        assert settled["heat"] == pytest.approx(settled["work"], rel=1e-6)
+
+    def test_settled_is_not_given_twice(self, fmu_path: Path) -> None:
+        with pytest.raises(BatchError, match="column initialState: settled gives it already"):
+            simulate_many(fmu_path, {"initialState": "Given"}, settled=True)
+
     def test_enumerations_by_name_or_number(self, fmu_path: Path) -> None:
         by_name = simulate_many(fmu_path, {"V": 0.2, "friction.model": ["Dahl", "Coulomb"], **VIBRATING})
         by_number = simulate_many(fmu_path, {"V": 0.2, "friction.model": [1, 2], **VIBRATING})
@@ -181,6 +199,10 @@ class TestRefusals:
             ({"outputs": {"a": ("F_t", "median")}}, "output a: 'median' is not one of end, change, mean"),
             ({"samples": 0}, "samples = 0: must be a whole number from 1 to"),
             ({"samples": 10**11}, "samples = 100000000000: must be a whole number from 1 to"),
+            (
+                {"outputs": {"all": ("F_t", "samples")}, "samples": 10**6, "settle": np.ones((10**6, 1))},
+                "no memory for the results of 2000000 scenarios",
+            ),
             ({"settle": [1.0, -2.0]}, "settle, row 1: -2 must be at least 0"),
             ({"duration": [1.0] * 3}, "column duration: its 3 values do not go with the 2 of those"),
             ({"unit": "ms"}, "unit = 'ms': must be 'period' or 's'"),
