@@ -214,6 +214,18 @@ void fc_friction_contact_free(FcFrictionContact* contact) {
     contact->cvode = NULL;
 }
 
+// Asking for less than this is asking for more digits than there are.
+static const double SMALLEST_TOLERANCE = 1e-12;
+
+// How much more an error of the deflection does to F_t through the damping sigma_1 delta' than through sigma delta, at
+// the most: delta' = V - sigma |V| delta / g passes it on times sigma |V| / g.
+static double damping_gain(const FcScene* scene, double h) {
+    const double sigma_1 = scene->friction->sigma_1;
+    return sigma_1 == 0.0
+               ? 1.0
+               : 1.0 + sigma_1 * fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_limit(scene, h);
+}
+
 // Adds the damping of the bristle and the viscous friction to what the method gives.
 static void add_damping(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
     const double sigma_1 = scene->friction->model == FC_COULOMB ? 0.0 : scene->friction->sigma_1;
@@ -285,7 +297,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     const FcVariables* v = &before->variables;
-    const FcSolverOptions options = solver_options(v);
+    FcSolverOptions options = solver_options(v);
+    options.tolerance = fmax(SMALLEST_TOLERANCE, options.tolerance / damping_gain(&scene, h));
     FcStepResult result;
     if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, v->delta, &result,
                         message)) {
