@@ -37,7 +37,8 @@ OF_CORE = (
 OPTIONS = ("-q", "-x", "-p", "no:cacheprovider", "--tb=no", "-m", "not slow")
 NOT_OF_CODE = ("--deselect", "tests/fmi2/test_mutants.py")
 TIME_LIMIT = 900.0  # s; a mutant that hangs is noticed
-UNIT_TIME_LIMIT = 60.0  # s
+UNIT_TIME_LIMIT = 300.0  # s
+SLOWEST_UNIT = "test_elastic_plastic"
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,8 @@ def draw(seed: int) -> Iterator[Site]:
 
 
 def _unit_killer(programs: Sequence[Path]) -> str:
-    for program in programs:
+    """The program that fails; the one that takes seconds comes last."""
+    for program in sorted(programs, key=lambda program: program.name == SLOWEST_UNIT):
         try:
             done = subprocess.run(
                 [str(program)], capture_output=True, check=False, timeout=UNIT_TIME_LIMIT, cwd=program.parent
