@@ -1,5 +1,5 @@
 # What stands beside the model in the FMU: index.html, the licences, the icon, and the folder of related files.
-# Gives documentation_arguments for cmake/package_fmu.py, and documentation_files that they depend on.
+# Gives documentation_arguments for frictionlab.packing.archive, and documentation_files that they depend on.
 
 set(documentation_page "${CMAKE_BINARY_DIR}/generated/index.html")
 file(GLOB documentation_parts CONFIGURE_DEPENDS docs/fmu/*.html docs/fmu/*.svg)

@@ -21,7 +21,7 @@ STANDARD = "org.fmi-standard.fmi-ls-ref"
 FOLDER = f"extra/{STANDARD}"
 MANIFEST = "fmi-ls-manifest.xml"
 EXPERIMENTS = "validation.exp"
-CHECKSUMS = "sha256sums.txt"  # added by cmake/package_fmu.py, which knows the other files
+CHECKSUMS = "sha256sums.txt"  # added by frictionlab.packing.archive, which knows the other files
 SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 LAYERED = "http://fmi-standard.org/fmi-ls-manifest"
 

@@ -72,7 +72,14 @@ def pack(output: Path, libraries: dict[str, Path], parts: Path) -> None:
     for name, path in TOOLCHAIN_LICENSES.items():
         arguments += ["--file", f"documentation/licenses/{name}={zig().parent / path}"]
     unchecked = output.with_name(f".{output.stem}.unchecked.fmu")
-    packer = [sys.executable, "-B", "cmake/package_fmu.py", str(unchecked.absolute()), *arguments]
+    packer = [
+        sys.executable,
+        "-B",
+        "-m",
+        "frictionlab.packing.archive",
+        str(unchecked.absolute()),
+        *arguments,
+    ]
     try:
         run = subprocess.run(packer, cwd=ROOT, capture_output=True, text=True)
         if run.returncode:

@@ -16,12 +16,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
+from frictionlab.packing.archive import CHECKSUMS
+from frictionlab.packing.model_description import GUID_PLACEHOLDER, guid_of
 from frictionlab.project import ROOT, UserError
-
-sys.path.insert(0, str(ROOT / "cmake"))
-
-import model_description
-import package_fmu
 
 MODEL = "FrictionContact"
 SUMS = "SHA256SUMS"  # beside the release: the checksum of each of its files, as sha256sum writes it
@@ -54,20 +51,18 @@ def _identity(fmu: Path, entries: dict[str, bytes]) -> str:
         raise UserError(f"{fmu} is none of ours: its model is {root.get('modelName')}")
     guid = root.get("guid", "")
     before = SOURCE_FILES.sub(b"/>", entries["modelDescription.xml"])
-    before = before.replace(
-        f'guid="{guid}"'.encode(), f'guid="{model_description.GUID_PLACEHOLDER}"'.encode()
-    )
-    if model_description.guid_of(before) != guid:
+    before = before.replace(f'guid="{guid}"'.encode(), f'guid="{GUID_PLACEHOLDER}"'.encode())
+    if guid_of(before) != guid:
         raise UserError(f"{fmu}: modelDescription.xml is not the one that its guid {guid} was made of")
     return f"{MODEL} {root.get('version')}, guid {guid}: the model description is unchanged"
 
 
 def _contents(fmu: Path, entries: dict[str, bytes]) -> str:
-    listed = _read_sums(entries.get(package_fmu.CHECKSUMS, b"").decode())
+    listed = _read_sums(entries.get(CHECKSUMS, b"").decode())
     if not listed:
-        raise UserError(f"{fmu} holds no checksums: {package_fmu.CHECKSUMS} is missing")
+        raise UserError(f"{fmu} holds no checksums: {CHECKSUMS} is missing")
     found = {name: hashlib.sha256(content).hexdigest() for name, content in entries.items()}
-    del found[package_fmu.CHECKSUMS]
+    del found[CHECKSUMS]
     for name in sorted(listed.keys() | found.keys()):
         if name not in found:
             raise UserError(f"{fmu}: {name} was taken out of it")

@@ -120,7 +120,8 @@ def refusal(library: Path) -> str:
     packer = [
         sys.executable,
         "-B",
-        "cmake/package_fmu.py",
+        "-m",
+        "frictionlab.packing.archive",
         str(output),
         *arguments,
         "--fmi-headers",

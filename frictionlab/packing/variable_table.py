@@ -1,6 +1,6 @@
 """Writes the C variable table of fmu_src/fmi2/variables.h from modelDescription.xml.
 
-usage: generate_variables.py modelDescription.xml variables.c
+usage: python -m frictionlab.packing.variable_table modelDescription.xml variables.c
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import model_description
-from model_description import ModelDescription, Variable
+from frictionlab.packing import model_description
+from frictionlab.packing.model_description import ModelDescription, Variable
 
 
 def table(description: ModelDescription) -> str:

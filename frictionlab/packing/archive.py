@@ -13,7 +13,7 @@ import sys
 import zipfile
 from pathlib import Path
 
-import model_description
+from frictionlab.packing import model_description
 
 FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 CHECKSUMS = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
