@@ -2,6 +2,7 @@
 //
 // The linker gives this program the allocations of the FMU and of SUNDIALS (-Wl,--wrap).
 #define _POSIX_C_SOURCE 200809L // fork
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -123,6 +124,7 @@ static void check_new_cvode(void) {
 static bool survives_failure(long number) {
     const pid_t child = fork();
     if (child == 0) {
+        signal(SIGSEGV, SIG_DFL); // a sanitizer's handler would make an ordinary end of it
         failing = number;
         check_new_cvode();
         _exit(check_result());
@@ -136,10 +138,10 @@ static bool survives_failure(long number) {
 static void every_failure_of_cvode_is_told(void) {
     CHECK(survives_failure(1)); // its own struct
     long told = 0;
-    for (long number = 2 + allocations_of_a_context(); survives_failure(number); number++) {
+    for (long number = 2 + allocations_of_a_context(); told < 100 && survives_failure(number); number++) {
         told++;
     }
-    CHECK(told >= 10); // the vectors, the matrix, the linear solver and CVODE have several each
+    CHECK(told >= 10 && told < 100); // the vectors, the matrix, the linear solver and CVODE have several each
 }
 
 #endif
