@@ -14,8 +14,8 @@ import fmpy
 from frictionlab.project import ROOT, UserError
 
 HEADERS = Path(fmpy.__file__).parent / "c-code"
+SUNDIALS = "libsundials_cvode_static.a"
 LIBRARY = "binaries/linux64/FrictionContact.so"
-PARTS = ("cvode", "sunlinsoldense", "sunmatrixdense", "sunnonlinsolnewton", "nvecserial", "generic")
 UNITS = ROOT / "tests" / "unit"
 WRAPPED = "-Wl,--wrap=malloc,--wrap=calloc,--wrap=free"  # what tests/unit/test_memory.c counts
 
@@ -26,8 +26,8 @@ ASSERTED = ("-UNDEBUG",)
 class Workshop:
     """A copy of fmu_src in a folder, with its objects.
 
-    built: the FMU of the default preset; its folder holds the variable table, and SUNDIALS where it was
-    built with it.
+    built: the FMU of the default preset; its folder holds the variable table, and SUNDIALS where it was built
+    with it.
     """
 
     def __init__(self, folder: Path, built: Path) -> None:
@@ -36,13 +36,25 @@ class Workshop:
         self.sources = folder / "fmu_src"
         shutil.copytree(ROOT / "fmu_src", self.sources)
         shutil.copy(built.parent / "generated" / "variables.c", self.sources)
-        sundials = built.parent / "sundials"
-        self.has_cvode = sundials.is_dir()
         self.options = [f"-I{path}" for path in (self.sources, HEADERS, ROOT / "host", ROOT / "tests")]
         self.libraries = ["-lm"]
-        if self.has_cvode:
-            self.options += ["-DFC_WITH_SUNDIALS", "-isystem", str(sundials / "include")]
-            self.libraries = [*(str(sundials / f"lib/libsundials_{part}.a") for part in PARTS), "-lm"]
+        if (built.parent / SUNDIALS).is_file():
+            self._use_sundials()
+
+    def _use_sundials(self) -> None:
+        includes = (self.built.parent / "sundials-source" / "include", self.built.parent / "generated")
+        self.options += ["-DFC_WITH_SUNDIALS", *(f"-isystem{path}" for path in includes)]
+        machine_code = (
+            self.folder / "sundials.a"
+        )  # what link-time optimization left to be compiled, done once
+        whole = ["-Wl,--whole-archive", str(self.built.parent / SUNDIALS), "-Wl,--no-whole-archive"]
+        try:
+            self._command(
+                ["-O1", "-r", "-nostdlib", "-flinker-output=nolto-rel", *whole, "-o", str(machine_code)]
+            )
+        except UserError:
+            machine_code = self.built.parent / SUNDIALS  # a compiler without that option
+        self.libraries = [str(machine_code), "-lm"]
 
     def compile(self, *variants: tuple[str, ...]) -> None:
         """Compiles everything in these variants (SHIPPED, ASSERTED)."""
