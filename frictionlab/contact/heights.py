@@ -71,13 +71,6 @@ def area(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponent
     return front * (elastic + plastic)
 
 
-def closed_form_area(surfaces: Surfaces, d: float, E: float = E_FULL) -> float:
-    """A_r [m2], Eq. 20-22 corrected: what the FMU computes."""
-    x = surfaces.lambda_ * surfaces.critical_interference(E) / surfaces.R_q
-    front = surfaces.c * math.pi * surfaces.beta * surfaces.A_n / surfaces.lambda_**2
-    return front * (1.0 + math.exp(-x)) * math.exp(-surfaces.lambda_ * d / surfaces.R_q)
-
-
 def stiffness(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
     """sigma [N/m], Eq. 3."""
     return E * area(surfaces, d, E, model) ** 2 / d**3

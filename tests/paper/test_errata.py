@@ -8,24 +8,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from misprints import area_eq_20, closed_form_area, mean_over_cycle, residual_eq_25, yield_pressure_ratio
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import i0
 
-from frictionlab.contact.heights import area, closed_form_area, load, stiffness
+from frictionlab.contact.heights import area, load, stiffness
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify.command import EXAMPLE
 from frictionlab.identify.data import read
 from frictionlab.identify.fit import Experiment, fit, parameter
 from frictionlab.paper.claims import mean_changes
-from frictionlab.paper.equations import (
-    area_eq_20,
-    force_eq_23,
-    force_eq_25,
-    mean_over_cycle,
-    residual_eq_25,
-    yield_pressure_ratio,
-)
+from frictionlab.paper.equations import force_eq_23, force_eq_25
 from frictionlab.parameters import (
     COULOMB_FORCE,
     E_FULL,

@@ -7,10 +7,10 @@ import math
 from pathlib import Path
 
 import pytest
+from misprints import closed_form_area
 
 from frictionlab.contact.heights import (
     area,
-    closed_form_area,
     exponential,
     height_integral,
     load,

@@ -1,7 +1,7 @@
 """Writes data/gaussian_heights.csv with the package ContactMechanics, which the project itself does not need.
 
 pip install ContactMechanics==1.8.3
-python -m frictionlab.contact.greenwood_tripp
+python tests/data/make_gaussian_heights.py
 """
 
 from __future__ import annotations
