@@ -11,6 +11,7 @@
 #define FC_MODEL_FRICTION_H
 
 #include <math.h>
+#include <stdbool.h>
 
 typedef enum { FC_DAHL = 1, FC_COULOMB = 2, FC_ELASTIC_PLASTIC = 3, FC_LUGRE = 4 } FcFrictionModel;
 typedef enum { FC_LIMIT_CONSTANT = 1, FC_LIMIT_LOAD = 2 } FcFrictionLimit;
@@ -28,10 +29,15 @@ typedef struct {
 // sgn V.
 static inline double fc_sign(double V) { return V > 0.0 ? 1.0 : V < 0.0 ? -1.0 : 0.0; }
 
+// Whether the limit depends on V.
+static inline bool fc_has_stribeck_curve(const FcFriction* friction) {
+    return friction->model == FC_LUGRE && friction->staticRatio != 1.0;
+}
+
 // Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 but for LuGre.
 static inline double fc_stribeck(const FcFriction* friction, double V) {
     const double ratio = V / friction->V_S;
-    return friction->model == FC_LUGRE && friction->staticRatio != 1.0
+    return fc_has_stribeck_curve(friction)
                ? 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio)
                : 1.0;
 }

@@ -1,209 +1,161 @@
-// The default method. Inputs held and no vibration: the closed form. Otherwise 9-stage Radau IIA steps, split
-// exactly at the reversals of V, where |V| has a kink, and graded towards them:
+// The default method. Inputs held and no vibration: the closed form. Otherwise the interval is split at the reversals of
+// V, where |V| has a kink, into stretches, and each stretch into panels (solver/panel.h):
 //
-//        reversal                                        reversal
-//     |V|   |.  '   '      '         '         '      '   '  .|
-//           |-|--|----|--------|-----------|--------|----|--|-|      steps
-//            w_a                                            w_b      layers
+//     little relaxes in the stretch     one or a few Gauss panels, without a linear system
+//     else, or where those miss         Radau panels of 3, 5 or 9 stages on the mesh of solver/mesh.h
 //
-// After a reversal the force relaxes within a layer w; before one the deflection lags behind a moving stiffness
-// within a layer as wide. A step at distance x from a layer's event is at most resolution (x + w) long, so a few
-// steps cross any number of decades. The resolution is what the error control moves: an error per step of at most
-// tolerance F_C times the fraction that relaxes in the step, which bounds the error after any number of steps.
+// Every panel's error is estimated and held against what an error may be there, so that F_t at the interval's end and
+// its mean stay within the tolerance.
 #include "solver/collocation.h"
 
 #include <assert.h>
 #include <math.h>
 
-#include "solver/radau_step.h"
+#include "solver/gauss_panel.h"
+#include "solver/mesh.h"
+#include "solver/radau_panel.h"
 
-// Estimated errors are held this far below the tolerance: the estimate is within a factor of 10 for 99 % of steps.
+// Estimated errors are held this far below the tolerance: the estimate is within a factor of 10 for 99.9 % of panels.
 static const double SAFETY = 0.1;
-// The error of a step goes about as this power of the resolution.
-static const double ORDER = 12.0;
-// Steps are at most resolution * this, in the time over which the logarithm of sigma or the phase moves by 1.
-static const double SMOOTH_STEP = 2.0;
-static const double SMALLEST_RESOLUTION = 0.05;
-// sigma itself must stay resolved where nothing relaxes and no error is seen.
-static const double LARGEST_RESOLUTION = 2.0;
-// Rounding in a step, over F_C: asking for less would only shorten steps.
+// Rounding in a panel, over the limit: asking for less would only shorten panels.
 static const double ROUNDING = 2e-13;
-
-// Time [s] in which V moves by a fraction of itself and of a Stribeck velocity, so that g(V) is resolved: the root of
-// |V'| x + |V''| x^2 / 2 = 0.3 V_S + 0.2 |V|. Infinite where g does not depend on V.
-static double stribeck_time(const FcScene* scene, double t) {
-    const FcFriction* friction = scene->friction;
-    if (friction->model != FC_LUGRE || friction->staticRatio == 1.0) {
-        return INFINITY;
-    }
-    const FcDrive* drive = &scene->drive;
-    const double change = 0.3 * friction->V_S + 0.2 * fabs(fc_drive_V(drive, t));
-    const double rate = fabs(fc_drive_V_rate(drive, t));
-    const double curvature = fabs(fc_drive_V_curvature(drive, t));
-    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
-}
-
-// Time [s] in which the bristle relaxes by 1 from t on: about the least root of r x + r' x^2 / 2 = 1
-// and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
-static double relaxation_layer(const FcScene* scene, double t) {
-    const FcDrive* drive = &scene->drive;
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double per_speed = at.sigma / at.limit;
-    const double r = per_speed * fabs(at.V);
-    const double r_rate = per_speed * fabs(fc_drive_V_rate(drive, t));
-    const double r_curvature = per_speed * fabs(fc_drive_V_curvature(drive, t));
-    const double relaxation = fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
-    return fmin(relaxation, stribeck_time(scene, t));
-}
-
-// Width [s] of a dip of |V| at t that does not reach zero: that of the parabola, or the time to relax by 1 in it.
-static double dip_layer(const FcScene* scene, double t) {
-    const FcDrive* drive = &scene->drive;
-    const double curvature = fabs(fc_drive_V_curvature(drive, t));
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double width =
-        fmax(sqrt(2.0 * fabs(at.V) / curvature), cbrt(6.0 * at.limit / (at.sigma * curvature)));
-    return fmin(width, stribeck_time(scene, t));
-}
-
-// Layer [s] at the start of a communication step: none if delta_0 is where the bristle has settled, to first order in
-// the time it takes to relax, so that it only follows V and sigma on their own scales.
-static double start_layer(const FcScene* scene, double delta_0, double tolerance) {
-    const FcCoefficients now = fc_scene_coefficients(scene, 0.0);
-    const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
-    const double r = -fc_coefficients_rate(&now);
-    const double settled = copysign(now.limit, now.V) * (1.0 + (rates.sigma - rates.limit) / r);
-    if (fabs(now.sigma * delta_0 - settled) <= SAFETY * tolerance * fc_scene_force_scale(scene)) {
-        const FcDrive* drive = &scene->drive; // distance of the reversal behind, width of the dip
-        return fmin(fabs(now.V / fc_drive_V_rate(drive, 0.0)),
-                    sqrt(2.0 * fabs(now.V / fc_drive_V_curvature(drive, 0.0))));
-    }
-    return relaxation_layer(scene, 0.0);
-}
-
-// How fast the phase and the logarithms of sigma and g move at the most, and whether the surfaces come so close, or the
-// modulus or the load move so far, that they have to be followed instead of bounded.
-typedef struct {
-    double rate; // 1/s
-    bool follows_d_and_E;
-} Smoothness;
-
-static bool depends_on_d(const FcScene* scene) {
-    return scene->at_E.model != FC_CONTACT_CONSTANT || scene->friction->limit == FC_LIMIT_LOAD;
-}
-
-static Smoothness smoothness(const FcScene* scene, double h) {
-    const FcDrive* drive = &scene->drive;
-    Smoothness smooth = {.rate = fc_drive_vibrates(drive) ? drive->omega : 0.0};
-    if (!depends_on_d(scene)) {
-        return smooth;
-    }
-    const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
-    const double by_nearness = 3.0 / fc_scene_smallest_d(scene, h);
-    const double E = fc_drive_smallest_E(drive, h);
-    smooth.rate += 2.0 * scene->at_E.decay * d_rate;
-    smooth.follows_d_and_E = scene->floats || (d_rate > 0.0 && by_nearness > 2.0 * scene->at_E.decay) ||
-                             fc_drive_largest_E(drive, h) > 100.0 * E;
-    if (!smooth.follows_d_and_E) {
-        smooth.rate += by_nearness * d_rate + fabs(drive->E.rate) / E;
-    }
-    return smooth;
-}
-
-// Time [s] from t on over which the phase, ln(sigma) or ln(g) moves by 1, at the least.
-static double smooth_time(const FcScene* scene, const Smoothness* smooth, double t) {
-    const double by_V = stribeck_time(scene, t);
-    if (!smooth->follows_d_and_E) {
-        return fmin(by_V, 1.0 / smooth->rate);
-    }
-    const FcDrive* drive = &scene->drive;
-    // Twice the rates at t: they rise while the step goes on.
-    const double by_nearness = 2.0 * 3.0 / fc_scene_d(scene, t);
-    const double by_E = 2.0 * fabs(drive->E.rate) / fc_drive_E(drive, t);
-    const double d_rate = fc_scene_d_rate(scene, t);
-    const double floating =
-        scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
-    const double rate = smooth->rate + by_nearness * fabs(d_rate) + by_E + floating;
-    const double curvature = by_nearness * drive->vibration.a_d * drive->omega * drive->omega;
-    return fmin(by_V, 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature))); // rate x + curvature x^2 / 2 = 1
-}
+// Panels that are refused in a row before one is taken as it is: rounding rules by then.
+enum { MOST_TRIES = 12, MOST_CAUTION = 6 };
 
 // Where the two trajectories of the interval's map are: P started from 1 and Q started from 0. For one start alone
 // P is 0 from the beginning and Q starts from there.
 typedef struct {
+    const FcScene* scene;
     FcMap map;
-    double resolution;
-    Smoothness smooth;
-    double delta_scale;     // m, size of the deflection at the start
-    double delta_tolerance; // m, error allowed in the deflection
-    double evaluations;     // in the communication step so far
+    double end;               // s
+    double tolerance;         // N, of the force
+    double largest_stiffness; // N/m
+    double per_deflection;    // 1/m, about sigma / g
+    double scale;             // m, size of the deflection at the start
+    double speed;             // m/s
+    double digits;            // asked for
+    double held;              // N, s g in a stretch with a constant limit, else 0
+    double evaluations;       // in the communication step so far
 } Progress;
 
-// A stretch of time on which V keeps its sign, and the events on both sides that its steps are graded towards. The
-// event ahead may lie beyond the end.
-typedef struct {
-    double start, end; // s
-    double event;      // s, at or beyond the end; infinite if there is none
-    double w_a, w_b;   // s, layers at the start and at the event
-} Stretch;
-
-// Length [s] of the step at t.
-static double graded_step(const Progress* progress, const FcScene* scene, const Stretch* stretch, double t) {
-    const double resolution = progress->resolution;
-    const double end = stretch->end;
-    const double left = end - t;
-    const double after = resolution * (t - stretch->start + stretch->w_a);
-    const double before = resolution / (1.0 + resolution) * (stretch->event - t + stretch->w_b);
-    const double smooth = resolution * SMOOTH_STEP * smooth_time(scene, &progress->smooth, t);
-    const double smallest = 4e-16 * end; // below this t + h would not move
-    const double h = fmax(smallest, fmin(smooth, fmin(after, before)));
-    if (h >= left / 1.1) {
-        return left;
-    }
-    return h > 0.5 * left ? 0.5 * left : h;
+static FcTrajectories trajectories(const Progress* progress) {
+    return (FcTrajectories){.delta_0 = progress->map.offset,
+                            .scale = (1.0 - progress->map.relaxation) * progress->scale,
+                            .speed = progress->speed,
+                            .held = progress->held};
 }
 
-// Estimated error over what the step is allowed, for the map's two trajectories.
-static double relative_error(const Progress* progress, const FcRadauStep* step) {
-    const double P = 1.0 - progress->map.relaxation;
-    const FcRadauTail full = fc_radau_tail_full(step, progress->map.offset);
-    double error = fc_radau_error(&full, step->z_mean);
-    if (P != 0.0) {
-        const FcRadauTail homogeneous = fc_radau_tail_homogeneous(step, P * progress->delta_scale);
-        error += fc_radau_error(&homogeneous, step->z_mean);
+// Gauss panels for a stretch over which the bristle relaxes by less than this.
+static const double SOFT = 10.0;
+
+// Number of nodes for a panel over which about this much changes, for so many digits.
+static double nodes_for(double digits, double change) { return 2.0 + 0.7 * digits + 0.5 * change; }
+
+// The next number of nodes that there is a panel of.
+static int panel_of_nodes(double nodes) { return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12; }
+
+// Goes through a stretch with Gauss panels as far as they are accurate. Returns the time they reach.
+static double cross_softly(Progress* progress, const FcStretch* stretch) {
+    const double length = stretch->end - stretch->start;
+    const FcDrive* drive = &progress->scene->drive;
+    const double relaxes =
+        progress->per_deflection * fabs(fc_drive_displacement(drive, stretch->start, stretch->end));
+    const double moves =
+        length * (drive->omega + 2.0 * progress->scene->at_E.decay *
+                                     (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega));
+    if (!(relaxes < SOFT && moves < 15.0) || fc_has_stribeck_curve(progress->scene->friction)) {
+        return stretch->start;
     }
-    const double rounding = ROUNDING * step->saturation;
-    const double allowed = fmax(SAFETY * progress->delta_tolerance, rounding) * fmin(1.0, step->z_mean);
-    return error > 0.0 ? error / allowed : 0.0;
-}
-
-// Goes through a stretch.
-static void cross(Progress* progress, const FcScene* scene, const Stretch* stretch) {
-    const double start = stretch->start;
-    const double end = stretch->end;
-    const double V_middle = fc_drive_V(&scene->drive, 0.5 * (start + end));
-    const double sign = V_middle > 0.0 ? 1.0 : V_middle < 0.0 ? -1.0 : 0.0;
-    double t = start;
-    while (t < end && progress->evaluations <= FC_MOST_EVALUATIONS) {
-        const double h = graded_step(progress, scene, stretch, t);
-        FcRadauStep step;
-        fc_radau_step(scene, t, h, sign, &step);
-        progress->evaluations += FC_RADAU_STAGES;
-
-        const double error = relative_error(progress, &step);
-        // 1.6^12 = 281: an error far below its bound needs no root.
-        const double change = error < 1.0 / 300.0 ? 1.6 : fmax(0.3, pow(error, -1.0 / ORDER));
-        const bool can_shrink = progress->resolution > SMALLEST_RESOLUTION && t + 0.5 * h > t;
-        if (error > 1.0 && can_shrink) {
-            progress->resolution *= fmin(0.95 * change, 0.8);
-            continue;
+    const double change = 1.6 * moves + 3.0 * relaxes;
+    const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(progress->digits, 0.0));
+    const double pieces = fc_most(1.0, ceil(0.5 * change / room));
+    int count = panel_of_nodes(nodes_for(progress->digits, change / pieces));
+    const double h = length / pieces;
+    const double allowed = SAFETY * progress->tolerance;
+    for (double k = 0.0; k < pieces; k += 1.0) {
+        const double t = stretch->start + k * h;
+        const FcTrajectories from = trajectories(progress);
+        FcPanel panel;
+        for (;;) {
+            fc_gauss_panel(progress->scene, t, h, count, &from, &panel);
+            progress->evaluations += count;
+            if (panel.end_error <= allowed * fc_least(1.0, panel.z) && panel.mean_error <= allowed) {
+                break;
+            }
+            if (!(count < FC_GAUSS_MOST_NODES)) {
+                return t;
+            }
+            count = panel_of_nodes(count + 1.0);
         }
-        progress->resolution =
-            fmax(SMALLEST_RESOLUTION, fmin(LARGEST_RESOLUTION, progress->resolution * change));
-        const FcMap map = fc_radau_map(&step, h);
-        progress->map = fc_map_compose(&progress->map, &map);
-        t = h < end - t ? t + h : end;
+        progress->map = fc_map_compose(&progress->map, &panel.map);
     }
+    return stretch->end;
+}
+
+// Whether a panel's error is small enough; *excess is how many times it is too large.
+static bool is_accurate(const Progress* progress, const FcPlan* plan, const FcPlace* at, const FcPanel* panel,
+                        double* excess) {
+    const double rounding = ROUNDING * panel->limit;
+    const double allowed = fc_most(SAFETY * progress->tolerance * fc_least(1.0, panel->z), rounding);
+    // sigma may grow while the error lives
+    const double end_error =
+        panel->end_error *
+        fc_least(progress->largest_stiffness / panel->sigma, 1.0 + 2.0 * plan->lives / plan->grows);
+    const double lives = fc_least(plan->lives, progress->end - at->t);
+    const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
+    *excess = (plan->seen ? fc_most(of_mean, end_error) : of_mean) / allowed;
+    return *excess <= 1.0;
+}
+
+// Goes through the rest of a stretch from t with Radau panels.
+static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stretch, double t) {
+    const FcScene* scene = progress->scene;
+    const double V_middle = fc_drive_V(&scene->drive, 0.5 * (stretch->start + stretch->end));
+    const double sign = fc_sign(V_middle);
+    const FcCoefficients start = fc_scene_coefficients(scene, t);
+    FcPanel panel = {
+        .rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};
+    FcPlace at = {.t = t, .rate = panel.rate};
+    int caution = 0;
+    double displacement = 0.0;
+    progress->held = mesh->moving_limit ? 0.0 : sign * start.limit;
+    while (at.t < stretch->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
+        const FcTrajectories from = trajectories(progress);
+        at.lag = (fabs(sign * panel.limit - panel.sigma * from.delta_0) + panel.sigma * fabs(from.scale)) / mesh->force;
+        if (at.gone == 0.0) {
+            at.transient = at.lag;
+        }
+        FcPlan plan = fc_mesh_plan(mesh, stretch, &at, caution);
+        const double left = stretch->end - at.t;
+        if (!(at.t + plan.h > at.t)) {
+            plan.h = fc_least(left, 4e-16 * stretch->end);
+        }
+        for (int tries = 0;; tries++) {
+            fc_radau_panel(scene, plan.stages, at.t, plan.h, sign, &from, &panel);
+            progress->evaluations += plan.stages;
+            double excess;
+            if (is_accurate(progress, &plan, &at, &panel, &excess) || tries == MOST_TRIES) {
+                caution -= tries == 0 && caution > 0;
+                break;
+            }
+            if (plan.stages < FC_RADAU_MOST_STAGES) {
+                plan.stages = plan.stages == 3 ? 5 : 9;
+            } else {
+                plan.h *= fc_most(0.4, 0.85 * pow(excess, -1.0 / 12.0));
+            }
+            caution += caution < MOST_CAUTION;
+        }
+        progress->map = fc_map_compose(&progress->map, &panel.map);
+        displacement += panel.displacement;
+        at.gone += panel.z;
+        at.rate = panel.rate;
+        at.t = plan.h < left ? at.t + plan.h : stretch->end;
+    }
+    // The bristle is settled nearly everywhere: its force is the limit, and what the quadratures of work and heat miss is
+    // that force times what they miss of the displacement.
+    const double missed = fc_drive_displacement(&scene->drive, t, stretch->end) - displacement;
+    progress->map.work_offset += progress->held * missed;
+    progress->map.heat_offset += progress->held * missed;
 }
 
 // Without stiffness there is no force: the bristle goes with V.
@@ -214,44 +166,87 @@ static FcMap slack_map(const FcScene* scene, double h) {
     return map;
 }
 
+// Layers at both ends of a stretch that begins at the interval's start, or at the event of the stretch before.
+static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStretch* before, bool for_one_start,
+                       FcStretch* stretch) {
+    const FcScene* scene = progress->scene;
+    if (stretch->start > 0.0) {
+        stretch->w_a = before->reversal ? fc_mesh_relaxation_layer(scene, stretch->start, stretch->start)
+                                        : fc_mesh_dip_layer(scene, stretch->start, stretch->start);
+        stretch->back = stretch->w_a;
+    } else {
+        stretch->w_a = fc_mesh_relaxation_layer(scene, 0.0, 0.0);
+        stretch->back = stretch->w_a;
+        // None if the bristle has settled, to first order in the time it takes to relax, so that it only follows.
+        const FcCoefficients now = fc_scene_coefficients(scene, 0.0);
+        const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
+        const double lag = (rates.sigma - rates.limit) / -fc_coefficients_rate(&now);
+        const double settled = copysign(now.limit, now.V) * (1.0 + lag);
+        if (for_one_start && fabs(now.sigma * progress->map.offset - settled) <= SAFETY * progress->tolerance) {
+            stretch->back = fc_mesh_settled_back(scene, 0.0);
+        }
+    }
+    if (isfinite(stretch->event)) {
+        stretch->w_b = stretch->reversal ? fc_mesh_relaxation_layer(scene, stretch->event, stretch->end)
+                                         : fc_mesh_dip_layer(scene, stretch->event, stretch->end);
+    }
+    if (stretch->end < mesh->end) {
+        const FcDriveEvent later = fc_drive_next_event(&scene->drive, stretch->end, mesh->end);
+        stretch->path_after = fabs(fc_drive_displacement(&scene->drive, stretch->end, later.time));
+    }
+}
+
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations) {
     assert(duration >= 0.0 && options->tolerance > 0.0);
-    const FcDrive* drive = &scene->drive;
-    const double saturated = fc_scene_force_scale(scene) / fc_scene_largest_stiffness(scene, duration);
-    if (!isfinite(saturated)) {
+    const double force = fc_scene_force_scale(scene);
+    const double largest_stiffness = fc_scene_largest_stiffness(scene, duration);
+    if (!isfinite(force / largest_stiffness)) {
         return slack_map(scene, duration);
     }
-    const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
+    const bool for_one_start = scope == FC_MAP_THIS_START;
+    const FcCoefficients middle = fc_scene_coefficients(scene, 0.5 * duration);
     Progress progress = {
+        .scene = scene,
         .map = fc_map_identity(),
-        .resolution = 1.5 * pow(options->tolerance, 1.0 / (2 * FC_RADAU_STAGES)),
-        .smooth = smoothness(scene, duration),
-        .delta_scale = fmax(fabs(delta_0), start.limit / start.sigma),
-        .delta_tolerance = options->tolerance * saturated,
+        .end = duration,
+        .tolerance = options->tolerance * force,
+        .largest_stiffness = largest_stiffness,
+        .per_deflection = middle.sigma / middle.limit,
+        .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
+        .digits = -log10(options->tolerance),
         .evaluations = *evaluations,
     };
-    Stretch stretch = {0};
-    if (scope == FC_MAP_THIS_START) {
+    if (for_one_start) {
         progress.map.relaxation = 1.0;
         progress.map.offset = delta_0;
-        stretch.w_a = start_layer(scene, delta_0, options->tolerance);
     } else {
-        stretch.w_a = relaxation_layer(scene, 0.0);
+        const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
+        progress.scale = fmax(fabs(delta_0), start.limit / start.sigma);
     }
-    while (stretch.start < duration && progress.evaluations <= FC_MOST_EVALUATIONS) {
-        // An event farther beyond the end than the end is from here does not shape the steps.
-        const double horizon = duration + (duration - stretch.start);
-        const FcDriveEvent event = fc_drive_next_event(drive, stretch.start, horizon);
-        stretch.event = event.time < horizon ? event.time : INFINITY;
-        stretch.end = fmin(event.time, duration);
-        if (event.time < horizon) {
-            stretch.w_b =
-                event.reversal ? relaxation_layer(scene, stretch.end) : dip_layer(scene, stretch.end);
+    FcMesh mesh;
+    bool has_mesh = false;
+    FcStretch before = {.reversal = true};
+    while (before.end < duration && progress.evaluations <= FC_MOST_EVALUATIONS) {
+        // An event farther beyond the end than the end is from here does not shape the panels.
+        const double horizon = duration + (duration - before.end);
+        const FcDriveEvent event = fc_drive_next_event(&scene->drive, before.end, horizon);
+        FcStretch stretch = {
+            .start = before.end,
+            .end = fc_least(event.time, duration),
+            .event = event.time < horizon ? event.time : INFINITY,
+            .reversal = event.reversal,
+        };
+        const double reached = cross_softly(&progress, &stretch);
+        if (reached < stretch.end) {
+            if (!has_mesh) {
+                mesh = fc_mesh_make(scene, duration, options->tolerance);
+                has_mesh = true;
+            }
+            add_layers(&progress, &mesh, &before, for_one_start, &stretch);
+            cross(&progress, &mesh, &stretch, reached);
         }
-        cross(&progress, scene, &stretch);
-        stretch.start = stretch.end;
-        stretch.w_a = stretch.w_b;
+        before = stretch;
     }
     *evaluations = progress.evaluations;
     return progress.map;

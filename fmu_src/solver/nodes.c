@@ -1,6 +1,8 @@
 #include "solver/nodes.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 
 // Largest argument of the series below: their remainders are then under 1e-17.
 static const double SERIES_RANGE = 0.25;
@@ -8,14 +10,15 @@ static const double SERIES_RANGE = 0.25;
 // sin(x), cos(x) - 1 and e^x - 1 by Taylor series, Horner's scheme.
 static inline double series_sin(double x) {
     const double y = x * x;
-    return x *
-           (1.0 + y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 - y / 39916800)))));
+    return x * (1.0 + y * (-1.0 / 6 +
+                           y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 - y * (1.0 / 39916800))))));
 }
 
 static inline double series_cos_less_1(double x) {
     const double y = x * x;
-    return y * (-1.0 / 2 +
-                y * (1.0 / 24 + y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 + y / 479001600)))));
+    return y *
+           (-1.0 / 2 +
+            y * (1.0 / 24 + y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
 }
 
 static inline double series_exp_less_1(double x) {
@@ -33,56 +36,150 @@ static inline double series_exp_less_1(double x) {
     return x * (1.0 + x * sum);
 }
 
-// Whether the phase and ln(sigma) stay within the range of the series over a step of h [s].
-static bool is_short(const FcScene* scene, double h) {
-    const FcDrive* drive = &scene->drive;
-    if (scene->floats || scene->at_E.model == FC_CONTACT_MINDLIN || scene->friction->limit == FC_LIMIT_LOAD ||
-        (scene->friction->model == FC_LUGRE && scene->friction->staticRatio != 1.0)) {
-        return false;
+// How often arguments of this size have to be halved for the series. More than MOST_HALVINGS lose digits.
+enum { MOST_HALVINGS = 4 };
+typedef struct {
+    int count;
+    double factor; // 2^-count
+} Halvings;
+
+static inline Halvings halvings(double size) {
+    Halvings halved = {0, 1.0};
+    while (size * halved.factor > SERIES_RANGE && halved.count <= MOST_HALVINGS) {
+        halved.factor *= 0.5;
+        halved.count++;
     }
-    const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
-    return drive->E.rate == 0.0 && 0.5 * h * drive->omega <= SERIES_RANGE &&
-           0.5 * h * 2.0 * scene->at_E.decay * d_rate <= SERIES_RANGE;
+    return halved;
 }
 
-void fc_node_coefficients(const FcScene* scene, double t, double h, const double node[FC_NODE_COUNT],
-                          FcNodeCoefficients* at) {
-    if (!is_short(scene, h)) {
-        for (int i = 0; i < FC_NODE_COUNT; i++) {
-            const FcCoefficients now = fc_scene_coefficients(scene, t + node[i] * h);
-            at->V[i] = now.V;
-            at->sigma[i] = now.sigma;
-            at->limit[i] = now.limit;
-        }
-        return;
+static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
+
+static bool depends_on_d(const FcScene* scene) {
+    return scene->at_E.model != FC_CONTACT_CONSTANT || limit_follows_load(scene);
+}
+
+// d_middle + moved[] -> sigma and the limit without its factor by V.
+static inline __attribute__((always_inline)) void of_separation(const FcScene* scene, double d_middle,
+                                                                const double* moved, int count, Halvings halved,
+                                                                FcNodeCoefficients* at) {
+    const FcContactAtModulus* c = &scene->at_E;
+    double e[FC_MOST_NODES];
+    for (int i = 0; i < count; i++) {
+        e[i] = series_exp_less_1(-c->decay * halved.factor * moved[i]);
     }
+    for (int k = 0; k < halved.count; k++) {
+        for (int i = 0; i < count; i++) {
+            e[i] *= 2.0 + e[i];
+        }
+    }
+    const double e_middle = exp(-c->decay * d_middle);
+    for (int i = 0; i < count; i++) {
+        e[i] = e_middle + e_middle * e[i];
+    }
+    if (c->model == FC_CONTACT_ASPERITIES) {
+        for (int i = 0; i < count; i++) {
+            const double d = d_middle + moved[i];
+            at->sigma[i] = c->stiffness_0 * (e[i] * e[i]) / (d * d * d);
+        }
+    } else if (c->model == FC_CONTACT_MINDLIN) {
+        for (int i = 0; i < count; i++) {
+            at->sigma[i] = c->stiffness_0 * e[i];
+        }
+    }
+    if (limit_follows_load(scene)) {
+        for (int i = 0; i < count; i++) {
+            at->limit[i] = scene->friction->mu * (c->load_0 * e[i]);
+        }
+    }
+}
+
+static inline __attribute__((always_inline)) void with_series(const FcScene* scene, double t, double h,
+                                                              const double* node, int count,
+                                                              Halvings halved_angle, Halvings halved_exponent,
+                                                              FcNodeCoefficients* at) {
     const FcDrive* drive = &scene->drive;
     const double middle = t + 0.5 * h;
     const double angle = drive->theta_0 + drive->omega * middle;
     const double c = cos(angle);
     const double s = sin(angle);
-    const double V_middle = drive->V.value + drive->V.rate * middle + drive->vibration.V_1 * c;
-    // cos and sin of the separation's angle
-    const double c_d = c * drive->cos_phase_d - s * drive->sin_phase_d;
-    const double s_d = s * drive->cos_phase_d + c * drive->sin_phase_d;
-    const double d_middle = drive->d.value + drive->d.rate * middle + drive->vibration.a_d * c_d;
-    const double two_decay = 2.0 * scene->at_E.decay;
-    const double stiffness = scene->at_E.stiffness_0 * exp(-two_decay * d_middle);
-    for (int i = 0; i < FC_NODE_COUNT; i++) {
-        const double later = (node[i] - 0.5) * h;
-        const double sin_later = series_sin(drive->omega * later);
-        const double cos_later_less_1 = series_cos_less_1(drive->omega * later);
-        at->V[i] =
-            V_middle + drive->V.rate * later + drive->vibration.V_1 * (c * cos_later_less_1 - s * sin_later);
-        const double d_moved =
-            drive->d.rate * later + drive->vibration.a_d * (c_d * cos_later_less_1 - s_d * sin_later);
-        const double d = d_middle + d_moved;
-        at->limit[i] = scene->F_C;
-        at->sigma[i] = stiffness * (1.0 + series_exp_less_1(-two_decay * d_moved)) / (d * d * d);
+    double sin_later[FC_MOST_NODES];
+    double cos_later_less_1[FC_MOST_NODES];
+    const double angle_per_node = drive->omega * h * halved_angle.factor;
+    for (int i = 0; i < count; i++) {
+        sin_later[i] = series_sin(angle_per_node * node[i]);
+        cos_later_less_1[i] = series_cos_less_1(angle_per_node * node[i]);
     }
-    if (scene->at_E.model == FC_CONTACT_CONSTANT) {
-        for (int i = 0; i < FC_NODE_COUNT; i++) {
-            at->sigma[i] = scene->at_E.stiffness_0;
+    for (int k = 0; k < halved_angle.count; k++) {
+        for (int i = 0; i < count; i++) {
+            sin_later[i] *= 2.0 * (1.0 + cos_later_less_1[i]);
+            cos_later_less_1[i] *= 2.0 * (2.0 + cos_later_less_1[i]);
         }
+    }
+    const double V_c = drive->vibration.V_1 * c;
+    const double V_s = drive->vibration.V_1 * s;
+    const double V_middle = drive->V.value + drive->V.rate * middle + V_c;
+    const double V_rate = drive->V.rate * h;
+    for (int i = 0; i < count; i++) {
+        at->V[i] = V_middle + V_rate * node[i] + (V_c * cos_later_less_1[i] - V_s * sin_later[i]);
+        at->sigma[i] = scene->at_E.stiffness_0;
+        at->limit[i] = scene->F_C;
+    }
+    if (depends_on_d(scene)) {
+        // cos and sin of the separation's angle
+        const double d_c = drive->vibration.a_d * (c * drive->cos_phase_d - s * drive->sin_phase_d);
+        const double d_s = drive->vibration.a_d * (s * drive->cos_phase_d + c * drive->sin_phase_d);
+        const double d_rate = drive->d.rate * h;
+        double moved[FC_MOST_NODES];
+        for (int i = 0; i < count; i++) {
+            moved[i] = d_rate * node[i] + (d_c * cos_later_less_1[i] - d_s * sin_later[i]);
+        }
+        of_separation(scene, drive->d.value + drive->d.rate * middle + d_c, moved, count, halved_exponent, at);
+    }
+    if (scene->friction->model == FC_LUGRE) {
+        for (int i = 0; i < count; i++) {
+            at->limit[i] *= fc_stribeck(scene->friction, at->V[i]);
+        }
+    }
+}
+
+static void with_library(const FcScene* scene, double t, double h, const double* node, int count,
+                         FcNodeCoefficients* at) {
+    for (int i = 0; i < count; i++) {
+        const FcCoefficients now = fc_scene_coefficients(scene, t + (0.5 + node[i]) * h);
+        at->V[i] = now.V;
+        at->sigma[i] = now.sigma;
+        at->limit[i] = now.limit;
+    }
+}
+
+void fc_node_coefficients(const FcScene* scene, double t, double h, const double* node, int count,
+                          FcNodeCoefficients* at) {
+    assert(count % 2 == 0 && count <= FC_MOST_NODES);
+    const FcDrive* drive = &scene->drive;
+    const double half_angle = 0.5 * h * drive->omega;
+    const double moves = 0.5 * h * fabs(drive->d.rate) + drive->vibration.a_d * fmin(half_angle, 2.0);
+    const Halvings angle = halvings(half_angle);
+    const Halvings exponent = halvings(depends_on_d(scene) ? scene->at_E.decay * moves : 0.0);
+    if (scene->floats || drive->E.rate != 0.0 || angle.count > MOST_HALVINGS ||
+        exponent.count > MOST_HALVINGS) {
+        with_library(scene, t, h, node, count, at);
+        return;
+    }
+    switch (count) { // constants where with_series is inlined
+    case 4:
+        with_series(scene, t, h, node, 4, angle, exponent, at);
+        break;
+    case 6:
+        with_series(scene, t, h, node, 6, angle, exponent, at);
+        break;
+    case 8:
+        with_series(scene, t, h, node, 8, angle, exponent, at);
+        break;
+    case 10:
+        with_series(scene, t, h, node, 10, angle, exponent, at);
+        break;
+    default:
+        with_series(scene, t, h, node, count, angle, exponent, at);
+        break;
     }
 }

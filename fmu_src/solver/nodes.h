@@ -1,22 +1,23 @@
-// V, sigma and g at the nodes of a short step: what a collocation step spends most of its time on.
+// V, sigma and g at the nodes of a panel: what a collocation step spends most of its time on.
 //
-// Over a short step the phase and ln(sigma) move little, so one sine, cosine and exponential at its middle and Taylor
-// series around it give all the nodes, to the rounding of a double and several times faster than a call for each.
+// One sine, cosine and exponential at the panel's middle and Taylor series around it give all the nodes, several times
+// faster than a call for each. Arguments beyond the range of the series are halved until they fit, and the functions
+// doubled back by sin 2x, cos 2x and e^2x.
 #ifndef FC_SOLVER_NODES_H
 #define FC_SOLVER_NODES_H
 
 #include "model/scene.h"
 
-enum { FC_NODE_COUNT = 9 };
+enum { FC_MOST_NODES = 12 };
 
 typedef struct {
-    double V[FC_NODE_COUNT];     // m/s
-    double sigma[FC_NODE_COUNT]; // N/m
-    double limit[FC_NODE_COUNT]; // N
+    double V[FC_MOST_NODES];     // m/s
+    double sigma[FC_MOST_NODES]; // N/m
+    double limit[FC_MOST_NODES]; // N
 } FcNodeCoefficients;
 
-// At the times t + node h, node in [0, 1].
-void fc_node_coefficients(const FcScene* scene, double t, double h, const double node[FC_NODE_COUNT],
+// At the times t + (1/2 + node) h, node in [-1/2, 1/2]. count is even, so that the loops become vector instructions.
+void fc_node_coefficients(const FcScene* scene, double t, double h, const double* node, int count,
                           FcNodeCoefficients* at);
 
 #endif

@@ -1,0 +1,148 @@
+"""Writes the tables of the solver's panels: fmu_src/solver/gauss_tables.h and radau_tables.h.
+
+    python cmake/generate_panel_tables.py [FOLDER]
+
+They are kept with the sources, so that a build needs no mpmath; tests/unit/test_panel_tables.py makes them anew. All
+follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for Gauss and of P_n - P_(n-1)
+for Radau: the integrals of the polynomials through values at the nodes, their Legendre coefficients, their value at 0.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from mpmath import mp, mpf
+
+mp.dps = 60
+GAUSS, RADAU = (4, 6, 8, 12), (3, 5, 9)
+FOLDER = Path(__file__).resolve().parents[1] / "fmu_src" / "solver"
+
+
+def legendre(n: int) -> list[mpf]:
+    """Coefficients of P_n(2 c - 1), lowest degree first."""
+    before, now = [mpf(1)], [mpf(-1), mpf(2)]
+    if n == 0:
+        return before
+    for k in range(1, n):
+        after = [mpf(0)] * (k + 2)
+        for i, c in enumerate(now):
+            after[i] -= c * (2 * k + 1) / (k + 1)
+            after[i + 1] += 2 * c * (2 * k + 1) / (k + 1)
+        for i, c in enumerate(before):
+            after[i] -= c * k / (k + 1)
+        before, now = now, after
+    return now
+
+
+def roots(polynomial: list[mpf]) -> list[mpf]:
+    return sorted(mp.re(root) for root in mp.polyroots(polynomial[::-1], maxsteps=500, extraprec=300))
+
+
+def gauss_nodes(n: int) -> list[mpf]:
+    return roots(legendre(n))
+
+
+def radau_nodes(n: int) -> list[mpf]:
+    below = [*legendre(n - 1), mpf(0)]
+    return [*roots([a - b for a, b in zip(legendre(n), below, strict=True)])[:-1], mpf(1)]
+
+
+class Rule:
+    """What follows from n nodes: functions of their values, as matrices and rows."""
+
+    def __init__(self, nodes: list[mpf]) -> None:
+        n = len(nodes)
+        self.nodes = nodes
+        powers = mp.matrix(n, n)
+        integrals = mp.matrix(n, n)
+        legendres = mp.matrix(n, n)
+        for i, c in enumerate(nodes):
+            for j in range(n):
+                powers[i, j] = c**j
+                integrals[i, j] = c ** (j + 1) / (j + 1)
+                legendres[i, j] = mp.polyval(legendre(j)[::-1], c)
+        from_values = powers**-1
+        self.integral = integrals * from_values
+        self.weights = list(mp.matrix([[mpf(1) / (j + 1) for j in range(n)]]) * from_values)
+        self.start = [from_values[0, j] for j in range(n)]  # the polynomial's value at 0
+        of_degree = legendres**-1
+        self.tail = [[of_degree[max(n - k, 0), j] for j in range(n)] for k in range(1, 5)]
+
+
+def row(values: list[mpf]) -> str:
+    return "{" + ", ".join(repr(float(value)) for value in values) + "}"
+
+
+def rows(values: list[list[mpf]]) -> str:
+    return "{" + ",\n     ".join(row(line) for line in values) + "}"
+
+
+def header(guard: str, struct: str, body: list[str]) -> str:
+    top = "// Made by cmake/generate_panel_tables.py, which says what the entries are.\n// clang-format off\n"
+    return f"{top}#ifndef {guard}\n#define {guard}\n\n{struct}\n" + "\n".join(body) + f"\n#endif  // {guard}\n"
+
+
+GAUSS_STRUCT = """typedef struct {
+    double node[12];         // on [-1/2, 1/2]
+    double weight[12];       // of the integral over the panel
+    double integral[12][12]; // [j][i]: weight of node j in the integral up to node i
+    double tail[4][12];      // rows: Legendre coefficients of the degrees n - 1 .. n - 4
+} FcGaussRule;
+"""
+
+RADAU_STRUCT = """typedef struct {
+    double node[10];      // on [-1/2, 1/2]; after the stages, the start
+    double weight[9];     // of the integral over the panel
+    double start[9];      // value at the start of the polynomial through the stages
+    double inverse[9][9]; // of the Runge-Kutta matrix
+    double tail[4][9];    // rows: Legendre coefficients of the degrees n - 1 .. n - 4, of 3 stages down to 0
+} FcRadauRule;
+"""
+
+
+def gauss_table(n: int) -> str:
+    rule = Rule(gauss_nodes(n))
+    columns = [[rule.integral[i, j] for i in range(n)] for j in range(n)]
+    return f"""static const FcGaussRule FC_GAUSS_{n} = {{
+    {row([c - mpf(1) / 2 for c in rule.nodes])},
+    {row(rule.weights)},
+    {rows(columns)},
+    {rows(rule.tail)},
+}};
+"""
+
+
+def radau_table(n: int) -> str:
+    rule = Rule(radau_nodes(n))
+    inverse = rule.integral**-1
+    return f"""static const FcRadauRule FC_RADAU_{n} = {{
+    {row([*(c - mpf(1) / 2 for c in rule.nodes), -mpf(1) / 2])},
+    {row(rule.weights)},
+    {row(rule.start)},
+    {rows([[inverse[i, j] for j in range(n)] for i in range(n)])},
+    {rows(rule.tail)},
+}};
+"""
+
+
+def tables() -> dict[str, str]:
+    """Text of each header by its name."""
+    return {
+        "gauss_tables.h": header(
+            "FC_SOLVER_GAUSS_TABLES_H", GAUSS_STRUCT, [gauss_table(n) for n in GAUSS]
+        ),
+        "radau_tables.h": header(
+            "FC_SOLVER_RADAU_TABLES_H", RADAU_STRUCT, [radau_table(n) for n in RADAU]
+        ),
+    }
+
+
+def main() -> None:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER
+    for name, text in tables().items():
+        (folder / name).write_text(text)
+
+
+if __name__ == "__main__":
+    main()

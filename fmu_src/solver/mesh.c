@@ -1,0 +1,271 @@
+#include "solver/mesh.h"
+
+#include <math.h>
+
+// The error that a panel is planned for, over what the interval is allowed.
+static const double SHARE = 0.003;
+
+enum { KINDS = 3, FINEST = 15 };
+static const int STAGES[KINDS] = {3, 5, 9};
+
+// Lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST. LAYERS: of a decaying transient, in layers.
+// DISTANCES: of the lag, in distances from its event. SMOOTH: in the time over which a logarithm of the coefficients
+// moves by 1.
+static const double LAYERS[KINDS][FINEST + 1] = {
+    {12, 3, 1.6, .9, .6, .4, .28, .19, .13, .09, .06, .04, .03, .02, .014, .01},
+    {20, 7, 4.5, 2.8, 1.8, 1.3, 1.0, .75, .6, .47, .37, .3, .24, .19, .15, .12},
+    {25, 14, 9, 6.5, 4.5, 3.5, 2.8, 2.3, 1.9, 1.65, 1.4, 1.2, 1.02, .9, .8, .7},
+};
+static const double DISTANCES[KINDS][FINEST + 1] = {
+    {40, 12, 4, 1.4, .7, .4, .28, .19, .13, .09, .06, .04, .03, .02, .014, .01},
+    {40, 20, 10, 5, 2.6, 1.6, 1.1, .75, .5, .38, .3, .24, .19, .15, .12, .1},
+    {40, 30, 20, 14, 10, 6.5, 4.2, 2.9, 2.1, 1.5, 1.1, .85, .65, .53, .43, .35},
+};
+static const double SMOOTH[KINDS][FINEST + 1] = {
+    {3.2, 2.58, 1.75, 1.2, .81, .56, .38, .26, .175, .12, .081, .056, .038, .026, .0175, .012},
+    {3.2, 3.2, 3.2, 3.16, 2.5, 2.0, 1.58, 1.26, 1.0, .79, .63, .5, .4, .316, .25, .2},
+    {3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66},
+};
+// A panel that ends on a reversal and steps over its layer leaves an error of LAST lags at its last node, whose weight
+// is 1 / stages^2: last diagonal entry of the inverse of the method's matrix.
+static const double LAST[KINDS] = {5, 13, 41};
+
+static double least(double a, double b) { return a < b ? a : b; }
+static double most(double a, double b) { return a > b ? a : b; }
+
+// Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved: the root of
+// |V'| x + |V''| x^2 / 2 = V_S + |V| / 2. Infinite where g does not depend on V.
+static double stribeck_time(const FcScene* scene, double t) {
+    if (!fc_has_stribeck_curve(scene->friction)) {
+        return INFINITY;
+    }
+    const FcDrive* drive = &scene->drive;
+    const double change = scene->friction->V_S + 0.5 * fabs(fc_drive_V(drive, t));
+    const double rate = fabs(fc_drive_V_rate(drive, t));
+    const double curvature = fabs(fc_drive_V_curvature(drive, t));
+    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
+}
+
+// About the least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
+double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside) {
+    const FcDrive* drive = &scene->drive;
+    const FcCoefficients at = fc_scene_coefficients(scene, inside);
+    const double per_speed = at.sigma / at.limit;
+    const double r = per_speed * fabs(fc_drive_V(drive, t));
+    const double r_rate = per_speed * fabs(fc_drive_V_rate(drive, t));
+    const double r_curvature = per_speed * fabs(fc_drive_V_curvature(drive, t));
+    return fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
+}
+
+double fc_mesh_dip_layer(const FcScene* scene, double t, double inside) {
+    const double curvature = fabs(fc_drive_V_curvature(&scene->drive, t));
+    const FcCoefficients at = fc_scene_coefficients(scene, inside);
+    return fmax(sqrt(2.0 * fabs(fc_drive_V(&scene->drive, t)) / curvature), cbrt(6.0 * at.limit / (at.sigma * curvature)));
+}
+
+double fc_mesh_settled_back(const FcScene* scene, double t) {
+    const FcDrive* drive = &scene->drive;
+    const double V = fc_drive_V(drive, t);
+    return fmin(fabs(V / fc_drive_V_rate(drive, t)), sqrt(2.0 * fabs(V / fc_drive_V_curvature(drive, t))));
+}
+
+static bool depends_on_d(const FcScene* scene) {
+    return scene->at_E.model != FC_CONTACT_CONSTANT || scene->friction->limit == FC_LIMIT_LOAD;
+}
+
+static FcSmoothness smoothness(const FcScene* scene, double h) {
+    const FcDrive* drive = &scene->drive;
+    FcSmoothness smooth = {.rate = fc_drive_vibrates(drive) ? drive->omega : 0.0};
+    if (!depends_on_d(scene)) {
+        return smooth;
+    }
+    const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
+    const double by_nearness = 3.0 / fc_scene_smallest_d(scene, h);
+    const double E = fc_drive_smallest_E(drive, h);
+    smooth.rate += 2.0 * scene->at_E.decay * d_rate;
+    smooth.follows_d_and_E = scene->floats || (d_rate > 0.0 && by_nearness > 2.0 * scene->at_E.decay) ||
+                             fc_drive_largest_E(drive, h) > 100.0 * E;
+    if (!smooth.follows_d_and_E) {
+        smooth.rate += by_nearness * d_rate + fabs(drive->E.rate) / E;
+    }
+    return smooth;
+}
+
+// Time [s] from t on over which the phase, ln(sigma) or ln(g) moves by 1, at the least; g by the normal force.
+static double smooth_time(const FcScene* scene, const FcSmoothness* smooth, double t) {
+    if (!smooth->follows_d_and_E) {
+        return 1.0 / smooth->rate;
+    }
+    const FcDrive* drive = &scene->drive;
+    // Twice the rates at t: they rise while the panel goes on.
+    const double by_nearness = 2.0 * 3.0 / fc_scene_d(scene, t);
+    const double by_E = 2.0 * fabs(drive->E.rate) / fc_drive_E(drive, t);
+    const double d_rate = fc_scene_d_rate(scene, t);
+    const double floating =
+        scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
+    const double rate = smooth->rate + by_nearness * fabs(d_rate) + by_E + floating;
+    const double curvature = by_nearness * drive->vibration.a_d * drive->omega * drive->omega;
+    return 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)); // rate x + curvature x^2 / 2 = 1
+}
+
+// Largest g / sigma over the interval [m]: at the largest separation.
+static double largest_saturation(const FcScene* scene, double h) {
+    if (scene->floats || scene->drive.E.rate != 0.0) {
+        return INFINITY;
+    }
+    const FcContactResponse there = fc_contact_response(&scene->at_E, fc_drive_largest_d(&scene->drive, h));
+    const FcFriction* friction = scene->friction;
+    const double limit = friction->limit == FC_LIMIT_LOAD ? friction->mu * there.F_n : scene->F_C;
+    return limit * fc_stribeck(friction, 0.0) / there.sigma;
+}
+
+FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
+    return (FcMesh){
+        .scene = scene,
+        .end = end,
+        .force = fc_scene_force_scale(scene),
+        .allowed = tolerance,
+        .moving_limit = scene->friction->limit == FC_LIMIT_LOAD || fc_has_stribeck_curve(scene->friction),
+        .memory_path = (6.0 - log(tolerance)) * largest_saturation(scene, end),
+        .smooth = smoothness(scene, end),
+    };
+}
+
+// Decades of accuracy that a panel needs for this allowed relative error.
+static int decades(double allowed) {
+    return allowed >= 0.3 ? 0 : (int)least(FINEST, 0.15 - 0.30103 * ilogb(allowed));
+}
+
+// What limits a panel.
+typedef struct {
+    double left;         // s, to the stretch's end
+    double after, ahead; // s, distances from the events, widened by their layers
+    double smooth;       // s
+    double bell;         // s, that the Stribeck curve allows
+    double layer, layer_ahead;
+    bool ends_at_event;
+    double allowed_last; // relative error of a panel that ends at the event
+    int for_transient, for_lag, for_last, for_quadrature;
+} Limits;
+
+static int finest(const Limits* limits) {
+    const int finer = limits->for_transient > limits->for_lag ? limits->for_transient : limits->for_lag;
+    return finer > limits->for_quadrature ? finer : limits->for_quadrature;
+}
+
+static double length(const Limits* limits, int kind) {
+    const double distances = DISTANCES[kind][limits->for_lag];
+    double h = least(SMOOTH[kind][finest(limits)] * limits->smooth, distances * limits->after);
+    h = least(h, limits->bell);
+    if (limits->for_transient > 0) {
+        h = least(h, LAYERS[kind][limits->for_transient] * limits->layer);
+    }
+    const double shrink = distances / (1.0 + distances);
+    if (!limits->ends_at_event) {
+        return least(limits->left, least(h, shrink * limits->ahead));
+    }
+    double last = LAYERS[kind][limits->for_last];
+    if (limits->allowed_last > 1.0) {
+        const double half = 0.5 * limits->allowed_last * LAST[kind];
+        last = most(last, least(STAGES[kind] * sqrt(half), half));
+    }
+    last *= limits->layer_ahead;
+    if (limits->left <= least(h, last)) {
+        return limits->left;
+    }
+    // Up to where the last panel may begin.
+    const double graded = most(least(shrink * limits->left, limits->left - 0.95 * last), 0.35 * limits->left);
+    return least(h, graded);
+}
+
+static int more(int decades_needed, int caution) {
+    return decades_needed + caution < FINEST ? decades_needed + caution : FINEST;
+}
+
+static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int gone_decades, int caution) {
+    const int transient = decades(for_transient) - gone_decades;
+    limits->for_transient = more(transient > 0 ? transient : 0, transient > 0 ? caution : 0);
+    limits->for_lag = more(decades(for_lag), caution);
+    limits->for_last = more(decades(limits->allowed_last), caution);
+    limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
+    const int finer = finest(limits);
+    // The curve's bell is no exponential: few stages show little of what they miss of it.
+    const int least_kind = isfinite(limits->bell) ? KINDS - 1 : 0;
+    int kind = isfinite(limits->bell) || finer > 5 ? 2 : finer > 1 ? 1 : 0;
+    double h = length(limits, kind);
+    if (h >= limits->left) {
+        while (kind > least_kind && length(limits, kind - 1) >= limits->left) {
+            kind--;
+        }
+    } else if (h > 0.6 * limits->left && !limits->ends_at_event) {
+        h = 0.6 * limits->left;
+    }
+    return (FcPlan){.h = h, .stages = STAGES[kind]};
+}
+
+FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution) {
+    const double tiny = 1e-300;
+    const double base = SHARE * mesh->allowed;
+    const double rest = mesh->end - at->t;
+    const double x = at->t - stretch->start;
+    const double after = x + stretch->back;
+    const bool known = isfinite(stretch->event);
+    const double ahead = known ? stretch->event - at->t + stretch->w_b : INFINITY;
+    const double smooth = smooth_time(mesh->scene, &mesh->smooth, at->t);
+    // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
+    // finer where the tolerance comes near to rounding
+    const double bell = (mesh->allowed < 1e-10 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t);
+    const double drift = most(0.0, 1.0 / smooth - mesh->scene->drive.omega) + 1.0 / bell;
+
+    // How long an error lives, and times how long the lag's panel: the larger of here and at the event ahead, whose
+    // part is bounded by what |V| is there and here.
+    double lives = x == 0.0 ? stretch->w_a : at->rate > 0.0 ? 1.3 / at->rate : INFINITY;
+    if (known) {
+        lives = least(lives, most(stretch->w_a, stretch->w_b));
+    }
+    double lag_counts = lives * least(after, smooth);
+    if (known) {
+        const double near = most(0.25 * ahead, stretch->w_b);
+        const double part = stretch->w_b / near;
+        const double there = stretch->w_b * (stretch->reversal ? part : part * part);
+        lives = most(lives, there);
+        lag_counts = most(lag_counts, there * least(smooth, near));
+    }
+    lives = least(lives, rest);
+    lag_counts = least(lag_counts, rest * least(rest, smooth));
+
+    const double transient = at->gone > 0.0 ? least(at->transient, 1e6) : at->lag;
+    const int gone_decades = (int)least(1e3, 0.434 * at->gone);
+    const double last_counts = drift * least(stretch->w_b, smooth) + at->lag;
+    Limits limits = {
+        .left = stretch->end - at->t,
+        .after = after,
+        .ahead = ahead,
+        .smooth = smooth,
+        .bell = bell,
+        .layer = stretch->w_a,
+        .layer_ahead = stretch->w_b,
+        // The impulse and the work of a constant force are exact, those of another as good as the quadrature.
+        .for_quadrature = mesh->moving_limit ? decades(mesh->allowed) : 0,
+        .ends_at_event = known && stretch->event <= stretch->end,
+        .allowed_last = base * mesh->end / (stretch->w_b * last_counts + tiny),
+    };
+    double for_transient = base * mesh->end / (transient * lives + tiny);
+    double for_lag = base * mesh->end / (drift * lag_counts + tiny);
+    FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
+
+    plan.seen = stretch->path_after <= mesh->memory_path &&
+                (at->t + plan.h >= stretch->end ||
+                 stretch->path_after + fabs(fc_drive_displacement(&mesh->scene->drive, at->t + plan.h, stretch->end)) <=
+                     mesh->memory_path);
+    if (plan.seen) {
+        for_transient = least(for_transient, base / (transient + tiny));
+        for_lag = least(for_lag, base / (drift * least(lives, smooth) + tiny));
+        limits.allowed_last = least(base * mesh->end / (stretch->w_b * last_counts + tiny), base / (last_counts + tiny));
+        plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
+        plan.seen = true;
+    }
+    plan.lives = lives;
+    plan.grows = smooth;
+    return plan;
+}

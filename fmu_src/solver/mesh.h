@@ -1,0 +1,85 @@
+// How long the next Radau panel is and how many stages it has.
+//
+// One idea: what may an error of the force be here, so that F_t at the end and its mean stay within the tolerance? The
+// bristle forgets. An error made at t lives for a time K, until it has relaxed: in the mean it counts K / H, H being
+// the interval. The end sees it only if less than ln(1 / tolerance) relaxes in between.
+//
+// Two things are to be resolved. What is left of a transient counts while it lives; its panels are measured in layers,
+// the time in which the bristle relaxes after the reversal. The lag behind a moving limit lasts; its panels are measured
+// in distances from the reversals, where it is largest, and grow geometrically:
+//
+//        reversal                                        reversal
+//     |V|   |.  '   '      '         '         '      '   '  .|
+//           |-|--|----|--------|-----------|--------|----|--|-|      panels
+//            w_a                                            w_b      layers
+//
+// Lengths are chosen by tables, the accuracy a panel reaches is estimated afterwards (solver/panel.h): a panel that
+// misses what it is allowed is taken again with more stages, then shorter.
+#ifndef FC_SOLVER_MESH_H
+#define FC_SOLVER_MESH_H
+
+#include <stdbool.h>
+
+#include "model/scene.h"
+
+// How fast the phase and the logarithms of sigma and g move at the most, and whether the surfaces come so close, or the
+// modulus or the load move so far, that they have to be followed instead of bounded.
+typedef struct {
+    double rate; // 1/s
+    bool follows_d_and_E;
+} FcSmoothness;
+
+typedef struct {
+    const FcScene* scene;
+    double end;         // s    of the interval
+    double force;       // N    what the tolerance is relative to
+    double allowed;     // 1    error of F_t at the end and of its mean, over force
+    bool moving_limit;  // g is no constant
+    double memory_path; // m    the bristle's path over which it forgets errors
+    FcSmoothness smooth;
+} FcMesh;
+
+// A stretch of time on which V keeps its sign, and the events on both sides that its panels are graded towards. The
+// event ahead may lie beyond the end.
+typedef struct {
+    double start, end; // s
+    double event;      // s, at or beyond the end; infinite if there is none
+    bool reversal;     // the event is one, and no dip
+    double w_a, w_b;   // s, layers at the start and at the event
+    double back;       // s, from the start back to what the panels are graded away from
+    double path_after; // m, path from the end to the next reversal or the interval's end
+} FcStretch;
+
+// Where the panels have got to.
+typedef struct {
+    double t;
+    double rate;      // 1/s, sigma |V| / g
+    double lag;       // 1, |force - what it settles to| over the mesh's force
+    double transient; // 1, the lag at the stretch's start
+    double gone;      // 1, integral of the rate since then
+} FcPlace;
+
+typedef struct {
+    double h;     // s
+    int stages;   // 3, 5 or 9
+    double lives; // s, K
+    double grows; // s, in which sigma may grow e-fold
+    bool seen;    // by the end
+} FcPlan;
+
+FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance);
+
+// Time [s] in which the bristle relaxes by 1 from t on, with sigma and g as they are at the time inside, which is t or
+// the interval's end before it: beyond it the inputs are not known.
+double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside);
+
+// Width [s] of a dip of |V| at t that does not reach zero: that of the parabola, or the time to relax by 1 in it.
+double fc_mesh_dip_layer(const FcScene* scene, double t, double inside);
+
+// Distance [s] of what V last came from at t, a reversal or a dip, when the bristle has settled there.
+double fc_mesh_settled_back(const FcScene* scene, double t);
+
+// The panel from here. Each unit of caution asks for a tenth of the error.
+FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution);
+
+#endif

@@ -1,0 +1,102 @@
+// What the two kinds of panel share: their maps by quadrature over the nodes, and the tails that tell their errors.
+//
+// A panel is an interval of time on which V keeps its sign. The bristle's equation is solved at the panel's nodes for
+// all starts at once, delta = P delta_0 + Q, and everything an interval's map holds follows from P and Q there.
+#ifndef FC_SOLVER_PANEL_H
+#define FC_SOLVER_PANEL_H
+
+#include <math.h>
+
+#include "solver/affine_map.h"
+
+typedef struct {
+    FcMap map;
+    double z;                    // integral of r = sigma |V| / g over the panel
+    double rate, sigma, limit;   // r [1/s], sigma [N/m] and g [N] at the end (of a Radau panel)
+    double displacement;         // m, of V by the panel's quadrature
+    double end_error;            // N, estimated, of the force at the end
+    double mean_error;           // N, estimated, of the mean force over the panel, and of its work over the path
+} FcPanel;
+
+// The trajectories whose errors count: the one that starts at delta_0 [m], and the homogeneous one that starts at
+// scale [m] where the map must hold for any start, else 0. speed [m/s] is what the work is relative to, held [N] the
+// force whose work is put right afterwards.
+typedef struct {
+    double delta_0;
+    double scale;
+    double speed;
+    double held;
+} FcTrajectories;
+
+// The loops of a panel run over constants once these are inlined with a constant n.
+#define FC_INLINE static inline __attribute__((always_inline))
+
+FC_INLINE double fc_least(double a, double b) { return a < b ? a : b; }
+FC_INLINE double fc_most(double a, double b) { return a > b ? a : b; }
+
+FC_INLINE double fc_dot(int n, const double* a, const double* b) {
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+// Adds the integrals of F = sigma u, F V, u' V = (V - r u) V and F (V - u') = sigma r u^2 with u = P u_0 + Q.
+FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, const double* Q, const double* z,
+                                  const double* V, const double* sigma, double h, FcMap* map) {
+    for (int i = 0; i < n; i++) {
+        const double F = weight[i] * sigma[i];
+        const double FP = F * P[i];
+        const double FQ = F * Q[i];
+        const double V_h = h * V[i];
+        map->impulse_slope += FP;
+        map->impulse_offset += FQ;
+        map->work_slope += FP * V_h;
+        map->work_offset += FQ * V_h;
+        const double w_V = weight[i] * V[i];
+        map->drag_slope -= w_V * z[i] * P[i];
+        map->drag_offset += w_V * (V_h - z[i] * Q[i]);
+        map->heat_square += FP * z[i] * P[i];
+        map->heat_slope += 2.0 * FP * z[i] * Q[i];
+        map->heat_offset += FQ * z[i] * Q[i];
+    }
+    map->impulse_slope *= h;
+    map->impulse_offset *= h;
+}
+
+// The highest Legendre coefficients of a function over the nodes (rows: the four highest degrees, or three of three)
+// and by how much they fall per degree.
+typedef struct {
+    double top;
+    double fall;
+} FcTail;
+
+FC_INLINE FcTail fc_tail_of(int n, const double* row, int stride, const double* f) {
+    double c[4];
+    for (int k = 0; k < 4; k++) {
+        c[k] = fabs(fc_dot(n, row + k * stride, f));
+    }
+    const double tiny = 1e-300;
+    FcTail tail;
+    if (n == 3) {
+        tail = (FcTail){c[0], c[0] / (fc_most(c[1], c[2]) + tiny)};
+    } else {
+        tail.top = fc_most(c[0], c[1]);
+        tail.fall = sqrt(tail.top / (fc_most(c[2], c[3]) + tiny));
+    }
+    tail.fall = fc_least(tail.fall, 1.0);
+    return tail;
+}
+
+// What the quadratures of F and of F V are estimated by: one function whose tail has both. Of the work, only that of
+// F - held: that of the constant force held is put right by the displacement, which is known.
+FC_INLINE void fc_panel_force(int n, const double* sigma, const double* V, double speed, double held,
+                              const double* u, double* f) {
+    for (int i = 0; i < n; i++) {
+        const double F = sigma[i] * u[i];
+        f[i] = F + (F - held) * (fabs(V[i]) / speed);
+    }
+}
+
+#endif
