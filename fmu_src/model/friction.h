@@ -37,9 +37,7 @@ static inline bool fc_has_stribeck_curve(const FcFriction* friction) {
 // Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 but for LuGre.
 static inline double fc_stribeck(const FcFriction* friction, double V) {
     const double ratio = V / friction->V_S;
-    return fc_has_stribeck_curve(friction)
-               ? 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio)
-               : 1.0;
+    return fc_has_stribeck_curve(friction) ? 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio) : 1.0;
 }
 
 static inline double fc_stribeck_slope(const FcFriction* friction, double V) {

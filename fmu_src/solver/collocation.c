@@ -52,7 +52,9 @@ static const double SOFT = 10.0;
 static double nodes_for(double digits, double change) { return 2.0 + 0.7 * digits + 0.5 * change; }
 
 // The next number of nodes that there is a panel of.
-static int panel_of_nodes(double nodes) { return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12; }
+static int panel_of_nodes(double nodes) {
+    return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12;
+}
 
 // Goes through a stretch with Gauss panels as far as they are accurate. Returns the time they reach.
 static double cross_softly(Progress* progress, const FcStretch* stretch) {
@@ -98,9 +100,8 @@ static bool is_accurate(const Progress* progress, const FcPlan* plan, const FcPl
     const double rounding = ROUNDING * panel->limit;
     const double allowed = fc_most(SAFETY * progress->tolerance * fc_least(1.0, panel->z), rounding);
     // sigma may grow while the error lives
-    const double end_error =
-        panel->end_error *
-        fc_least(progress->largest_stiffness / panel->sigma, 1.0 + 2.0 * plan->lives / plan->grows);
+    const double end_error = panel->end_error * fc_least(progress->largest_stiffness / panel->sigma,
+                                                         1.0 + 2.0 * plan->lives / plan->grows);
     const double lives = fc_least(plan->lives, progress->end - at->t);
     const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
     *excess = (plan->seen ? fc_most(of_mean, end_error) : of_mean) / allowed;
@@ -113,15 +114,15 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
     const double V_middle = fc_drive_V(&scene->drive, 0.5 * (stretch->start + stretch->end));
     const double sign = fc_sign(V_middle);
     const FcCoefficients start = fc_scene_coefficients(scene, t);
-    FcPanel panel = {
-        .rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};
+    FcPanel panel = {.rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};
     FcPlace at = {.t = t, .rate = panel.rate};
     int caution = 0;
     double displacement = 0.0;
     progress->held = mesh->moving_limit ? 0.0 : sign * start.limit;
     while (at.t < stretch->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const FcTrajectories from = trajectories(progress);
-        at.lag = (fabs(sign * panel.limit - panel.sigma * from.delta_0) + panel.sigma * fabs(from.scale)) / mesh->force;
+        at.lag = (fabs(sign * panel.limit - panel.sigma * from.delta_0) + panel.sigma * fabs(from.scale)) /
+                 mesh->force;
         if (at.gone == 0.0) {
             at.transient = at.lag;
         }
@@ -167,8 +168,8 @@ static FcMap slack_map(const FcScene* scene, double h) {
 }
 
 // Layers at both ends of a stretch that begins at the interval's start, or at the event of the stretch before.
-static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStretch* before, bool for_one_start,
-                       FcStretch* stretch) {
+static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStretch* before,
+                       bool for_one_start, FcStretch* stretch) {
     const FcScene* scene = progress->scene;
     if (stretch->start > 0.0) {
         stretch->w_a = before->reversal ? fc_mesh_relaxation_layer(scene, stretch->start, stretch->start)
@@ -182,7 +183,8 @@ static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStr
         const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
         const double lag = (rates.sigma - rates.limit) / -fc_coefficients_rate(&now);
         const double settled = copysign(now.limit, now.V) * (1.0 + lag);
-        if (for_one_start && fabs(now.sigma * progress->map.offset - settled) <= SAFETY * progress->tolerance) {
+        if (for_one_start &&
+            fabs(now.sigma * progress->map.offset - settled) <= SAFETY * progress->tolerance) {
             stretch->back = fc_mesh_settled_back(scene, 0.0);
         }
     }

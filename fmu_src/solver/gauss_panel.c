@@ -96,14 +96,15 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
         u[i] = P[i] * from->delta_0 + Q[i];
     }
     const double relaxation = -expm1(-whole);
-    panel->map = (FcMap){.relaxation = relaxation, .offset = (1.0 - relaxation) * fc_dot(n, rule->weight, source)};
+    panel->map =
+        (FcMap){.relaxation = relaxation, .offset = (1.0 - relaxation) * fc_dot(n, rule->weight, source)};
     fc_panel_integrals(n, rule->weight, P, Q, z, at.V, at.sigma, h, &panel->map);
     panel->z = whole;
 
     const double sigma = fc_most(at.sigma[0], fc_most(at.sigma[n / 2], at.sigma[n - 1]));
-    panel->end_error =
-        sigma * (1.0 - relaxation) *
-        (quadrature_error(rule, n, source) + (fabs(from->delta_0) + from->scale) * quadrature_error(rule, n, z));
+    panel->end_error = sigma * (1.0 - relaxation) *
+                       (quadrature_error(rule, n, source) +
+                        (fabs(from->delta_0) + from->scale) * quadrature_error(rule, n, z));
     fc_panel_force(n, at.sigma, at.V, from->speed, 0.0, u, f);
     panel->mean_error = quadrature_error(rule, n, f);
     if (from->scale != 0.0) {

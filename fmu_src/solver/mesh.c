@@ -60,7 +60,8 @@ double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside) {
 double fc_mesh_dip_layer(const FcScene* scene, double t, double inside) {
     const double curvature = fabs(fc_drive_V_curvature(&scene->drive, t));
     const FcCoefficients at = fc_scene_coefficients(scene, inside);
-    return fmax(sqrt(2.0 * fabs(fc_drive_V(&scene->drive, t)) / curvature), cbrt(6.0 * at.limit / (at.sigma * curvature)));
+    return fmax(sqrt(2.0 * fabs(fc_drive_V(&scene->drive, t)) / curvature),
+                cbrt(6.0 * at.limit / (at.sigma * curvature)));
 }
 
 double fc_mesh_settled_back(const FcScene* scene, double t) {
@@ -214,7 +215,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     const double smooth = smooth_time(mesh->scene, &mesh->smooth, at->t);
     // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
     // finer where the tolerance comes near to rounding
-    const double bell = (mesh->allowed < 1e-10 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t);
+    const double bell = (mesh->allowed < 1e-7 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t);
     const double drift = most(0.0, 1.0 / smooth - mesh->scene->drive.omega) + 1.0 / bell;
 
     // How long an error lives, and times how long the lag's panel: the larger of here and at the event ahead, whose
@@ -256,12 +257,14 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
 
     plan.seen = stretch->path_after <= mesh->memory_path &&
                 (at->t + plan.h >= stretch->end ||
-                 stretch->path_after + fabs(fc_drive_displacement(&mesh->scene->drive, at->t + plan.h, stretch->end)) <=
+                 stretch->path_after +
+                         fabs(fc_drive_displacement(&mesh->scene->drive, at->t + plan.h, stretch->end)) <=
                      mesh->memory_path);
     if (plan.seen) {
         for_transient = least(for_transient, base / (transient + tiny));
         for_lag = least(for_lag, base / (drift * least(lives, smooth) + tiny));
-        limits.allowed_last = least(base * mesh->end / (stretch->w_b * last_counts + tiny), base / (last_counts + tiny));
+        limits.allowed_last =
+            least(base * mesh->end / (stretch->w_b * last_counts + tiny), base / (last_counts + tiny));
         plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
         plan.seen = true;
     }

@@ -16,9 +16,9 @@ static inline double series_sin(double x) {
 
 static inline double series_cos_less_1(double x) {
     const double y = x * x;
-    return y *
-           (-1.0 / 2 +
-            y * (1.0 / 24 + y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
+    return y * (-1.0 / 2 +
+                y * (1.0 / 24 +
+                     y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
 }
 
 static inline double series_exp_less_1(double x) {
@@ -60,8 +60,8 @@ static bool depends_on_d(const FcScene* scene) {
 
 // d_middle + moved[] -> sigma and the limit without its factor by V.
 static inline __attribute__((always_inline)) void of_separation(const FcScene* scene, double d_middle,
-                                                                const double* moved, int count, Halvings halved,
-                                                                FcNodeCoefficients* at) {
+                                                                const double* moved, int count,
+                                                                Halvings halved, FcNodeCoefficients* at) {
     const FcContactAtModulus* c = &scene->at_E;
     double e[FC_MOST_NODES];
     for (int i = 0; i < count; i++) {
@@ -133,7 +133,8 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
         for (int i = 0; i < count; i++) {
             moved[i] = d_rate * node[i] + (d_c * cos_later_less_1[i] - d_s * sin_later[i]);
         }
-        of_separation(scene, drive->d.value + drive->d.rate * middle + d_c, moved, count, halved_exponent, at);
+        of_separation(scene, drive->d.value + drive->d.rate * middle + d_c, moved, count, halved_exponent,
+                      at);
     }
     if (scene->friction->model == FC_LUGRE) {
         for (int i = 0; i < count; i++) {

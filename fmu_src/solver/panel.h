@@ -11,11 +11,11 @@
 
 typedef struct {
     FcMap map;
-    double z;                    // integral of r = sigma |V| / g over the panel
-    double rate, sigma, limit;   // r [1/s], sigma [N/m] and g [N] at the end (of a Radau panel)
-    double displacement;         // m, of V by the panel's quadrature
-    double end_error;            // N, estimated, of the force at the end
-    double mean_error;           // N, estimated, of the mean force over the panel, and of its work over the path
+    double z;                  // integral of r = sigma |V| / g over the panel
+    double rate, sigma, limit; // r [1/s], sigma [N/m] and g [N] at the end (of a Radau panel)
+    double displacement;       // m, of V by the panel's quadrature
+    double end_error;          // N, estimated, of the force at the end
+    double mean_error; // N, estimated, of the mean force over the panel, and of its work over the path
 } FcPanel;
 
 // The trajectories whose errors count: the one that starts at delta_0 [m], and the homogeneous one that starts at
@@ -43,8 +43,9 @@ FC_INLINE double fc_dot(int n, const double* a, const double* b) {
 }
 
 // Adds the integrals of F = sigma u, F V, u' V = (V - r u) V and F (V - u') = sigma r u^2 with u = P u_0 + Q.
-FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, const double* Q, const double* z,
-                                  const double* V, const double* sigma, double h, FcMap* map) {
+FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, const double* Q,
+                                  const double* z, const double* V, const double* sigma, double h,
+                                  FcMap* map) {
     for (int i = 0; i < n; i++) {
         const double F = weight[i] * sigma[i];
         const double FP = F * P[i];

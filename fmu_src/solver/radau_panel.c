@@ -119,8 +119,7 @@ FC_INLINE void panel_of(const FcRadauRule* rule, int n, int even, const FcScene*
         for (int i = 0; i < n; i++) {
             slope[i] = -z[i] * P[i];
         }
-        error += from->scale *
-                 unresolved(rule, n, slope, fc_dot(n, rule->start, slope) + z[n], panel->z);
+        error += from->scale * unresolved(rule, n, slope, fc_dot(n, rule->start, slope) + z[n], panel->z);
         fc_panel_force(n, at.sigma, at.V, from->speed, 0.0, P, f);
         mean_error += from->scale * quadrature_error(rule, n, f);
     }
