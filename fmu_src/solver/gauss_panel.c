@@ -105,11 +105,15 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
     panel->end_error = sigma * (1.0 - relaxation) *
                        (quadrature_error(rule, n, source) +
                         (fabs(from->delta_0) + from->scale) * quadrature_error(rule, n, z));
-    fc_panel_force(n, at.sigma, at.V, from->speed, 0.0, u, f);
+    const double side = copysign(1.0, signed_h);
+    fc_panel_force(n, &at, side, from->speed, 0.0, u, f);
     panel->mean_error = quadrature_error(rule, n, f);
     if (from->scale != 0.0) {
-        fc_panel_force(n, at.sigma, at.V, from->speed, 0.0, P, f);
-        panel->mean_error += from->scale * quadrature_error(rule, n, f);
+        for (int i = 0; i < n; i++) {
+            u[i] = from->scale * P[i];
+        }
+        fc_panel_force(n, &at, side, from->speed, 0.0, u, f);
+        panel->mean_error += quadrature_error(rule, n, f);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "solver/affine_map.h"
+#include "solver/nodes.h"
 
 typedef struct {
     FcMap map;
@@ -90,13 +91,15 @@ FC_INLINE FcTail fc_tail_of(int n, const double* row, int stride, const double* 
     return tail;
 }
 
-// What the quadratures of F and of F V are estimated by: one function whose tail has both. Of the work, only that of
-// F - held: that of the constant force held is put right by the displacement, which is known.
-FC_INLINE void fc_panel_force(int n, const double* sigma, const double* V, double speed, double held,
+// What the quadratures of F, of F V and of the heat F^2 |V| / g are estimated by: one function whose tail has all three.
+// Of the last two, only those of F - held: what the constant force held does is put right by the displacement, which is
+// known.
+FC_INLINE void fc_panel_force(int n, const FcNodeCoefficients* at, double sign, double speed, double held,
                               const double* u, double* f) {
     for (int i = 0; i < n; i++) {
-        const double F = sigma[i] * u[i];
-        f[i] = F + (F - held) * (fabs(V[i]) / speed);
+        const double F = at->sigma[i] * u[i];
+        const double V = sign * at->V[i];
+        f[i] = F + (F - held) * (V / speed) * (1.0 + (F + held) / (sign * at->limit[i]));
     }
 }
 

@@ -113,15 +113,17 @@ FC_INLINE void panel_of(const FcRadauRule* rule, int n, int even, const FcScene*
 
     const double slope_at_start = h * at.V[n] - z[n] * from->delta_0;
     double error = unresolved(rule, n, slope, fc_dot(n, rule->start, slope) - slope_at_start, panel->z);
-    fc_panel_force(n, at.sigma, at.V, from->speed, from->held, u, f);
+    const double side = sign < 0.0 ? -1.0 : 1.0;
+    fc_panel_force(n, &at, side, from->speed, from->held, u, f);
     double mean_error = quadrature_error(rule, n, f);
     if (from->scale != 0.0) {
         for (int i = 0; i < n; i++) {
             slope[i] = -z[i] * P[i];
+            u[i] = from->scale * P[i];
         }
         error += from->scale * unresolved(rule, n, slope, fc_dot(n, rule->start, slope) + z[n], panel->z);
-        fc_panel_force(n, at.sigma, at.V, from->speed, 0.0, P, f);
-        mean_error += from->scale * quadrature_error(rule, n, f);
+        fc_panel_force(n, &at, side, from->speed, 0.0, u, f);
+        mean_error += quadrature_error(rule, n, f);
     }
     // A defect is damped at the end by what relaxes there, inside by the least that does anywhere.
     const double whole = panel->z;

@@ -31,14 +31,15 @@ def test_work_and_heat_of_every_period(fmu: FrictionFmu, sigma: float, F_C: floa
     }
     expected = 4.0 / 3.0 * sigma**2 * X**3 / F_C
     swing = 0.5 * sigma * X**2  # J, stored and given back; the sum of the work is rounded like it
+    rel = max(1e-8, 1e-4 * tolerance)  # the tolerance is F_C's, and the force here a small part of it
     with fmu.session(start) as session:
         sums = [(0.0, 0.0)]
         for _ in range(4):
             session.step(1.0 / F)
             sums.append(tuple(session.read(("W_f", "Q_f"))))
     for (work, heat), (work_after, heat_after) in pairwise(sums):
-        assert heat_after - heat == pytest.approx(expected, rel=1e-8)
-        assert work_after - work == pytest.approx(expected, rel=1e-8, abs=1e-14 * swing)
+        assert heat_after - heat == pytest.approx(expected, rel=rel)
+        assert work_after - work == pytest.approx(expected, rel=rel, abs=1e-14 * swing)
 
 
 def test_a_thousand_periods_at_once(fmu: FrictionFmu) -> None:
