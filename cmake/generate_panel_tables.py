@@ -2,9 +2,10 @@
 
     python cmake/generate_panel_tables.py [FOLDER]
 
-They are kept with the sources, so that a build needs no mpmath; tests/unit/test_panel_tables.c holds them to other formulas. All
-follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for Gauss and of P_n - P_(n-1)
-for Radau: the integrals of the polynomials through values at the nodes, their Legendre coefficients, their value at 0.
+They are kept with the sources, so that a build needs no mpmath; tests/unit/test_panel_tables.c holds them to
+other formulas. All follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for
+Gauss and of P_n - P_(n-1) for Radau: the integrals of the polynomials through values at the nodes, their
+Legendre coefficients, their value at 0.
 """
 
 from __future__ import annotations
@@ -80,7 +81,9 @@ def rows(values: list[list[mpf]]) -> str:
 
 def header(guard: str, struct: str, body: list[str]) -> str:
     top = "// Made by cmake/generate_panel_tables.py, which says what the entries are.\n// clang-format off\n"
-    return f"{top}#ifndef {guard}\n#define {guard}\n\n{struct}\n" + "\n".join(body) + f"\n#endif  // {guard}\n"
+    return (
+        f"{top}#ifndef {guard}\n#define {guard}\n\n{struct}\n" + "\n".join(body) + f"\n#endif  // {guard}\n"
+    )
 
 
 GAUSS_STRUCT = """typedef struct {
@@ -129,12 +132,8 @@ def radau_table(n: int) -> str:
 def tables() -> dict[str, str]:
     """Text of each header by its name."""
     return {
-        "gauss_tables.h": header(
-            "FC_SOLVER_GAUSS_TABLES_H", GAUSS_STRUCT, [gauss_table(n) for n in GAUSS]
-        ),
-        "radau_tables.h": header(
-            "FC_SOLVER_RADAU_TABLES_H", RADAU_STRUCT, [radau_table(n) for n in RADAU]
-        ),
+        "gauss_tables.h": header("FC_SOLVER_GAUSS_TABLES_H", GAUSS_STRUCT, [gauss_table(n) for n in GAUSS]),
+        "radau_tables.h": header("FC_SOLVER_RADAU_TABLES_H", RADAU_STRUCT, [radau_table(n) for n in RADAU]),
     }
 
 

@@ -36,6 +36,7 @@ typedef struct {
     double digits;            // asked for
     double held;              // N, s g in a stretch with a constant limit, else 0
     double evaluations;       // in the communication step so far
+    int nodes;                // that the last Gauss panel needed
 } Progress;
 
 static FcTrajectories trajectories(const Progress* progress) {
@@ -72,24 +73,30 @@ static double cross_softly(Progress* progress, const FcStretch* stretch) {
     const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(progress->digits, 0.0));
     const double pieces = fc_most(1.0, ceil(0.5 * change / room));
     int count = panel_of_nodes(nodes_for(progress->digits, change / pieces));
-    const double h = length / pieces;
+    if (progress->nodes > count) { // the stretches of an interval are alike
+        count = progress->nodes;
+    }
+    double h = length / pieces;
+    double t = stretch->start;
     const double allowed = SAFETY * progress->tolerance;
-    for (double k = 0.0; k < pieces; k += 1.0) {
-        const double t = stretch->start + k * h;
+    while (t < stretch->end) {
+        const double left = stretch->end - t;
+        h = h < 0.9 * left ? h : left;
         const FcTrajectories from = trajectories(progress);
         FcPanel panel;
-        for (;;) {
-            fc_gauss_panel(progress->scene, t, h, count, &from, &panel);
-            progress->evaluations += count;
-            if (panel.end_error <= allowed * fc_least(1.0, panel.z) && panel.mean_error <= allowed) {
-                break;
-            }
-            if (!(count < FC_GAUSS_MOST_NODES)) {
-                return t;
-            }
+        fc_gauss_panel(progress->scene, t, h, count, &from, &panel);
+        progress->evaluations += count;
+        if (panel.end_error <= allowed * fc_least(1.0, panel.z) && panel.mean_error <= allowed) {
+            progress->map = fc_map_compose(&progress->map, &panel.map);
+            t = h < left ? t + h : stretch->end;
+        } else if (count < FC_GAUSS_MOST_NODES) {
             count = panel_of_nodes(count + 1.0);
+            progress->nodes = count;
+        } else if (h * pieces > 0.2 * length) {
+            h *= 0.5;
+        } else {
+            return t;
         }
-        progress->map = fc_map_compose(&progress->map, &panel.map);
     }
     return stretch->end;
 }

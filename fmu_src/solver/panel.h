@@ -77,7 +77,8 @@ typedef struct {
 FC_INLINE FcTail fc_tail_of(int n, const double* row, int stride, const double* f) {
     double c[4];
     for (int k = 0; k < 4; k++) {
-        c[k] = fabs(fc_dot(n, row + k * stride, f));
+        c[k] = fabs(fc_dot(n, row, f));
+        row += stride;
     }
     const double tiny = 1e-300;
     FcTail tail;
