@@ -86,7 +86,9 @@ static double cross_softly(Progress* progress, const FcStretch* stretch) {
         FcPanel panel;
         fc_gauss_panel(progress->scene, t, h, count, &from, &panel);
         progress->evaluations += count;
-        if (panel.end_error <= allowed * fc_least(1.0, panel.z) && panel.mean_error <= allowed) {
+        // count nodes resolve e^G where G grows by less than count; beyond that the estimates say little.
+        if (panel.z < count && panel.end_error <= allowed * fc_least(1.0, panel.z) &&
+            panel.mean_error <= allowed) {
             progress->map = fc_map_compose(&progress->map, &panel.map);
             t = h < left ? t + h : stretch->end;
         } else if (count < FC_GAUSS_MOST_NODES) {

@@ -60,7 +60,7 @@ FC_INLINE void exponentials(int n, const double* x, double largest, double* e) {
 FC_INLINE double quadrature_error(const FcGaussRule* rule, int n, const double* f) {
     const FcTail tail = fc_tail_of(n, &rule->tail[0][0], FC_GAUSS_MOST_NODES, f);
     const double fall_3 = tail.fall * tail.fall * tail.fall;
-    double error = tail.top;
+    double error = fc_beyond_rounding(n, f, tail.top);
     for (int k = 0; k < n / 4; k++) {
         error *= fall_3;
     }
