@@ -26,6 +26,7 @@ class Arithmetic:
     exp: Callable[[Any], Any]  # elementwise, on arrays
     expm1: Callable[[Any], Any]
     cos: Callable[[Any], Any]
+    log: Callable[[Any], Any]
     dtype: Any
     nodes: int  # Gauss nodes in one piece of the mesh
     window_nodes: int  # Gauss nodes in one window of the integrating factor
@@ -39,9 +40,12 @@ class Arithmetic:
 
 
 def _longdouble(value: Any) -> np.longdouble:
-    if isinstance(value, MP.mpf):
-        return np.longdouble(MP.nstr(value, 25, min_fixed=0, max_fixed=0))
-    return np.longdouble(value)
+    if not isinstance(value, MP.mpf):
+        return np.longdouble(value)
+    high = float(value)
+    return (
+        np.longdouble(high) + np.longdouble(float(value - high)) if np.isfinite(high) else np.longdouble(high)
+    )
 
 
 def multiprecision(value: Any) -> Any:
@@ -57,13 +61,23 @@ MULTIPRECISION = Arithmetic(
     np.frompyfunc(MP.exp, 1, 1),
     np.frompyfunc(MP.expm1, 1, 1),
     np.frompyfunc(MP.cos, 1, 1),
+    np.frompyfunc(MP.log, 1, 1),
     object,
     nodes=16,
     window_nodes=32,
     window=56.0,
 )
 EXTENDED = Arithmetic(
-    "extended", _longdouble, np.exp, np.expm1, np.cos, np.longdouble, nodes=16, window_nodes=36, window=46.0
+    "extended",
+    _longdouble,
+    np.exp,
+    np.expm1,
+    np.cos,
+    np.log,
+    np.longdouble,
+    nodes=16,
+    window_nodes=36,
+    window=46.0,
 )
 
 

@@ -1,11 +1,13 @@
 """First reference: the integrating factor, by Gauss quadrature between reversals.
 
-    delta(t) = e^-G(w,t) delta(w) + integral_w^t e^-G(s,t) V(s) ds,      G(s,t) = integral_s^t sigma |V| / F_C
+    delta(t) = e^-G(w,t) delta(w) + integral_w^t e^-G(s,t) V(s) ds,      G(s,t) = integral_s^t sigma |V| / g
 
 For every node t of every piece of the mesh, w is the start of the piece or, where that is long forgotten, a
 time with G(w,t) large enough that e^-G vanishes. No equation is stepped or solved: stiffness only narrows the
 window.
-Impulse and work are quadratures over the nodes.
+Impulse, work and heat are quadratures over the nodes:
+
+    F_t = sigma delta + sigma_1 delta' + sigma_2 V,    dW = F_t V dt,    dQ = dW - sigma delta delta' dt
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from frictionlab.reference.scene import Drive, Scene
 
 @dataclass(frozen=True)
 class AffineMap:
-    """delta_1 = (1 - relaxation) delta_0 + offset; impulse and work affine in delta_0 likewise."""
+    """delta_1 = (1 - relaxation) delta_0 + offset; impulse and work affine in delta_0, heat quadratic."""
 
     relaxation: Any
     offset: Any
@@ -30,6 +32,13 @@ class AffineMap:
     impulse_offset: Any
     work_slope: Any
     work_offset: Any
+    heat_square: Any
+    heat_slope: Any
+    heat_offset: Any
+
+    @classmethod
+    def identity(cls, zero: Any) -> AffineMap:
+        return cls(*([zero] * 9))
 
     def then(self, next_: AffineMap) -> AffineMap:
         keep, add = 1 - self.relaxation, self.offset
@@ -40,12 +49,16 @@ class AffineMap:
             impulse_offset=self.impulse_offset + next_.impulse_slope * add + next_.impulse_offset,
             work_slope=self.work_slope + next_.work_slope * keep,
             work_offset=self.work_offset + next_.work_slope * add + next_.work_offset,
+            heat_square=self.heat_square + next_.heat_square * keep * keep,
+            heat_slope=self.heat_slope + next_.heat_slope * keep + 2 * next_.heat_square * keep * add,
+            heat_offset=self.heat_offset
+            + (next_.heat_square * add + next_.heat_slope) * add
+            + next_.heat_offset,
         )
 
     def power(self, n: int) -> AffineMap:
         """n of these, one after the other."""
-        zero = 0 * self.relaxation
-        result, square = AffineMap(zero, zero, zero, zero, zero, zero), self
+        result, square = AffineMap.identity(0 * self.relaxation), self
         while n:
             if n & 1:
                 result = result.then(square)
@@ -53,17 +66,18 @@ class AffineMap:
             n >>= 1
         return result
 
-    def apply(self, delta_0: Any) -> tuple[Any, Any, Any]:
-        """Deflection at the end, impulse, work."""
+    def apply(self, delta_0: Any) -> tuple[Any, Any, Any, Any]:
+        """Deflection at the end, impulse, work, heat."""
         return (
             delta_0 - self.relaxation * delta_0 + self.offset,
             self.impulse_slope * delta_0 + self.impulse_offset,
             self.work_slope * delta_0 + self.work_offset,
+            (self.heat_square * delta_0 + self.heat_slope) * delta_0 + self.heat_offset,
         )
 
 
 def interval_map(scene: Scene, t0: Any, h: Any, arithmetic: Arithmetic, ratio: float = 2.0) -> AffineMap:
-    """The affine map of [t0, t0 + h] for the Dahl model."""
+    """The affine map of [t0, t0 + h] for Dahl and LuGre."""
     mesh = arithmetic.array(graded_mesh(scene, t0, h, ratio))
     drive = Drive(scene, t0, arithmetic)
     total = None
@@ -72,8 +86,7 @@ def interval_map(scene: Scene, t0: Any, h: Any, arithmetic: Arithmetic, ratio: f
         for piece in _piece_maps(drive, mesh[first : first + block + 1], arithmetic):
             total = piece if total is None else total.then(piece)
     if total is None:
-        zero = arithmetic.real(0)
-        total = AffineMap(zero, zero, zero, zero, zero, zero)
+        total = AffineMap.identity(arithmetic.real(0))
     return total
 
 
@@ -90,18 +103,23 @@ def _piece_maps(drive: Drive, mesh: np.ndarray, arithmetic: Arithmetic) -> list[
     starts = np.broadcast_to(begin, times.shape)
     relaxation, offset = _deflection(drive, starts, times, exponent, arithmetic)
     sigma, V = drive.sigma(inner), drive.V(inner)
-    keep = 1 - relaxation[:, :-1]
-    impulse = weights * size * sigma
-    work = impulse * V
+    keep, add = 1 - relaxation[:, :-1], offset[:, :-1]
+    # F_t = slope delta + damping V at every node
+    slope, damping = sigma - drive.sigma_1 * rate, drive.sigma_1 + drive.sigma_2
+    time = weights * size
+    work, heat = time * V, time * rate
     return [
         AffineMap(*values)
         for values in zip(
             relaxation[:, -1],
             offset[:, -1],
-            (impulse * keep).sum(axis=1),
-            (impulse * offset[:, :-1]).sum(axis=1),
-            (work * keep).sum(axis=1),
-            (work * offset[:, :-1]).sum(axis=1),
+            (time * slope * keep).sum(axis=1),
+            (time * (slope * add + damping * V)).sum(axis=1),
+            (work * slope * keep).sum(axis=1),
+            (work * (slope * add + damping * V)).sum(axis=1),
+            (heat * sigma * keep * keep).sum(axis=1),
+            (heat * (2 * sigma * add - drive.sigma_1 * V) * keep).sum(axis=1),
+            (heat * (sigma * add - drive.sigma_1 * V) * add + work * damping * V).sum(axis=1),
             strict=True,
         )
     ]

@@ -3,6 +3,10 @@
 V(t) = V + V' (t - start) + V_1 cos(2 pi f t)              (Eq. 24)
 d(t) = d + d' (t - start) + a_d cos(2 pi f t + phase_d)    (section 3.2)
 E(t) = E + E' (t - start)
+load(t) = load + load' (t - start)
+
+Where the load is given, the surfaces rest where the time mean of F_n over a period is the load:
+d = d_rest(t) + a_d cos(2 pi f t + phase_d),    d_rest = (R_q / lambda) ln(F_n(0) I0(lambda a_d / R_q) / load)
 """
 
 from __future__ import annotations
@@ -12,7 +16,8 @@ from typing import Any
 
 from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, SEPARATION, VELOCITY_PRINTED
 from frictionlab.reference.arithmetic import MP, Arithmetic
-from frictionlab.reference.contact import Contact, critical_interference, roughness
+from frictionlab.reference.coefficients import ContactCoefficients
+from frictionlab.reference.contact import Contact
 
 
 @dataclass(frozen=True)
@@ -23,6 +28,8 @@ class Scene:
     V_rate: float = 0.0  # m/s2
     d_rate: float = 0.0  # m/s
     E_rate: float = 0.0  # Pa/s
+    load: float = 312.44  # N, where input is Load
+    load_rate: float = 0.0  # N/s
     start: float = 0.0  # s, when the inputs have the values above
     f: float = FREQUENCY  # Hz
     V_1: float = 0.0  # m/s
@@ -30,6 +37,13 @@ class Scene:
     phase_d: float = 0.0  # rad
     F_C: float = COULOMB_FORCE  # N
     friction: str = "Dahl"
+    limit: str = "Constant"  # F_C, or Load: mu F_n(t)
+    mu: float = 0.176
+    staticRatio: float = 1.0  # LuGre
+    V_S: float = 0.01  # m/s, LuGre
+    sigma_1: float = 0.0  # N s/m
+    sigma_2: float = 0.0  # N s/m
+    input: str = "Separation"  # d, or Load: load
     contact: Contact = field(default_factory=Contact)
 
     @property
@@ -38,7 +52,7 @@ class Scene:
 
     @property
     def held(self) -> bool:
-        return self.V_rate == 0.0 and self.d_rate == 0.0 and self.E_rate == 0.0
+        return not any((self.V_rate, self.d_rate, self.E_rate, self.load_rate))
 
     @property
     def period(self) -> Any:
@@ -49,6 +63,7 @@ class Drive:
     """V, d, sigma on local time tau = t - t0, for numbers or arrays of one arithmetic."""
 
     def __init__(self, scene: Scene, t0: Any, arithmetic: Arithmetic) -> None:
+        self.t0 = t0
         real = arithmetic.real
         lead = MP.mpf(t0) - MP.mpf(scene.start)
         self.arithmetic = arithmetic
@@ -61,14 +76,15 @@ class Drive:
         self.V_0, self.V_rate = real(scene.V + lead * MP.mpf(scene.V_rate)), real(scene.V_rate)
         self.d_0, self.d_rate = real(scene.d + lead * MP.mpf(scene.d_rate)), real(scene.d_rate)
         self.E_0, self.E_rate = real(scene.E + lead * MP.mpf(scene.E_rate)), real(scene.E_rate)
+        self.load_0, self.load_rate = real(scene.load + lead * MP.mpf(scene.load_rate)), real(scene.load_rate)
+        self.mu, self.excess, self.V_S = real(scene.mu), real(MP.mpf(scene.staticRatio) - 1), real(scene.V_S)
+        self.sigma_1, self.sigma_2 = real(scene.sigma_1), real(scene.sigma_2)
         contact = scene.contact
-        lam, R_q = MP.mpf(contact.lambda_), MP.mpf(contact.R_q)
-        front = MP.mpf(contact.c) * MP.pi * roughness(contact) * MP.mpf(contact.A_n) / lam**2
-        self.front = real(MP.mpf(contact.stiffnessScale) * front**2)
-        self.decay = real(lam / R_q)
-        # x = lambda omega_c / R_q goes with 1 / E^2
-        self.x_E2 = real(lam * critical_interference(contact, 1) / R_q)
-        self.constant = real(contact.sigma) if contact.model == "Constant" else None
+        decay = MP.mpf(contact.lambda_) / MP.mpf(contact.R_q)
+        self.decay = real(decay)
+        self.swell = real(MP.besseli(0, decay * MP.mpf(scene.a_d)))
+        self.coefficients = ContactCoefficients(contact, scene.E, arithmetic)
+        self._held: dict[str, Any] = {}
 
     def theta(self, tau: Any) -> Any:
         return self.omega * tau + self.theta_0
@@ -76,24 +92,74 @@ class Drive:
     def V(self, tau: Any) -> Any:
         return self.V_0 + self.V_rate * tau + self.V_1 * self.arithmetic.cos(self.theta(tau))
 
+    def travel(self, begin: Any, end: Any) -> Any:
+        """Integral of V over [begin, end], without cancellation where that is short."""
+        span = end - begin
+        smooth = (self.V_0 + self.V_rate * (begin + end) / 2) * span
+        if self.V_1 == 0:
+            return smooth
+        half, quarter_turn = self.omega * span / 2, self.arithmetic.real(MP.pi / 2)
+        swing = self.arithmetic.cos(self.theta(begin) + half) * self.arithmetic.cos(half - quarter_turn)
+        return smooth + 2 * self.V_1 / self.omega * swing
+
+    def load(self, tau: Any) -> Any:
+        return self.load_0 + self.load_rate * tau
+
     def d(self, tau: Any) -> Any:
         vibration = self.a_d * self.arithmetic.cos(self.theta(tau) + self.phase_d)
-        return self.d_0 + self.d_rate * tau + vibration
+        return self.rest(tau) + vibration
+
+    def rest(self, tau: Any) -> Any:
+        """The separation without vibration."""
+        if self.scene.input == "Separation":
+            return self.d_0 + self.d_rate * tau
+        pressed = self._of_E("normal_force", tau) * self.swell
+        return self.arithmetic.log(pressed / self.load(tau)) / self.decay
 
     def E(self, tau: Any) -> Any:
-        return self.E_0 + self.E_rate * tau
+        return self.E_0 + self.E_rate * tau if self.E_rate != 0 else self.E_0
+
+    def _of_E(self, name: str, tau: Any) -> Any:
+        """A coefficient of the contact, computed once where E is held."""
+        coefficient = getattr(self.coefficients, name)
+        if self.E_rate != 0:
+            return coefficient(self.E(tau))
+        if name not in self._held:
+            self._held[name] = coefficient(self.E_0)
+        return self._held[name]
+
+    def normal_force(self, tau: Any) -> Any:
+        """F_n [N]."""
+        close = self.arithmetic.exp(-self.decay * self.d(tau))
+        return self._of_E("normal_force", tau) * close
 
     def sigma(self, tau: Any) -> Any:
-        """Eq. 3 with Eq. 20-22 contracted; a test holds it equal to `contact`.stiffness."""
-        if self.constant is not None:
-            return self.constant + 0 * tau
-        exp, d, E = self.arithmetic.exp, self.d(tau), self.E(tau)
-        bracket = 1 + exp(-self.x_E2 / (E * E))
-        return self.front * E * bracket * bracket * exp(-2 * self.decay * d) / (d * d * d)
+        """Tangential stiffness [N/m]; tests hold it equal to `contact`.stiffness."""
+        contact = self.scene.contact
+        if contact.model == "Constant":
+            return self.arithmetic.real(contact.sigma) + 0 * tau
+        d = self.d(tau)
+        close = self.arithmetic.exp(-self.decay * d)
+        if contact.model == "Mindlin":
+            return self._of_E("mindlin", tau) * close
+        return self._of_E("asperities", tau) * close * close / (d * d * d)
+
+    def coulomb(self, tau: Any) -> Any:
+        """F_C(t) [N]: the constant, or mu F_n(t)."""
+        if self.scene.limit == "Load":
+            return self.mu * self.normal_force(tau)
+        return self.F_C + 0 * tau
+
+    def limit(self, tau: Any) -> Any:
+        """g [N]: what sigma |delta| tends to while the contact slides."""
+        if self.scene.friction != "LuGre" or self.excess == 0:
+            return self.coulomb(tau)
+        slowness = self.V(tau) / self.V_S
+        return self.coulomb(tau) * (1 + self.excess * self.arithmetic.exp(-(slowness * slowness)))
 
     def relaxation_rate(self, tau: Any) -> Any:
-        """sigma |V| / F_C [1/s]."""
-        return self.sigma(tau) * abs(self.V(tau)) / self.F_C
+        """sigma |V| / g [1/s]."""
+        return self.sigma(tau) * abs(self.V(tau)) / self.limit(tau)
 
 
 def events(drive: Drive, h: Any) -> list:

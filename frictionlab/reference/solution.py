@@ -8,12 +8,14 @@ other means and in 40 digits; the tests hold them all together.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from frictionlab.reference import stop
 from frictionlab.reference.arithmetic import EXTENDED, MP, MULTIPRECISION, Arithmetic, multiprecision
 from frictionlab.reference.contact import Contact, area, stiffness
+from frictionlab.reference.coulomb import coulomb
 from frictionlab.reference.mesh import graded_mesh
 from frictionlab.reference.quadrature import AffineMap, interval_map
 from frictionlab.reference.scene import Drive, Scene, events
@@ -28,6 +30,8 @@ __all__ = [
     "Contact",
     "Drive",
     "Scene",
+    "StepResult",
+    "advance",
     "area",
     "events",
     "force",
@@ -47,19 +51,37 @@ def sigma(scene: Scene, t: Any) -> Any:
 
 def force(scene: Scene, t: Any, delta: Any) -> Any:
     """F_t [N] at the absolute time t [s] and deflection delta [m]."""
+    drive, now = Drive(scene, t, MULTIPRECISION), MP.mpf(0)
+    V, delta = drive.V(now), multiprecision(delta)
     if scene.friction == "Coulomb":
-        return MP.mpf(scene.F_C) * MP.sign(Drive(scene, t, MULTIPRECISION).V(MP.mpf(0)))
-    return sigma(scene, t) * multiprecision(delta)
+        return drive.coulomb(now) * MP.sign(V) + drive.sigma_2 * V
+    rate = V - drive.relaxation_rate(now) * delta
+    if scene.friction == "ElasticPlastic":
+        rate = stop.rate(scene, t, delta)
+    return drive.sigma(now) * delta + drive.sigma_1 * rate + drive.sigma_2 * V
 
 
 def solve(
     scene: Scene, t0: Any, t1: Any, delta_0: Any, arithmetic: Arithmetic = DEFAULT
 ) -> tuple[Any, Any, Any]:
     """Deflection [m] at t1, impulse [N s] and work [J] over [t0, t1] (absolute times, s)."""
-    h = MP.mpf(t1) - MP.mpf(t0)
+    return advance(scene, t0, MP.mpf(t1) - MP.mpf(t0), delta_0, arithmetic)[:3]
+
+
+class StepResult(NamedTuple):
+    delta: Any  # m, at the end
+    impulse: Any  # N s, integral of F_t
+    work: Any  # J
+    heat: Any  # J
+
+
+def advance(scene: Scene, t0: Any, h: Any, delta_0: Any, arithmetic: Arithmetic = DEFAULT) -> StepResult:
+    """One communication step from the absolute time t0 [s] over h [s], every law."""
     if scene.friction == "Coulomb":
-        return _coulomb(scene, t0, h)
-    return _map(scene, t0, h, arithmetic).apply(arithmetic.real(delta_0))
+        return StepResult(*coulomb(scene, t0, h, delta_0))
+    if scene.friction == "ElasticPlastic":
+        return StepResult(*stop.advance(scene, t0, h, delta_0))
+    return StepResult(*_map(scene, t0, MP.mpf(h), arithmetic).apply(arithmetic.real(delta_0)))
 
 
 @lru_cache(maxsize=512)
@@ -74,21 +96,6 @@ def _map(scene: Scene, t0: Any, h: Any, arithmetic: Arithmetic) -> AffineMap:
     return whole.then(interval_map(scene, t0, rest, arithmetic))
 
 
-def _coulomb(scene: Scene, t0: Any, h: Any) -> tuple[Any, Any, Any]:
-    drive = Drive(scene, t0, MULTIPRECISION)
-    F_C = MP.mpf(scene.F_C)
-    corners = [MP.mpf(0), *events(drive, h), h]
-    impulse, path = MP.mpf(0), MP.mpf(0)
-    for left, right in zip(corners[:-1], corners[1:], strict=True):
-        sign = MP.sign(drive.V((left + right) / 2))
-        impulse += F_C * sign * (right - left)
-        swing = MP.mpf(0)
-        if drive.V_1 != 0:
-            swing = drive.V_1 * (MP.sin(drive.theta(right)) - MP.sin(drive.theta(left))) / drive.omega
-        path += sign * (drive.V_0 * (right - left) + drive.V_rate * (right**2 - left**2) / 2 + swing)
-    return MP.mpf(0), impulse, F_C * path
-
-
 def periodic_deflection(scene: Scene, t0: Any = 0, arithmetic: Arithmetic = DEFAULT) -> Any:
     """The deflection [m] at t0 that one period of held inputs brings back."""
     period = _map(scene, t0, scene.period, arithmetic)
@@ -98,7 +105,7 @@ def periodic_deflection(scene: Scene, t0: Any = 0, arithmetic: Arithmetic = DEFA
 def periodic_mean(scene: Scene, arithmetic: Arithmetic = DEFAULT) -> Any:
     """Time mean of F_t [N] over one period of the periodic state."""
     if scene.friction == "Coulomb":
-        return _coulomb(scene, 0, scene.period)[1] / scene.period
+        return coulomb(scene, 0, scene.period, 0)[1] / scene.period
     delta = periodic_deflection(scene, 0, arithmetic)
-    _, impulse, _ = _map(scene, 0, scene.period, arithmetic).apply(delta)
+    _, impulse, _, _ = _map(scene, 0, scene.period, arithmetic).apply(delta)
     return impulse * arithmetic.real(scene.f)

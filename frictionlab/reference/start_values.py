@@ -19,6 +19,14 @@ _SCENE = {
     "vibration.V_1": "V_1",
     "vibration.a_d": "a_d",
     "vibration.phase_d": "phase_d",
+    "friction.limit": "limit",
+    "friction.mu": "mu",
+    "friction.staticRatio": "staticRatio",
+    "friction.V_S": "V_S",
+    "friction.sigma_1": "sigma_1",
+    "friction.sigma_2": "sigma_2",
+    "contact.input": "input",
+    "load": "load",
 }
 
 
