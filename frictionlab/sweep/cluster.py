@@ -68,6 +68,10 @@ def _local(workers: int, folder: Path) -> Iterator[Client]:
             "distributed.scheduler.allowed-failures": 0,
             "distributed.nanny.pre-spawn-environ": quiet,
             "temporary-directory": str(folder),
+            # What watches the workers all the time costs more than handing out the work.
+            "distributed.worker.profile.enabled": False,
+            "distributed.admin.system-monitor.interval": "5s",
+            "distributed.admin.tick.interval": "1s",
         }
     )
     os.environ.setdefault("PYTHONWARNINGS", "ignore")  # what is killed says nothing of it
