@@ -1,27 +1,37 @@
-"""Measurements for scripts/identify: one CSV row is one steady state, its mean friction and its conditions.
+"""Measurements for scripts/identify from CSV files: rows of means, or a series in time.
 
-A column is named after a variable of the FMU with its unit in brackets, "V [mm/s]". F_t_mean is the measured
-mean; F_t_mean.uncertainty its standard uncertainty, if known; load may stand in for the separation d.
+A column is named after a variable of the FMU with its unit in brackets, "V [mm/s]"; NAME.uncertainty is the
+standard uncertainty of the column NAME. A column "time [s]" makes a series.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from frictionlab.contact.heights import separation
+import numpy as np
+
 from frictionlab.fmu import FrictionFmu
-from frictionlab.parameters import E_FULL, Surfaces
+from frictionlab.identify.columns import Column, columns_of
 from frictionlab.project import UserError
 from frictionlab.values import csv_rows, number
 
 MEASURED = "F_t_mean"
-UNCERTAINTY = "F_t_mean.uncertainty"
+TIME, POSITION, FORCE = "time", "position", "F_t"
 LOAD = "load"
-HEADING = re.compile(r"\s*([^\[\]]+?)\s*\[\s*([^\[\]]*?)\s*\]\s*")
+SUFFIX = ".uncertainty"
+FOLLOWS = {"contact.input": "Load", "friction.limit": "Load"}  # from a column or a constant load
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A condition that is not known exactly: in one row, or by the same amount in all."""
+
+    name: str
+    deviation: float  # standard uncertainty, in SI units
+    row: int | None
 
 
 @dataclass(frozen=True)
@@ -32,97 +42,101 @@ class Measurements:
     conditions: list[dict[str, Any]]
     force: list[float]  # N
     uncertainty: list[float] | None  # N
+    uncertain: tuple[Uncertain, ...] = ()
 
     def __len__(self) -> int:
         return len(self.force)
 
 
 @dataclass(frozen=True)
-class _Column:
-    index: int
-    heading: str
+class Series:
+    """One record in time. Arrays are of the samples, in SI units."""
+
+    time: np.ndarray
+    V: np.ndarray  # m/s, mean over the step that follows the sample; one fewer than samples
+    inputs: dict[str, np.ndarray]  # the other columns: load, d, E
+    force: np.ndarray  # N
+    constants: dict[str, Any]
+    uncertainty: np.ndarray | None = None  # N
+    position: np.ndarray | None = field(default=None)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return ("V", *self.inputs)
+
+    def __len__(self) -> int:
+        return len(self.force)
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A standard uncertainty from the command line: a value in SI units, or a part of what it belongs to."""
+
     name: str
-    factor: float  # from the column's unit to SI
+    value: float
+    relative: bool
+
+    def of(self, value: float) -> float:
+        return self.value * abs(value) if self.relative else self.value
 
 
-def units(fmu: FrictionFmu, name: str) -> dict[str, float]:
-    """The units that a variable may be given in, each with its factor to SI."""
-    variable = fmu.variables[name]
-    known = {variable.unit: 1.0}
-    for unit in fmu.description.unitDefinitions:
-        if unit.name == variable.unit:
-            known |= {display.name: 1.0 / display.factor for display in unit.displayUnits}
-    return known
+def read(
+    path: Path, fmu: FrictionFmu, constants: Mapping[str, Any], stated: Sequence[Stated] = ()
+) -> Measurements | Series:
+    """A CSV file; constants are start values that all rows share and no column may repeat.
 
-
-def accepted(fmu: FrictionFmu) -> list[str]:
-    """Variables that a column may hold."""
-    return [
-        name
-        for name, variable in fmu.variables.items()
-        if variable.type == "Real"
-        and variable.causality in ("input", "parameter")
-        and not name.startswith("solver.")
-        and name != "delta_0"
-    ]
-
-
-def read(path: Path, fmu: FrictionFmu, constants: Mapping[str, Any]) -> Measurements:
-    """The rows of a CSV file; constants are start values that all rows share and no column may repeat."""
+    UserError names the file, the row (counted from 1), its line and the column.
+    """
     lines = list(csv_rows(path))
     if not lines:
         raise UserError(f"{path}: no header row")
     header_line, header = lines[0]
-    columns = [_column(fmu, path, header_line, k, cell) for k, cell in enumerate(header)]
-    _check_columns(path, columns, constants)
-    measured = {column.name: [] for column in columns}
+    columns = columns_of(fmu, path, header_line, header)
+    names = [column.name for column in columns]
+    is_series = TIME in names
+    _check(path, names, constants, is_series)
+    measured: dict[str, list[float]] = {name: [] for name in names}
     for row, (line, cells) in enumerate(lines[1:], 1):
         for column in columns:
             measured[column.name].append(_value(path, row, line, column, cells, len(header)))
-    names = tuple(name for name in measured if name not in (MEASURED, UNCERTAINTY))
-    conditions = [
-        {**constants, **{name: measured[name][k] for name in names}} for k in range(len(measured[MEASURED]))
-    ]
-    if LOAD in names:
-        names = tuple("d" if name == LOAD else name for name in names)
-        _loads_to_separations(path, conditions)
-    return Measurements(names, conditions, measured[MEASURED], measured.get(UNCERTAINTY))
+    if not lines[1:]:
+        raise UserError(f"{path}: no rows of numbers")
+    shared = with_load(names, constants)
+    if is_series:
+        return _series(path, fmu, measured, shared, stated)
+    return _rows(fmu, measured, shared, stated)
 
 
-def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> _Column:
-    where = f"{path}, line {line}, column {index + 1}"
-    match = HEADING.fullmatch(cell)
-    if not match:
-        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]', for example 'V [m/s]'")
-    name, unit = match.groups()
-    if name in (MEASURED, UNCERTAINTY, LOAD):
-        known = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
-    elif name in accepted(fmu):
-        known = units(fmu, name)
-    else:
-        others = ", ".join([MEASURED, UNCERTAINTY, LOAD, *accepted(fmu)])
-        raise UserError(f"{where}: there is no variable {name!r}; columns may be {others}")
-    if unit not in known:
-        raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
-    return _Column(index, cell.strip(), name, known[unit])
+def with_load(names: Sequence[str], constants: Mapping[str, Any]) -> dict[str, Any]:
+    """The constants, with the load driving contact and limit where there is one and nothing else is said."""
+    return {**(FOLLOWS if LOAD in names or LOAD in constants else {}), **constants}
 
 
-def _check_columns(path: Path, columns: Sequence[_Column], constants: Mapping[str, Any]) -> None:
-    names = [column.name for column in columns]
+def _check(path: Path, names: Sequence[str], constants: Mapping[str, Any], is_series: bool) -> None:
     for name in names:
         if names.count(name) > 1:
             raise UserError(f"{path}: column {name} is there twice")
         if name in constants:
             raise UserError(f"{path}: {name} is a column and also set as a constant")
-    if MEASURED not in names:
-        raise UserError(f"{path}: column '{MEASURED} [N]' is missing")
-    if "V" not in names and "V" not in constants:
+        if name.endswith(SUFFIX) and name.removesuffix(SUFFIX) not in names:
+            plain = name.removesuffix(SUFFIX)
+            raise UserError(f"{path}: {name} belongs to a column {plain}, which is missing")
+    measured = FORCE if is_series else MEASURED
+    if measured not in names:
+        raise UserError(f"{path}: column '{measured} [N]' is missing")
+    if is_series and (POSITION in names) == ("V" in names):
+        raise UserError(f"{path}: a series in time needs either 'position [m]' or 'V [m/s]'")
+    if not is_series and "V" not in names and "V" not in constants:
         raise UserError(f"{path}: column 'V [m/s]' is missing, and no --set V=... gives it")
+    for name in (FORCE, POSITION) if not is_series else (MEASURED,):
+        if name in names:
+            where = "a series, with a column 'time [s]'" if not is_series else "rows of means, without time"
+            raise UserError(f"{path}: {name} is for {where}")
     if LOAD in names and ("d" in names or "d" in constants):
         raise UserError(f"{path}: load and d both give the separation; keep one")
 
 
-def _value(path: Path, row: int, line: int, column: _Column, cells: Sequence[str], width: int) -> float:
+def _value(path: Path, row: int, line: int, column: Column, cells: Sequence[str], width: int) -> float:
     where = f"{path}, row {row} (line {line}), column '{column.heading}'"
     if len(cells) > width:
         raise UserError(f"{path}, row {row} (line {line}): {len(cells)} cells, but {width} columns")
@@ -130,20 +144,67 @@ def _value(path: Path, row: int, line: int, column: _Column, cells: Sequence[str
         raise UserError(f"{where}: no value")
     text = cells[column.index].strip()
     value = number(text, where)
-    if column.name in (UNCERTAINTY, LOAD) and value <= 0.0:
+    if (column.name == LOAD or column.name.endswith(SUFFIX)) and value <= 0.0:
         raise UserError(f"{where}: {text} must be positive")
     return value * column.factor
 
 
-def _loads_to_separations(path: Path, conditions: list[dict[str, Any]]) -> None:
-    for row, condition in enumerate(conditions, 1):
-        given = {
-            field.name: float(condition[f"contact.{field.name.rstrip('_')}"])
-            for field in fields(Surfaces)
-            if f"contact.{field.name.rstrip('_')}" in condition
-        }
-        try:
-            d = separation(Surfaces(**given), condition.pop(LOAD), float(condition.get("E", E_FULL)))
-        except UserError as error:
-            raise UserError(f"{path}, row {row}, column 'load': {error}") from None
-        condition["d"] = d
+def _rows(
+    fmu: FrictionFmu, measured: dict[str, list[float]], constants: dict[str, Any], stated: Sequence[Stated]
+) -> Measurements:
+    force = measured[MEASURED]
+    names = tuple(name for name in measured if name != MEASURED and not name.endswith(SUFFIX))
+    conditions = [{**constants, **{name: measured[name][k] for name in names}} for k in range(len(force))]
+    uncertainty = measured.get(MEASURED + SUFFIX)
+    uncertain = [
+        Uncertain(name, deviation, row)
+        for name in names
+        for row, deviation in enumerate(measured.get(name + SUFFIX, []))
+    ]
+    for one in stated:
+        if one.name == MEASURED:
+            uncertainty = [one.of(value) for value in force]
+        elif one.name in names:
+            uncertain += [Uncertain(one.name, one.of(measured[one.name][k]), k) for k in range(len(force))]
+        else:
+            usual = float(constants.get(one.name, fmu.variables[one.name].start))
+            uncertain.append(Uncertain(one.name, one.of(usual), None))
+    uncertain = [one for one in uncertain if one.deviation > 0.0]
+    if uncertain and uncertainty is None:
+        raise UserError(
+            f"the uncertainty of {uncertain[0].name} can't be weighed without that of {MEASURED}: "
+            f"give a column '{MEASURED}{SUFFIX} [N]' or --uncertain {MEASURED}=..."
+        )
+    return Measurements(names, conditions, force, uncertainty, tuple(uncertain))
+
+
+def _series(
+    path: Path,
+    fmu: FrictionFmu,
+    measured: dict[str, list[float]],
+    constants: dict[str, Any],
+    stated: Sequence[Stated],
+) -> Series:
+    columns = {name: np.array(values) for name, values in measured.items()}
+    time, force = columns.pop(TIME), columns.pop(FORCE)
+    if len(time) < 3:
+        raise UserError(f"{path}: a series needs at least 3 rows")
+    backward = np.flatnonzero(np.diff(time) <= 0.0)
+    if len(backward):
+        raise UserError(f"{path}, row {backward[0] + 2}: time must grow from row to row")
+    uncertainty = columns.pop(FORCE + SUFFIX, None)
+    for one in stated:
+        if one.name != FORCE:
+            raise UserError(f"--uncertain {one.name}: a series takes the uncertainty of {FORCE} alone")
+        uncertainty = np.array([one.of(value) for value in force])
+        if not (uncertainty > 0.0).all():
+            raise UserError(f"--uncertain {FORCE}: give it in N, since the force passes zero")
+    position = columns.pop(POSITION, None)
+    given = columns.pop("V", None)
+    V = np.diff(position) / np.diff(time) if given is None else 0.5 * (given[1:] + given[:-1])
+    for name in columns:
+        if name.endswith(SUFFIX) or fmu.variables[name].causality != "input":
+            raise UserError(
+                f"{path}: column {name}: a series takes inputs of the FMU, d, E and load; use --set"
+            )
+    return Series(time, V, columns, force, constants, uncertainty, position)

@@ -1,4 +1,4 @@
-"""The picture of a fit: measured and fitted means, and how sharply the data fix the first two parameters."""
+"""The picture of a fit: measured and fitted forces, and how sharply the data fix the first two parameters."""
 
 from __future__ import annotations
 
@@ -8,17 +8,22 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from frictionlab import style
-from frictionlab.fmu import FrictionError
-from frictionlab.identify.data import Measurements
-from frictionlab.identify.fit import Experiment, Fit, Parameter, region_bound
+from frictionlab.identify.data import Series
+from frictionlab.identify.experiment import Experiment
+from frictionlab.identify.fit import Fit, region_bound
+from frictionlab.identify.parameter import Parameter
 
 WIDEST = 3.0  # half-width of the map in coordinates: a factor of 20, or 3 rad
 
 
-def draw(experiment: Experiment, result: Fit, *paths: Path, points: int = 41) -> None:
-    """Writes the picture under each path; points a side of the map."""
+def draw(experiment: Experiment, result: Fit, *paths: Path) -> None:
+    """Writes the picture under each path."""
+    points = 41 if experiment.word == "row" else 11  # a side of the map; a record costs more than rows
     figure, (left, right) = style.subplots(1, 2, size=(10.0, 4.2))
-    _draw_means(left, experiment.rows, result)
+    if isinstance(experiment.rows, Series):
+        _draw_record(left, experiment.rows, result)
+    else:
+        _draw_means(left, experiment, result)
     if len(result.parameters) == 1:
         _draw_curve(right, experiment, result, points)
     else:
@@ -26,15 +31,25 @@ def draw(experiment: Experiment, result: Fit, *paths: Path, points: int = 41) ->
     style.save(figure, *paths)
 
 
-def _draw_means(axes: Axes, rows: Measurements, result: Fit) -> None:
-    measured, place = np.array(rows.force), np.arange(1, len(rows) + 1)
-    error = rows.uncertainty
+def _draw_record(axes: Axes, series: Series, result: Fit) -> None:
+    place, label = (
+        (series.time, "time [s]") if series.position is None else (1e6 * series.position, "position [µm]")
+    )
+    axes.plot(place, series.force, color=style.SOURCE["paper"], lw=1.2, label="measured")
+    axes.plot(place, result.model, color=style.SOURCE["identified"], lw=1.2, label="fitted")
+    axes.set(xlabel=label, ylabel="friction force [N]", title="Measured and fitted force")
+    axes.legend(loc="lower right")
+
+
+def _draw_means(axes: Axes, experiment: Experiment, result: Fit) -> None:
+    measured, place = experiment.force, np.arange(1, len(experiment.force) + 1)
+    error = 1.0 / experiment.weight if experiment.known else None
     if error is None and np.isfinite(result.deviation):
-        error = [result.deviation] * len(rows)
+        error = np.full(len(measured), result.deviation)
     axes.errorbar(place, measured, error, fmt="o", color=style.SOURCE["paper"], capsize=3, label="measured")
     axes.plot(place, result.model, "_", ms=16, mew=2.5, color=style.SOURCE["identified"], label="fitted")
     axes.set(xlabel="row", ylabel="mean friction force [N]", title="Measured and fitted means")
-    axes.set_xticks(place if len(rows) <= 15 else place[:: len(rows) // 10])
+    axes.set_xticks(place if len(measured) <= 15 else place[:: len(measured) // 10])
     axes.set_ylim(min(0.0, 1.1 * measured.min()), 1.12 * max(measured.max(), result.model.max()))
     axes.legend(loc="lower right")
 
@@ -46,14 +61,11 @@ def _window(result: Fit, k: int) -> tuple[float, float]:
     return max(x - width, p.to_coordinate(p.low)), min(x + width, p.to_coordinate(p.high))
 
 
-def _misfit(experiment: Experiment, result: Fit, coordinates: np.ndarray) -> float:
-    """Sum of squares over its least value's standard: the number that the F or chi-square bound cuts."""
-    rows = experiment.rows
-    weight = 1.0 if rows.uncertainty is None else 1.0 / np.array(rows.uncertainty)
-    try:
-        return float(np.sum(((experiment.means(coordinates) - np.array(rows.force)) * weight) ** 2))
-    except FrictionError:
-        return np.nan
+def _misfits(experiment: Experiment, result: Fit, coordinates: np.ndarray) -> np.ndarray:
+    """Sums of squares at rows of the first coordinates, the rest as fitted; nan where the FMU refuses."""
+    points = np.repeat(result.point[None, :], len(coordinates), axis=0)
+    points[:, : coordinates.shape[1]] = coordinates
+    return np.sum(experiment.at(points, experiment.target[None, :]) ** 2, axis=1)
 
 
 def _axis(p: Parameter, coordinates: np.ndarray) -> tuple[np.ndarray, str]:
@@ -66,10 +78,8 @@ def _axis(p: Parameter, coordinates: np.ndarray) -> tuple[np.ndarray, str]:
 def _draw_curve(axes: Axes, experiment: Experiment, result: Fit, points: int) -> None:
     grid = np.linspace(*_window(result, 0), points)
     values, label = _axis(result.parameters[0], grid)
-    axes.plot(values, [_misfit(experiment, result, np.array([x])) for x in grid], color=style.BLUE)
-    if np.isfinite(
-        bound := region_bound(result, experiment.rows, _misfit(experiment, result, result.coordinates))
-    ):
+    axes.plot(values, _misfits(experiment, result, grid[:, None]), color=style.BLUE)
+    if np.isfinite(bound := region_bound(experiment, result)):
         axes.axhline(bound, color=style.ORANGE, ls="--", label="95 % region: below")
         axes.legend()
     axes.set(xlabel=label, ylabel="sum of squares", title="How sharply the data fix it")
@@ -80,22 +90,16 @@ def _draw_curve(axes: Axes, experiment: Experiment, result: Fit, points: int) ->
 def _draw_map(axes: Axes, experiment: Experiment, result: Fit, points: int) -> None:
     """Others than the first two parameters stay at their fitted values."""
     across, up = (np.linspace(*_window(result, k), points) for k in (0, 1))
-    misfit = np.empty((points, points))
-    for i, y in enumerate(up):
-        for j, x in enumerate(across):
-            misfit[i, j] = _misfit(experiment, result, np.array([x, y, *result.coordinates[2:]]))
+    places = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 2)
+    misfit = _misfits(experiment, result, places).reshape(points, points)
     (x, x_label), (y, y_label) = (
         _axis(p, grid) for p, grid in zip(result.parameters, (across, up), strict=False)
     )
-    least = max(_misfit(experiment, result, result.coordinates), 1e-9)
+    least = max(result.squares, 1e-9)
     filled = axes.contourf(x, y, np.log10(np.maximum(misfit, least)), levels=14, cmap="Blues_r", alpha=0.85)
     axes.figure.colorbar(filled, ax=axes, label="log10 of the sum of squares")
-    if (
-        np.isfinite(
-            bound := region_bound(result, experiment.rows, _misfit(experiment, result, result.coordinates))
-        )
-        and np.nanmax(misfit) > bound
-    ):
+    bound = region_bound(experiment, result)
+    if np.isfinite(bound) and np.nanmax(misfit) > bound:
         axes.contour(x, y, misfit, levels=[bound], colors=[style.ORANGE], linewidths=2)
         axes.plot([], [], color=style.ORANGE, lw=2, label="edge of the 95 % region")
     best = [_axis(p, result.coordinates[k : k + 1])[0][0] for k, p in enumerate(result.parameters[:2])]

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from frictionlab.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
 from frictionlab.fmu import FrictionFmu
-from frictionlab.identify.data import Measurements
-from frictionlab.identify.fit import Experiment, Fit, Parameter, fit, parameter
+from frictionlab.identify.data import Measurements, Uncertain
+from frictionlab.identify.experiment import Rows
+from frictionlab.identify.fit import Fit
+from frictionlab.identify.fit import fits as many
+from frictionlab.identify.parameter import Parameter, parameter
 
 TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
 NOISE = 0.5  # N, standard deviation of one mean
@@ -31,22 +34,36 @@ def measurements(force: np.ndarray, uncertainty: list[float] | None = None) -> M
 
 
 def parameters(fmu: FrictionFmu) -> list[Parameter]:
-    """Starting at the truth: the intervals are in question here, not the search."""
-    return [parameter(fmu, name, value, None, {}) for name, value in TRUTH.items()]
+    """Nothing is known of them but where the command searches."""
+    return [parameter(fmu, name, None, None, {}) for name in TRUTH]
 
 
 def true_forces(fmu: FrictionFmu) -> np.ndarray:
-    with Experiment(fmu, measurements(np.zeros(len(conditions()))), parameters(fmu)) as experiment:
-        return experiment.means([p.to_coordinate(TRUTH[p.name]) for p in experiment.parameters])
+    experiment = Rows(fmu, measurements(np.zeros(len(conditions()))), parameters(fmu))
+    return experiment.means([p.to_coordinate(TRUTH[p.name]) for p in experiment.parameters])
 
 
-def fits(fmu: FrictionFmu, seeds: int, uncertainty: list[float] | None = None) -> Iterator[Fit]:
-    """One fit per seed; uncertainty as stated by who measured, or None to estimate it from the scatter."""
+def fits(
+    fmu: FrictionFmu, seeds: int, uncertainty: list[float] | None = None, V_1_error: float = 0.0
+) -> list[Fit]:
+    """One fit per seed; uncertainty as stated by who measured, or None to estimate it from the scatter.
+
+    V_1_error: relative standard error of the V_1 of each row.
+    """
     forces = true_forces(fmu)
-    for seed in range(seeds):
-        noisy = forces + NOISE * np.random.default_rng(seed).standard_normal(forces.size)
-        with Experiment(fmu, measurements(noisy, uncertainty), parameters(fmu)) as experiment:
-            yield fit(experiment)
+    rows = measurements(forces, uncertainty)
+    if V_1_error > 0.0:
+        uncertain = [
+            Uncertain("vibration.V_1", V_1_error * row["vibration.V_1"], k)
+            for k, row in enumerate(conditions())
+        ]
+        rows = replace(rows, uncertain=tuple(uncertain))
+    experiment = Rows(fmu, rows, parameters(fmu))
+    random = np.array(
+        [np.random.default_rng(seed).standard_normal(len(experiment.target)) for seed in range(seeds)]
+    )
+    random[:, : len(forces)] *= NOISE
+    return many(experiment, experiment.target + random, starts=4)
 
 
 def held(found: list[Fit], name: str) -> int:
@@ -57,7 +74,7 @@ def held(found: list[Fit], name: str) -> int:
 
 def figure(fmu: FrictionFmu, seeds: int) -> Figure:
     """The intervals of every seed against the truth."""
-    found = list(fits(fmu, seeds))
+    found = fits(fmu, seeds)
     panels = []
     for k, name in enumerate(TRUTH):
         factor, unit = {

@@ -72,7 +72,7 @@ class Loop:
 def loop() -> Loop:
     columns = _columns(FOLDER / "hysteresis.csv")
     time, load, position, friction = (
-        _floats(columns[name]) for name in ("time_s", "load_N", "position_m", "friction_N")
+        _floats(columns[name]) for name in ("time [s]", "load [N]", "position [m]", "F_t [N]")
     )
     return Loop(time, position, friction, float(load.mean()))
 

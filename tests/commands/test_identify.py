@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +12,19 @@ from scipy import stats
 
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify import command as identify
-from frictionlab.identify.data import Measurements, read
-from frictionlab.identify.fit import Experiment, Fit, fit, parameter
+from frictionlab.identify.bootstrap import bootstrap
+from frictionlab.identify.data import Measurements, Uncertain, read
+from frictionlab.identify.experiment import Rows
+from frictionlab.identify.fit import Fit, fit
+from frictionlab.identify.parameter import parameter
 from frictionlab.identify.recovery import NOISE, TRUTH, fits, held, measurements, true_forces
 from frictionlab.parameters import STIFFNESS_PRINTED
-from frictionlab.project import UserError
+from frictionlab.project import ROOT, UserError
+from frictionlab.validate import longitudinal
+from frictionlab.validate.measurements import sliding
 
 SEEDS = 100
+GUIDE = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -29,7 +36,7 @@ def test_intervals_hold_the_truth_in_about_95_of_100_seeds(
     fmu: FrictionFmu, uncertainty: list[float] | None
 ) -> None:
     """Of 100 intervals of 95 %, 87 to 100 hold the truth with a probability of 99.9 %."""
-    found = list(fits(fmu, SEEDS, uncertainty))
+    found = fits(fmu, SEEDS, uncertainty)
     for name in TRUTH:
         assert 87 <= held(found, name) <= SEEDS, name
     joint = sum(_inside_joint_region(one, uncertainty is not None) for one in found)
@@ -45,8 +52,7 @@ def _inside_joint_region(one: Fit, known: bool) -> bool:
 
 def test_exact_data_give_the_truth_from_no_start_value(fmu: FrictionFmu) -> None:
     named = [parameter(fmu, name, None, None, {}) for name in TRUTH]
-    with Experiment(fmu, measurements(true_forces(fmu)), named) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, measurements(true_forces(fmu)), named))
     assert result.values == pytest.approx(list(TRUTH.values()), rel=1e-5)
 
 
@@ -54,8 +60,7 @@ def test_fixed_parameter_is_fitted_too(fmu: FrictionFmu) -> None:
     rows = Measurements(
         ("V",), [{"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 5e-7}], [20.0], [0.1]
     )
-    with Experiment(fmu, rows, [parameter(fmu, "contact.R_q", 6e-6, None, {})]) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, rows, [parameter(fmu, "contact.R_q", 6e-6, None, {})]))
     assert result.model == pytest.approx([20.0], abs=1e-4)
 
 
@@ -63,8 +68,7 @@ def test_table_2_example(fmu: FrictionFmu) -> None:
     """The least-squares solution leaves less than the equal-error one of the paper set, (0.56 N)^2 each."""
     rows = read(identify.EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
-    with Experiment(fmu, rows, named) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, rows, named))
     assert result.values[0] * STIFFNESS_PRINTED == pytest.approx(2.383e6, rel=1e-3)
     assert math.degrees(result.values[1]) == pytest.approx(224.69, abs=0.05)
     assert np.sum(result.residuals**2) < 3 * 0.557**2
@@ -75,8 +79,7 @@ def test_table_2_example(fmu: FrictionFmu) -> None:
 def test_warns_that_stiff_contacts_do_not_show_their_stiffness(fmu: FrictionFmu) -> None:
     forces = [27.0, 32.6, 39.3, 18.2]  # Coulomb's (2/pi) asin(V/V_1) within 0.2 N
     rows = Measurements(("V",), [{"V": V, "vibration.V_1": 1.0} for V in (0.7, 0.8, 0.9, 0.5)], forces, None)
-    with Experiment(fmu, rows, [parameter(fmu, "contact.stiffnessScale", 1.0, None, {})]) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, rows, [parameter(fmu, "contact.stiffnessScale", 1.0, None, {})]))
     assert min(result.kappa) > 100.0
     assert any("says nearly nothing about contact.stiffnessScale" in text for text in result.warnings)
     assert any("the data can't tell contact.stiffnessScale" in text for text in result.warnings)
@@ -85,8 +88,7 @@ def test_warns_that_stiff_contacts_do_not_show_their_stiffness(fmu: FrictionFmu)
 def test_warns_without_reversals(fmu: FrictionFmu) -> None:
     rows = Measurements(("V",), [{"V": V} for V in (0.1, 0.2, 0.3, 0.4)], [54.0, 55.0, 56.0, 55.0], None)
     named = [parameter(fmu, "F_C", 50.0, None, {}), parameter(fmu, "contact.stiffnessScale", 1e-6, None, {})]
-    with Experiment(fmu, rows, named) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, rows, named))
     assert result.values[0] == pytest.approx(55.0, abs=1e-6)
     assert math.isinf(result.half_widths[1])
     assert any("no row has V < V_1" in text for text in result.warnings)
@@ -104,8 +106,7 @@ def test_warns_of_parameters_that_are_one(fmu: FrictionFmu) -> None:
         parameter(fmu, "contact.stiffnessScale", 1e-6, None, {}),
         parameter(fmu, "contact.eta", 47e9, None, {}),
     ]
-    with Experiment(fmu, rows, named) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, rows, named))
     assert all("the data can't tell " + p.name in " ".join(result.warnings) for p in result.parameters)
 
 
@@ -136,9 +137,19 @@ GOOD = "20,0.5,31\n40,0.5,33\n"
         ),
         (HEADER + "1,2,3,4\n", r"row 1 \(line 2\): 4 cells, but 3 columns"),
         ("V [m/s],load [N],d [um],F_t_mean [N]\n1,2,3,4\n", "load and d both give the separation"),
+        (HEADER, "no rows of numbers"),
         (
-            "V [m/s],load [N],F_t_mean [N]\n1,1e9,4\n",
-            r"row 1, column 'load': load = 1e\+09 N is out of reach",
+            "V.uncertainty [m/s],V [m/s],F_t_mean [N]\n1,1,1\n",
+            "the uncertainty of V can't be weighed without",
+        ),
+        ("d.uncertainty [m],V [m/s],F_t_mean [N]\n1,1,1\n", "d.uncertainty belongs to a column d"),
+        ("V [m/s],F_t [N],F_t_mean [N]\n1,1,1\n", "F_t is for a series"),
+        ("time [s],F_t [N]\n1,1\n", r"a series in time needs either 'position \[m\]' or 'V \[m/s\]'"),
+        ("time [s],V [m/s]\n1,1\n", r"column 'F_t \[N\]' is missing"),
+        ("time [s],V [m/s],F_t [N]\n1,1,1\n2,1,1\n2,1,1\n", "row 3: time must grow"),
+        (
+            "time [s],V [m/s],F_C [N],F_t [N]\n1,1,1,1\n2,1,1,1\n3,1,1,1\n",
+            "column F_C: a series takes inputs",
         ),
         (
             "V [m/s],load [N],F_t_mean [N]\n1,-5,4\n",
@@ -160,8 +171,123 @@ def test_units_and_loads_are_converted(fmu: FrictionFmu, tmp_path: Path) -> None
     path.write_text("V [mm/s],vibration.phase_d [deg],load [kN],F_t_mean [mN]\n20,180,0.31244152,31000\n")
     rows = read(path, fmu, {})
     assert rows.force == pytest.approx([31.0])
-    expected = {"V": 0.02, "vibration.phase_d": math.pi, "d": 14e-6}
-    assert rows.conditions[0] == pytest.approx(expected, rel=1e-7)
+    assert rows.conditions == [
+        {
+            "V": pytest.approx(0.02),
+            "vibration.phase_d": pytest.approx(math.pi),
+            "load": pytest.approx(312.44152),
+            "contact.input": "Load",
+            "friction.limit": "Load",
+        }
+    ]
+    assert read(path, fmu, {"friction.limit": "Constant"}).conditions[0]["friction.limit"] == "Constant"
+
+
+def test_a_load_drives_limit_and_stiffness(fmu: FrictionFmu, tmp_path: Path) -> None:
+    """Without vibration steady sliding is friction.mu times the load: a straight line through the rows."""
+    path = tmp_path / "load.csv"
+    path.write_text("V [m/s],load [N],F_t_mean [N]\n0.1,100,20.5\n0.1,200,39\n0.1,300,61\n")
+    result = fit(Rows(fmu, read(path, fmu, {}), [parameter(fmu, "friction.mu", None, None, {})]))
+    line = (100 * 20.5 + 200 * 39 + 300 * 61) / (100**2 + 200**2 + 300**2)
+    assert result.values[0] == pytest.approx(line, rel=1e-6)
+
+
+def test_a_soft_contact_is_never_half_settled(fmu: FrictionFmu) -> None:
+    """It takes 10^8 periods to settle; the mean is that of Eq. 2 in closed form."""
+    rows = Measurements(
+        ("V",),
+        [{"V": 0.2, "vibration.V_1": 0.6, "contact.model": "Constant", "contact.sigma": 600.0}],
+        [27.0],
+        None,
+    )
+    experiment = Rows(fmu, rows, [parameter(fmu, "F_C", 55.0, None, {})])
+    assert experiment.means([math.log(55.0)]) == pytest.approx([27.2685], abs=1e-4)
+
+
+def test_warns_that_soft_contacts_do_not_show_their_stiffness(fmu: FrictionFmu) -> None:
+    conditions = [{"V": V, "vibration.V_1": 1.0, "contact.model": "Constant"} for V in (0.2, 0.4, 0.6, 0.8)]
+    forces = [
+        55.0 * _soft_limit(row["V"]) + error
+        for row, error in zip(conditions, (0.1, -0.1, 0.1, -0.1), strict=True)
+    ]
+    rows = Measurements(("V",), conditions, forces, [0.1] * 4)
+    result = fit(Rows(fmu, rows, [parameter(fmu, "contact.sigma", None, (1e3, 1e9), {})]))
+    assert max(result.kappa) < 0.1
+    assert any("below 0.1 the mean friction says nearly nothing" in text for text in result.warnings)
+    assert any(
+        "the data can't tell contact.sigma: within 95 % it is at most" in text for text in result.warnings
+    )
+
+
+def _soft_limit(zeta: float) -> float:
+    """zeta / <|zeta + cos|>"""
+    t = 2.0 * np.pi * (np.arange(100_000) + 0.5) / 100_000
+    return zeta / float(np.mean(np.abs(zeta + np.cos(t))))
+
+
+def test_misfit_is_said_first(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "misfit.csv"
+    path.write_text("V [m/s],vibration.V_1 [m/s],F_t_mean [N]\n0.1,1,10\n0.2,1,40\n0.3,1,5\n")
+    identify.main(
+        [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "F_C=30", "--uncertain", "F_t_mean=0.5"]
+    )
+    assert capsys.readouterr().out.startswith("MISFIT: the law does not fit: the misfit, ")
+
+
+def test_profile_of_a_parabola_is_the_linear_interval(fmu: FrictionFmu) -> None:
+    """friction.sigma_2 adds sigma_2 V to the mean: linear, and zero may be the truth."""
+    conditions = [{"V": V, "friction.limit": "Constant"} for V in (0.5, 1.0, 1.5, 2.0)]
+    rows = Measurements(("V",), conditions, [60.1, 64.8, 70.2, 74.9], [0.2] * 4)
+    result = fit(Rows(fmu, rows, [parameter(fmu, "friction.sigma_2", None, (0.0, 100.0), {})]))
+    V, F = np.array([0.5, 1.0, 1.5, 2.0]), np.array([60.1, 64.8, 70.2, 74.9]) - 55.0
+    half = 1.959964 * 0.2 / math.sqrt(V @ V)
+    expected = (V @ F / (V @ V) - half, V @ F / (V @ V) + half)
+    assert result.interval(0) == pytest.approx(expected, rel=1e-5)
+    assert result.profiles[0] == pytest.approx(expected, rel=1e-3)
+
+
+def test_errors_of_inputs_widen_the_interval_by_their_share(fmu: FrictionFmu) -> None:
+    """F = F_C + sigma_2 V: an error u of V acts as an error sigma_2 u of the force."""
+    conditions = [{"V": V, "friction.sigma_2": 10.0} for V in (0.5, 1.0, 1.5, 2.0)]
+    forces = [60.1, 64.8, 70.2, 74.9]
+    uncertain = tuple(Uncertain("V", 0.03, k) for k in range(4))
+    rows = Measurements(("V",), conditions, forces, [0.2] * 4, uncertain)
+    result = fit(Rows(fmu, rows, [parameter(fmu, "F_C", 50.0, None, {})]))
+    deviation = math.sqrt((0.2**2 + 0.3**2) / 4.0)
+    mean = np.mean(np.array(forces) - 10.0 * np.array([0.5, 1.0, 1.5, 2.0]))
+    expected = [mean * math.exp(sign * 1.959964 * deviation / mean) for sign in (-1.0, 1.0)]
+    assert result.interval(0) == pytest.approx(expected, rel=1e-5)
+    shared = replace(rows, uncertain=(Uncertain("V", 0.03, None),))
+    result = fit(Rows(fmu, shared, [parameter(fmu, "F_C", 50.0, None, {})]))
+    deviation = math.sqrt(0.2**2 / 4.0 + 0.3**2)
+    expected = [mean * math.exp(sign * 1.959964 * deviation / mean) for sign in (-1.0, 1.0)]
+    assert result.interval(0) == pytest.approx(expected, rel=1e-5)
+
+
+def test_bootstrap_of_a_mean(fmu: FrictionFmu) -> None:
+    """F_C from steady sliding is the rows' mean: its refits scatter by u / sqrt(rows)."""
+    rows = Measurements(("V",), [{"V": 0.1}] * 4, [54.0, 55.0, 56.0, 55.0], [1.0] * 4)
+    experiment = Rows(fmu, rows, [parameter(fmu, "F_C", 50.0, None, {})])
+    spread = np.exp(bootstrap(experiment, fit(experiment), 2000)[:, 0])
+    assert np.mean(spread) == pytest.approx(55.0, abs=4 * 0.5 / math.sqrt(2000))
+    assert np.std(spread) == pytest.approx(0.5, rel=4 / math.sqrt(2 * 2000))
+
+
+def test_dry_rows_are_the_validation_s(fmu: FrictionFmu) -> None:
+    """The example file holds the published rows; the fit is the one that scripts/validate finds otherwise."""
+    rows = read(
+        ROOT / "data" / "dry.csv", fmu, {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+    )
+    published = sliding("dry")
+    assert rows.force == pytest.approx(list(published.vibrated))
+    assert [row["F_C"] for row in rows.conditions] == pytest.approx(list(published.without))
+    assert [row["V"] for row in rows.conditions] == pytest.approx(list(published.V))
+    assert [row["vibration.V_1"] for row in rows.conditions] == pytest.approx([published.V_1] * 5)
+    assert [row["vibration.f"] for row in rows.conditions] == pytest.approx([published.f] * 5)
+    result = fit(Rows(fmu, rows, [parameter(fmu, "contact.sigma", None, None, {})]))
+    expected = longitudinal.fit(fmu.path, published, "ElasticPlastic").stiffness
+    assert result.values[0] == pytest.approx(expected, rel=2e-3)
+    assert f"{1e-6 * result.values[0]:.2f} MN/m" in GUIDE
 
 
 @pytest.mark.parametrize(

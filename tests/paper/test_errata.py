@@ -17,7 +17,9 @@ from frictionlab.contact.heights import area, load, stiffness
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify.command import EXAMPLE
 from frictionlab.identify.data import read
-from frictionlab.identify.fit import Experiment, fit, parameter
+from frictionlab.identify.experiment import Rows
+from frictionlab.identify.fit import fit
+from frictionlab.identify.parameter import parameter
 from frictionlab.paper.claims import mean_changes
 from frictionlab.paper.equations import force_eq_23, force_eq_25
 from frictionlab.parameters import (
@@ -232,8 +234,7 @@ def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:
 def test_15_least_squares_through_the_same_rows(fmu: FrictionFmu) -> None:
     rows = read(EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
-    with Experiment(fmu, rows, named) as experiment:
-        result = fit(experiment)
+    result = fit(Rows(fmu, rows, named))
     stiff = [1e-6 * STIFFNESS_PRINTED * scale for scale in (result.values[0], *result.interval(0))]
     phase = [math.degrees(angle) for angle in (result.values[1], *result.interval(1))]
     stated(
