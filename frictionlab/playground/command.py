@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import errno
-import os
 import sys
 from pathlib import Path
 
@@ -12,32 +10,11 @@ from playwright.sync_api import Browser
 
 from frictionlab.browser import chromium
 from frictionlab.command import shown
-from frictionlab.description import description
 from frictionlab.playground.browser import measure, take_pictures
-from frictionlab.playground.core import core
-from frictionlab.playground.page import page
-from frictionlab.presets import presets
+from frictionlab.playground.page import page_text, write_whole
 from frictionlab.project import ROOT, UserError
 
 DEFAULT = ROOT / "build" / "playground.html"
-XML = ROOT / "modelDescription.xml"
-
-
-def page_text() -> str:
-    return page(core(), description(XML), presets())
-
-
-def write(output: Path, text: str) -> None:
-    """Writes output whole or not at all."""
-    if output.is_dir():
-        raise OSError(errno.EISDIR, os.strerror(errno.EISDIR), str(output))
-    output.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = output.with_name(f".{output.name}.{os.getpid()}.part")
-    try:
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(output)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def main() -> None:
@@ -57,7 +34,7 @@ def main() -> None:
     options = parser.parse_args()
     try:
         text = page_text()
-        write(options.output, text)
+        write_whole(options.output, text)
         print(f"{shown(options.output)}, {len(text.encode()) / 1e3:.0f} kB: open it in a browser")
         if options.measure or options.pictures:
             with chromium() as browser:

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import base64
+import errno
 import json
+import os
 import re
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from frictionlab.presets import Preset, possible
+from frictionlab.description import description
+from frictionlab.playground.core import core
+from frictionlab.presets import Preset, possible, presets
+from frictionlab.project import ROOT
 
+XML = ROOT / "modelDescription.xml"
 ASSETS = Path(__file__).with_name("assets")
 PLACE = re.compile(r"/\*\[([\w.]+)\]\*/|<!--\[(\w+)\]-->")
 
 
-def page(wasm: bytes, description: dict[str, Any], presets: Sequence[Preset]) -> str:
+def page(wasm: bytes) -> str:
     """The text of the page; presets with a variable or an item that the FMU has not are left out."""
+    model = description(XML)
     parts = {
-        "version": description["version"],
-        "description": _json(description),
-        "presets": _json([_fields(preset) for preset in possible(presets, description["variables"])]),
+        "version": model["version"],
+        "description": _json(model),
+        "presets": _json([_fields(preset) for preset in possible(presets(), model["variables"])]),
         "controls": _json(json.loads((ASSETS / "controls.json").read_text(encoding="utf-8"))),
         "wasm": base64.b64encode(wasm).decode(),
     }
@@ -40,3 +46,21 @@ def _fields(preset: Preset) -> dict[str, Any]:
 def _json(value: object) -> str:
     """JSON that can stand in a script element."""
     return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
+
+
+def page_text() -> str:
+    """The page of this FMU; UserError says why it can't be compiled."""
+    return page(core())
+
+
+def write_whole(output: Path, text: str) -> None:
+    """Writes output whole or not at all."""
+    if output.is_dir():
+        raise OSError(errno.EISDIR, os.strerror(errno.EISDIR), str(output))
+    output.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = output.with_name(f".{output.name}.{os.getpid()}.part")
+    try:
+        unfinished.write_text(text, encoding="utf-8")
+        unfinished.replace(output)
+    finally:
+        unfinished.unlink(missing_ok=True)

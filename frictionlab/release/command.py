@@ -8,7 +8,6 @@ same bytes.
 from __future__ import annotations
 
 import argparse
-import hashlib
 import importlib.metadata
 import re
 import subprocess
@@ -22,11 +21,15 @@ from fmpy.validation import validate_fmu
 from rich.progress import Progress
 
 from frictionlab.command import finish, progress_bar, shown
+from frictionlab.fmu_docs.page import page as index_page
+from frictionlab.playground.page import XML, page_text, write_whole
 from frictionlab.project import ROOT, UserError
 from frictionlab.release import inspect as release_inspect
 from frictionlab.release.targets import CACHE, SUFFIXES, build, zig
 from frictionlab.release.universal import universal
+from frictionlab.release.verify import SUMS, verify, write_sums
 
+PLAYGROUND = "playground.html"  # the page of the live FMU, inside the FMU and beside it
 QUICK = ("linux64", "aarch64-linux")
 SUNDIALS = ROOT / "build" / "sundials-source"
 # Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
@@ -64,13 +67,26 @@ def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str,
     return {**libraries, "darwin64": path}
 
 
-def pack(output: Path, libraries: dict[str, Path], parts: Path) -> None:
-    """Writes output, if the validator finds nothing in it. parts: CMake's folder of one of the platforms."""
+def documents(folder: Path) -> dict[str, Path]:
+    """The page of the live FMU and index.html with a link to it, written to folder: name in the FMU -> file."""
+    files = {f"documentation/{name}": folder / name for name in ("index.html", PLAYGROUND)}
+    files["documentation/index.html"].write_text(index_page(XML, playground=True), encoding="utf-8")
+    files[f"documentation/{PLAYGROUND}"].write_text(page_text(), encoding="utf-8")
+    return files
+
+
+def pack(output: Path, libraries: dict[str, Path], parts: Path, files: dict[str, Path]) -> None:
+    """Writes output, if the validator finds nothing in it.
+
+    parts: CMake's folder of one of the platforms; files: name in the FMU -> file, besides what CMake lists.
+    """
     arguments = [f"@{parts / 'generated' / 'package.txt'}"]
     for platform, library in libraries.items():
         arguments += ["--binary", f"{platform}={library}"]
     for name, path in TOOLCHAIN_LICENSES.items():
         arguments += ["--file", f"documentation/licenses/{name}={zig().parent / path}"]
+    for name, path in files.items():
+        arguments += ["--file", f"{name}={path}"]
     unchecked = output.with_name(f".{output.stem}.unchecked.fmu")
     packer = [
         sys.executable,
@@ -110,7 +126,7 @@ def size_table(fmu: Path) -> str:
 
 
 def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> None:
-    """Writes output whole or not at all; UserError says why not."""
+    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not."""
     platforms = list(platforms)
     zig()
     try:
@@ -121,7 +137,7 @@ def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> 
             pass
     except OSError as error:
         raise UserError(f"{output} can't be written: {error.strerror}") from None
-    task = progress.add_task("Compiling", total=len(platforms) + 1)
+    task = progress.add_task("Compiling", total=len(platforms) + 2)
 
     def tell(platform: str) -> None:
         progress.update(task, advance=1, description=f"Compiling for {platform}")
@@ -129,8 +145,13 @@ def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> 
     with tempfile.TemporaryDirectory(prefix="release-") as temporary:
         folder = Path(temporary)
         libraries = compile_platforms(platforms, folder, tell=tell)
+        tell("a page")
+        files = documents(folder)
         progress.update(task, advance=1, description="Packing and validating")
-        pack(output, with_universal_darwin(libraries, folder), folder / platforms[0])
+        pack(output, with_universal_darwin(libraries, folder), folder / platforms[0], files)
+        page = output.with_name(PLAYGROUND)
+        write_whole(page, files[f"documentation/{PLAYGROUND}"].read_text(encoding="utf-8"))
+        write_sums([output, page])
     progress.remove_task(task)
 
 
@@ -156,7 +177,21 @@ def main() -> None:
     parser.add_argument(
         "--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick"
     )
-    finish(_release, parser.parse_args())
+    parser.add_argument(
+        "--check",
+        type=Path,
+        metavar="FMU",
+        help="tell whether a file is one of ours, as it was packed, and gives its reference results",
+    )
+    finish(_run, parser.parse_args())
+
+
+def _run(options: argparse.Namespace) -> None:
+    if options.check:
+        for line in verify(options.check):
+            print(f"ok  {line}", flush=True)
+    else:
+        _release(options)
 
 
 def _release(options: argparse.Namespace) -> None:
@@ -171,7 +206,9 @@ def _release(options: argparse.Namespace) -> None:
     print(size_table(output))
     print(f"SUNDIALS {sundials_version()}")
     print(f"zig {importlib.metadata.version('ziglang')}")
-    print(f"{shown(output)} (sha256 {hashlib.sha256(output.read_bytes()).hexdigest()})")
+    for line in output.with_name(SUMS).read_text().splitlines():
+        checksum, _, name = line.partition("  ")
+        print(f"{shown(output.with_name(name))} (sha256 {checksum})")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from playwright.sync_api import Browser
 
 from frictionlab.browser import chromium
 from frictionlab.description import description
-from frictionlab.playground.command import XML, page_text
+from frictionlab.playground.page import XML, page_text
 from frictionlab.presets import Preset, possible, presets
 from frictionlab.project import UserError
 

@@ -9,7 +9,7 @@ from playground_page import Playground
 
 from frictionlab.description import description
 from frictionlab.fmu import FrictionError, FrictionFmu
-from frictionlab.playground.command import XML
+from frictionlab.playground.page import XML
 
 LIMIT = 1e-12  # of the largest force
 VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}

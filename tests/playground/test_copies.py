@@ -15,7 +15,7 @@ from playground_page import Playground
 
 from frictionlab.description import description
 from frictionlab.fmu import FrictionFmu
-from frictionlab.playground.command import XML
+from frictionlab.playground.page import XML
 from frictionlab.presets import Preset
 
 SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"

@@ -12,7 +12,7 @@ from playwright.sync_api import Browser
 
 from frictionlab.description import description
 from frictionlab.playground.browser import SCHEMES, SIZES
-from frictionlab.playground.command import XML
+from frictionlab.playground.page import XML
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -32,7 +32,31 @@ def released(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_file_is_valid_and_alone(released: Path) -> None:
     assert validate_fmu(str(released)) == []
-    assert [path.name for path in released.parent.iterdir()] == ["FrictionContact.fmu"]
+    beside = {"FrictionContact.fmu", "SHA256SUMS", "playground.html"}
+    assert {path.name for path in released.parent.iterdir()} == beside
+
+
+def test_the_page_of_the_live_fmu_is_inside_and_beside(released: Path) -> None:
+    with zipfile.ZipFile(released) as archive:
+        page = archive.read("documentation/playground.html")
+        assert b'<a href="playground.html">' in archive.read("documentation/index.html")
+    assert page == released.with_name("playground.html").read_bytes()
+    assert b"default-src 'none'" in page
+
+
+def test_the_checksums_beside_it_are_those_of_sha256sum(released: Path) -> None:
+    subprocess.run(["sha256sum", "--check", "--strict", "SHA256SUMS"], cwd=released.parent, check=True)
+
+
+def test_it_is_one_of_ours(released: Path) -> None:
+    command = [sys.executable, "-m", "frictionlab.release.command", "--check", str(released)]
+    run = subprocess.run(command, check=True, capture_output=True, text=True)
+    assert len(run.stdout.splitlines()) == 4
+    assert all(line.startswith("ok  ") for line in run.stdout.splitlines())
+    other = released.with_name("SHA256SUMS")
+    run = subprocess.run([*command[:-1], str(other)], capture_output=True, text=True)
+    assert run.returncode == 1
+    assert run.stderr == f"error: {other} is no FMU: not a zip archive\n"
 
 
 def test_contents(released: Path) -> None:
@@ -146,4 +170,5 @@ def test_code_that_does_not_compile(
     monkeypatch.setattr(release, "validate_fmu", lambda path: ["a made-up problem\nof two lines"])
     assert refuse(released) == "the validator finds: a made-up problem of two lines"
     assert released.read_bytes() == before
-    assert [path.name for path in released.parent.iterdir()] == ["FrictionContact.fmu"]
+    beside = {"FrictionContact.fmu", "SHA256SUMS", "playground.html"}
+    assert {path.name for path in released.parent.iterdir()} == beside
