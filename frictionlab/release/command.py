@@ -68,7 +68,7 @@ def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str,
 
 
 def documents(folder: Path) -> dict[str, Path]:
-    """The page of the live FMU and index.html with a link to it, written to folder: name in the FMU -> file."""
+    """The page of the live FMU and index.html with a link to it, in folder: name in the FMU -> file."""
     files = {f"documentation/{name}": folder / name for name in ("index.html", PLAYGROUND)}
     files["documentation/index.html"].write_text(index_page(XML, playground=True), encoding="utf-8")
     files[f"documentation/{PLAYGROUND}"].write_text(page_text(), encoding="utf-8")
