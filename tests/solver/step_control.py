@@ -1,0 +1,91 @@
+"""Ten scenes whose cost tells whether the default method's step control works, and their costs.
+
+    python tests/solver/step_control.py    measures them anew on the built FMU and writes step_control.csv
+
+To be done when the method has been changed deliberately: the accuracy tests say whether its results are
+right, these numbers only that it still takes the work it took. A spoilt step control often costs work and
+no accuracy.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from frictionlab.fmu import FrictionFmu, Value
+from frictionlab.project import ROOT
+
+TABLE = Path(__file__).with_suffix(".csv")
+PERIOD = 1.0 / 20e3
+SLIDER: Mapping[str, Value] = {"V": 0.005, "vibration.V_1": 1.44}
+NORMAL: Mapping[str, Value] = {"vibration.a_d": 1.1e-6, "vibration.phase_d": 0.7}
+
+
+@dataclass(frozen=True)
+class Scene:
+    start: Mapping[str, Value]
+    h: float  # s
+    steps: int = 1
+    rates: Mapping[str, float] = field(default_factory=dict)  # of the inputs, per second
+
+
+SCENES = {
+    "stiff": Scene({**SLIDER, **NORMAL}, PERIOD),
+    "soft": Scene({**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-8}, 1.3 * PERIOD, 10),
+    "settled, small steps": Scene(
+        {"V": 0.5, "vibration.V_1": 0.3, **NORMAL, "contact.stiffnessScale": 1e-4}, PERIOD / 50, 200
+    ),
+    "a dip with V > V_1": Scene(
+        {"V": 1.4401, "vibration.V_1": 1.44, "contact.stiffnessScale": 1e-2}, 1.3 * PERIOD, 10
+    ),
+    "a grazing reversal": Scene(
+        {"V": 1.4399999, "vibration.V_1": 1.44, "contact.stiffnessScale": 1e-2}, 1.3 * PERIOD, 10
+    ),
+    "a_d near d": Scene({**SLIDER, "vibration.a_d": 13.9e-6, "contact.stiffnessScale": 1e-6}, PERIOD),
+    "tolerance 1e-12": Scene({**SLIDER, **NORMAL, "solver.tolerance": 1e-12}, PERIOD),
+    "tolerance 1e-3": Scene({**SLIDER, **NORMAL, "solver.tolerance": 1e-3}, 7.7 * PERIOD),
+    "inputs that move": Scene(
+        {**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-5}, 5.5 * PERIOD, 3, {"V": -40.0, "d": 2e-3}
+    ),
+    "the limit and the surfaces follow a load": Scene(
+        {
+            **SLIDER,
+            **NORMAL,
+            "friction.model": "LuGre",
+            "friction.staticRatio": 1.4,
+            "friction.limit": "Load",
+            "contact.input": "Load",
+            "contact.stiffnessScale": 1e-4,
+        },
+        2.2 * PERIOD,
+        2,
+    ),
+}
+
+
+def evaluations(fmu: FrictionFmu, scene: Scene) -> float:
+    """Of the equation, over all steps of the scene."""
+    with fmu.session(scene.start) as session:
+        for _ in range(scene.steps):
+            if scene.rates:
+                session.set_rates(**scene.rates)
+            session.step(scene.h)
+        return session.get("solver.evaluations")
+
+
+def committed() -> dict[str, float]:
+    with TABLE.open(newline="") as rows:
+        return {row["scene"]: float(row["evaluations"]) for row in csv.DictReader(rows)}
+
+
+def main() -> None:
+    with FrictionFmu(ROOT / "build" / "FrictionContact.fmu") as fmu, TABLE.open("w", newline="") as rows:
+        writer = csv.writer(rows, lineterminator="\n")
+        writer.writerow(("scene", "evaluations"))
+        writer.writerows((name, f"{evaluations(fmu, scene):g}") for name, scene in SCENES.items())
+
+
+if __name__ == "__main__":
+    main()
