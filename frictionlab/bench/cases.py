@@ -11,6 +11,7 @@ from frictionlab.bench.driver import Job
 from frictionlab.fmu import Value
 from frictionlab.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from frictionlab.reference import solution as reference
+from frictionlab.reference.coulomb import mean_limit
 from frictionlab.reference.scene import Scene
 from frictionlab.reference.solution import MP
 from frictionlab.reference.start_values import scene_of
@@ -48,7 +49,9 @@ class Case:
 
     @property
     def F_C(self) -> float:
-        return scene_of(self.start_values).F_C
+        """What errors are over [N]: F_C, or mu times the mean of F_n over a period at the start."""
+        scene = scene_of(self.start_values)
+        return scene.F_C if scene.limit == "Constant" else float(mean_limit(scene, 0, scene.period))
 
 
 def expected(case: Case, start: float) -> tuple[np.ndarray, np.ndarray]:
