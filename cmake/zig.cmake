@@ -3,7 +3,7 @@
 #     cmake -S . -B FOLDER --toolchain cmake/zig.cmake -DFMI_PLATFORM=aarch64-linux -DZIG=.../ziglang/zig
 #
 # Folder names as in FMI 2.0.5, section 2.3: linux64, win64, darwin64 mean x86-64; every other platform has the
-# platform tuple of FMI 3.0, section 2.5.1.4.1. wasm32-wasi is no platform of FMI: it gives what runs in a page.
+# platform tuple of FMI 3.0, section 2.5.1.4.1.
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES ZIG FMI_PLATFORM)
 
 if(FMI_PLATFORM STREQUAL "linux64")
@@ -16,8 +16,6 @@ elseif(FMI_PLATFORM STREQUAL "darwin64")
     set(triple x86_64-macos.10.15)
 elseif(FMI_PLATFORM STREQUAL "aarch64-darwin")
     set(triple aarch64-macos.11.0)
-elseif(FMI_PLATFORM STREQUAL "wasm32-wasi")
-    set(triple wasm32-wasi)
 else()
     message(FATAL_ERROR "unknown FMI_PLATFORM ${FMI_PLATFORM}")
 endif()
@@ -27,7 +25,6 @@ set(CMAKE_SYSTEM_PROCESSOR "${CMAKE_MATCH_1}")
 set(system_of_linux Linux)
 set(system_of_windows Windows)
 set(system_of_macos Darwin)
-set(system_of_wasi WASI)
 set(CMAKE_SYSTEM_NAME "${system_of_${CMAKE_MATCH_2}}")
 
 set(CMAKE_C_COMPILER "${ZIG}" cc -target ${triple})

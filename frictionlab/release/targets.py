@@ -41,7 +41,7 @@ def zig() -> Path:
 def build(platform: str, target: str, folder: Path, cache: Path = CACHE, root: Path = ROOT) -> None:
     """Builds a target of CMake for a platform in folder, which is made if it is new.
 
-    root holds the sources. platform: one of SUFFIXES, or wasm32-wasi. UserError holds the first error.
+    root holds the sources. platform: one of SUFFIXES. UserError holds the first error.
     """
     if not (folder / "Makefile").is_file():
         options = {
@@ -49,7 +49,6 @@ def build(platform: str, target: str, folder: Path, cache: Path = CACHE, root: P
             "CMAKE_BUILD_TYPE": "Release",
             "FMI_PLATFORM": platform,
             "FC_SUNDIALS_SOURCE": ROOT / "build" / "sundials-source",
-            "WITH_SUNDIALS": "OFF" if platform == "wasm32-wasi" else "ON",
             "Python3_EXECUTABLE": sys.executable,
             "ZIG": zig(),
         }
