@@ -1,4 +1,4 @@
-// One vibrating contact: its variables, its state, and how it advances. The only header that FMI sees.
+// One vibrating contact: its variables, its state, and how it advances. What FMI sees of the physics, with model/derivatives.h.
 //
 // FcVariables carries every variable of modelDescription.xml under its own name: contact.R_q is the C expression
 // contact.R_q. The table that FMI uses is generated from the XML and finds them by offsetof.

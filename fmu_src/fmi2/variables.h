@@ -1,6 +1,6 @@
 // What modelDescription.xml says of each variable, as the C code sees it.
 //
-// modelDescription.xml is the only source: cmake/generate_variables.py writes the table at build time,
+// modelDescription.xml is the only source: frictionlab/packing/variable_table.py writes the table at build time,
 // and fc_variables[value reference] is the variable with that reference.
 #ifndef FC_FMI2_VARIABLES_H
 #define FC_FMI2_VARIABLES_H
