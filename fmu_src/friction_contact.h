@@ -1,4 +1,5 @@
-// One vibrating contact: its variables, its state, and how it advances. What FMI sees of the physics, with model/derivatives.h.
+// One vibrating contact: its variables, its state, and how it advances. What FMI sees of the physics, with
+// model/derivatives.h.
 //
 // FcVariables carries every variable of modelDescription.xml under its own name: contact.R_q is the C expression
 // contact.R_q. The table that FMI uses is generated from the XML and finds them by offsetof.

@@ -18,8 +18,8 @@ EPSILON = 2.0**-52
 def deviations(session: Session, step: LawStep) -> dict[str, float]:
     """Errors after the step, over their scales."""
     scales = {"F_t": step.limit, "F_t_mean": step.limit, "W_f": step.limit_path, "Q_f": step.limit_path}
-    # where a soft bristle is longer than its way by many orders, the double that holds it rounds coarser: at both
-    # ends of the step, in the product and in the sum of the map between them
+    # where a soft bristle is longer than its way by many orders, the double that holds it rounds coarser: at
+    # both ends of the step, in the product and in the sum of the map between them
     rounding = 4 * EPSILON * abs(step.delta)
     allowed = {
         "F_t": 0.0,
