@@ -68,7 +68,7 @@ def test_print_shows_every_number_and_claims_no_validation(written: tuple[Path, 
     for line in read_table(written[0]):
         assert f"{line['exact_N']:.4f}" in text
         assert f"{line['identified_N']:.2f}" in text
-    assert "identified" in text and "fitted to three informative rows" in text
+    assert "identified" in text and "adjusted to three informative rows" in text
     assert "valid" not in text.lower()
 
 
