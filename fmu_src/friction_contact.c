@@ -126,7 +126,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
 // Single bounds say enough where nothing moves and no load decides.
 static bool is_to_be_checked(const FcScene* scene) {
     return !fc_drive_is_constant(&scene->drive) || scene->contact->input == FC_CONTACT_LOAD ||
-           scene->friction->limit == FC_LIMIT_LOAD;
+           fc_limit_follows_load(scene->friction);
 }
 
 static const double HELD[FC_INPUT_COUNT] = {0};

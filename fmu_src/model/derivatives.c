@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stddef.h>
 
-static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
-
 // Second time derivative of the bound g / sigma [m/s2], by a central difference of its rate, which is exact.
 static double bound_acceleration(const FcScene* scene) {
     const FcDrive* drive = &scene->drive;
@@ -100,7 +98,7 @@ static double affine_force_slope(const FcScene* scene, const FcCoefficients* at,
 
 static double force_slope(const FcScene* scene, double delta, const FcContactLogSlope* slope) {
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double log_limit = limit_follows_load(scene) ? slope->F_n : 0.0;
+    const double log_limit = fc_limit_follows_load(scene->friction) ? slope->F_n : 0.0;
     if (scene->friction->model == FC_COULOMB) {
         return fc_sign(at.V) * at.limit * log_limit;
     }

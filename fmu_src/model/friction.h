@@ -26,6 +26,10 @@ typedef struct {
     double sigma_2;     // N s/m  viscous friction
 } FcFriction;
 
+static inline bool fc_limit_follows_load(const FcFriction* friction) {
+    return friction->limit == FC_LIMIT_LOAD;
+}
+
 // sgn V.
 static inline double fc_sign(double V) { return V > 0.0 ? 1.0 : V < 0.0 ? -1.0 : 0.0; }
 

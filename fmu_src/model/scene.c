@@ -9,12 +9,10 @@ static double rest_separation(const FcScene* scene, const FcContactAtModulus* at
 
 static bool follows_load(const FcScene* scene) { return scene->contact->input == FC_CONTACT_LOAD; }
 
-static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
-
 FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
                       const FcFriction* friction, double F_C, const FcDrive* drive) {
     FcScene scene = {.contact = contact, .friction = friction, .F_C = F_C, .drive = *drive, .at_E = *at_E};
-    if (drive->vibration.a_d != 0.0 && (follows_load(&scene) || limit_follows_load(&scene))) {
+    if (drive->vibration.a_d != 0.0 && (follows_load(&scene) || fc_limit_follows_load(scene.friction))) {
         scene.log_swell = fc_contact_log_swell(at_E, drive->vibration.a_d);
     }
     if (!follows_load(&scene)) {
@@ -70,14 +68,15 @@ FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
 }
 
 static FcCoefficients coefficients(const FcScene* scene, const FcContactResponse* response, double V) {
-    const double limit = limit_follows_load(scene) ? scene->friction->mu * response->F_n : scene->F_C;
+    const double limit =
+        fc_limit_follows_load(scene->friction) ? scene->friction->mu * response->F_n : scene->F_C;
     return (FcCoefficients){
         .V = V, .sigma = response->sigma, .limit = limit * fc_stribeck(scene->friction, V)};
 }
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
     const FcDriveValues now = fc_drive_values(&scene->drive, t);
-    if (scene->at_E.model == FC_CONTACT_CONSTANT && !limit_follows_load(scene)) {
+    if (scene->at_E.model == FC_CONTACT_CONSTANT && !fc_limit_follows_load(scene->friction)) {
         return coefficients(scene, &(FcContactResponse){.sigma = scene->at_E.stiffness_0}, now.V);
     }
     const FcContactAtModulus at_E = contact_at(scene, t);
@@ -90,7 +89,7 @@ double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coef
 FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
     FcLogRates rates = {0.0, 0.0};
-    if (scene->at_E.model != FC_CONTACT_CONSTANT || limit_follows_load(scene)) {
+    if (scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction)) {
         const double d_rate = fc_scene_d_rate(scene, t);
         const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, t));
         rates.sigma = by_d.sigma * d_rate;
@@ -100,7 +99,7 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
             rates.sigma += by_E.sigma * drive->E.rate;
             rates.limit += by_E.F_n * drive->E.rate;
         }
-        if (!limit_follows_load(scene)) {
+        if (!fc_limit_follows_load(scene->friction)) {
             rates.limit = 0.0;
         }
     }
@@ -208,7 +207,7 @@ double fc_scene_largest_stiffness(const FcScene* scene, double h) {
 }
 
 double fc_scene_smallest_limit(const FcScene* scene, double h) {
-    if (!limit_follows_load(scene)) {
+    if (!fc_limit_follows_load(scene->friction)) {
         return scene->F_C;
     }
     const FcContactAtModulus end = contact_at(scene, h);
@@ -217,7 +216,8 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
 }
 
 double fc_scene_smallest_saturation(const FcScene* scene, double h) {
-    if (scene->at_E.model == FC_CONTACT_MINDLIN && limit_follows_load(scene)) { // both go with e^(-decay d)
+    if (scene->at_E.model == FC_CONTACT_MINDLIN &&
+        fc_limit_follows_load(scene->friction)) { // both go with e^(-decay d)
         const FcContactAtModulus end = contact_at(scene, h);
         return scene->friction->mu *
                fmin(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
@@ -226,7 +226,7 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
 }
 
 double fc_scene_force_scale(const FcScene* scene) {
-    if (!limit_follows_load(scene)) {
+    if (!fc_limit_follows_load(scene->friction)) {
         return scene->F_C;
     }
     const double d = fc_scene_d(scene, 0.0) - (fc_drive_d(&scene->drive, 0.0) - scene->drive.d.value);

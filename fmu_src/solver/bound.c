@@ -14,19 +14,17 @@ static bool contact_moves(const FcScene* scene) {
     return drive->vibration.a_d != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0 || scene->floats;
 }
 
-static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
-
 bool fc_bound_stiffness_is_constant(const FcScene* scene) {
     return scene->at_E.model == FC_CONTACT_CONSTANT || !contact_moves(scene);
 }
 
 bool fc_bound_limit_is_constant(const FcScene* scene) {
-    return !limit_follows_load(scene) || !contact_moves(scene);
+    return !fc_limit_follows_load(scene->friction) || !contact_moves(scene);
 }
 
 // F_n and Mindlin's stiffness fall with d alike.
 static bool ratio_is_constant(const FcScene* scene) {
-    return scene->at_E.model == FC_CONTACT_MINDLIN && limit_follows_load(scene);
+    return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
 }
 
 bool fc_bound_is_constant(const FcScene* scene) {
@@ -57,7 +55,8 @@ static double time_to_pole(const FcScene* scene, double t, double d, double d_ra
 
 double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_rate) {
     const FcDrive* drive = &scene->drive;
-    if (!contact_moves(scene) || (scene->at_E.model == FC_CONTACT_CONSTANT && !limit_follows_load(scene))) {
+    if (!contact_moves(scene) ||
+        (scene->at_E.model == FC_CONTACT_CONSTANT && !fc_limit_follows_load(scene->friction))) {
         return 1.0 / drive->omega;
     }
     const double by_d =
@@ -73,13 +72,13 @@ double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_r
 static void set_held(FcBoundMotion* at, const FcScene* scene, double d_curvature) {
     const FcContactResponse now = fc_contact_response(&scene->at_E, at->d);
     at->sigma = now.sigma;
-    at->limit = limit_follows_load(scene) ? scene->friction->mu * now.F_n : scene->F_C;
+    at->limit = fc_limit_follows_load(scene->friction) ? scene->friction->mu * now.F_n : scene->F_C;
     at->D = ratio(scene, &scene->at_E, at->limit, at->sigma);
     if (fc_bound_is_constant(scene)) {
         return;
     }
     const FcContactLogSlope slope = fc_contact_slope_by_d(&scene->at_E, at->d);
-    const double by_d = (limit_follows_load(scene) ? slope.F_n : 0.0) - slope.sigma;
+    const double by_d = (fc_limit_follows_load(scene->friction) ? slope.F_n : 0.0) - slope.sigma;
     const double by_d_by_d = scene->at_E.model == FC_CONTACT_ASPERITIES ? -3.0 / (at->d * at->d) : 0.0;
     const double log_rate = by_d * at->d_rate;
     at->D_rate = at->D * log_rate;

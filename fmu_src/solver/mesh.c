@@ -71,7 +71,7 @@ double fc_mesh_settled_back(const FcScene* scene, double t) {
 }
 
 static bool depends_on_d(const FcScene* scene) {
-    return scene->at_E.model != FC_CONTACT_CONSTANT || scene->friction->limit == FC_LIMIT_LOAD;
+    return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
 }
 
 static FcSmoothness smoothness(const FcScene* scene, double h) {
@@ -116,7 +116,7 @@ static double largest_saturation(const FcScene* scene, double h) {
     }
     const FcContactResponse there = fc_contact_response(&scene->at_E, fc_drive_largest_d(&scene->drive, h));
     const FcFriction* friction = scene->friction;
-    const double limit = friction->limit == FC_LIMIT_LOAD ? friction->mu * there.F_n : scene->F_C;
+    const double limit = fc_limit_follows_load(friction) ? friction->mu * there.F_n : scene->F_C;
     return limit * fc_stribeck(friction, 0.0) / there.sigma;
 }
 
@@ -126,7 +126,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
         .end = end,
         .force = fc_scene_force_scale(scene),
         .allowed = tolerance,
-        .moving_limit = scene->friction->limit == FC_LIMIT_LOAD || fc_has_stribeck_curve(scene->friction),
+        .moving_limit = fc_limit_follows_load(scene->friction) || fc_has_stribeck_curve(scene->friction),
         .memory_path = (6.0 - log(tolerance)) * largest_saturation(scene, end),
         .smooth = smoothness(scene, end),
     };

@@ -52,10 +52,8 @@ static inline Halvings halvings(double size) {
     return halved;
 }
 
-static bool limit_follows_load(const FcScene* scene) { return scene->friction->limit == FC_LIMIT_LOAD; }
-
 static bool depends_on_d(const FcScene* scene) {
-    return scene->at_E.model != FC_CONTACT_CONSTANT || limit_follows_load(scene);
+    return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
 }
 
 // d_middle + moved[] -> sigma and the limit without its factor by V.
@@ -86,7 +84,7 @@ static inline __attribute__((always_inline)) void of_separation(const FcScene* s
             at->sigma[i] = c->stiffness_0 * e[i];
         }
     }
-    if (limit_follows_load(scene)) {
+    if (fc_limit_follows_load(scene->friction)) {
         for (int i = 0; i < count; i++) {
             at->limit[i] = scene->friction->mu * (c->load_0 * e[i]);
         }
