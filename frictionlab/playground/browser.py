@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import statistics
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,15 @@ from playwright.sync_api import Browser, Page
 SIZES = {"desktop": (1440, 900), "phone": (390, 844)}  # pixels of CSS
 SCHEMES = ("light", "dark")
 FRAMES = 120  # that are timed
+OPENINGS = 9  # of the page, as well
+
+PICTURE = 'elementtiming="first picture"'  # in page.html: a number that is written with the first figures
+PAINTED = """() => new Promise((resolve) => {
+    new PerformanceObserver((list) => {
+        const picture = list.getEntries().find(({ identifier }) => identifier === "first picture");
+        if (picture) resolve(picture.renderTime);
+    }).observe({ type: "element", buffered: true });
+})"""
 
 # Drags a slider over its middle half, one step a frame; gives each frame's work in ms.
 DRAG = """async ([variable, frames]) => {
@@ -54,16 +63,31 @@ def take_pictures(browser: Browser, html: Path, folder: Path) -> list[Path]:
 
 @dataclass(frozen=True)
 class Times:
-    """Times in ms: from opening the file to the first picture; one frame's work while a slider is dragged."""
+    """Times in ms: until the first picture, and until a file of one word, is painted; one frame's work."""
 
-    first_picture: float
-    median_frame: float
-    slowest_frame: float
+    first_pictures: list[float]
+    empty_pages: list[float]
+    frames: list[float]
 
 
 def measure(browser: Browser, html: Path, variable: str = "vibration.V_1") -> Times:
+    """Frames while a slider is dragged. The files are opened in turns, each in a profile without a cache."""
+    with tempfile.TemporaryDirectory(prefix="playground-") as temporary:
+        empty = Path(temporary) / "empty.html"
+        empty.write_text(f"<!DOCTYPE html><p {PICTURE}>Hello", encoding="utf-8")
+        times = [[_painted(browser, file) for file in (html, empty)] for _ in range(OPENINGS)]
     page = opened(browser, html, "desktop", "light")
-    first = page.evaluate("performance.getEntriesByName('first picture')[0].startTime")
     frames = page.evaluate(DRAG, [variable, FRAMES])
     page.context.close()
-    return Times(first, statistics.median(frames), max(frames))
+    pictures, empties = zip(*times, strict=True)
+    return Times(list(pictures), list(empties), frames)
+
+
+def _painted(browser: Browser, html: Path) -> float:
+    """Time [ms] from the start of the navigation until what is marked as PICTURE is on the screen."""
+    width, height = SIZES["desktop"]
+    page = browser.new_context(viewport={"width": width, "height": height}).new_page()
+    page.goto(html.resolve().as_uri())
+    time: float = page.evaluate(PAINTED)
+    page.context.close()
+    return time

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import statistics
 import sys
 from pathlib import Path
 
@@ -49,11 +50,20 @@ def look(browser: Browser, options: argparse.Namespace) -> None:
     """What needs a browser: measures and pictures."""
     if options.measure:
         times = measure(browser, options.output)
-        print(f"first picture after {times.first_picture:.0f} ms")
-        print(f"work of a frame: median {times.median_frame:.1f} ms, slowest {times.slowest_frame:.1f} ms")
+        for what, milliseconds in (
+            ("first picture painted after", times.first_pictures),
+            ("a page of one word after", times.empty_pages),
+            ("work of a frame", times.frames),
+        ):
+            print(f"{what}: {_spread(milliseconds)}")
     if options.pictures:
         for path in take_pictures(browser, options.output, options.pictures):
             print(shown(path))
+
+
+def _spread(milliseconds: list[float]) -> str:
+    low, middle, high = min(milliseconds), statistics.median(milliseconds), max(milliseconds)
+    return f"median {middle:.1f} ms, from {low:.1f} to {high:.1f} ms in {len(milliseconds)}"
 
 
 if __name__ == "__main__":

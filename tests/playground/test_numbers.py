@@ -20,7 +20,7 @@ TOLERANCE = 1e-6  # solver.tolerance, relative to F_C
 EXACT_MEANS = ((1.0, 0.1, 0.122328249), (2.0, 0.25, 0.227294259), (5.0, 0.5, 0.379341496))
 # Another core in the page's own script.
 CORE = (
-    "Fmu.load(Uint8Array.from(atob(document.getElementById('wasm').textContent), (c) => c.charCodeAt(0)),"
+    "new Fmu(await WebAssembly.compile(Uint8Array.fromBase64(document.getElementById('wasm').textContent)),"
     " description)"
 )
 CONSTANT_STIFFNESS = {"contact.model": "Constant", "vibration.V_1": 1.0, "vibration.f": 20e3, "F_C": 55.0}

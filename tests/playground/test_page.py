@@ -11,7 +11,7 @@ from playground_page import Playground
 from playwright.sync_api import Browser
 
 from frictionlab.description import description
-from frictionlab.playground.browser import SCHEMES, SIZES
+from frictionlab.playground.browser import PAINTED, SCHEMES, SIZES
 from frictionlab.playground.page import XML
 
 
@@ -64,6 +64,30 @@ def test_the_file_names_no_other(html: Path) -> None:
     assert [source for source in sources if not source.startswith(("data:", "https://doi.org/"))] == []
     assert "default-src 'none'" in text
     assert "[page.css]" not in text and "<!--[" not in text
+
+
+def test_the_first_thing_painted_is_the_picture(playground: Playground) -> None:
+    """A page painted without it first would be laid out twice, and the picture would come later."""
+    picture = playground.page.evaluate(PAINTED)
+    first = playground.page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
+    assert picture == first
+    assert playground.number("mean-force") > 0
+
+
+def test_a_browser_that_compiles_only_beside_the_page_and_knows_no_base64(
+    browser: Browser, html: Path
+) -> None:
+    context = browser.new_context()
+    context.add_init_script(
+        """delete Uint8Array.fromBase64;
+        WebAssembly.Module = function () { throw new RangeError("too large for the main thread"); };"""
+    )
+    playground = Playground(context.new_page(), html)
+    playground.open()
+    playground.finish()
+    assert playground.number("mean-force") > 0
+    context.close()
+    assert playground.problems == []
 
 
 def test_the_core_imports_nothing(playground: Playground) -> None:

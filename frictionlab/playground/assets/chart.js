@@ -54,7 +54,9 @@ class Chart {
   }
 
   resize() {
-    this.size = { width: Math.max(this.host.clientWidth, 120), height: Math.max(this.host.clientHeight, 90) };
+    const size = { width: Math.max(this.host.clientWidth, 120), height: Math.max(this.host.clientHeight, 90) };
+    if (size.width === this.size.width && size.height === this.size.height) return;
+    this.size = size;
     this.svg.setAttribute("viewBox", `0 0 ${this.size.width} ${this.size.height}`);
     const inner = { x: MARGIN.left, y: MARGIN.top, ...this.inner() };
     for (const [key, value] of Object.entries(inner)) this.clipBox.setAttribute(key, value);

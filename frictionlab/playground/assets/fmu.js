@@ -11,13 +11,9 @@ class Refusal extends Error {
 }
 
 class Fmu {
-  // bytes: the WebAssembly; description: modelDescription.xml as JSON.
-  static async load(bytes, description) {
-    const { instance } = await WebAssembly.instantiate(bytes, {});
-    return new Fmu(instance.exports, description);
-  }
-
-  constructor(core, description) {
+  // module: the WebAssembly.Module; description: modelDescription.xml as JSON.
+  constructor(module, description) {
+    const core = new WebAssembly.Instance(module).exports;
     core._initialize();
     this.core = core;
     this.variables = new Map(description.variables.map((variable) => [variable.name, variable]));

@@ -7,28 +7,36 @@ const description = json("description");
 const presets = json("presets");
 
 class Page {
-  constructor(fmu, bytes) {
-    this.fmu = fmu;
+  constructor(module) {
+    this.fmu = new Fmu(module, description);
     this.values = {};
     this.preset = null;
     this.touched = null; // the variable that a person last set
     this.frame = 0;
+    this.copyKind = "fmpy";
     this.worker = null;
     this.asked = { id: 0, values: {} };
     this.figures = new Figures((kind, at) => this.drag(kind, at));
     this.controls = new Map();
-    this.makeControls();
     this.makePresets();
-    this.makeCopies();
     this.restore(); // the first picture, before anything that is not needed for it
-    this.startWorker(bytes);
-    addEventListener("hashchange", () => this.restore());
+    afterPaint(() => this.complete(module));
   }
 
-  startWorker(bytes) {
+  complete(module) {
+    this.makeControls();
+    this.makeCopies();
+    this.show();
+    this.startWorker(module);
+    addEventListener("hashchange", () => this.restore());
+    document.querySelectorAll("#numbers, .figures").forEach(reachable);
+    document.body.classList.add("ready");
+  }
+
+  startWorker(module) {
     const source = ["core-script", "worker-script"].map((id) => document.getElementById(id).textContent);
     this.worker = new Worker(URL.createObjectURL(new Blob(source, { type: "text/javascript" })));
-    this.worker.postMessage({ bytes, description });
+    this.worker.postMessage({ module, description });
     this.worker.onmessage = ({ data }) => this.receive(data);
     this.worker.postMessage(this.asked);
   }
@@ -156,10 +164,7 @@ class Page {
     this.settling = setTimeout(() => this.showAddress(), PAUSE);
     this.showScene();
     performance.measure("frame", { start: begin });
-    if (!this.pictured) {
-      this.pictured = true;
-      performance.mark("first picture");
-    }
+    this.pictured = true;
   }
 
   compute() {
@@ -260,7 +265,7 @@ class Page {
       const done = await copyText(document.getElementById("copy-text"));
       setText("copied", done ? "Copied." : "Press Ctrl+C to copy.");
     });
-    this.openCopy("fmpy");
+    this.openCopy(this.copyKind);
   }
 
   openCopy(kind) {
@@ -294,14 +299,31 @@ function reachable(element) {
   }).observe(element);
 }
 
+// Calls work once something is on the screen.
+function afterPaint(work) {
+  const observer = new PerformanceObserver(() => {
+    observer.disconnect();
+    work();
+  });
+  observer.observe({ type: "paint", buffered: true });
+}
+
+function decoded(base64) {
+  return Uint8Array.fromBase64?.(base64) ?? Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+}
+
+// At once, so that the page is laid out with its picture in it; some browsers let only a worker do that.
+async function compiled(bytes) {
+  try {
+    return new WebAssembly.Module(bytes);
+  } catch (error) {
+    if (!(error instanceof RangeError)) throw error;
+    return WebAssembly.compile(bytes);
+  }
+}
+
 async function main() {
-  const text = atob(document.getElementById("wasm").textContent.trim());
-  const bytes = new Uint8Array(text.length);
-  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
-  const page = new Page(await Fmu.load(bytes, description), bytes);
-  document.querySelectorAll("#numbers, .figures").forEach(reachable);
-  document.body.classList.add("ready");
-  return page;
+  new Page(await compiled(decoded(document.getElementById("wasm").textContent)));
 }
 
 main().catch((error) => {

@@ -13,8 +13,8 @@ let mapKey = null; // of the map that is finished
 const mail = () => new Promise((resolve) => setTimeout(resolve));
 
 onmessage = async ({ data }) => {
-  if (data.bytes) {
-    fmu = await Fmu.load(data.bytes, data.description);
+  if (data.module) {
+    fmu = new Fmu(data.module, data.description);
   } else {
     latest = data;
   }
