@@ -195,6 +195,13 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     v->Q_f = 0.0;
     v->solver.evaluations = 0.0;
     v->delta = first_deflection(&fresh);
+    if (v->solver.evaluations > FC_MOST_EVALUATIONS) {
+        return fc_message_set(
+            message,
+            "initialState = Settled needs more than %.0e evaluations of a vibration period: vibration.a_d = "
+            "%.9g m at d = %.9g m moves the contact over too many orders of magnitude",
+            FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
+    }
     fc_friction_contact_update_outputs(&fresh);
     v->F_t_mean = v->F_t;
     if (!isfinite(v->F_t)) {

@@ -4,6 +4,7 @@
 
 #include "solver/bound.h"
 #include "solver/gauss_legendre.h"
+#include "solver/solver.h"
 
 // The longest panels of 8, 12 and 16 nodes, in smooth times: errors are then below 1e-13.
 static const double SHORT_PANEL = 1.5;
@@ -75,7 +76,7 @@ FcStickIntegrals fc_stick_integrals(const FcScene* scene, const FcPath* path, do
         *evaluations += 1.0;
         return sum;
     }
-    for (double t = path->start; t < end;) {
+    for (double t = path->start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
         const Panel panel = panel_at(scene, t, end);
         add_stick_panel(scene, path, &panel, &sum);
         *evaluations += 1.0 + node_count(&panel);
@@ -109,7 +110,7 @@ FcTotals fc_slip_totals(const FcScene* scene, double side, double start, double 
     const bool limit_moves = !fc_bound_limit_is_constant(scene);
     SlipIntegrals sum = {0};
     if (limit_moves || (bound_moves && scene->friction->sigma_1 != 0.0)) {
-        for (double t = start; t < end;) {
+        for (double t = start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
             const Panel panel = panel_at(scene, t, end);
             add_slip_panel(scene, &panel, &sum);
             *evaluations += 1.0 + node_count(&panel);

@@ -4,7 +4,7 @@
 // Slipping along s D, s = +1 or -1:              F = s g,          heat = integral of g (s V - D').
 //
 // Where sigma (sticking) or g (slipping) is constant the integrals are closed forms, elsewhere Gauss-Legendre
-// quadrature of smooth functions.
+// quadrature of smooth functions, which breaks off where the evaluations exceed FC_MOST_EVALUATIONS.
 #ifndef FC_SOLVER_REGIME_INTEGRALS_H
 #define FC_SOLVER_REGIME_INTEGRALS_H
 

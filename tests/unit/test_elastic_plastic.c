@@ -6,6 +6,8 @@
 #include "check.h"
 #include "model/constants.h"
 #include "solver/bound.h"
+#include "solver/regime_integrals.h"
+#include "solver/solver.h"
 #include "solver/stick_slip.h"
 #include "stop_operator.h"
 
@@ -273,6 +275,25 @@ static void too_many_changing_periods_are_refused(void) {
     CHECK(step(&scene, 1000.0 / F, 0.0).evaluations > 1000.0);
 }
 
+// d leaves within the step so fast that a regime has a million panels: its quadrature breaks off, and does not seem to hang.
+static void quadratures_break_off_at_the_most_evaluations(void) {
+    const FcScene scene = scene_of((Setup){.model = FC_CONTACT_ASPERITIES,
+                                           .limit = FC_LIMIT_LOAD,
+                                           .sigma = 1e7,
+                                           .V = 1e-9,
+                                           .d_rate = 1e6,
+                                           .sigma_1 = 1.0});
+    const double h = 1e-5;
+    const double allowed = FC_MOST_EVALUATIONS + 100.0;
+    const FcPath path = fc_path_from(&scene, 0.0);
+    double stick = FC_MOST_EVALUATIONS - 1000.0;
+    fc_stick_integrals(&scene, &path, h, 1e-14, &stick);
+    CHECK(stick > FC_MOST_EVALUATIONS && stick < allowed);
+    double slip = FC_MOST_EVALUATIONS - 1000.0;
+    fc_slip_totals(&scene, 1.0, 0.0, h, 1e-6, 1e-6, &slip);
+    CHECK(slip > FC_MOST_EVALUATIONS && slip < allowed);
+}
+
 int main(void) {
     at_constant_speed_it_sticks_then_slips();
     closed_loops();
@@ -283,5 +304,6 @@ int main(void) {
     mindlin_with_a_load_has_a_constant_bound();
     without_stiffness_it_follows();
     too_many_changing_periods_are_refused();
+    quadratures_break_off_at_the_most_evaluations();
     return check_result();
 }
