@@ -77,7 +77,7 @@ static int is_short_work(fmi2Component c, double h) {
     if (method >= FC_METHOD_BACKWARD_EULER) {
         return !(h / value[3] > 200.0) && !(periods > 200.0);
     }
-    return !(periods > (method == FC_METHOD_CVODE ? 1.0 : 3.0));
+    return !(periods > (method == FC_METHOD_CVODE ? 0.25 : 3.0));
 }
 
 static void check_outputs(fmi2Component c) {
