@@ -42,7 +42,8 @@ def connected(scheduler: str | None, workers: int, folder: Path) -> Iterator[Cli
     """A client of the scheduler at this address, or of so many processes here, which use the folder."""
     for name in ("", ".worker", ".nanny", ".scheduler", ".client", ".comm", ".core"):
         logging.getLogger("distributed" + name).setLevel(logging.CRITICAL)
-    logging.getLogger("tornado.application").setLevel(logging.CRITICAL)
+    for name in ("tornado.application", "asyncio"):  # they tell of tasks that lost their worker
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     dask.config.set({"distributed.comm.timeouts.connect": CONNECT_SECONDS})
     if scheduler is None:
         with _local(workers, folder) as client:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import ctypes
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -19,7 +21,7 @@ from frictionlab.project import ROOT, UserError
 
 FMU = "build/debug/FrictionContact.fmu"
 BINARY = "binaries/linux64/FrictionContact.so"
-COMMAND = [sys.executable, "-m", "frictionlab.build", "--preset", "debug"]
+COMMAND = [sys.executable, "-m", "frictionlab", "build", "--preset", "debug"]
 LINUX_ONLY = pytest.mark.skipif(sys.platform != "linux", reason="shared libraries are loaded as on Linux")
 
 # A compiler that is killed, with all that called it, when it has begun to write the library.
@@ -111,6 +113,39 @@ def test_renamed_project(project: Path, tmp_path: Path) -> None:
     check_loads(renamed, tmp_path)
     cache = (renamed / "build/debug/CMakeCache.txt").read_text()
     assert f"{project}/" not in cache
+
+
+def interrupted(process: subprocess.Popen[str], reached: Path) -> str:
+    """What the command says when Control-C on a terminal reaches its group, once the file is there."""
+    end = time.monotonic() + 60.0
+    while not reached.exists():
+        assert process.poll() is None and time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    output, errors = process.communicate(timeout=60)
+    assert (process.returncode, output) == (130, "")
+    return errors
+
+
+@LINUX_ONLY
+def test_interrupted_while_building(project: Path, tmp_path: Path) -> None:
+    compiler, reached = tmp_path / "compiler", tmp_path / "reached"
+    compiler.write_text(f"#!/bin/bash\ntouch {reached}\nsleep 60\n")
+    compiler.chmod(0o755)
+    assert interrupted(start(project, CC=str(compiler)), reached) == "stopped\n"
+
+
+@LINUX_ONLY
+def test_interrupted_while_importing(tmp_path: Path) -> None:
+    """With a numpy that takes its time."""
+    reached = tmp_path / "reached"
+    (tmp_path / "numpy.py").write_text(f"import time\nopen({str(reached)!r}, 'w')\ntime.sleep(60)\n")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "frictionlab", "sweep.command", "--quick"],
+        env={**os.environ, "PYTHONPATH": str(tmp_path)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, start_new_session=True,
+    )  # fmt: skip
+    assert interrupted(process, reached) == "stopped\n"
 
 
 def refusal(library: Path) -> str:
