@@ -2,8 +2,9 @@
 
 #include <math.h>
 
-// The error that a panel is planned for, over what the interval is allowed.
-static const double SHARE = 0.003;
+// The error that a panel is planned for, over what the mean and the end of the interval are allowed.
+static const double SHARE_OF_MEAN = 0.003;
+static const double SHARE_AT_END = 0.001;
 
 enum { KINDS = 3, FINEST = 15 };
 static const int STAGES[KINDS] = {3, 5, 9};
@@ -127,7 +128,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
         .force = fc_scene_force_scale(scene),
         .allowed = tolerance,
         .moving_limit = fc_limit_follows_load(scene->friction) || fc_has_stribeck_curve(scene->friction),
-        .memory_path = (6.0 - log(tolerance)) * largest_saturation(scene, end),
+        .saturation = largest_saturation(scene, end),
         .smooth = smoothness(scene, end),
     };
 }
@@ -189,9 +190,9 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     limits->for_lag = more(decades(for_lag), caution);
     limits->for_last = more(decades(limits->allowed_last), caution);
     limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
-    const int finer = finest(limits);
     // The curve's bell is no exponential: few stages show little of what they miss of it.
     const int least_kind = isfinite(limits->bell) ? KINDS - 1 : 0;
+    const int finer = finest(limits);
     int kind = isfinite(limits->bell) || finer > 5 ? 2 : finer > 1 ? 1 : 0;
     double h = length(limits, kind);
     if (h >= limits->left) {
@@ -204,9 +205,17 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     return (FcPlan){.h = h, .stages = STAGES[kind]};
 }
 
+double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, double t) {
+    double path = stretch->path_after;
+    if (t < stretch->end) {
+        path += fabs(fc_drive_displacement(&mesh->scene->drive, t, stretch->end));
+    }
+    return exp(-path / mesh->saturation);
+}
+
 FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution) {
     const double tiny = 1e-300;
-    const double base = SHARE * mesh->allowed;
+    const double base = SHARE_OF_MEAN * mesh->allowed;
     const double rest = mesh->end - at->t;
     const double x = at->t - stretch->start;
     const double after = x + stretch->back;
@@ -255,18 +264,14 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     double for_lag = base * mesh->end / (drift * lag_counts + tiny);
     FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
 
-    plan.seen = stretch->path_after <= mesh->memory_path &&
-                (at->t + plan.h >= stretch->end ||
-                 stretch->path_after +
-                         fabs(fc_drive_displacement(&mesh->scene->drive, at->t + plan.h, stretch->end)) <=
-                     mesh->memory_path);
-    if (plan.seen) {
-        for_transient = least(for_transient, base / (transient + tiny));
-        for_lag = least(for_lag, base / (drift * least(lives, smooth) + tiny));
+    const double fades = fc_mesh_left_at_end(mesh, stretch, at->t + plan.h);
+    if (fades > mesh->allowed * mesh->allowed) {
+        const double at_end = SHARE_AT_END * mesh->allowed / fades;
+        for_transient = least(for_transient, at_end / (transient + tiny));
+        for_lag = least(for_lag, at_end / (drift * least(lives, smooth) + tiny));
         limits.allowed_last =
-            least(base * mesh->end / (stretch->w_b * last_counts + tiny), base / (last_counts + tiny));
+            least(base * mesh->end / (stretch->w_b * last_counts + tiny), at_end / (last_counts + tiny));
         plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
-        plan.seen = true;
     }
     plan.lives = lives;
     plan.grows = smooth;

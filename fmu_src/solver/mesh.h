@@ -31,11 +31,11 @@ typedef struct {
 
 typedef struct {
     const FcScene* scene;
-    double end;         // s    of the interval
-    double force;       // N    what the tolerance is relative to
-    double allowed;     // 1    error of F_t at the end and of its mean, over force
-    bool moving_limit;  // g is no constant
-    double memory_path; // m    the bristle's path over which it forgets errors
+    double end;        // s    of the interval
+    double force;      // N    what the tolerance is relative to
+    double allowed;    // 1    error of F_t at the end and of its mean, over force
+    bool moving_limit; // g is no constant
+    double saturation; // m    largest g / sigma: over this path errors fade by e at least
     FcSmoothness smooth;
 } FcMesh;
 
@@ -47,6 +47,8 @@ typedef struct {
     bool reversal;     // the event is one, and no dip
     double w_a, w_b;   // s, layers at the start and at the event
     double back;       // s, from the start back to what the panels are graded away from
+    double
+        transient; // 1, at the interval's start: |force - what it settles to| over the mesh's force; elsewhere infinite
     double path_after; // m, path from the end to the next reversal or the interval's end
 } FcStretch;
 
@@ -64,7 +66,6 @@ typedef struct {
     int stages;   // 3, 5 or 9
     double lives; // s, K
     double grows; // s, in which sigma may grow e-fold
-    bool seen;    // by the end
 } FcPlan;
 
 FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance);
@@ -78,6 +79,9 @@ double fc_mesh_dip_layer(const FcScene* scene, double t, double inside);
 
 // Distance [s] of what V last came from at t, a reversal or a dip, when the bristle has settled there.
 double fc_mesh_settled_back(const FcScene* scene, double t);
+
+// What is left at the interval's end of an error made at t [s] in the stretch, at the most.
+double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, double t);
 
 // The panel from here. Each unit of caution asks for a tenth of the error.
 FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution);
