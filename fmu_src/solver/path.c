@@ -12,35 +12,26 @@ typedef struct {
     double second_cosine; // z^2/2 - (1 - cos z)
 } Remainders;
 
+// 1 - y/(4 5) (1 - y/(6 7) (1 - ...)) for first = 4, by Horner's scheme from the factor last (last + 1) on.
+static double series(double y, int first, int last) {
+    double sum = 1.0;
+    for (int k = last; k >= first; k -= 2) {
+        sum = 1.0 - y / (k * (k + 1)) * sum;
+    }
+    return sum;
+}
+
 static Remainders remainders(double z) {
     const double y = z * z;
-    Remainders left;
     if (z > SERIES_RANGE) {
-        left.sine = z - sin(z);
-        left.cosine = 1.0 - cos(z);
-        left.second_cosine = 0.5 * y - left.cosine;
-        return left;
+        const double cosine = 1.0 - cos(z);
+        return (Remainders){.sine = z - sin(z), .cosine = cosine, .second_cosine = 0.5 * y - cosine};
     }
-    // z^3/3! - z^5/5! + ... and z^4/4! - z^6/6! + ... by Horner's scheme
-    double sine = 1.0 - y / (18 * 19);
-    sine = 1.0 - y / (16 * 17) * sine;
-    sine = 1.0 - y / (14 * 15) * sine;
-    sine = 1.0 - y / (12 * 13) * sine;
-    sine = 1.0 - y / (10 * 11) * sine;
-    sine = 1.0 - y / (8 * 9) * sine;
-    sine = 1.0 - y / (6 * 7) * sine;
-    sine = 1.0 - y / (4 * 5) * sine;
-    double cosine = 1.0 - y / (17 * 18);
-    cosine = 1.0 - y / (15 * 16) * cosine;
-    cosine = 1.0 - y / (13 * 14) * cosine;
-    cosine = 1.0 - y / (11 * 12) * cosine;
-    cosine = 1.0 - y / (9 * 10) * cosine;
-    cosine = 1.0 - y / (7 * 8) * cosine;
-    cosine = 1.0 - y / (5 * 6) * cosine;
-    left.sine = z * y / 6.0 * sine;
-    left.second_cosine = y * y / 24.0 * cosine;
-    left.cosine = 0.5 * y - left.second_cosine;
-    return left;
+    // z^3/3! - z^5/5! + ... and z^4/4! - z^6/6! + ...
+    const double second_cosine = y * y / 24.0 * series(y, 5, 17);
+    return (Remainders){.sine = z * y / 6.0 * series(y, 4, 18),
+                        .cosine = 0.5 * y - second_cosine,
+                        .second_cosine = second_cosine};
 }
 
 FcPath fc_path_from(const FcScene* scene, double start) {

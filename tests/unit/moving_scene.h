@@ -3,25 +3,11 @@
 #define FC_UNIT_MOVING_SCENE_H
 
 #include "model/scene.h"
+#include "table_1.h"
 
 static const double F = 20e3; // Hz
 static const double PERIOD = 5e-5;
 static const double TWO_PI = 6.283185307179586;
-
-static inline FcContactParameters table_1(int model, int input) {
-    return (FcContactParameters){.model = model,
-                                 .input = input,
-                                 .sigma = 2.5e6,
-                                 .stiffnessScale = 1.0,
-                                 .R_q = 6e-6,
-                                 .R = 1.7e-6,
-                                 .eta = 47e9,
-                                 .A_n = 1e-4,
-                                 .nu = 0.33,
-                                 .Y = 410e6,
-                                 .c = 17.0,
-                                 .lambda = 3.0};
-}
 
 static inline FcFriction law(int model, int limit) {
     return (FcFriction){.model = model,

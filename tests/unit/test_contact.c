@@ -2,22 +2,9 @@
 #include "model/contact.h"
 
 #include "check.h"
+#include "table_1.h"
 
 static const double E = 58.556936170e9; // Pa, of the materials of Table 1
-
-static FcContactParameters table_1(void) {
-    return (FcContactParameters){.model = FC_CONTACT_ASPERITIES,
-                                 .sigma = 2.5e6,
-                                 .stiffnessScale = 1.0,
-                                 .R_q = 6e-6,
-                                 .R = 1.7e-6,
-                                 .eta = 47e9,
-                                 .A_n = 1e-4,
-                                 .nu = 0.33,
-                                 .Y = 410e6,
-                                 .c = 17.0,
-                                 .lambda = 3.0};
-}
 
 static const double TEN_DIGITS = 6e-10; // what is left of a number printed with ten digits
 
@@ -27,7 +14,7 @@ static void values_of_table_1(void) {
         double d, A_r;
     } areas[] = {
         {12.9e-6, 8.991595e-7}, {14e-6, 5.187698908e-7}, {15.1e-6, 2.993042e-7}, {17e-6, 1.157532088e-7}};
-    const FcContactParameters p = table_1();
+    const FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     for (size_t i = 0; i < sizeof areas / sizeof *areas; i++) {
         const double digits = i % 2 ? TEN_DIGITS : 6e-8; // printed with ten digits, or seven
@@ -39,7 +26,7 @@ static void values_of_table_1(void) {
 }
 
 static void stiffness_scales(void) {
-    FcContactParameters p = table_1();
+    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     p.stiffnessScale = 4.41686e-7;
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     CHECK_NEAR(fc_contact_stiffness(&at_E, 14e-6), 4.41686e-7 * 5.743065402e12, TEN_DIGITS);
@@ -48,7 +35,7 @@ static void stiffness_scales(void) {
 }
 
 static void constant_stiffness_ignores_the_surfaces(void) {
-    FcContactParameters p = table_1();
+    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     p.model = FC_CONTACT_CONSTANT;
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     CHECK(fc_contact_stiffness(&at_E, 3e-6) == 2.5e6 && fc_contact_response(&at_E, 3e-6).sigma == 2.5e6);
@@ -60,7 +47,7 @@ static void constant_stiffness_ignores_the_surfaces(void) {
 static void load_and_mindlin_of_table_1(void) {
     const double d[] = {12.9e-6, 14e-6, 15.1e-6, 17e-6};
     const double F_n[] = {541.5402078, 312.4415202, 180.2630758, 69.71512644};
-    FcContactParameters p = table_1();
+    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     p.model = FC_CONTACT_MINDLIN;
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     for (int i = 0; i < 4; i++) {
@@ -106,7 +93,7 @@ static void check_slope(Quantity q, double by_d, double by_E, const FcContactPar
 // Eq. 13 makes everything depend on E where asperities stay elastic: E of some GPa.
 static void slopes_are_derivatives(void) {
     const int models[] = {FC_CONTACT_ASPERITIES, FC_CONTACT_MINDLIN};
-    FcContactParameters p = table_1();
+    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     for (int model = 0; model < 2; model++) {
         p.model = models[model];
         for (double d = 1e-6; d < 30e-6; d *= 1.7) {
@@ -127,7 +114,7 @@ static void slopes_are_derivatives(void) {
 
 // e^(-decay d) underflows at a metre, e^-x at a soft modulus: nothing there may be undefined.
 static void far_apart_nothing_touches(void) {
-    const FcContactParameters p = table_1();
+    const FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     const FcContactResponse far = fc_contact_response(&at_E, 1.0);
     CHECK(far.sigma == 0.0 && far.A_r == 0.0 && far.F_n == 0.0);

@@ -10,6 +10,7 @@
 #include "solver/solver.h"
 #include "solver/stick_slip.h"
 #include "stop_operator.h"
+#include "table_1.h"
 
 static const double F_C = 55.0;     // N
 static const double F = 16384.0;    // Hz, a power of 2: h f has no rounding
@@ -29,18 +30,8 @@ typedef struct {
 } Setup;
 
 static FcScene scene_of(Setup setup) {
-    contact = (FcContactParameters){.model = setup.model,
-                                    .input = FC_CONTACT_SEPARATION,
-                                    .sigma = setup.sigma,
-                                    .stiffnessScale = 1.0,
-                                    .R_q = 6e-6,
-                                    .R = 1.7e-6,
-                                    .eta = 47e9,
-                                    .A_n = 1e-4,
-                                    .nu = 0.33,
-                                    .Y = 410e6,
-                                    .c = 17.0,
-                                    .lambda = 3.0};
+    contact = table_1(setup.model, FC_CONTACT_SEPARATION);
+    contact.sigma = setup.sigma;
     FcContactAtModulus at_E = fc_contact_at_modulus(&contact, E);
     friction = (FcFriction){.model = FC_ELASTIC_PLASTIC,
                             .limit = setup.limit,

@@ -4,23 +4,19 @@
 #include "solver/gauss_panel.h"
 #include "solver/nodes.h"
 #include "solver/radau_panel.h"
+#include "table_1.h"
 
-static const FcContactParameters CONTACT = {.model = FC_CONTACT_ASPERITIES,
-                                            .input = FC_CONTACT_SEPARATION,
-                                            .sigma = 1e6,
-                                            .stiffnessScale = 1e-6,
-                                            .R_q = 6e-6,
-                                            .R = 1.7e-6,
-                                            .eta = 47e9,
-                                            .A_n = 1e-4,
-                                            .nu = 0.33,
-                                            .Y = 410e6,
-                                            .c = 17.0,
-                                            .lambda = 3.0};
 static const FcFriction DAHL = {
     .model = FC_DAHL, .limit = FC_LIMIT_CONSTANT, .mu = 0.18, .staticRatio = 1.5, .V_S = 0.05};
 static const FcVibration ULTRASOUND = {.f = 20e3, .V_1 = 1.44, .a_d = 1.1e-6, .phase_d = 0.7};
 static const double OMEGA = 6.283185307179586 * 20e3;
+
+static FcContactParameters soft_contact(void) {
+    FcContactParameters contact = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
+    contact.sigma = 1e6;
+    contact.stiffnessScale = 1e-6;
+    return contact;
+}
 
 static FcScene scene_of(const FcContactParameters* contact, const FcFriction* friction, FcVibration vibration,
                         FcLinearInput V, FcLinearInput d, FcLinearInput E) {
@@ -35,7 +31,7 @@ static void nodes_are_the_scene(void) {
     const double lengths[] = {1e-4, 0.4, 1.7, 3.1, 7.9, 12.0}; // rad
     const FcContactModel models[] = {FC_CONTACT_ASPERITIES, FC_CONTACT_CONSTANT, FC_CONTACT_MINDLIN};
     for (int k = 0; k < 3 * 2 * 2 * 2 * 6; k++) {
-        FcContactParameters contact = CONTACT;
+        FcContactParameters contact = soft_contact();
         contact.model = models[k % 3];
         contact.input = k / 3 % 2 ? FC_CONTACT_LOAD : FC_CONTACT_SEPARATION;
         FcFriction friction = DAHL;
@@ -70,7 +66,7 @@ static void radau(const FcScene* scene, int count, double h, const FcTrajectorie
 // Constant coefficients: every coefficient of the map is that of the closed form, within the error of the rule.
 static void check_constant(PanelOf panel_of, int count, double z, double V, double within) {
     const FcVibration none = {.f = 20e3};
-    FcContactParameters contact = CONTACT;
+    FcContactParameters contact = soft_contact();
     contact.model = FC_CONTACT_CONSTANT;
     const FcScene scene = scene_of(&contact, &DAHL, none, (FcLinearInput){V, 0.0},
                                    (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0});
@@ -110,7 +106,7 @@ static void maps_are_the_closed_form(void) {
 // held against a tenth of what an error may be, so they may be 10 times too small.
 static void check_errors(PanelOf panel_of, int count, double length, double stiffness) {
     const FcVibration none = {.f = 20e3};
-    FcContactParameters contact = CONTACT;
+    FcContactParameters contact = soft_contact();
     contact.model = FC_CONTACT_CONSTANT;
     contact.sigma = stiffness;
     const FcScene scene = scene_of(&contact, &DAHL, none, (FcLinearInput){1e-9, 1.8e5},
