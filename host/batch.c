@@ -208,6 +208,13 @@ static bool read_variables(const Worker* w, double* value) {
     return accepted(w->batch->fmu->GetReal(w->instance.component, plan->variable, plan->variables, value));
 }
 
+static bool move_inputs(const Worker* w, size_t sample) {
+    const BatchPlan* plan = &w->batch->plan;
+    return plan->inputs == 0 ||
+           accepted(w->batch->fmu->SetReal(w->instance.component, plan->input, plan->inputs,
+                                           plan->moves + sample * plan->inputs));
+}
+
 static bool simulate(Worker* w, size_t scenario) {
     const Fmi2Library* fmu = w->batch->fmu;
     const BatchPlan* plan = &w->batch->plan;
@@ -233,12 +240,13 @@ static bool simulate(Worker* w, size_t scenario) {
         return false;
     }
     for (size_t k = 0; k < plan->samples; k++) {
-        if (atomic_load_explicit(&w->batch->is_stopped, memory_order_relaxed) ||
-            !accepted(fmu->DoStep(c, t, h, fmi2True)) ||
+        const double step = plan->step ? plan->step[k] * unit : h;
+        if (atomic_load_explicit(&w->batch->is_stopped, memory_order_relaxed) || !move_inputs(w, k) ||
+            !accepted(fmu->DoStep(c, t, step, fmi2True)) ||
             (w->reads_samples && !read_variables(w, w->sample + k * plan->variables))) {
             return false;
         }
-        t += h;
+        t += step;
     }
     return w->reads_samples || read_variables(w, w->sample);
 }
@@ -271,7 +279,14 @@ static bool get_ready(Worker* w) {
     }
     fmi2_instance_free(&w->instance);
     w->is_used = true;
-    return fmi2_instance_make(&w->instance, fmu, "batch", w->batch->plan.guid, w->batch->plan.resources);
+    if (!fmi2_instance_make(&w->instance, fmu, "batch", w->batch->plan.guid, w->batch->plan.resources)) {
+        return false;
+    }
+    // Writing messages that nobody reads takes longer than a short scenario. An FMU may not know the category.
+    const fmi2String errors[] = {"logStatusError"};
+    fmu->SetDebugLogging(w->instance.component, fmi2True, 1, errors);
+    w->instance.said[0] = '\0';
+    return true;
 }
 
 static void run_scenario(Worker* w, size_t scenario) {

@@ -5,6 +5,8 @@
 //
 //     0 --- settle --- | h | h | h | ... | h |     h = duration / samples
 //
+// or steps of given lengths, with inputs that are set before each of them.
+//
 // Settle and duration are seconds, or periods 1/f where the plan names the frequency f.
 //
 //     Batch* batch = batch_begin(&fmu, &plan);
@@ -67,6 +69,10 @@ typedef struct {
     BatchColumn settle;
     BatchColumn duration;
     size_t samples;
+    size_t inputs; // that move, alike in all scenarios
+    const fmi2ValueReference* input;
+    const double* moves;  // samples by inputs: what they are set to before each step
+    const double* step;   // length of each step; NULL: all are duration / samples
     double* seconds;      // processor time of every scenario, or NULL
     int stops_at_refusal; // then no scenario after the first one that is refused need be run
 } BatchPlan;

@@ -71,15 +71,17 @@ fmi2Status fc_refuse(const FcInstance* instance, FcCall call, const char* format
     return fmi2Error;
 }
 
-void fc_log(const FcInstance* instance, FcCall call, fmi2Status status, const char* category,
-            const char* format, ...) {
-    if (instance->callbacks.logger && (instance->log_mask & fc_log_category_bit(category))) {
-        va_list arguments;
-        va_start(arguments, format);
-        send_text(&instance->callbacks, instance->name, status, category, fc_call_table[call].function,
-                  format, arguments);
-        va_end(arguments);
-    }
+bool fc_log_reaches(const FcInstance* instance, const char* category) {
+    return instance->callbacks.logger && (instance->log_mask & fc_log_category_bit(category));
+}
+
+void fc_log_send(const FcInstance* instance, FcCall call, fmi2Status status, const char* category,
+                 const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    send_text(&instance->callbacks, instance->name, status, category, fc_call_table[call].function, format,
+              arguments);
+    va_end(arguments);
 }
 
 void fc_log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String name, const char* format,

@@ -15,8 +15,16 @@
 fmi2Status fc_refuse(const FcInstance* instance, FcCall call, const char* format, ...) FC_PRINTF_LIKE(3, 4);
 
 // Logs "<function>: <text>" in the category, with the status that the function will return or a milder one.
-void fc_log(const FcInstance* instance, FcCall call, fmi2Status status, const char* category,
-            const char* format, ...) FC_PRINTF_LIKE(5, 6);
+// The text's numbers are written only where somebody reads them: that costs as much as a short step.
+#define fc_log(instance, call, status, category, ...)                                                        \
+    do {                                                                                                     \
+        if (fc_log_reaches(instance, category)) {                                                            \
+            fc_log_send(instance, call, status, category, __VA_ARGS__);                                      \
+        }                                                                                                    \
+    } while (0)
+bool fc_log_reaches(const FcInstance* instance, const char* category);
+void fc_log_send(const FcInstance* instance, FcCall call, fmi2Status status, const char* category,
+                 const char* format, ...) FC_PRINTF_LIKE(5, 6);
 
 // The same before there is an instance.
 void fc_log_refused_instance(const fmi2CallbackFunctions* callbacks, fmi2String name, const char* format, ...)

@@ -88,6 +88,8 @@ def _numbers(variable: ScalarVariable | None, array: np.ndarray, where: str) -> 
             numeric.flat[row] = number
         array = numeric
     array = array.astype(float, copy=False)
+    if array.ndim == 0 and _is_good(variable, float(array)):
+        return array
     good = np.isfinite(array)
     if variable is not None and variable.type != "Real":
         with np.errstate(invalid="ignore"):
@@ -98,6 +100,11 @@ def _numbers(variable: ScalarVariable | None, array: np.ndarray, where: str) -> 
         hint = f" or one of {', '.join(items)}" if items else ""
         raise BatchError(f"{where}{_row(array, row)}: {array.flat[row]:g} is not {kind}{hint}")
     return array
+
+
+def _is_good(variable: ScalarVariable | None, value: float) -> bool:
+    is_whole = value.is_integer() and abs(value) < 2**31
+    return is_whole or (math.isfinite(value) and (variable is None or variable.type == "Real"))
 
 
 def _number(cell: object, items: Mapping[str, float], where: str) -> float:

@@ -14,6 +14,7 @@ import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -42,6 +43,8 @@ def simulate_many(
     samples: int = 1,
     unit: Unit = "period",
     settled: bool = False,
+    inputs: Mapping[str, npt.ArrayLike] | None = None,
+    steps: npt.ArrayLike | None = None,
     errors: Literal["raise", "keep"] = "raise",
     threads: int | None = None,
     progress: bool | Progress = False,
@@ -61,6 +64,8 @@ def simulate_many(
     duration  what is read after that, in samples equal steps
     unit      of settle and duration: a period of the vibration, 1 / vibration.f, or a second
     settled   start where the state tends to after infinitely many periods: initialState = Settled
+    inputs    what is set before each step, alike in all scenarios: name of an input -> a value for every step
+    steps     lengths of the steps, in the unit, in place of duration and samples
     errors    "raise": BatchError with the message of the first scenario that the FMU refuses;
               "keep": its results are NaN and "reason", one result more, holds the message (else None)
     threads   that run at once; one for each processor that this process may use
@@ -80,6 +85,8 @@ def simulate_many(
         samples=samples,
         unit=unit,
         settled=settled,
+        inputs=inputs,
+        steps=steps,
     )
     if errors not in ("raise", "keep"):
         raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
@@ -97,6 +104,7 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+@cache
 def built_runner() -> Path:
     """The runner's library, built where it is missing."""
     path = ROOT / "build" / f"friction_batch{fmpy.sharedLibraryExtension}"

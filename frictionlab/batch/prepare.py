@@ -35,9 +35,15 @@ def prepared(
     samples: int = 1,
     unit: Unit = "period",
     settled: bool = False,
+    inputs: Mapping[str, npt.ArrayLike] | None = None,
+    steps: npt.ArrayLike | None = None,
     times: bool = False,
 ) -> Batch:
     """The batch of `simulate_many`, checked. times: one result more, "seconds" of processor time."""
+    lengths = None
+    if steps is not None:
+        lengths = _row(numbers_of(steps, "steps", 0.0), "steps")
+        samples = len(lengths)
     if unit not in ("period", "s"):
         raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
     check_samples(samples, "samples =")
@@ -56,7 +62,28 @@ def prepared(
         _read(fmu, outputs),
         fmu.variable("vibration.f", "unit").valueReference if unit == "period" else None,
         times,
+        *_moving(fmu, inputs or {}, int(samples)),
+        lengths,
     )
+
+
+def _moving(
+    fmu: LoadedFmu, inputs: Mapping[str, npt.ArrayLike], samples: int
+) -> tuple[tuple[int, ...], np.ndarray | None]:
+    """Value references, and values before each step."""
+    references, columns = [], []
+    for name, values in inputs.items():
+        references.append(fmu.variable(name, f"input {name}", ("input",)).valueReference)
+        columns.append(_row(numbers_of(values, f"input {name}"), f"input {name}"))
+        if len(columns[-1]) != samples:
+            raise BatchError(f"input {name}: {len(columns[-1])} values for {samples} steps")
+    return tuple(references), np.column_stack(columns) if columns else None
+
+
+def _row(array: np.ndarray, where: str) -> np.ndarray:
+    if array.ndim != 1:
+        raise BatchError(f"{where}: must be a row of numbers")
+    return np.ascontiguousarray(array)
 
 
 def check_samples(samples: object, where: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -11,11 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .errors import BatchError
-from .runner import DONE, DOUBLES, REFUSED, STATISTICS, TEXT, Column, Plan, Result, Start
+from .runner import DONE, REFUSED, STATISTICS, TEXT, Column, Plan, Result, Start
 from .unpacked import LoadedFmu
 
 Progress = Callable[[int, int], None]  # is told how many scenarios are finished and how many of them refused
 POLL = 0.05  # s between looks at the threads
+FEW = 256  # steps that are done before a thread would have begun
 STOP = 0.5  # s that threads have to come to the end of their step
 
 
@@ -32,18 +34,33 @@ class Batch:
     read: dict[str, tuple[int, str]]  # result -> value reference, statistic
     frequency: int | None  # value reference; None: settle and duration are seconds
     times: bool  # "seconds" is a result
+    inputs: tuple[int, ...] = ()  # value references of what is set before each step
+    moves: np.ndarray | None = None  # [sample, input], of all scenarios
+    steps: np.ndarray | None = None  # lengths of the steps; None: all are duration / samples
 
     @property
     def scenarios(self) -> int:
-        return int(np.prod(self.shape, dtype=np.int64))
+        return math.prod(self.shape)
 
-    def run(self, threads: int, raises: bool, progress: Progress) -> dict[str, np.ndarray]:
-        """The results and "reason", of the batch's shape. BatchError at the first refusal, if asked for."""
+    @property
+    def is_short(self) -> bool:
+        """Few steps of the default method, whose cost does not grow with their length."""
+        return self.scenarios * self.samples <= FEW and "solver.method" not in self.starts
+
+    def run(
+        self, threads: int, raises: bool, progress: Progress = lambda finished, refused: None
+    ) -> dict[str, np.ndarray]:
+        """The results and "reason", of the batch's shape. BatchError at the first refusal, if asked for.
+
+        A few steps are run without a thread.
+        """
         try:
             running = _Running(self, raises)
         except MemoryError:
             raise BatchError(f"no memory for the results of {self.scenarios} scenarios") from None
-        if self.scenarios:
+        if self.is_short:
+            running.work_here(progress)
+        elif self.scenarios:
             running.work(min(threads, self.scenarios), progress)
         try:
             return running.results(raises)
@@ -67,7 +84,9 @@ class _Running:
         for name, (reference, statistic) in batch.read.items():
             width = (batch.samples,) if statistic == "samples" else ()
             self.values[name] = array = np.full((batch.scenarios, *width), np.nan)
-            results.append(Result(references.index(reference), STATISTICS.index(statistic), _doubles(array)))
+            results.append(
+                Result(references.index(reference), STATISTICS.index(statistic), array.ctypes.data)
+            )
         if batch.times:
             self.values["seconds"] = np.full(batch.scenarios, np.nan)
         self.plan = Plan(
@@ -82,12 +101,16 @@ class _Running:
             settle=_column(batch.settle),
             duration=_column(batch.duration),
             samples=batch.samples,
+            inputs=len(batch.inputs),
+            input=_array(ctypes.c_uint, list(batch.inputs)),
+            moves=None if batch.moves is None else batch.moves.ctypes.data,
+            step=None if batch.steps is None else batch.steps.ctypes.data,
             stops_at_refusal=self.raises,
         )
         if batch.frequency is not None:
             self.plan.frequency = ctypes.pointer(ctypes.c_uint(batch.frequency))
         if batch.times:
-            self.plan.seconds = _doubles(self.values["seconds"])
+            self.plan.seconds = self.values["seconds"].ctypes.data
         self.handle = self.runner.batch_begin(batch.fmu.handle, ctypes.byref(self.plan))
         if not self.handle:
             raise BatchError(f"no memory for {batch.scenarios} scenarios")
@@ -117,6 +140,10 @@ class _Running:
                 self.end()
             raise
 
+    def work_here(self, progress: Progress) -> None:
+        self._work()
+        self._tell(progress)
+
     def _tell(self, progress: Progress) -> None:
         progress(self.runner.batch_finished(self.handle), self.runner.batch_refusals(self.handle))
 
@@ -130,17 +157,20 @@ class _Running:
         if self.failures:
             raise BatchError(self.failures[0])
         batch = self.batch
+        shaped = {name: array.reshape(batch.shape + array.shape[1:]) for name, array in self.values.items()}
+        reasons = np.full(batch.scenarios, None, dtype=object)
+        if not self.runner.batch_refusals(self.handle):
+            assert self.runner.batch_finished(self.handle) == batch.scenarios
+            return shaped | {"reason": reasons.reshape(batch.shape)}
         status = np.ctypeslib.as_array(self.runner.batch_statuses(self.handle), (batch.scenarios + 1,))[:-1]
         refused = np.flatnonzero(status == REFUSED)
         if raises and len(refused):
             row = [int(i) for i in np.unravel_index(refused[0], batch.shape)]
             named = f"scenario {row[0] if len(row) == 1 else tuple(row)}: " if row else ""
             raise BatchError(named + self._reason(refused[0]))
-        reasons = np.full(batch.scenarios, None, dtype=object)
         for row in refused:
             reasons[row] = self._reason(row)
         assert np.all((status == DONE) | (status == REFUSED))
-        shaped = {name: array.reshape(batch.shape + array.shape[1:]) for name, array in self.values.items()}
         return shaped | {"reason": reasons.reshape(batch.shape)}
 
     def _reason(self, row: int) -> str:
@@ -152,12 +182,8 @@ class _Running:
             self.handle = None
 
 
-def _doubles(array: np.ndarray) -> object:
-    return array.ctypes.data_as(DOUBLES)
-
-
 def _column(array: np.ndarray) -> Column:
-    return Column(_doubles(array), 0 if array.size == 1 else 1)
+    return Column(array.ctypes.data, 0 if array.size == 1 else 1)
 
 
 def _array(kind: type, items: list) -> ctypes.Array:

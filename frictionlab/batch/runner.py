@@ -7,7 +7,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
+from ctypes import POINTER, c_char_p, c_int, c_size_t, c_uint, c_void_p
 from functools import cache
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from .errors import BatchError
 TEXT = 512  # FMI2_TEXT
 STATISTICS = ("end", "change", "mean", "min", "max", "samples")  # BatchStatistic
 NOT_RUN, DONE, REFUSED = range(3)  # BatchStatus
-DOUBLES = POINTER(c_double)
+DOUBLES = c_void_p  # the address of an array, which the caller keeps
 
 
 class Column(ctypes.Structure):
@@ -40,6 +40,7 @@ class Plan(ctypes.Structure):
         ("variables", c_size_t), ("variable", POINTER(c_uint)),
         ("results", c_size_t), ("result", POINTER(Result)),
         ("frequency", POINTER(c_uint)), ("settle", Column), ("duration", Column), ("samples", c_size_t),
+        ("inputs", c_size_t), ("input", POINTER(c_uint)), ("moves", DOUBLES), ("step", DOUBLES),
         ("seconds", DOUBLES), ("stops_at_refusal", c_int),
     )  # fmt: skip
 

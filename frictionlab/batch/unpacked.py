@@ -49,11 +49,10 @@ def loaded_fmu(fmu: str | Path | bytes, runner: ctypes.CDLL) -> LoadedFmu:
         name = "the FMU"
     else:
         name = str(fmu)
-        path = Path(fmu).resolve()
         try:
-            stat = path.stat()
-            key = (path, stat.st_mtime_ns, stat.st_size)
-            fmu = b"" if key in _loaded else path.read_bytes()
+            stat = Path(fmu).stat()
+            key = (stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_size)
+            fmu = b"" if key in _loaded else Path(fmu).read_bytes()
         except OSError as error:
             raise BatchError(f"{name}: {error.strerror}") from None
     if key not in _loaded:

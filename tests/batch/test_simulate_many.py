@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
@@ -80,6 +81,24 @@ class TestNumbers:
         expected = F_C * -np.expm1(-sigma * np.outer(V, t) / F_C)
         assert got["force"] == pytest.approx(expected, rel=1e-9)
         assert got["delta"] == pytest.approx(expected[:, -1] / sigma, rel=1e-9)
+
+    def test_inputs_and_steps_are_those_of_single_sessions(self, fmu: FrictionFmu, fmu_path: Path) -> None:
+        """To the bit; a first step of no length reads the start."""
+        random = np.random.default_rng(5)
+        steps = np.concatenate([[0.0], random.uniform(1e-6, 1e-3, 12)])
+        V, d = random.uniform(-0.5, 0.5, 13), random.uniform(13e-6, 15e-6, 13)
+        scale = np.array([1e-7, 1e-5, 1e-3])
+        got = simulate_many(
+            fmu_path, {"contact.stiffnessScale": scale}, {"force": ("F_t", "samples")}, unit="s",
+            inputs={"V": V, "d": d}, steps=steps,
+        )  # fmt: skip
+        for row, value in zip(got["force"], scale, strict=True):
+            with fmu.session({"contact.stiffnessScale": value}) as session:
+                for k, h in enumerate(steps):
+                    session.set("V", V[k])
+                    session.set("d", d[k])
+                    session.step(h)
+                    assert row[k] == session.get("F_t")
 
     def test_settle_and_duration_of_every_scenario(self, fmu_path: Path) -> None:
         """Work of steady sliding is F_C V t."""
@@ -208,6 +227,11 @@ class TestRefusals:
             ({"unit": "ms"}, "unit = 'ms': must be 'period' or 's'"),
             ({"errors": "ignore"}, "errors = 'ignore'"),
             ({"threads": 0}, "threads = 0: must be at least 1"),
+            ({"steps": [[1.0]]}, "steps: must be a row of numbers"),
+            ({"steps": [1.0, -1.0]}, "steps, row 1: -1 must be at least 0"),
+            ({"inputs": {"V": [0.1]}, "steps": [1.0, 1.0]}, "input V: 1 values for 2 steps"),
+            ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is of causality parameter and can't be set"),
+            ({"inputs": {"V": [math.nan]}}, "input V, row 0: nan is not a finite number"),
         ],
     )
     def test_wrong_arguments(self, fmu_path: Path, arguments: dict, message: str) -> None:
