@@ -11,7 +11,6 @@ from frictionlab.identify.fit import Fit
 from frictionlab.identify.least_squares import solve
 from frictionlab.project import UserError
 
-GAIN = 1e-6  # relative, of a sum of squares
 MINIMA = 2  # from which each refit starts
 
 
@@ -25,7 +24,7 @@ def bootstrap(experiment: Experiment, result: Fit, refits: int, seed: int = 0) -
     targets = noisy(experiment, result, refits, seed)
     seeds = np.array([one.point for one in result.minima[:MINIMA]])
     starts = np.tile(seeds, (refits, 1))
-    found = solve(experiment, starts, np.repeat(targets, len(seeds), axis=0), gain=GAIN)
+    found = solve(experiment, starts, np.repeat(targets, len(seeds), axis=0), together=len(seeds))
     best = np.argmin(found.squares.reshape(refits, len(seeds)), axis=1)
     points = found.x.reshape(refits, len(seeds), -1)[np.arange(refits), best]
     points = points[:, : len(result.parameters)]

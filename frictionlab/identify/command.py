@@ -81,7 +81,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--bootstrap", type=int, metavar="N", help="intervals by N refits of data with new noise, too"
     )
-    parser.add_argument("--quick", action="store_true", help="fewer starts of the search, no picture")
+    parser.add_argument("--quick", action="store_true", help="no picture")
     add_fmu(parser)
     add_output(parser, ROOT / "build")
     return parser.parse_args(argv)
@@ -106,7 +106,7 @@ def identify(fmu: FrictionFmu, options: argparse.Namespace) -> None:
     parameters = [_parameter(fmu, text, constants) for text in named]
     _check_names(parameters, rows, constants)
     experiment = experiment_of(fmu, rows, parameters)
-    result = fit(experiment, starts=4 if options.quick or isinstance(rows, Series) else 8)
+    result = fit(experiment)
     spread = None if options.bootstrap is None else bootstrap(experiment, result, options.bootstrap)
     show(Console(), experiment, result, spread)
     if not options.quick:

@@ -10,17 +10,26 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from frictionlab.batch import simulate_many
+from frictionlab.batch.columns import flat
+from frictionlab.batch.many import built_runner, processors
+from frictionlab.batch.prepare import prepared
+from frictionlab.batch.run import Batch
+from frictionlab.batch.runner import runner
+from frictionlab.batch.unpacked import loaded_fmu
 from frictionlab.fmu import FrictionError, FrictionFmu
 from frictionlab.identify.data import Measurements
 from frictionlab.identify.parameter import Parameter
 
-TOLERANCE = 1e-9  # of the FMU's solver: finite differences need a smooth force
-DIFFERENCE = 1e-5  # of a coordinate
+TOLERANCE = 1e-6  # of the FMU's solver: far below what differences of forces over DIFFERENCE need
+TIGHT = 1e-10  # where a fit ends
+DIFFERENCE = 1e-3  # of a coordinate
+NUISANCE_DIFFERENCE = 1e-2  # of a nuisance's
 
 
 @dataclass(frozen=True)
@@ -52,6 +61,9 @@ class Experiment(ABC):
         self.high = np.array([p.to_coordinate(p.high) for p in self.parameters] + free)
         self.problem = "no start value works"  # the FMU's last refusal
         self._measured = [k for k, one in enumerate(self.nuisances) if one.measured]
+        self._shifts = self._all_shifts()
+        self._places = self._all_places()
+        self._lead = np.argmax(self._shifts > 0.0, axis=1)  # a coordinate that each moves
 
     @abstractmethod
     def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
@@ -83,35 +95,52 @@ class Experiment(ABC):
             raise FrictionError(self.problem)
         return found
 
-    def at(self, x: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    def at(self, x: np.ndarray, targets: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+        """Residuals of points, [point, residual]: of forces and of measured nuisances."""
+        return self._residuals(x, self.forces(x, tolerance), targets)
+
+    def _residuals(self, x: np.ndarray, forces: np.ndarray, targets: np.ndarray) -> np.ndarray:
         rows = len(self.force)
         own = x[:, len(self.parameters) :][:, self._measured] - targets[:, rows:]
-        return np.hstack([(self.forces(x) - targets[:, :rows]) * self.weight, own])
+        return np.hstack([(forces - targets[:, :rows]) * self.weight, own])
 
-    def derivatives(
-        self, x: np.ndarray, r: np.ndarray, targets: np.ndarray, central: bool = False
-    ) -> np.ndarray:
-        """By differences to one side, or to both; nuisances of single rows are shifted together."""
-        rows, n = len(self.force), len(self.parameters)
-        shifts = self._shifts()
-        sides = (1.0, -1.0) if central else (1.0,)
-        points = [x + side * DIFFERENCE * shift for side in sides for shift in shifts]
-        answers = self.forces(np.concatenate(points)).reshape(len(sides), len(shifts), len(x), rows)
-        here = r[:, :rows] / self.weight + targets[:, :rows]
-        each = np.array([(answers[k] - here) * (side / DIFFERENCE) for k, side in enumerate(sides)])
-        given = np.isfinite(each)  # on a side where the FMU refuses there is no slope
-        slopes = np.sum(each, axis=0, where=given) / np.maximum(np.sum(given, axis=0), 1) * self.weight
-        jacobian = np.zeros((len(x), r.shape[1], x.shape[1]))
-        for slope, shift in zip(slopes, shifts, strict=True):
-            for j in np.flatnonzero(shift):
-                row = self.nuisances[j - n].row if j >= n else None
-                chosen = slice(0, rows) if row is None else slice(row, row + 1)
-                jacobian[:, chosen, j] = slope[:, chosen]
+    def with_slopes(
+        self, x: np.ndarray, targets: np.ndarray, tolerance: float = TOLERANCE, central: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals and their derivatives, [point, residual, coordinate], from one batch.
+
+        By differences to one side, or to both; nuisances of single rows are shifted together.
+        """
+        inward = np.where(x + DIFFERENCE > self.high, -1.0, 1.0)
+        sides = np.stack([inward, -inward] if central else [inward])[:, None]
+        shifts = sides * self._shifts[:, None]  # [side, shift, point, coordinate]
+        forces = self.forces(np.concatenate([x, (x + shifts).reshape(-1, x.shape[1])]), tolerance)
+        forces = forces.reshape(-1, len(x), len(self.force))
+        here, there = forces[0], forces[1:].reshape(*shifts.shape[:3], len(self.force))
+        slopes = (there - here) / shifts[:, np.arange(len(self._lead)), :, self._lead].transpose(1, 0, 2)[
+            ..., None
+        ]
+        known = np.isfinite(slopes)  # on a side where the FMU refuses there is no slope
+        slopes = np.sum(slopes, axis=0, where=known) / np.maximum(np.sum(known, axis=0), 1) * self.weight
+        r = self._residuals(x, here, targets)
+        jacobian = np.zeros((*r.shape, x.shape[1]))
+        shift, row, column = self._places
+        jacobian[:, row, column] = slopes[shift, :, row].T
+        n = len(self.parameters)
         for k, j in enumerate(self._measured):
-            jacobian[:, rows + k, n + j] = 1.0
-        return jacobian
+            jacobian[:, len(self.force) + k, n + j] = 1.0
+        return r, jacobian
 
-    def _shifts(self) -> np.ndarray:
+    def _all_places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Shift, row and column of each derivative of a force that may differ from zero."""
+        n, found = len(self.parameters), []
+        for k, j in np.argwhere(self._shifts > 0.0):
+            row = self.nuisances[j - n].row if j >= n else None
+            found += [(k, i, j) for i in (range(len(self.force)) if row is None else [row])]
+        shift, row, column = np.array(found).T
+        return shift, row, column
+
+    def _all_shifts(self) -> np.ndarray:
         """Each moves one coordinate, or one of every row."""
         n = len(self.parameters)
         groups: list[list[int]] = [[k] for k in range(n)]
@@ -127,7 +156,7 @@ class Experiment(ABC):
             shared[place].append(n + k)
         shifts = np.zeros((len(groups) + len(shared), n + len(self.nuisances)))
         for shift, group in zip(shifts, groups + shared, strict=True):
-            shift[group] = 1.0
+            shift[group] = DIFFERENCE if group[0] < n else NUISANCE_DIFFERENCE
         return shifts
 
 
@@ -139,30 +168,46 @@ class Rows(Experiment):
         nuisances = [Nuisance(0.0, True, u.row) for u in rows.uncertain]
         super().__init__(fmu, parameters, rows.force, rows.uncertainty, nuisances)
         names = {name for condition in rows.conditions for name in condition}
+        self._repeats, self._repeated = 0, {}  # the columns of so many points
         self._conditions = {
             name: np.array([condition[name] for condition in rows.conditions]) for name in names
         }
 
-    def _values(self, points: np.ndarray) -> dict[str, np.ndarray]:
-        """Start values of the FMU, [point, row] or broadcasting to it."""
-        values = dict(self._conditions)
+    def _moving(self, points: np.ndarray) -> dict[str, np.ndarray]:
+        """Start values of the FMU that differ from point to point, broadcasting to [point, row]."""
+        values = {}
         for k, one in enumerate(self.rows.uncertain):
-            shift = one.deviation * points[:, [len(self.parameters) + k]]
-            rows = np.arange(len(self.force)) if one.row is None else [one.row]
             change = np.zeros((len(points), len(self.force)))
-            change[:, rows] = shift
-            base = values.get(one.name, float(self.fmu.variables[one.name].start))
-            values[one.name] = base + change
+            rows = slice(None) if one.row is None else slice(one.row, one.row + 1)
+            change[:, rows] = one.deviation * points[:, [len(self.parameters) + k]]
+            usual = self._conditions.get(one.name, float(self.fmu.variables[one.name].start))
+            values[one.name] = values.get(one.name, usual) + change
         for k, p in enumerate(self.parameters):
             values[p.name] = p.values(points[:, [k]])
         return values
 
+    @cached_property
+    def _batch(self) -> Batch:
+        """Of one point. Those of more have the same columns, longer: what is asked often is checked once."""
+        point = self.start([p.to_coordinate(p.search[0]) for p in self.parameters])[None, :]
+        values = {**self._conditions, **self._moving(point), "solver.tolerance": TOLERANCE}
+        values["V"] = np.broadcast_to(values["V"], (1, len(self.force)))
+        fmu = loaded_fmu(self.fmu.path, runner(built_runner()))
+        return prepared(fmu, values, ("F_t_mean",), settled=True)
+
     def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
-        values = {**self._values(points), "solver.tolerance": tolerance}
         shape = (len(points), len(self.force))
-        values["V"] = np.broadcast_to(values["V"], shape)
-        found = simulate_many(self.fmu.path, values, settled=True, errors="keep")
-        refused = np.argwhere(found["reason"] != None)  # noqa: E711  elementwise
+        if len(points) > self._repeats:
+            self._repeats = 2 * len(points)
+            self._repeated = {
+                name: column if column.size == 1 else np.tile(column, self._repeats)
+                for name, column in self._batch.starts.items()
+            }
+        starts = {name: column[: len(points) * len(self.force)] for name, column in self._repeated.items()}
+        starts |= {name: flat(values, shape) for name, values in self._moving(points).items()}
+        starts["solver.tolerance"] = np.array([tolerance])
+        found = replace(self._batch, shape=shape, starts=starts).run(processors(), False)
+        refused = np.argwhere(np.isnan(found["F_t_mean"]))
         if len(refused):
             k, row = refused[0]
             self.problem = f"row {row + 1}: {found['reason'][k, row]}"
@@ -170,7 +215,7 @@ class Rows(Experiment):
 
     def kappa(self, point: np.ndarray) -> np.ndarray:
         shape = (1, len(self.force))
-        values = {**self._values(point[None, :]), "vibration.a_d": 0.0}
+        values = {**self._conditions, **self._moving(point[None, :]), "vibration.a_d": 0.0}
 
         def value(name: str) -> np.ndarray:
             return np.broadcast_to(values.get(name, float(self.fmu.variables[name].start)), shape)[0]

@@ -15,12 +15,12 @@ from scipy import stats
 from scipy.stats import qmc
 
 from frictionlab.fmu import FrictionError
-from frictionlab.identify.experiment import Experiment
-from frictionlab.identify.least_squares import Solutions, solve
+from frictionlab.identify.experiment import TIGHT, Experiment
+from frictionlab.identify.least_squares import Solutions, solve, steps
 from frictionlab.identify.parameter import Parameter
 from frictionlab.project import UserError
 
-COARSE = 1e-4  # tolerance of the FMU's solver where only the best starts are sought
+COARSE = 1e-3  # tolerance of the FMU's solver where only the best starts are sought
 SAME = 0.05  # in coordinates: solutions closer than that are one
 
 
@@ -102,7 +102,7 @@ def fits(
     first = start_points(experiment, targets, samples, starts)
     count = first.shape[1]
     repeated = np.repeat(targets, count, axis=0)
-    found = solve(experiment, first.reshape(len(targets) * count, -1), repeated)
+    found = solve(experiment, first.reshape(len(targets) * count, -1), repeated, together=count)
     return fits_of(experiment, targets, found, count)
 
 
@@ -111,13 +111,26 @@ def fits_of(experiment: Experiment, targets: np.ndarray, found: Solutions, count
     if not np.isfinite(found.squares).reshape(len(targets), count).any(axis=1).all():
         raise FrictionError(experiment.problem)
     minima = [_minima(experiment, found, slice(k * count, (k + 1) * count)) for k in range(len(targets))]
-    points = np.array([each[0].point for each in minima])
-    r = experiment.at(points, targets)
-    jacobians = experiment.derivatives(points, r, targets, central=True)
+    points, r, jacobians = _ended(experiment, np.array([each[0].point for each in minima]), targets)
     return [
-        _described(experiment, each, target, one_r, jacobian)
-        for each, target, one_r, jacobian in zip(minima, targets, r, jacobians, strict=True)
+        _described(experiment, point, each, target, one_r, jacobian)
+        for point, each, target, one_r, jacobian in zip(points, minima, targets, r, jacobians, strict=True)
     ]
+
+
+def _ended(
+    experiment: Experiment, points: np.ndarray, targets: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """One step more, with tight tolerance and central differences: points, residuals, derivatives there."""
+    r, jacobian = experiment.with_slopes(points, targets, TIGHT, central=True)
+    on_bound = (points <= experiment.low) | (points >= experiment.high)
+    last = points + steps(jacobian, r, np.full(len(points), 1e-9), on_bound)
+    last = np.clip(last, experiment.low, experiment.high)
+    r_last, jacobian_last = experiment.with_slopes(last, targets, TIGHT, central=True)
+    better = np.sum(r_last**2, axis=1) < np.sum(r**2, axis=1)
+    points = np.where(better[:, None], last, points)
+    r = np.where(better[:, None], r_last, r)
+    return points, r, np.where(better[:, None, None], jacobian_last, jacobian)
 
 
 def start_points(experiment: Experiment, targets: np.ndarray, samples: int | None, starts: int) -> np.ndarray:
@@ -184,6 +197,7 @@ def _minima(experiment: Experiment, found: Solutions, part: slice) -> tuple[Mini
 
 def _described(
     experiment: Experiment,
+    point: np.ndarray,
     minima: tuple[Minimum, ...],
     target: np.ndarray,
     r: np.ndarray,
@@ -204,7 +218,7 @@ def _described(
     residuals = r[:rows] / experiment.weight
     return Fit(
         parameters=experiment.parameters,
-        point=minima[0].point,
+        point=point,
         covariance=(variance * inverse(jacobian.T @ jacobian))[:n, :n],
         degrees=degrees,
         quantile=quantile,
@@ -214,7 +228,7 @@ def _described(
         residuals=residuals,
         squares=squares,
         correlated=correlated,
-        minima=minima,
+        minima=(Minimum(point, squares), *minima[1:]),
     )
 
 

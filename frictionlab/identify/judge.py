@@ -154,7 +154,7 @@ def _large(p: Parameter, value: float) -> float:
     """Half-width in the coordinate beyond which a value is not known."""
     if p.logarithmic:
         return math.log(2.0)
-    return math.pi / 4.0 if p.periodic else abs(value)
+    return math.pi / 4.0 if p.periodic else abs(p.to_coordinate(value))
 
 
 def _correlated(result: Fit) -> list[str]:

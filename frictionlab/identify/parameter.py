@@ -22,7 +22,10 @@ SEARCH = {
 
 @dataclass(frozen=True)
 class Parameter:
-    """The coordinate is the logarithm if the parameter must be positive, so that an interval is a factor."""
+    """The coordinate is the logarithm if the parameter must be positive, so that an interval is a factor.
+
+    Else it is the value over the largest that is searched, or over 1 rad.
+    """
 
     name: str
     unit: str
@@ -39,16 +42,22 @@ class Parameter:
     def periodic(self) -> bool:
         return self.name == "vibration.phase_d"
 
+    @property
+    def unit_of_coordinate(self) -> float:
+        return 1.0 if self.periodic else max(map(abs, self.search)) or 1.0
+
     def to_coordinate(self, value: float) -> float:
         if self.logarithmic:
             return math.log(value) if value > 0.0 else -math.inf
-        return value
+        return value / self.unit_of_coordinate
 
     def to_value(self, coordinate: float) -> float:
-        return math.exp(min(coordinate, 700.0)) if self.logarithmic else coordinate
+        return float(self.values(np.float64(coordinate)))
 
     def values(self, coordinates: np.ndarray) -> np.ndarray:
-        return np.exp(np.minimum(coordinates, 700.0)) if self.logarithmic else coordinates
+        if self.logarithmic:
+            return np.exp(np.minimum(coordinates, 700.0))
+        return coordinates * self.unit_of_coordinate
 
     def wrapped(self, coordinate: float) -> float:
         return coordinate % (2.0 * math.pi) if self.periodic else coordinate

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frictionlab.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
 from frictionlab.fmu import FrictionFmu
-from frictionlab.identify.data import Measurements, Uncertain
-from frictionlab.identify.experiment import Rows
-from frictionlab.identify.fit import Fit
-from frictionlab.identify.fit import fits as many
+from frictionlab.identify.data import Measurements, Series, Uncertain
+from frictionlab.identify.experiment import Experiment, Rows
+from frictionlab.identify.fit import Fit, fits
 from frictionlab.identify.parameter import Parameter, parameter
+from frictionlab.identify.profile import profiles_of
+from frictionlab.identify.series import Record
 
 TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
 NOISE = 0.5  # N, standard deviation of one mean
+LOOP_TRUTH = {"contact.sigma": 2.5e6, "F_C": 48.0}
+LOOP_START = 5.0  # N, the force that a loop begins with
+LOOP_NOISE = 0.3  # N, standard deviation of one sample
 NAMES = ("V", "vibration.V_1", "vibration.a_d")
 
 
@@ -43,10 +47,24 @@ def true_forces(fmu: FrictionFmu) -> np.ndarray:
     return experiment.means([p.to_coordinate(TRUTH[p.name]) for p in experiment.parameters])
 
 
-def fits(
+@dataclass(frozen=True)
+class Recovered:
+    """What fits found that knew nothing of the truth; interval[seed][parameter], by profile, as values."""
+
+    truth: dict[str, float]
+    fits: list[Fit]
+    intervals: list[list[tuple[float, float]]]
+
+    def holds(self, name: str) -> list[bool]:
+        """Whether the 95 % interval of each seed holds the true value."""
+        k = list(self.truth).index(name)
+        return [each[k][0] <= self.truth[name] <= each[k][1] for each in self.intervals]
+
+
+def from_rows(
     fmu: FrictionFmu, seeds: int, uncertainty: list[float] | None = None, V_1_error: float = 0.0
-) -> list[Fit]:
-    """One fit per seed; uncertainty as stated by who measured, or None to estimate it from the scatter.
+) -> Recovered:
+    """From one noisy set of rows per seed; uncertainty as stated, or None to estimate it from the scatter.
 
     V_1_error: relative standard error of the V_1 of each row.
     """
@@ -59,22 +77,42 @@ def fits(
         ]
         rows = replace(rows, uncertain=tuple(uncertain))
     experiment = Rows(fmu, rows, parameters(fmu))
-    random = np.array(
-        [np.random.default_rng(seed).standard_normal(len(experiment.target)) for seed in range(seeds)]
+    return _recovered(experiment, TRUTH, experiment.target, NOISE, seeds)
+
+
+def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> Recovered:
+    """From one noisy loop per seed: presliding at first, sliding at its ends later."""
+    time = np.linspace(0.0, 2.0, 160)
+    position = 60e-6 * np.sin(2.0 * np.pi * time) * (0.3 + 0.5 * time)
+    constants = {"contact.model": "Constant", "friction.model": law}
+    series = Series(
+        time, np.diff(position) / np.diff(time), {}, np.zeros(len(time)), constants,
+        np.full(len(time), LOOP_NOISE) if stated else None, position,
+    )  # fmt: skip
+    named = [
+        parameter(fmu, "contact.sigma", None, (1e3, 1e9), constants),
+        parameter(fmu, "F_C", None, None, constants),
+    ]
+    first = Record(fmu, series, named)
+    truth = [p.to_coordinate(LOOP_TRUTH[p.name]) for p in named]
+    forces = first.forces(np.array([[*truth, LOOP_START]]))[0]
+    return _recovered(
+        Record(fmu, replace(series, force=forces), named), LOOP_TRUTH, forces, LOOP_NOISE, seeds
     )
-    random[:, : len(forces)] *= NOISE
-    return many(experiment, experiment.target + random, starts=4)
 
 
-def held(found: list[Fit], name: str) -> int:
-    """How many 95 % intervals hold the true value."""
-    k = list(TRUTH).index(name)
-    return sum(low <= TRUTH[name] <= high for low, high in (one.interval(k) for one in found))
+def _recovered(
+    experiment: Experiment, truth: dict[str, float], exact: np.ndarray, noise: float, seeds: int
+) -> Recovered:
+    random = np.array([np.random.default_rng(seed).standard_normal(len(exact)) for seed in range(seeds)])
+    random[:, : len(experiment.force)] *= noise
+    found = fits(experiment, exact + random)
+    return Recovered(truth, found, profiles_of(experiment, found, exact + random))
 
 
 def figure(fmu: FrictionFmu, seeds: int) -> Figure:
     """The intervals of every seed against the truth."""
-    found = fits(fmu, seeds)
+    found = from_rows(fmu, seeds)
     panels = []
     for k, name in enumerate(TRUTH):
         factor, unit = {
@@ -83,13 +121,13 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
         }.get(name, (1.0, "N"))
         good: tuple[list[float], list[float]] = ([], [])
         missed: tuple[list[float], list[float]] = ([], [])
-        for seed, one in enumerate(found):
-            low, high = one.interval(k)
-            x, y = good if low <= TRUTH[name] <= high else missed
+        held = found.holds(name)
+        for seed, is_held in enumerate(held):
+            x, y = good if is_held else missed
             x += [seed, seed, np.nan]
-            y += [factor * low, factor * high, np.nan]
+            y += [*(factor * np.array(found.intervals[seed][k])), np.nan]
         items = [
-            Line(*good, f"holds the truth: {held(found, name)} of {seeds}", BLUE),
+            Line(*good, f"holds the truth: {sum(held)} of {seeds}", BLUE),
             Level(factor * TRUTH[name], "truth", INK, "dash"),
         ]
         if missed[0]:

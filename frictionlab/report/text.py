@@ -102,9 +102,9 @@ SENSITIVITY_INTRO = """<p>By central differences of the FMU's F_t_mean in the pe
 
 IDENTIFY_INTRO = """<p><code>scripts/identify</code> fits any parameters to measured mean friction. On rows
 2, 3 and 6 of Table 2 least squares gives 2.383 MN/m and 224.7°, with residuals of 0.65, −0.36 and −0.58 N.
-With one degree of freedom its 95 % intervals are so wide (a factor of 40 either way in stiffness, ± 65° in
-phase) that the table does not determine either number; a second minimum at 127° lies within them. With
-enough data the method does recover what made them:</p>"""
+With one degree of freedom its 95 % intervals by profile likelihood are so wide (any stiffness up to 15 MN/m,
+phases from 45° to 306°) that the table does not determine either number; a second minimum at 127° lies within
+them. With enough data the method does recover what made them:</p>"""
 
 
 def _claims(made: Sequence[Claim]) -> Table:

@@ -38,6 +38,7 @@ from frictionlab.parameters import (
 )
 from frictionlab.periodic import periodic_mean
 from frictionlab.regimes.mean import coulomb_limit, soft_limit
+from frictionlab.report.text import IDENTIFY_INTRO
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
 SURFACES = Surfaces()
@@ -235,16 +236,28 @@ def test_15_least_squares_through_the_same_rows(fmu: FrictionFmu) -> None:
     rows = read(EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
     result = fit(Rows(fmu, rows, named))
-    stiff = [1e-6 * STIFFNESS_PRINTED * scale for scale in (result.values[0], *result.interval(0))]
-    phase = [math.degrees(angle) for angle in (result.values[1], *result.interval(1))]
+    MN, (least, most), (low, high) = 1e-6 * STIFFNESS_PRINTED, *result.profiles
+    linear = [MN * scale for scale in result.interval(0)]
+    turns = [math.degrees(angle) for angle in result.interval(1)]
+    second = f"second minimum at {math.degrees(result.minima[1].point[1]):.0f}°"
+    wide = (
+        f"any stiffness up to {MN * most:.0f} MN/m",
+        f"phases from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°",
+    )
+    assert least == 0.0
     stated(
         15,
-        f"{stiff[0]:.3f} MN/m and {phase[0]:.2f}°",
-        f"from {stiff[1]:.3f} to {stiff[2]:.0f} MN/m",
-        f"from {phase[1]:.0f}° to {phase[2]:.0f}°",
+        f"{MN * result.values[0]:.3f} MN/m and {math.degrees(result.values[1]):.2f}°",
+        *wide,
+        second,
+        f"{linear[0]:.3f} to {linear[1]:.0f} MN/m and {turns[0]:.0f}° to {turns[1]:.0f}°",
     )
-    (other,) = (text for text in result.warnings if "another solution" in text)
-    stated(15, f"second minimum at {math.degrees(float(other.rsplit(' ', 1)[1])):.0f}°")
+    report = " ".join(IDENTIFY_INTRO.split())
+    residuals = [f"{residual:.2f}".replace("-", "−") for residual in result.residuals]
+    values = f"{MN * result.values[0]:.3f} MN/m and {math.degrees(result.values[1]):.1f}°"
+    errors = "residuals of {}, {} and {} N".format(*residuals)
+    for form in (*wide, second, values, errors):
+        assert form in report, form
 
 
 def test_16_modulus() -> None:
