@@ -47,6 +47,20 @@ def parameters(description: str) -> dict[Signal, float]:
     return found
 
 
+def with_parameters(description: str, values: Mapping[Signal, float]) -> str:
+    """The SystemStructure.ssd with other start values in place of its own."""
+    root = etree.fromstring(description.encode())
+    for (name, variable), value in values.items():
+        (found,) = (
+            parameter
+            for component in root.iter(f"{SSD}Component")
+            for parameter in component.iter(f"{SSV}Parameter")
+            if (component.get("name"), parameter.get("name")) == (name, variable)
+        )
+        found.find(f"{SSV}Real").set("value", repr(float(value)))
+    return etree.tostring(root, encoding="unicode")
+
+
 def run_libcosim(ssp: Path, step_ns: int, count: int, signals: Sequence[Signal]) -> dict[Signal, np.ndarray]:
     """The signals after each of count steps, run by libcosim from the .ssp file."""
     log_output_level(CosimLogLevel.ERROR)

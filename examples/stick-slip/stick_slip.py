@@ -23,15 +23,12 @@ from frictionlab.build import build_fmu
 from frictionlab.parameters import E_FULL, SEPARATION
 from frictionlab.project import ROOT, UserError
 from frictionlab.reference.contact import Contact, stiffness
-from frictionlab.systems import parameters, run_fmpy, run_libcosim, write_ssp
+from frictionlab.systems import parameters, run_fmpy, run_libcosim, with_parameters, write_ssp
 
 HERE = Path(__file__).resolve().parent
 DURATION = 1.0  # s, two periods of the belt's unsteadiness
 SIGNALS = (("mass", "x"), ("mass", "v"), ("contact", "F_t"))
 STEPS_NS = (2_000_000, 1_000_000, 500_000, 200_000, 100_000, 50_000, 20_000, 10_000)
-
-
-NO_DAMPING = '<ssv:Parameter name="friction.sigma_1"><ssv:Real value="0"'
 
 
 def make_ssp(fmu: Path, output: Path, sigma_1: float = 0.0) -> Path:
@@ -40,8 +37,7 @@ def make_ssp(fmu: Path, output: Path, sigma_1: float = 0.0) -> Path:
     sigma_1 [N s/m] damps the stuck contact.
     """
     description = (HERE / "SystemStructure.ssd").read_text()
-    assert NO_DAMPING in description
-    description = description.replace(NO_DAMPING, NO_DAMPING.replace('"0"', f'"{sigma_1!r}"'))
+    description = with_parameters(description, {("contact", "friction.sigma_1"): sigma_1})
     return write_ssp(description, [fmu, fmu.parent / "examples" / "MassOnBelt.fmu"], output)
 
 

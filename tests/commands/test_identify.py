@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.optimize import least_squares
 
 from frictionlab.fmu import FrictionFmu
 from frictionlab.identify import command as identify
@@ -27,6 +28,7 @@ from frictionlab.identify.recovery import (
     measurements,
     true_forces,
 )
+from frictionlab.identify.series import Record
 from frictionlab.parameters import STIFFNESS_PRINTED
 from frictionlab.project import ROOT, UserError
 from frictionlab.validate import longitudinal
@@ -137,6 +139,10 @@ def test_profile_is_the_hull_of_the_region_on_a_grid(fmu: FrictionFmu) -> None:
     assert scales[0] == scale[0]
     assert math.log(result.profiles[0][1]) == pytest.approx(scales[-1], abs=1.5 * (scale[1] - scale[0]))
     assert result.profiles[1] == pytest.approx((phases[0], phases[-1]), abs=math.radians(3.0))
+    most, (low, high) = 1e-6 * STIFFNESS_PRINTED * result.profiles[0][1], np.degrees(result.profiles[1])
+    assert f"only from above, by {most:.0f} MN/m, and the phase hardly, from {low:.0f}° to {high:.0f}°" in (
+        " ".join(GUIDE.split())
+    )
 
 
 def test_warns_that_stiff_contacts_do_not_show_their_stiffness(fmu: FrictionFmu) -> None:
@@ -350,7 +356,40 @@ def test_dry_rows_are_the_validation_s(fmu: FrictionFmu) -> None:
     result = fit(Rows(fmu, rows, [parameter(fmu, "contact.sigma", None, None, {})]))
     expected = longitudinal.fit(fmu.path, published, "ElasticPlastic").stiffness
     assert result.values[0] == pytest.approx(expected, rel=2e-3)
-    assert f"{1e-6 * result.values[0]:.2f} MN/m" in GUIDE
+    low, high = (1e-6 * end for end in result.profiles[0])
+    assert f"{1e-6 * result.values[0]:.2f} MN/m ({low:.2f} to {high:.2f})" in GUIDE
+
+
+def test_a_measured_loop(fmu: FrictionFmu) -> None:
+    """Dahl's force after a path x at a held limit L: s L + (F - s L) exp(-sigma |x| / L), s its sign."""
+    constants = {"contact.model": "Constant"}
+    series = read(ROOT / "data" / "measurements" / "hysteresis.csv", fmu, constants)
+    path, load = np.diff(series.position), series.inputs["load"]
+    middle = 0.5 * (load[1:] + load[:-1])
+
+    def errors(x: np.ndarray) -> np.ndarray:
+        sigma, mu, force = math.exp(x[0]), x[1], x[2]
+        forces = [force]
+        for step, limit in zip(path, mu * middle, strict=True):
+            end = math.copysign(limit, step)
+            forces.append(end + (forces[-1] - end) * math.exp(-sigma * abs(step) / limit))
+        return np.array(forces) - series.force
+
+    expected = least_squares(errors, [math.log(3e4), 0.5, series.force[0]], x_scale=[1.0, 0.1, 1.0])
+    named = [
+        parameter(fmu, "contact.sigma", None, (1e3, 1e7), constants),
+        parameter(fmu, "friction.mu", None, None, constants),
+    ]
+    result = fit(Record(fmu, series, named))
+    rms = math.sqrt(2.0 * expected.cost / len(series))
+    assert result.values == pytest.approx([math.exp(expected.x[0]), expected.x[1]], rel=1e-3)
+    assert np.sqrt(np.mean(result.residuals**2)) == pytest.approx(rms, rel=1e-4)
+    times = rms / (np.std(np.diff(series.force, 2)) / math.sqrt(6.0))
+    assert f"{times:.3g} times the scatter" in result.misfits[0]
+    assert (
+        f"{1e-6 * result.values[0]:.4f} MN/m and {result.values[1]:.3f}, and a misfit of {rms:.2f} N, "
+        f"{times:.0f} times the scatter"
+    ) in " ".join(GUIDE.split())
 
 
 @pytest.mark.parametrize(
