@@ -238,7 +238,7 @@ static void add_damping(const FcScene* scene, double h, double delta_0, FcStepRe
     const double sigma_1 = scene->friction->model == FC_COULOMB ? 0.0 : scene->friction->sigma_1;
     const double sigma_2 = scene->friction->sigma_2;
     if (sigma_1 != 0.0) {
-        result->impulse += sigma_1 * (result->delta - delta_0);
+        result->impulse += sigma_1 * (result->delta - fc_method_start(scene, delta_0));
         result->work += sigma_1 * result->drag;
         result->heat += sigma_1 * result->drag;
     }
@@ -311,7 +311,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
                         message)) {
         return false;
     }
-    add_damping(&scene, h, fc_method_start(&scene, v->delta), &result);
+    add_damping(&scene, h, v->delta, &result);
 
     // Evaluated at the phase of t + h itself, which is also that of the next step: a phase that is carried on from the
     // step's start loses digits with every period of it.

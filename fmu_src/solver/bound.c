@@ -6,6 +6,8 @@ const double FC_NO_BOUND = 1e200;
 
 // Of the time to a pole: the longest panel of the quadratures then ends well before it.
 static const double POLE = 0.12;
+// The shortest smooth time that is good for all places, over that of the phase alone.
+static const double SHORTEST_COMMON = 0.1;
 // Of the smooth time, for a central difference.
 static const double SMALL_PART = 1e-4;
 
@@ -27,9 +29,12 @@ static bool ratio_is_constant(const FcScene* scene) {
     return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
 }
 
+static bool nothing_moves(const FcScene* scene) {
+    return fc_bound_stiffness_is_constant(scene) && fc_bound_limit_is_constant(scene);
+}
+
 bool fc_bound_is_constant(const FcScene* scene) {
-    return (fc_bound_stiffness_is_constant(scene) && fc_bound_limit_is_constant(scene)) ||
-           (ratio_is_constant(scene) && scene->drive.E.rate == 0.0);
+    return nothing_moves(scene) || (ratio_is_constant(scene) && scene->drive.E.rate == 0.0);
 }
 
 static double ratio(const FcScene* scene, const FcContactAtModulus* at_E, double limit, double sigma) {
@@ -53,14 +58,17 @@ static double time_to_pole(const FcScene* scene, double t, double d, double d_ra
     return time;
 }
 
+// Rate [1/m] at which ln sigma or ln g moves with d, at the most.
+static double log_slope(const FcScene* scene, double d) {
+    return scene->at_E.model == FC_CONTACT_ASPERITIES ? 2.0 * scene->at_E.decay + 3.0 / d : scene->at_E.decay;
+}
+
 double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_rate) {
     const FcDrive* drive = &scene->drive;
-    if (!contact_moves(scene) ||
-        (scene->at_E.model == FC_CONTACT_CONSTANT && !fc_limit_follows_load(scene->friction))) {
+    if (nothing_moves(scene)) {
         return 1.0 / drive->omega;
     }
-    const double by_d =
-        scene->at_E.model == FC_CONTACT_ASPERITIES ? 2.0 * scene->at_E.decay + 3.0 / d : scene->at_E.decay;
+    const double by_d = log_slope(scene, d);
     const double pole = POLE * time_to_pole(scene, t, d, d_rate);
     const double rate = drive->omega + by_d * fabs(d_rate);
     const double curvature = by_d * drive->vibration.a_d * drive->omega * drive->omega;
@@ -68,22 +76,47 @@ double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_r
     return fmin(pole, 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)));
 }
 
-// Inputs E and load held: everything is a function of d.
-static void set_held(FcBoundMotion* at, const FcScene* scene, double d_curvature) {
-    const FcContactResponse now = fc_contact_response(&scene->at_E, at->d);
-    at->sigma = now.sigma;
-    at->limit = fc_limit_follows_load(scene->friction) ? scene->friction->mu * now.F_n : scene->F_C;
-    at->D = ratio(scene, &scene->at_E, at->limit, at->sigma);
-    if (fc_bound_is_constant(scene)) {
-        return;
+double fc_bound_common_smooth_time(const FcScene* scene, double h) {
+    const FcDrive* drive = &scene->drive;
+    if (scene->floats || drive->E.rate != 0.0 || drive->omega == 0.0) {
+        return 0.0;
     }
-    const FcContactLogSlope slope = fc_contact_slope_by_d(&scene->at_E, at->d);
-    const double by_d = (fc_limit_follows_load(scene->friction) ? slope.F_n : 0.0) - slope.sigma;
-    const double by_d_by_d = scene->at_E.model == FC_CONTACT_ASPERITIES ? -3.0 / (at->d * at->d) : 0.0;
+    if (nothing_moves(scene)) {
+        return 1.0 / drive->omega;
+    }
+    const double d = fc_drive_smallest_d(drive, h);
+    const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
+    const double rate = drive->omega + log_slope(scene, d) * d_rate;
+    const double least = fmin(POLE * time_to_pole(scene, 0.0, d, d_rate), 1.0 / rate);
+    return least * drive->omega > SHORTEST_COMMON ? least : 0.0;
+}
+
+// Inputs E and load held: everything is a function of d.
+static void set_held(FcBoundMotion* at, const FcScene* scene) {
+    const FcContactAtModulus* c = &scene->at_E;
+    const double e = exp(-c->decay * at->d);
+    double by_d = 0.0; // of ln D
+    double by_d_by_d = 0.0;
+    at->sigma = c->stiffness_0;
+    at->limit = scene->F_C;
+    if (c->model == FC_CONTACT_ASPERITIES) {
+        const double nearness = 1.0 / at->d;
+        at->sigma *= e * e * (nearness * nearness * nearness);
+        by_d = 2.0 * c->decay + 3.0 * nearness;
+        by_d_by_d = -3.0 * nearness * nearness;
+    } else if (c->model == FC_CONTACT_MINDLIN) {
+        at->sigma *= e;
+        by_d = c->decay;
+    }
+    if (fc_limit_follows_load(scene->friction)) {
+        at->limit = scene->friction->mu * (c->load_0 * e);
+        by_d -= c->decay;
+    }
+    at->D = ratio(scene, c, at->limit, at->sigma);
     const double log_rate = by_d * at->d_rate;
     at->D_rate = at->D * log_rate;
     at->D_curvature =
-        at->D * (log_rate * log_rate + by_d * d_curvature + by_d_by_d * at->d_rate * at->d_rate);
+        at->D * (log_rate * log_rate + by_d * at->d_curvature + by_d_by_d * at->d_rate * at->d_rate);
 }
 
 static double log_rate_at(const FcScene* scene, double t) {
@@ -97,6 +130,9 @@ static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
     at->sigma = now.sigma;
     at->limit = now.limit;
     at->D = ratio(scene, &at_E, now.limit, now.sigma);
+    if (fc_bound_is_constant(scene)) {
+        return;
+    }
     const double log_rate = log_rate_at(scene, t);
     const double tau = SMALL_PART * fc_bound_smooth_time(scene, t, at->d, at->d_rate);
     const double log_curvature = (log_rate_at(scene, t + tau) - log_rate_at(scene, t - tau)) / (2.0 * tau);
@@ -104,35 +140,81 @@ static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
     at->D_curvature = at->D * (log_rate * log_rate + log_curvature);
 }
 
-FcBoundMotion fc_bound_motion(const FcScene* scene, double t) {
+// The angle's cosine c and sine s given.
+static FcBoundMotion motion_at_phase(const FcScene* scene, double t, double c, double s) {
     const FcDrive* drive = &scene->drive;
     const FcVibration* vibration = &drive->vibration;
-    FcBoundMotion at = {.V = drive->V.value + drive->V.rate * t,
-                        .V_rate = drive->V.rate,
-                        .d = drive->d.value + drive->d.rate * t,
-                        .d_rate = drive->d.rate};
-    double d_curvature = 0.0;
-    if (drive->omega != 0.0) {
-        const double theta = drive->theta_0 + drive->omega * t;
-        const double c = cos(theta);
-        const double s = sin(theta);
-        at.sin_theta = s;
-        at.V += vibration->V_1 * c;
-        at.V_rate -= vibration->V_1 * drive->omega * s;
-        const double c_d = c * drive->cos_phase_d - s * drive->sin_phase_d;
-        const double s_d = s * drive->cos_phase_d + c * drive->sin_phase_d;
-        at.d += vibration->a_d * c_d;
-        at.d_rate -= vibration->a_d * drive->omega * s_d;
-        d_curvature = -vibration->a_d * drive->omega * drive->omega * c_d;
-    }
+    const double omega = drive->omega;
+    const double d_c = vibration->a_d * (c * drive->cos_phase_d - s * drive->sin_phase_d);
+    const double d_s = vibration->a_d * (s * drive->cos_phase_d + c * drive->sin_phase_d);
+    FcBoundMotion at = {.t = t,
+                        .V = drive->V.value + drive->V.rate * t + vibration->V_1 * c,
+                        .V_rate = drive->V.rate - vibration->V_1 * omega * s,
+                        .d = drive->d.value + drive->d.rate * t + d_c,
+                        .d_rate = drive->d.rate - omega * d_s,
+                        .d_curvature = -omega * omega * d_c,
+                        .sin_theta = s};
     if (scene->floats || drive->E.rate != 0.0) {
         at.d = fc_scene_d(scene, t);
         at.d_rate = fc_scene_d_rate(scene, t);
         set_moving(&at, scene, t);
     } else {
-        set_held(&at, scene, d_curvature);
+        set_held(&at, scene);
     }
     return at;
+}
+
+FcBoundMotion fc_bound_motion(const FcScene* scene, double t) {
+    if (scene->drive.omega == 0.0) {
+        return motion_at_phase(scene, t, 1.0, 0.0);
+    }
+    const double theta = scene->drive.theta_0 + scene->drive.omega * t;
+    return motion_at_phase(scene, t, cos(theta), sin(theta));
+}
+
+void fc_bound_motions(const FcScene* scene, double t, double step, int count, FcBoundMotion* at) {
+    const double theta = scene->drive.theta_0 + scene->drive.omega * t;
+    const double turn = scene->drive.omega * step;
+    const double cos_turn = cos(turn);
+    const double sin_turn = sin(turn);
+    double c = cos(theta);
+    double s = sin(theta);
+    for (int i = 0; i < count; i++) {
+        at[i] = motion_at_phase(scene, t + i * step, c, s);
+        const double c_next = c * cos_turn - s * sin_turn;
+        s = s * cos_turn + c * sin_turn;
+        c = c_next;
+    }
+}
+
+FcBoundMotion fc_bound_nearby(const FcBoundMotion* at, double t) {
+    const double dt = t - at->t;
+    FcBoundMotion nearby = *at;
+    nearby.t = t;
+    nearby.V += at->V_rate * dt;
+    nearby.D += dt * (at->D_rate + 0.5 * dt * at->D_curvature);
+    nearby.D_rate += at->D_curvature * dt;
+    nearby.d += dt * (at->d_rate + 0.5 * dt * at->d_curvature);
+    nearby.d_rate += at->d_curvature * dt;
+    return nearby;
+}
+
+FcBoundMotion fc_bound_standing(const FcScene* scene, const FcBoundMotion* at, double t) {
+    const FcDrive* drive = &scene->drive;
+    const double theta = drive->theta_0 + drive->omega * t;
+    FcBoundMotion now = *at;
+    now.t = t;
+    now.sin_theta = sin(theta);
+    now.V = drive->V.value + drive->V.rate * t + drive->vibration.V_1 * cos(theta);
+    now.V_rate = drive->V.rate - drive->vibration.V_1 * drive->omega * now.sin_theta;
+    return now;
+}
+
+double fc_bound_reached(const FcBoundMotion* at, double delta) { return fmax(-at->D, fmin(at->D, delta)); }
+
+double fc_bound_loss(const FcBoundMotion* at, double delta) {
+    const double reached = fc_bound_reached(at, delta);
+    return delta != reached ? 0.5 * at->sigma * (delta - reached) * (delta + reached) : 0.0;
 }
 
 double fc_bound(const FcScene* scene, double t) { return fc_bound_motion(scene, t).D; }

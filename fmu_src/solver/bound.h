@@ -13,6 +13,7 @@
 extern const double FC_NO_BOUND;
 
 typedef struct {
+    double t;           // s
     double V;           // m/s
     double V_rate;      // m/s2
     double sigma;       // N/m
@@ -22,14 +23,33 @@ typedef struct {
     double D_curvature; // m/s2
     double d;           // m
     double d_rate;      // m/s
+    double d_curvature; // m/s2
     double sin_theta;   // of the vibration
 } FcBoundMotion;
 
 FcBoundMotion fc_bound_motion(const FcScene* scene, double t);
 
+// At t, t + step, ..., a tenth of the price each: the angle's sine and cosine are rotated from one to the next.
+void fc_bound_motions(const FcScene* scene, double t, double step, int count, FcBoundMotion* at);
+
+// V, D, d and their rates at a time t so near to it that terms of third order of D and d don't count; the rest stays as
+// it was.
+FcBoundMotion fc_bound_nearby(const FcBoundMotion* at, double t);
+
+// Of a bound that stands still: V and its rate and sin_theta; the rest stays as it was.
+FcBoundMotion fc_bound_standing(const FcScene* scene, const FcBoundMotion* at, double t);
+
 // The time [s] from t on over which the phase, ln sigma and ln g move by 1 at the most, at the separation d [m] and its
 // rate [m/s].
 double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_rate);
+
+// A time that is no longer than that anywhere in [0, h]; 0 where that is of no use: where it would be much shorter than at
+// other places, without vibration, and where the inputs E or load move.
+double fc_bound_common_smooth_time(const FcScene* scene, double h);
+
+// delta [m] taken onto the bound where it lies beyond, and what the bristle loses by that [J].
+double fc_bound_reached(const FcBoundMotion* at, double delta);
+double fc_bound_loss(const FcBoundMotion* at, double delta);
 
 // D alone [m].
 double fc_bound(const FcScene* scene, double t);

@@ -4,8 +4,6 @@
 #include <stdbool.h>
 
 enum { MOST_STEPS = 200 };
-// After a step this small against the way from the bracket's start the error is its square, or less.
-static const double LAST_STEP = 1e-7;
 
 // To the nearer root of the parabola; Newton's step where it has none.
 static double step_to_root(FcRootFunction at) {
@@ -14,13 +12,24 @@ static double step_to_root(FcRootFunction at) {
     return -2.0 * at.value / (at.rate + slope);
 }
 
-double fc_bracketed_root(FcRootEvaluation f, const void* context, double a, FcRootFunction at_a, double b,
-                         double* evaluations) {
+// From a to the root of the cubic t(f) through both ends; to the parabola's where the slopes don't agree with the change.
+static double first_step(double duration, FcRootFunction at_a, FcRootFunction at_b) {
+    const double change = at_b.value - at_a.value;
+    if (!(at_a.rate * change > 0.0 && at_b.rate * change > 0.0)) {
+        return fabs(step_to_root(at_a));
+    }
+    const double s = -at_a.value / change;
+    const double part = s * (1.0 - s);
+    return duration * s * s * (3.0 - 2.0 * s) + change * part * ((1.0 - s) / at_a.rate - s / at_b.rate);
+}
+
+double fc_bracketed_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
+                         FcRootFunction at_b, double last_step, double* evaluations) {
     const double start = a;
     const bool starts_negative = at_a.value < 0.0;
     FcRootFunction at = at_a;
     double t = a;
-    double step = fabs(step_to_root(at));
+    double step = first_step(b - a, at_a, at_b);
     for (int i = 0; i < MOST_STEPS && at.value != 0.0; i++) {
         double next = t + step;
         double longest = 0.5 * fabs(step);
@@ -30,7 +39,7 @@ double fc_bracketed_root(FcRootEvaluation f, const void* context, double a, FcRo
         }
         step = next - t;
         t = next;
-        if (fabs(step) <= LAST_STEP * (t - start) || t == a || t == b) {
+        if ((i > 0 && fabs(step) <= last_step * (t - start)) || t == a || t == b) {
             return t;
         }
         at = f(context, t);

@@ -1,8 +1,9 @@
-// The root of a function in a bracket, to the last bits.
+// The root of a function in a bracket.
 //
-// Each step solves f + f' x + f'' x^2 / 2 = 0 for the nearer root: Newton's method where f'' is given as 0, faster
-// otherwise, and good from an end where f' vanishes. A step that would leave the bracket, or that does not shrink as it
-// should, is replaced by a bisection.
+// It starts from the inverse cubic through both ends and their slopes, where the function goes one way at both. Each
+// step solves f + f' x + f'' x^2 / 2 = 0 for the nearer root: Newton's method where f'' is given as 0, faster otherwise,
+// and good from an end where f' vanishes. A step that would leave the bracket, or that does not shrink as it should, is
+// replaced by a bisection.
 #ifndef FC_SOLVER_BRACKETED_ROOT_H
 #define FC_SOLVER_BRACKETED_ROOT_H
 
@@ -12,10 +13,12 @@ typedef struct {
     double curvature; // per second squared, or 0
 } FcRootFunction;
 
-typedef FcRootFunction (*FcRootEvaluation)(const void* context, double t);
+typedef FcRootFunction (*FcRootEvaluation)(void* context, double t);
 
-// f changes its sign from a to b [s], a < b, and is at_a at a. Adds what it evaluates to *evaluations.
-double fc_bracketed_root(FcRootEvaluation f, const void* context, double a, FcRootFunction at_a, double b,
-                         double* evaluations);
+// f changes its sign from a to b [s], a < b, and is at_a and at_b there. Ends with a step of at most last_step times the
+// way from a: the error is then of the order of that step's square or, where f'' is given, cube. Adds what it evaluates to
+// *evaluations.
+double fc_bracketed_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
+                         FcRootFunction at_b, double last_step, double* evaluations);
 
 #endif

@@ -16,13 +16,15 @@ static void add(FcTotals* sum, FcTotals part, double times) {
 
 // Several intervals one after the other.
 typedef struct {
+    double tolerance;
     double delta; // m, reached
     FcTotals totals;
     double evaluations;
 } Progress;
 
 static void go(Progress* progress, const FcScene* scene, double duration, double times) {
-    const FcStickSlip one = fc_stick_slip(scene, duration, progress->delta, &progress->evaluations);
+    const FcStickSlip one =
+        fc_stick_slip(scene, progress->tolerance, duration, progress->delta, &progress->evaluations);
     add(&progress->totals, one.totals, times);
     progress->delta = one.delta;
 }
@@ -33,15 +35,17 @@ typedef struct {
 } FreeStarts;
 
 // x - D is largest, and x + D least, at a turning point or an end.
-static FreeStarts free_starts(const FcScene* scene, double period, double* evaluations) {
+static FreeStarts free_starts(const FcScene* scene, double tolerance, double period, double* evaluations) {
     const FcPath path = fc_path_from(scene, 0.0);
-    FcTurningPoints points = fc_turning_points(scene, period);
-    FreeStarts starts = {.lowest = -points.D, .highest = points.D};
-    while (points.t < period && points.evaluations <= FC_MOST_EVALUATIONS) {
-        const FcPiece piece = fc_turning_points_next(&points, -FC_NO_BOUND, FC_NO_BOUND);
-        const double x = fc_path_at(&path, piece.end);
-        starts.lowest = fmax(starts.lowest, -piece.end_bound - x);
-        starts.highest = fmin(starts.highest, piece.end_bound - x);
+    FcTurningPoints points;
+    fc_turning_points_start(&points, scene, tolerance, period);
+    FreeStarts starts = {.lowest = -points.at->D, .highest = points.at->D};
+    while (points.at->t < period && points.evaluations <= FC_MOST_EVALUATIONS) {
+        FcPiece piece;
+        fc_turning_points_next(&points, -FC_NO_BOUND, FC_NO_BOUND, &piece);
+        const double x = fc_path_at(&path, piece.end->t);
+        starts.lowest = fmax(starts.lowest, -piece.end->D - x);
+        starts.highest = fmin(starts.highest, piece.end->D - x);
     }
     *evaluations += points.evaluations;
     return starts;
@@ -59,16 +63,13 @@ static double free_periods(const FreeStarts* starts, double delta, double s, dou
     return fmin(periods, floor(room / fabs(s)) + 1.0);
 }
 
-// n periods that touch no bound. Each starts s farther than the one before.
+// n periods that touch no bound. Each starts s farther than the one before; a period's totals are affine in its start.
 static void creep(Progress* progress, const FcScene* scene, double period, double s, double n) {
     const FcPath path = fc_path_from(scene, 0.0);
-    const FcStickIntegrals one = fc_stick_integrals(scene, &path, period, s, &progress->evaluations);
+    const FcIntegrator integrator = fc_integrator(scene, 0.0, progress->tolerance);
     const double mean_start = progress->delta + 0.5 * s * (n - 1.0);
-    const FcTotals mean = {
-        .impulse = one.impulse_slope * mean_start + one.impulse_offset,
-        .work = one.work_slope * mean_start + one.work_offset,
-        .drag = one.drag,
-    };
+    const FcTotals mean =
+        fc_stick_totals(&integrator, &path, mean_start, period, mean_start + s, &progress->evaluations);
     add(&progress->totals, mean, n);
     progress->delta += n * s;
 }
@@ -76,9 +77,12 @@ static void creep(Progress* progress, const FcScene* scene, double period, doubl
 // A period that has touched a bound ends on hi or lo, whatever its start. From there the bristle creeps, at the most,
 // to the other bound: when a period touches the bound that the mean velocity leads to, all that follow are alike.
 static void step_over_equal_periods(Progress* progress, const FcScene* scene, double periods) {
+    const FcBoundMotion at = fc_bound_motion(scene, 0.0);
+    progress->totals.heat += fc_bound_loss(&at, progress->delta);
+    progress->delta = fc_bound_reached(&at, progress->delta);
     const double period = 1.0 / scene->drive.vibration.f;
     const double s = scene->drive.V.value * period;
-    const FreeStarts starts = free_starts(scene, period, &progress->evaluations);
+    const FreeStarts starts = free_starts(scene, progress->tolerance, period, &progress->evaluations);
     double left = periods;
     if (starts.lowest <= starts.highest) {
         const bool from_the_other_side = s > 0.0   ? progress->delta < starts.lowest
@@ -103,26 +107,6 @@ static void step_over_equal_periods(Progress* progress, const FcScene* scene, do
     }
 }
 
-// Without vibration, all held: it sticks, then slips.
-static void step_at_constant_speed(Progress* progress, const FcScene* scene, double h) {
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double D = fc_bound(scene, 0.0);
-    const double room = at.V > 0.0 ? D - progress->delta : D + progress->delta;
-    const double sticking = at.V != 0.0 ? fmin(h, room / fabs(at.V)) : h;
-    const double slipping = h - sticking;
-    const double x = at.V * sticking;
-    const double mean_delta = progress->delta + 0.5 * x;
-    const double g = copysign(at.limit, at.V);
-    progress->delta = slipping > 0.0 ? copysign(D, at.V) : progress->delta + x;
-    progress->totals = (FcTotals){
-        .impulse = at.sigma * mean_delta * sticking + g * slipping,
-        .work = at.sigma * mean_delta * x + g * at.V * slipping,
-        .heat = g * at.V * slipping,
-        .drag = at.V * x,
-    };
-    progress->evaluations = 1.0;
-}
-
 static void step_over_changing_periods(Progress* progress, const FcScene* scene, double periods,
                                        double rest) {
     const double f = scene->drive.vibration.f;
@@ -133,26 +117,42 @@ static void step_over_changing_periods(Progress* progress, const FcScene* scene,
 }
 
 double fc_elastic_plastic_reached(const FcScene* scene, double delta) {
-    const double D = fc_bound(scene, 0.0);
-    return fmax(-D, fmin(D, delta));
+    const FcBoundMotion at = fc_bound_motion(scene, 0.0);
+    return fc_bound_reached(&at, delta);
 }
 
-// What a bristle beyond the bound loses on its way there, at once [J].
-static double heat_onto_bound(const FcScene* scene, double delta, double reached) {
-    return delta != reached ? 0.5 * fc_scene_stiffness(scene, 0.0) * (delta - reached) * (delta + reached)
-                            : 0.0;
+// Without vibration, all held: it sticks, then slips.
+static void step_at_constant_speed(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
+    const FcBoundMotion at = fc_bound_motion(scene, 0.0);
+    const double start = fc_bound_reached(&at, delta_0);
+    const double room = at.V > 0.0 ? at.D - start : at.D + start;
+    const double sticking = at.V != 0.0 ? fmin(h, room / fabs(at.V)) : h;
+    const double slipping = h - sticking;
+    const double x = at.V * sticking;
+    const double mean_delta = start + 0.5 * x;
+    const double g = copysign(at.limit, at.V);
+    *result = (FcStepResult){
+        .delta = slipping > 0.0 ? copysign(at.D, at.V) : start + x,
+        .impulse = at.sigma * mean_delta * sticking + g * slipping,
+        .work = at.sigma * mean_delta * x + g * at.V * slipping,
+        .heat = g * at.V * slipping + fc_bound_loss(&at, delta_0),
+        .drag = at.V * x,
+        .evaluations = 1.0,
+    };
 }
 
-bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcStepResult* result,
-                             FcMessage* message) {
+bool fc_elastic_plastic_step(const FcScene* scene, double tolerance, double h, double delta_0,
+                             FcStepResult* result, FcMessage* message) {
+    if (fc_drive_is_constant(&scene->drive)) {
+        step_at_constant_speed(scene, h, delta_0, result);
+        return true;
+    }
     if (!fc_periods_check(scene, h, 0.0, message)) {
         return false;
     }
     const FcPeriods periods = fc_periods_in(scene, h);
-    Progress progress = {.delta = fc_elastic_plastic_reached(scene, delta_0)};
-    if (fc_drive_is_constant(&scene->drive)) {
-        step_at_constant_speed(&progress, scene, h);
-    } else if (periods.count < 2.0) {
+    Progress progress = {.tolerance = tolerance, .delta = delta_0};
+    if (periods.count < 2.0) {
         go(&progress, scene, h, 1.0);
     } else if (fc_drive_is_linear(&scene->drive)) {
         step_over_changing_periods(&progress, scene, periods.count, periods.rest);
@@ -163,7 +163,6 @@ bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcS
     if (!fc_periods_check(scene, h, progress.evaluations, message)) {
         return false;
     }
-    progress.totals.heat += heat_onto_bound(scene, delta_0, fc_elastic_plastic_reached(scene, delta_0));
     *result = (FcStepResult){
         .delta = progress.delta,
         .impulse = progress.totals.impulse,
@@ -175,7 +174,8 @@ bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcS
     return true;
 }
 
-double fc_elastic_plastic_settled(const FcScene* scene, double delta_0, double* evaluations) {
+double fc_elastic_plastic_settled(const FcScene* scene, double tolerance, double delta_0,
+                                  double* evaluations) {
     const double V = scene->drive.V.value;
     const double D = fc_bound(scene, 0.0);
     const double start = fc_elastic_plastic_reached(scene, delta_0);
@@ -183,9 +183,9 @@ double fc_elastic_plastic_settled(const FcScene* scene, double delta_0, double* 
         return V != 0.0 && D < FC_NO_BOUND ? copysign(D, V) : start;
     }
     const double period = 1.0 / scene->drive.vibration.f;
-    const FreeStarts starts = free_starts(scene, period, evaluations);
+    const FreeStarts starts = free_starts(scene, tolerance, period, evaluations);
     if (starts.lowest > starts.highest) {
-        return fc_stick_slip(scene, period, start, evaluations).delta;
+        return fc_stick_slip(scene, tolerance, period, start, evaluations).delta;
     }
     if (V == 0.0) {
         return fmax(starts.lowest, fmin(starts.highest, start));

@@ -15,11 +15,12 @@
 
 #include "solver/solver.h"
 
-// The step [0, h], h [s] >= 0, from delta_0 [m]. Where it lies beyond the bound it is taken onto it at once, and what
+// The step [0, h], h [s] >= 0, from delta_0 [m]; the error of force, mean and work is within the tolerance, times
+// fc_scene_force_scale, and but rounding where nothing moves but V. Where it lies beyond the bound it is taken onto it at once, and what
 // the bristle loses, sigma (delta_0^2 - D^2) / 2, is heat. Returns false, with *message filled and *result as it was,
 // where the periods or the evaluations are too many.
-bool fc_elastic_plastic_step(const FcScene* scene, double h, double delta_0, FcStepResult* result,
-                             FcMessage* message);
+bool fc_elastic_plastic_step(const FcScene* scene, double tolerance, double h, double delta_0,
+                             FcStepResult* result, FcMessage* message);
 
 // delta [m], taken onto the bound at the start of the scene where it lies beyond.
 double fc_elastic_plastic_reached(const FcScene* scene, double delta);
@@ -27,6 +28,7 @@ double fc_elastic_plastic_reached(const FcScene* scene, double delta);
 // What delta_0 [m] tends to after infinitely many periods, without vibration after sliding for ever, with the inputs
 // held where they are at the start of the scene. Where there is no bound, delta_0. Adds what it evaluates to
 // *evaluations.
-double fc_elastic_plastic_settled(const FcScene* scene, double delta_0, double* evaluations);
+double fc_elastic_plastic_settled(const FcScene* scene, double tolerance, double delta_0,
+                                  double* evaluations);
 
 #endif

@@ -8,8 +8,6 @@ typedef struct {
     const double* weight; // over [-1, 1]
 } FcQuadrature;
 
-extern const FcQuadrature FC_GAUSS_8;
-extern const FcQuadrature FC_GAUSS_12;
 extern const FcQuadrature FC_GAUSS_16;
 
 #endif

@@ -15,7 +15,7 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
         return fc_periods_step(fc_coulomb_interval, scene, options, h, delta_0, result, message);
     }
     if (scene->friction->model == FC_ELASTIC_PLASTIC) {
-        return fc_elastic_plastic_step(scene, h, delta_0, result, message);
+        return fc_elastic_plastic_step(scene, options->tolerance, h, delta_0, result, message);
     }
     switch (method) {
     case FC_METHOD_COLLOCATION:
@@ -52,7 +52,7 @@ double fc_method_settled(const FcScene* scene, const FcSolverOptions* options, d
         return 0.0;
     }
     if (scene->friction->model == FC_ELASTIC_PLASTIC) {
-        return fc_elastic_plastic_settled(scene, delta_0, evaluations);
+        return fc_elastic_plastic_settled(scene, options->tolerance, delta_0, evaluations);
     }
     if (fc_drive_vibrates(&scene->drive)) {
         return fixed_point(scene, options, delta_0, evaluations);

@@ -2,84 +2,115 @@
 
 #include <math.h>
 
-#include "solver/bound.h"
-#include "solver/gauss_legendre.h"
+#include "solver/gauss_tables.h"
+#include "solver/nodes.h"
+#include "solver/panel.h"
 #include "solver/solver.h"
 
-// The longest panels of 8, 12 and 16 nodes, in smooth times: errors are then below 1e-13.
-static const double SHORT_PANEL = 1.5;
-static const double MIDDLE_PANEL = 3.5;
-static const double LONG_PANEL = 6.0;
+// The longest panels of n nodes, in smooth times, for k digits: n 10^(-k / 2n), the error falling with the length to the
+// power 2n.
+enum { RULES = 4, MOST_DIGITS = 13 };
+static const double LONGEST[RULES][MOST_DIGITS + 1] = {
+    {4, 3, 2.25, 1.69, 1.26, 0.949, 0.711, 0.533, 0.4, 0.3, 0.225, 0.169, 0.126, 0.0949},
+    {6, 4.95, 4.09, 3.37, 2.78, 2.3, 1.9, 1.57, 1.29, 1.07, 0.881, 0.727, 0.6, 0.495},
+    {8, 6.93, 6, 5.2, 4.5, 3.9, 3.37, 2.92, 2.53, 2.19, 1.9, 1.64, 1.42, 1.23},
+    {12, 10.9, 9.9, 9, 8.18, 7.43, 6.75, 6.13, 5.57, 5.06, 4.6, 4.18, 3.79, 3.45},
+};
+
+FcIntegrator fc_integrator(const FcScene* scene, double smooth_time, double tolerance) {
+    int digits = -1;
+    for (double reached = 1.0; reached > tolerance && digits < MOST_DIGITS; reached *= 0.1) {
+        digits++;
+    }
+    return (FcIntegrator){.scene = scene, .smooth_time = smooth_time, .digits = digits > 0 ? digits : 0};
+}
 
 // The panel that starts at t.
 typedef struct {
-    const FcQuadrature* rule;
-    double middle, half_length; // s
-    double end;                 // s
+    int rule;
+    double start, length; // s
+    double end;           // s
 } Panel;
 
-static Panel panel_at(const FcScene* scene, double t, double end) {
-    const double d = fc_scene_d(scene, t);
-    const double smooth_time = fc_bound_smooth_time(scene, t, d, fc_scene_d_rate(scene, t));
+static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
+    const FcScene* scene = integrator->scene;
+    const double smooth_time =
+        integrator->smooth_time > 0.0
+            ? integrator->smooth_time
+            : fc_bound_smooth_time(scene, t, fc_scene_d(scene, t), fc_scene_d_rate(scene, t));
     const double left = end - t;
-    const double count = ceil(left / (LONG_PANEL * smooth_time));
-    const double length = count > 1.0 ? left / count : left;
-    const FcQuadrature* rule = length > MIDDLE_PANEL * smooth_time  ? &FC_GAUSS_16
-                               : length > SHORT_PANEL * smooth_time ? &FC_GAUSS_12
-                                                                    : &FC_GAUSS_8;
-    return (Panel){
-        .rule = rule,
-        .middle = t + 0.5 * length,
-        .half_length = 0.5 * length,
-        .end = count > 1.0 && t + length > t ? t + length : end,
-    };
+    const double longest = LONGEST[RULES - 1][integrator->digits] * smooth_time;
+    const double count = left > longest ? ceil(left / longest) : 1.0;
+    Panel panel = {.start = t, .length = left / count, .end = end};
+    while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time && panel.rule < RULES - 1) {
+        panel.rule++;
+    }
+    if (count > 1.0 && t + panel.length > t) {
+        panel.end = t + panel.length;
+    }
+    return panel;
 }
 
-static int node_count(const Panel* panel) { return 2 * panel->rule->half_count; }
+static const FcGaussRule* const RULE[RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
+static const int NODES[RULES] = {4, 6, 8, 12};
 
-// Nodes come in pairs around the middle.
-static double node_time(const Panel* panel, int i) {
-    const double offset = panel->half_length * panel->rule->node[i / 2];
-    return i % 2 == 0 ? panel->middle - offset : panel->middle + offset;
-}
-
-static double node_weight(const Panel* panel, int i) {
-    return panel->half_length * panel->rule->weight[i / 2];
-}
-
-static void add_stick_panel(const FcScene* scene, const FcPath* path, const Panel* panel,
-                            FcStickIntegrals* sum) {
-    for (int i = 0; i < node_count(panel); i++) {
-        const double t = node_time(panel, i);
-        const FcBoundMotion at = fc_bound_motion(scene, t);
-        const double sigma = node_weight(panel, i) * at.sigma;
-        const double x = fc_path_at_phase(path, t, at.sin_theta);
-        sum->impulse_slope += sigma;
-        sum->impulse_offset += sigma * x;
-        sum->work_slope += sigma * at.V;
-        sum->work_offset += sigma * at.V * x;
+static void evaluate(const FcScene* scene, const Panel* panel, FcNodeCoefficients* at) {
+    switch (panel->rule) { // constants, for which fc_node_coefficients is compiled
+    case 0:
+        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_4.node, 4, at);
+        break;
+    case 1:
+        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_6.node, 6, at);
+        break;
+    case 2:
+        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_8.node, 8, at);
+        break;
+    default:
+        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_12.node, 12, at);
+        break;
     }
 }
 
-FcStickIntegrals fc_stick_integrals(const FcScene* scene, const FcPath* path, double end, double x_end,
-                                    double* evaluations) {
-    FcStickIntegrals sum = {0};
+// The bristle's deflection at the start of the panel becomes that at its end.
+static void add_stick_panel(const FcScene* scene, const Panel* panel, double* delta, FcTotals* sum) {
+    const FcGaussRule* rule = RULE[panel->rule];
+    const int n = NODES[panel->rule];
+    const double h = panel->length;
+    FcNodeCoefficients at;
+    evaluate(scene, panel, &at);
+    double x[FC_MOST_NODES] = {0.0};
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            x[i] += rule->integral[j][i] * at.V[j];
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        const double F = rule->weight[i] * h * at.sigma[i] * (*delta + h * x[i]);
+        sum->impulse += F;
+        sum->work += F * at.V[i];
+    }
+    *delta += h * fc_dot(n, rule->weight, at.V);
+}
+
+FcTotals fc_stick_totals(const FcIntegrator* integrator, const FcPath* path, double delta, double end,
+                         double delta_end, double* evaluations) {
+    const FcScene* scene = integrator->scene;
+    FcTotals sum = {0};
     if (scene->friction->sigma_1 != 0.0) {
         sum.drag = fc_drive_square(&scene->drive, path->start, end);
     }
     if (fc_bound_stiffness_is_constant(scene)) {
         const double sigma = fc_scene_stiffness(scene, path->start);
-        sum.impulse_slope = sigma * (end - path->start);
-        sum.impulse_offset = sigma * fc_path_integral(path, end);
-        sum.work_slope = sigma * x_end;
-        sum.work_offset = 0.5 * sigma * x_end * x_end;
+        const double x_end = delta_end - delta;
+        sum.impulse = sigma * (delta * (end - path->start) + fc_path_integral(path, end));
+        sum.work = sigma * x_end * (delta + 0.5 * x_end);
         *evaluations += 1.0;
         return sum;
     }
     for (double t = path->start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
-        const Panel panel = panel_at(scene, t, end);
-        add_stick_panel(scene, path, &panel, &sum);
-        *evaluations += 1.0 + node_count(&panel);
+        const Panel panel = panel_at(integrator, t, end);
+        add_stick_panel(scene, &panel, &delta, &sum);
+        *evaluations += NODES[panel.rule];
         t = panel.end;
     }
     return sum;
@@ -93,41 +124,92 @@ typedef struct {
     double V_recedes;     // m2/s  integral of V D'
 } SlipIntegrals;
 
-static void add_slip_panel(const FcScene* scene, const Panel* panel, SlipIntegrals* sum) {
-    for (int i = 0; i < node_count(panel); i++) {
-        const FcBoundMotion at = fc_bound_motion(scene, node_time(panel, i));
-        const double weight = node_weight(panel, i);
-        sum->limit += weight * at.limit;
-        sum->limit_V += weight * at.limit * at.V;
-        sum->limit_recedes += weight * at.limit * at.D_rate;
-        sum->V_recedes += weight * at.V * at.D_rate;
+static void add_slip_panel(const FcScene* scene, const Panel* panel, bool with_rates, SlipIntegrals* sum,
+                           double* evaluations) {
+    const FcGaussRule* rule = RULE[panel->rule];
+    const int n = NODES[panel->rule];
+    const double h = panel->length;
+    FcNodeCoefficients at;
+    evaluate(scene, panel, &at);
+    for (int i = 0; i < n; i++) {
+        const double limit = rule->weight[i] * h * at.limit[i];
+        sum->limit += limit;
+        sum->limit_V += limit * at.V[i];
+        if (with_rates) {
+            const double recedes = fc_bound_motion(scene, panel->start + (0.5 + rule->node[i]) * h).D_rate;
+            sum->limit_recedes += limit * recedes;
+            sum->V_recedes += rule->weight[i] * h * at.V[i] * recedes;
+        }
     }
+    *evaluations += with_rates ? 2.0 * n : n;
 }
 
-FcTotals fc_slip_totals(const FcScene* scene, double side, double start, double end, double D_start,
-                        double D_end, double* evaluations) {
+// Whether D is a function of the separation alone.
+static bool bound_follows_d(const FcScene* scene) { return !scene->floats && scene->drive.E.rate == 0.0; }
+
+// Integral of g dD along the bound up to here, g following the load and D the separation:
+//
+//     Constant     g = sigma D                          sigma D^2 / 2
+//     Asperities   g = g_0 e,  D = g d^3 / (s_0 e^2)    g_0^2 / s_0 (d^3 + decay d^4 / 4),      e = e^(-decay d)
+static double receding_work(const FcScene* scene, const FcBoundMotion* at) {
+    const FcContactAtModulus* c = &scene->at_E;
+    if (c->model == FC_CONTACT_CONSTANT) {
+        return 0.5 * c->stiffness_0 * at->D * at->D;
+    }
+    const double g_0 = scene->friction->mu * c->load_0;
+    return g_0 / c->stiffness_0 * g_0 * at->d * at->d * at->d * (1.0 + 0.25 * c->decay * at->d);
+}
+
+// For g and V alone: with asperities ln sigma moves with d at least twice as fast as ln g.
+static FcIntegrator integrator_of_limit(const FcIntegrator* integrator) {
+    FcIntegrator of_limit = *integrator;
+    if (integrator->scene->at_E.model == FC_CONTACT_ASPERITIES && integrator->smooth_time > 0.0) {
+        of_limit.smooth_time = 2.0 / (1.0 / integrator->smooth_time + integrator->scene->drive.omega);
+    }
+    return of_limit;
+}
+
+// The error of the heat counts over the path, and D may move by much more than that.
+static FcIntegrator integrator_of_heat(const FcIntegrator* integrator, const FcBoundMotion* start,
+                                       const FcBoundMotion* end) {
+    FcIntegrator of_heat = *integrator;
+    const double D_moves = end->D - start->D;
+    double path = fc_drive_largest_speed(&integrator->scene->drive, end->t) * (end->t - start->t);
+    while (path < fabs(D_moves) && of_heat.digits < MOST_DIGITS) {
+        path *= 10.0;
+        of_heat.digits++;
+    }
+    return of_heat;
+}
+
+FcTotals fc_slip_totals(const FcIntegrator* integrator, double side, const FcBoundMotion* start,
+                        const FcBoundMotion* end, double* evaluations) {
+    const FcScene* scene = integrator->scene;
+    const bool damps = scene->friction->sigma_1 != 0.0;
     const bool bound_moves = !fc_bound_is_constant(scene);
     const bool limit_moves = !fc_bound_limit_is_constant(scene);
+    const bool with_rates = bound_moves && (damps || (limit_moves && !bound_follows_d(scene)));
     SlipIntegrals sum = {0};
-    if (limit_moves || (bound_moves && scene->friction->sigma_1 != 0.0)) {
-        for (double t = start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
-            const Panel panel = panel_at(scene, t, end);
-            add_slip_panel(scene, &panel, &sum);
-            *evaluations += 1.0 + node_count(&panel);
+    if (limit_moves || with_rates) {
+        const FcIntegrator used =
+            with_rates ? integrator_of_heat(integrator, start, end) : integrator_of_limit(integrator);
+        for (double t = start->t; t < end->t && *evaluations <= FC_MOST_EVALUATIONS;) {
+            const Panel panel = panel_at(&used, t, end->t);
+            add_slip_panel(scene, &panel, with_rates, &sum, evaluations);
             t = panel.end;
         }
     }
     if (!limit_moves) {
-        const double g = fc_scene_coefficients(scene, start).limit;
-        sum.limit = g * (end - start);
-        sum.limit_V = g * fc_drive_displacement(&scene->drive, start, end);
-        sum.limit_recedes = g * (D_end - D_start);
-        *evaluations += 1.0;
+        sum.limit = start->limit * (end->t - start->t);
+        sum.limit_V = start->limit * fc_drive_displacement(&scene->drive, start->t, end->t);
+        sum.limit_recedes = start->limit * (end->D - start->D);
+    } else if (bound_moves && bound_follows_d(scene)) {
+        sum.limit_recedes = receding_work(scene, end) - receding_work(scene, start);
     }
     return (FcTotals){
         .impulse = side * sum.limit,
         .work = side * sum.limit_V,
         .heat = side * sum.limit_V - sum.limit_recedes,
-        .drag = scene->friction->sigma_1 != 0.0 ? side * sum.V_recedes : 0.0,
+        .drag = damps ? side * sum.V_recedes : 0.0,
     };
 }

@@ -3,12 +3,12 @@
 // Sticking from a on, delta = delta_a + x(t):    F = sigma delta,  no heat but the damping's.
 // Slipping along s D, s = +1 or -1:              F = s g,          heat = integral of g (s V - D').
 //
-// Where sigma (sticking) or g (slipping) is constant the integrals are closed forms, elsewhere Gauss-Legendre
-// quadrature of smooth functions, which breaks off where the evaluations exceed FC_MOST_EVALUATIONS.
+// Where sigma (sticking) or g (slipping) is constant the integrals are closed forms, elsewhere Gauss quadrature of smooth
+// functions with the nodes that the tolerance needs, which breaks off where the evaluations exceed FC_MOST_EVALUATIONS.
 #ifndef FC_SOLVER_REGIME_INTEGRALS_H
 #define FC_SOLVER_REGIME_INTEGRALS_H
 
-#include "model/scene.h"
+#include "solver/bound.h"
 #include "solver/path.h"
 
 typedef struct {
@@ -18,21 +18,22 @@ typedef struct {
     double drag;    // m2/s  integral of delta' V, 0 without sigma_1
 } FcTotals;
 
-// Sticking is affine in delta_a.
+// How the integrals over the parts of an interval are taken.
 typedef struct {
-    double impulse_slope;  // N s/m  integral of sigma
-    double impulse_offset; // N s    integral of sigma x
-    double work_slope;     // N      integral of sigma V
-    double work_offset;    // J      integral of sigma x V
-    double drag;           // m2/s
-} FcStickIntegrals;
+    const FcScene* scene;
+    double smooth_time; // s, of bound.h, no shorter anywhere; 0: to be asked where it counts
+    int digits;         // of the quadratures
+} FcIntegrator;
 
-// From path->start to end [s], at which x = x_end [m]. Adds what it evaluates to *evaluations.
-FcStickIntegrals fc_stick_integrals(const FcScene* scene, const FcPath* path, double end, double x_end,
-                                    double* evaluations);
+FcIntegrator fc_integrator(const FcScene* scene, double smooth_time, double tolerance);
 
-// From start to end [s] along side * D, D_start and D_end [m] at its ends.
-FcTotals fc_slip_totals(const FcScene* scene, double side, double start, double end, double D_start,
-                        double D_end, double* evaluations);
+// From path->start, at which the deflection is delta [m], to end [s], at which it is delta_end. Adds what it evaluates to
+// *evaluations.
+FcTotals fc_stick_totals(const FcIntegrator* integrator, const FcPath* path, double delta, double end,
+                         double delta_end, double* evaluations);
+
+// From start to end along side * D.
+FcTotals fc_slip_totals(const FcIntegrator* integrator, double side, const FcBoundMotion* start,
+                        const FcBoundMotion* end, double* evaluations);
 
 #endif

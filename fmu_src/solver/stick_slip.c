@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "solver/bound.h"
 #include "solver/bracketed_root.h"
 #include "solver/solver.h"
 #include "solver/turning_points.h"
@@ -10,133 +9,146 @@
 // A bristle nearer to the bound than this, over D, is on it: what a step's end loses in rounding.
 static const double ON_BOUND = 1e-14;
 
+// A bristle farther from the bound than this, over D, does not meet it in rounding.
+static const double CLEAR_OF_BOUND = 0.999;
+
 // What the bristle does since a moment.
 typedef struct {
-    const FcScene* scene;
-    double side;           // +1, -1: slips along +D, -D; 0: sticks
-    double start;          // s
-    double delta;          // m, there
-    FcPath path;           // from there on, while it sticks
-    double constant_bound; // m, D where it does not move, else negative
-    FcTotals totals;
+    const FcTurningPoints* points;
+    FcIntegrator integrator;
+    double side;         // +1, -1: slips along +D, -D; 0: sticks
+    FcBoundMotion start; // while it slips
+    double delta;        // m, at the start
+    FcPath path;         // from there on, while it sticks
+    FcTotals* totals;
     double* evaluations;
 } Regime;
+
+static void begin_stick(Regime* regime, double t, double delta) {
+    regime->side = 0.0;
+    regime->delta = delta;
+    regime->path = fc_path_from(regime->points->scene, t);
+}
+
+static void begin_slip(Regime* regime, double side, const FcBoundMotion* at) {
+    regime->side = side;
+    regime->start = *at;
+}
+
+// Adds what the regime gave until now, where the deflection is delta.
+static void end_regime(Regime* regime, const FcBoundMotion* now, double delta) {
+    FcTotals part = {0};
+    if (regime->side == 0.0 && now->t > regime->path.start) {
+        part = fc_stick_totals(&regime->integrator, &regime->path, regime->delta, now->t, delta,
+                               regime->evaluations);
+    } else if (regime->side != 0.0 && now->t > regime->start.t) {
+        part = fc_slip_totals(&regime->integrator, regime->side, &regime->start, now, regime->evaluations);
+    }
+    regime->totals->impulse += part.impulse;
+    regime->totals->work += part.work;
+    regime->totals->heat += part.heat;
+    regime->totals->drag += part.drag;
+}
 
 // How far the stuck bristle is beyond side * D.
 typedef struct {
     const Regime* regime;
     double side;
+    FcBoundMotion last; // evaluated
 } Beyond;
 
-static FcRootFunction beyond_bound(const void* context, double t) {
-    const Beyond* of = context;
+static FcRootFunction beyond(const FcBoundMotion* at, double side, double delta) {
+    return (FcRootFunction){.value = side * delta - at->D,
+                            .rate = side * at->V - at->D_rate,
+                            .curvature = side * at->V_rate - at->D_curvature};
+}
+
+static FcRootFunction evaluate(void* context, double t) {
+    Beyond* of = context;
     const Regime* regime = of->regime;
-    const FcScene* scene = regime->scene;
-    if (regime->constant_bound >= 0.0) {
-        const double delta = regime->delta + fc_path_at(&regime->path, t);
-        return (FcRootFunction){.value = of->side * delta - regime->constant_bound,
-                                .rate = of->side * fc_drive_V(&scene->drive, t),
-                                .curvature = of->side * fc_drive_V_rate(&scene->drive, t)};
-    }
-    const FcBoundMotion at = fc_bound_motion(scene, t);
-    const double delta = regime->delta + fc_path_at_phase(&regime->path, t, at.sin_theta);
-    return (FcRootFunction){.value = of->side * delta - at.D,
-                            .rate = of->side * at.V - at.D_rate,
-                            .curvature = of->side * at.V_rate - at.D_curvature};
+    of->last = fc_turning_points_motion(regime->points, t);
+    return beyond(&of->last, of->side,
+                  regime->delta + fc_path_at_phase(&regime->path, t, of->last.sin_theta));
 }
 
-static void begin_stick(Regime* regime, double t, double delta) {
-    regime->side = 0.0;
-    regime->start = t;
-    regime->delta = delta;
-    regime->path = fc_path_from(regime->scene, t);
+// How the bound moves where the stuck bristle, deflected by delta_start and delta_end at the ends of the piece, meets
+// side * D. At an infinite t if it does not.
+static FcBoundMotion meeting(const Regime* regime, const FcPiece* piece, double side, double delta_start,
+                             double delta_end) {
+    const FcBoundMotion never = {.t = INFINITY};
+    if (side * delta_start >= piece->start->D * (1.0 - ON_BOUND)) {
+        return piece->nears[side < 0.0] ? *piece->start : never;
+    }
+    if (!(side * delta_end > piece->end->D)) {
+        return never;
+    }
+    Beyond of = {regime, side, *piece->start};
+    const double t = fc_bracketed_root(
+        evaluate, &of, piece->start->t, beyond(piece->start, side, delta_start), piece->end->t,
+        beyond(piece->end, side, delta_end), regime->points->last_step, regime->evaluations);
+    return fc_bound_nearby(&of.last, t);
 }
 
-static void begin_slip(Regime* regime, double t, double side, double delta) {
-    regime->side = side;
-    regime->start = t;
-    regime->delta = delta;
+static double stuck_at(const Regime* regime, const FcPiece* piece) {
+    const double t = piece->end->t;
+    return regime->delta + (piece->turns ? fc_path_at(&regime->path, t)
+                                         : fc_path_at_phase(&regime->path, t, piece->end->sin_theta));
 }
 
-// Adds what the regime gave until t, where the deflection is delta.
-static void end_regime(Regime* regime, double t, double delta) {
-    if (!(t > regime->start)) {
-        return;
-    }
-    FcTotals* totals = &regime->totals;
-    if (regime->side == 0.0) {
-        const FcStickIntegrals stick =
-            fc_stick_integrals(regime->scene, &regime->path, t, delta - regime->delta, regime->evaluations);
-        totals->impulse += stick.impulse_slope * regime->delta + stick.impulse_offset;
-        totals->work += stick.work_slope * regime->delta + stick.work_offset;
-        totals->drag += stick.drag;
-    } else {
-        const FcTotals slip = fc_slip_totals(regime->scene, regime->side, regime->start, t,
-                                             fabs(regime->delta), fabs(delta), regime->evaluations);
-        totals->impulse += slip.impulse;
-        totals->work += slip.work;
-        totals->heat += slip.heat;
-        totals->drag += slip.drag;
-    }
-}
-
-// The moment in the piece at which the stuck bristle meets side * D; infinite if it does not.
-static double meeting_time(const Regime* regime, const FcPiece* piece, double side) {
-    const double start = side * (regime->delta + fc_path_at(&regime->path, piece->start));
-    if (start >= piece->start_bound * (1.0 - ON_BOUND)) {
-        return piece->start;
-    }
-    const double end = side * (regime->delta + fc_path_at(&regime->path, piece->end));
-    if (!(end > piece->end_bound)) {
-        return INFINITY;
-    }
-    const Beyond of = {regime, side};
-    const FcRootFunction at_start = beyond_bound(&of, piece->start);
-    *regime->evaluations += 1.0;
-    return fc_bracketed_root(beyond_bound, &of, piece->start, at_start, piece->end, regime->evaluations);
-}
-
-static void cross(Regime* regime, const FcPiece* piece) {
-    const bool leaves =
-        (regime->side > 0.0 && !piece->nears_upper) || (regime->side < 0.0 && !piece->nears_lower);
-    if (leaves) {
-        const double delta = regime->side * piece->start_bound;
+// Takes the bristle, deflected by delta at the start of the piece, to its end: the deflection there.
+static double cross(Regime* regime, const FcPiece* piece, double delta) {
+    if (regime->side != 0.0 && !piece->nears[regime->side < 0.0]) {
         end_regime(regime, piece->start, delta);
-        begin_stick(regime, piece->start, delta);
+        begin_stick(regime, piece->start->t, delta);
     }
-    if (regime->side != 0.0) {
-        return;
+    if (regime->side == 0.0) {
+        const double end = stuck_at(regime, piece);
+        const FcBoundMotion upper = meeting(regime, piece, 1.0, delta, end);
+        const FcBoundMotion lower = meeting(regime, piece, -1.0, delta, end);
+        const FcBoundMotion* first = upper.t <= lower.t ? &upper : &lower;
+        const double side = upper.t <= lower.t ? 1.0 : -1.0;
+        if (!(first->t <= piece->end->t)) {
+            return end;
+        }
+        end_regime(regime, first, side * first->D);
+        begin_slip(regime, side, first);
     }
-    const double upper = piece->nears_upper ? meeting_time(regime, piece, 1.0) : INFINITY;
-    const double lower = piece->nears_lower ? meeting_time(regime, piece, -1.0) : INFINITY;
-    const double t = fmin(upper, lower);
-    if (t <= piece->end) {
-        const double side = upper <= lower ? 1.0 : -1.0;
-        const double D = regime->constant_bound >= 0.0 ? regime->constant_bound : fc_bound(regime->scene, t);
-        end_regime(regime, t, side * D);
-        begin_slip(regime, t, side, side * D);
-    }
+    return regime->side * piece->end->D;
 }
 
-// Where the bristle is when the points have come to points->t.
-static double deflection(const Regime* regime, const FcTurningPoints* points) {
-    return regime->side != 0.0 ? regime->side * points->D
-                               : regime->delta + fc_path_at(&regime->path, points->t);
+// Whether a bristle deflected by delta where the bound is D comes near no bound in [0, h].
+static bool sticks(const FcScene* scene, double h, double D, double delta) {
+    const FcDrive* drive = &scene->drive;
+    double reach = fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * h)) * h;
+    if (drive->vibration.V_1 != 0.0) {
+        reach += drive->vibration.V_1 * fmin(h, 2.0 / drive->omega);
+    }
+    const double farthest = fabs(delta) + reach;
+    return farthest < D && farthest < CLEAR_OF_BOUND * fc_scene_smallest_saturation(scene, h);
 }
 
-FcStickSlip fc_stick_slip(const FcScene* scene, double h, double delta_0, double* evaluations) {
-    FcTurningPoints points = fc_turning_points(scene, h);
-    Regime regime = {.scene = scene,
-                     .constant_bound = points.constant_bound ? points.D : -1.0,
+FcStickSlip fc_stick_slip(const FcScene* scene, double tolerance, double h, double delta_0,
+                          double* evaluations) {
+    FcTurningPoints points;
+    fc_turning_points_start(&points, scene, tolerance, h);
+    FcStickSlip result = {.delta = fc_bound_reached(points.at, delta_0),
+                          .totals.heat = fc_bound_loss(points.at, delta_0)};
+    Regime regime = {.points = &points,
+                     .integrator = fc_integrator(scene, points.smooth_time, tolerance),
+                     .totals = &result.totals,
                      .evaluations = evaluations};
-    begin_stick(&regime, 0.0, fmax(-points.D, fmin(points.D, delta_0)));
-    while (points.t < h && *evaluations + points.evaluations <= FC_MOST_EVALUATIONS) {
-        const double delta = deflection(&regime, &points);
-        const FcPiece piece = fc_turning_points_next(&points, delta, delta);
-        cross(&regime, &piece);
+    begin_stick(&regime, 0.0, result.delta);
+    if (sticks(scene, h, points.at->D, result.delta)) {
+        result.delta += fc_path_at(&regime.path, h);
+    } else {
+        while (points.at->t < h && *evaluations + points.evaluations <= FC_MOST_EVALUATIONS) {
+            FcPiece piece;
+            fc_turning_points_next(&points, result.delta, result.delta, &piece);
+            result.delta = cross(&regime, &piece, result.delta);
+        }
     }
-    const double delta = deflection(&regime, &points);
-    end_regime(&regime, h, delta);
+    const FcBoundMotion end = {.t = h};
+    end_regime(&regime, regime.side == 0.0 ? &end : points.at, result.delta);
     *evaluations += points.evaluations;
-    return (FcStickSlip){.delta = delta, .totals = regime.totals};
+    return result;
 }

@@ -13,8 +13,10 @@ typedef struct {
     FcTotals totals;
 } FcStickSlip;
 
-// Over [0, h] from delta_0 [m], which is taken onto the bound where it lies beyond. Adds what it evaluates to
-// *evaluations, and breaks off where they exceed FC_MOST_EVALUATIONS.
-FcStickSlip fc_stick_slip(const FcScene* scene, double h, double delta_0, double* evaluations);
+// Over [0, h] from delta_0 [m], which is taken onto the bound where it lies beyond, what it loses so being heat; to the tolerance over the force's
+// scale, to rounding where D stands still. Adds what it evaluates to *evaluations, and breaks off where they exceed
+// FC_MOST_EVALUATIONS.
+FcStickSlip fc_stick_slip(const FcScene* scene, double tolerance, double h, double delta_0,
+                          double* evaluations);
 
 #endif

@@ -3,114 +3,149 @@
 #include <assert.h>
 #include <math.h>
 
-#include "solver/bound.h"
 #include "solver/bracketed_root.h"
 
 // A cell, in smooth times.
-static const double CELL = 1.0;
+static const double CELL = 1.5;
+// A root's tolerance where everything else is exact but for rounding.
+static const double ROUNDING = 1e-12;
 // Of the bound at the start of a cell: ln D moves by about 1 in it.
 static const double LEAST_BOUND = 0.25;
+// A bristle within this of the bound, over D, may be on it.
+static const double NEAR_BOUND = 1e-6;
 // A cell is halved at most this often: what two roots still closer enclose is below rounding.
 enum { MOST_HALVINGS = 12 };
 
-static FcBoundSample sample(const FcScene* scene, double t) {
-    const FcBoundMotion at = fc_bound_motion(scene, t);
-    return (FcBoundSample){.t = t,
-                           .D = at.D,
-                           .q = {at.V - at.D_rate, at.V + at.D_rate},
-                           .q_rate = {at.V_rate - at.D_curvature, at.V_rate + at.D_curvature},
-                           .smooth_time = fc_bound_smooth_time(scene, t, at.d, at.d_rate)};
+// The rate at which a bound comes nearer, and its slope.
+static double approach(const FcBoundMotion* at, int which) {
+    return (which == 0 ? at->V : -at->V) - at->D_rate;
 }
 
-// The upper bound comes nearer while V > D', the lower one while V < -D'; where they are equal both views are right.
-static void set_nears(FcTurningPoints* points, const double q[2]) {
-    points->nears_upper = !(q[0] < 0.0);
-    points->nears_lower = q[1] < 0.0;
+static double approach_rate(const FcBoundMotion* at, int which) {
+    return (which == 0 ? at->V_rate : -at->V_rate) - at->D_curvature;
 }
 
-FcTurningPoints fc_turning_points(const FcScene* scene, double end) {
-    FcTurningPoints points = {.scene = scene, .end = end, .constant_bound = fc_bound_is_constant(scene)};
-    if (points.constant_bound) {
-        points.D = fc_bound(scene, 0.0);
-    } else {
-        points.cell_end = sample(scene, 0.0);
-        points.D = points.cell_end.D;
-        points.speed = fc_drive_largest_speed(&scene->drive, end);
-    }
-    points.evaluations = 1.0;
-    return points;
+// Where they stand still both views are right: the upper one is taken to come nearer.
+static bool nears(const FcBoundMotion* at, int which) {
+    return which == 0 ? !(approach(at, 0) < 0.0) : approach(at, 1) > 0.0;
 }
 
-static FcPiece next_with_constant_bound(FcTurningPoints* points) {
+void fc_turning_points_start(FcTurningPoints* points, const FcScene* scene, double tolerance, double end) {
+    points->scene = scene;
+    points->end = end;
+    points->constant_bound = fc_bound_is_constant(scene);
+    points->last_step = cbrt(1e-4 * (points->constant_bound ? fmin(ROUNDING, tolerance) : tolerance));
+    points->at = &points->sample[0];
+    points->ahead = points->sample_count = 0;
+    points->next_turn = points->turn_count = 0;
+    points->evaluations = 1.0;
+    points->sample[0] = fc_bound_motion(scene, 0.0);
+    points->smooth_time = fc_bound_common_smooth_time(scene, end);
+    points->speed = fc_drive_largest_speed(&scene->drive, end);
+}
+
+FcBoundMotion fc_turning_points_motion(const FcTurningPoints* points, double t) {
+    return points->constant_bound ? fc_bound_standing(points->scene, &points->sample[0], t)
+                                  : fc_bound_motion(points->scene, t);
+}
+
+static void next_with_constant_bound(FcTurningPoints* points, FcPiece* piece) {
     const FcDrive* drive = &points->scene->drive;
-    FcPiece piece = {.start = points->t, .start_bound = points->D, .end_bound = points->D};
-    piece.end = fc_drive_next_event(drive, piece.start, points->end).time;
-    const double V = fc_drive_V(drive, 0.5 * (piece.start + piece.end));
-    piece.nears_upper = V > 0.0;
-    piece.nears_lower = V < 0.0;
+    points->sample[0] = *points->at;
+    const double start = points->sample[0].t;
+    const double end = fc_drive_next_event(drive, start, points->end).time;
+    const double V = fc_drive_V(drive, 0.5 * (start + end));
+    points->sample[1] = fc_turning_points_motion(points, end);
+    points->at = &points->sample[1];
     points->evaluations += 1.0;
-    points->t = piece.end;
-    return piece;
+    piece->start = &points->sample[0];
+    piece->end = &points->sample[1];
+    piece->nears[0] = V > 0.0;
+    piece->nears[1] = V < 0.0;
+    piece->turns = true;
 }
 
 // Whether q may vanish twice or oftener between the samples: it dips towards zero and its tangents meet beyond, or it
 // is so steep at both ends that it turns twice in between (a cubic does not while the slopes' sum is at most three
 // times the mean slope).
 static bool may_turn_within(double q_a, double q_b, double slope_a, double slope_b, double duration) {
-    const double mean_slope = (q_b - q_a) / duration;
+    const double change = q_b - q_a;
     if ((q_a < 0.0) == (q_b < 0.0)) {
         if (fmin(fabs(q_a), fabs(q_b)) > duration * fmax(fabs(slope_a), fabs(slope_b))) {
             return false;
         }
         const double s = q_a < 0.0 ? -1.0 : 1.0;
         if (s * slope_a < 0.0 && s * slope_b > 0.0) {
-            const double meet = duration * (mean_slope - slope_b) / (slope_a - slope_b);
+            const double meet = (change - slope_b * duration) / (slope_a - slope_b);
             return s * (q_a + slope_a * meet) <= 0.0;
         }
     }
-    return slope_a * mean_slope >= 0.0 && slope_b * mean_slope >= 0.0 &&
-           fabs(slope_a) + fabs(slope_b) > 3.0 * fabs(mean_slope);
+    return slope_a * change >= 0.0 && slope_b * change >= 0.0 &&
+           (fabs(slope_a) + fabs(slope_b)) * duration > 3.0 * fabs(change);
 }
 
 typedef struct {
     const FcScene* scene;
     int which;
-} RootOf;
+    FcBoundMotion last; // evaluated
+} Approach;
 
-static FcRootFunction evaluate(const void* context, double t) {
-    const RootOf* of = context;
-    const FcBoundSample at = sample(of->scene, t);
-    return (FcRootFunction){.value = at.q[of->which], .rate = at.q_rate[of->which]};
+static FcRootFunction evaluate(void* context, double t) {
+    Approach* of = context;
+    of->last = fc_bound_motion(of->scene, t);
+    return (FcRootFunction){.value = approach(&of->last, of->which),
+                            .rate = approach_rate(&of->last, of->which)};
 }
 
-// Adds the root of q, if it changes its sign between the samples.
-static void add_turn(FcTurningPoints* points, int which, const FcBoundSample* a, const FcBoundSample* b) {
-    if ((a->q[which] < 0.0) == (b->q[which] < 0.0) || points->turn_count == FC_MOST_TURNS_IN_CELL) {
+// The turning point between two samples at which a bound's approach changes its sign.
+static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBoundMotion* a,
+                                  const FcBoundMotion* b) {
+    Approach of = {points->scene, which, *a};
+    const FcRootFunction at_a = {.value = approach(a, which), .rate = approach_rate(a, which)};
+    const FcRootFunction at_b = {.value = approach(b, which), .rate = approach_rate(b, which)};
+    const double t =
+        fc_bracketed_root(evaluate, &of, a->t, at_a, b->t, at_b, points->last_step, &points->evaluations);
+    return fc_bound_nearby(&of.last, t);
+}
+
+// Adds the turning point of a bound between two samples, if there is one. Where the bound starts to come nearer it is
+// one only for a bristle that may be on the bound by then.
+static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* a,
+                     const FcBoundMotion* b) {
+    if ((approach(a, which) < 0.0) == (approach(b, which) < 0.0) ||
+        (approach(a, which) < 0.0 && !may_be_on_bound) || points->turn_count == FC_MOST_TURNS_IN_CELL) {
         return;
     }
-    const RootOf of = {points->scene, which};
-    const FcRootFunction at_a = {.value = a->q[which], .rate = a->q_rate[which]};
-    const double t = fc_bracketed_root(evaluate, &of, a->t, at_a, b->t, &points->evaluations);
-    points->turns[points->turn_count++] = (FcTurningPoint){t, which};
+    points->turn[points->turn_count++] =
+        (FcTurningPoint){turn_between(points, which, a, b), which, approach(a, which) < 0.0};
 }
 
-// Adds the roots of V - D' (which 0) or V + D' (1) between two samples: from left to right, halving as needed.
-static void add_turns(FcTurningPoints* points, int which, const FcBoundSample* start,
-                      const FcBoundSample* end) {
-    FcBoundSample left = *start;
-    FcBoundSample ahead[MOST_HALVINGS + 1] = {*end}; // nearer ones last
-    int halvings[MOST_HALVINGS + 1] = {0};           // of the stretch that ends there
+static bool may_turn_between(const FcBoundMotion* a, const FcBoundMotion* b, int which) {
+    return may_turn_within(approach(a, which), approach(b, which), approach_rate(a, which),
+                           approach_rate(b, which), b->t - a->t);
+}
+
+// Adds the turning points of a bound between two samples: from left to right, halving as needed.
+static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* start,
+                      const FcBoundMotion* end) {
+    if (!may_turn_between(start, end, which)) {
+        add_turn(points, which, may_be_on_bound, start, end);
+        return;
+    }
+    const int before = points->turn_count;
+    FcBoundMotion left = *start;
+    FcBoundMotion ahead[MOST_HALVINGS + 1]; // nearer ones last
+    int halvings[MOST_HALVINGS + 1] = {0};  // of the stretch that ends there
+    ahead[0] = *end;
     for (int last = 0; last >= 0;) {
-        const FcBoundSample* right = &ahead[last];
-        if (halvings[last] < MOST_HALVINGS &&
-            may_turn_within(left.q[which], right->q[which], left.q_rate[which], right->q_rate[which],
-                            right->t - left.t)) {
+        const FcBoundMotion* right = &ahead[last];
+        if (halvings[last] < MOST_HALVINGS && may_turn_between(&left, right, which)) {
             halvings[last + 1] = ++halvings[last];
-            ahead[last + 1] = sample(points->scene, left.t + 0.5 * (right->t - left.t));
+            ahead[last + 1] = fc_bound_motion(points->scene, left.t + 0.5 * (right->t - left.t));
             points->evaluations += 1.0;
             last++;
         } else {
-            add_turn(points, which, &left, right);
+            add_turn(points, which, may_be_on_bound || points->turn_count > before, &left, right);
             left = *right;
             last--;
         }
@@ -121,57 +156,83 @@ static void sort(FcTurningPoint* turns, int count) {
     for (int i = 1; i < count; i++) {
         const FcTurningPoint turn = turns[i];
         int k = i;
-        for (; k > 0 && turns[k - 1].t > turn.t; k--) {
+        for (; k > 0 && turns[k - 1].at.t > turn.at.t; k--) {
             turns[k] = turns[k - 1];
         }
         turns[k] = turn;
     }
 }
 
+// The end of the next cell, or of the next few where they are alike.
+static void take_samples(FcTurningPoints* points) {
+    const FcBoundMotion start = points->sample[points->sample_count];
+    FcBoundMotion* next = &points->sample[1];
+    points->sample[0] = start;
+    points->sample_count = 1;
+    points->ahead = 0;
+    if (points->smooth_time > 0.0) {
+        const double cells = ceil((points->end - start.t) / (CELL * points->smooth_time));
+        const double length = (points->end - start.t) / cells;
+        points->sample_count = cells < FC_CELLS_AT_ONCE ? (int)cells : FC_CELLS_AT_ONCE;
+        fc_bound_motions(points->scene, start.t + length, length, points->sample_count, next);
+        if (cells <= FC_CELLS_AT_ONCE) {
+            points->sample[points->sample_count].t = points->end;
+        }
+    } else {
+        const double end =
+            start.t + CELL * fc_bound_smooth_time(points->scene, start.t, start.d, start.d_rate);
+        *next = fc_bound_motion(points->scene, end > start.t && end < points->end ? end : points->end);
+    }
+    points->evaluations += points->sample_count;
+}
+
 static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
-    const FcBoundSample start = points->cell_end;
-    const double end = start.t + CELL * start.smooth_time;
-    points->cell_end = sample(points->scene, end > start.t && end < points->end ? end : points->end);
-    points->evaluations += 1.0;
+    if (points->ahead == points->sample_count) {
+        take_samples(points);
+    }
+    const FcBoundMotion* start = &points->sample[points->ahead++];
+    const FcBoundMotion* end = start + 1;
+    points->at = start;
     points->turn_count = 0;
     points->next_turn = 0;
-    set_nears(points, start.q);
-    const double reach = points->speed * (points->cell_end.t - start.t);
-    const double bound = LEAST_BOUND * start.D;
-    if (fmax(highest, -bound) + reach >= bound) {
-        add_turns(points, 0, &start, &points->cell_end);
+    const double reach = points->speed * (end->t - start->t);
+    const double bound = LEAST_BOUND * start->D;
+    const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
+    const double on_bound = (1.0 - NEAR_BOUND) * start->D;
+    const bool may_be_on[2] = {highest >= on_bound, lowest <= -on_bound};
+    const int first = may_be_on[1] ? 1 : 0;
+    if (reachable[first]) {
+        add_turns(points, first, may_be_on[first], start, end);
     }
-    if (fmin(lowest, bound) - reach <= -bound) {
-        add_turns(points, 1, &start, &points->cell_end);
+    const bool slips_on =
+        may_be_on[first] && !may_be_on[1 - first] && nears(start, first) && points->turn_count == 0;
+    if (reachable[1 - first] && !slips_on) {
+        add_turns(points, 1 - first, may_be_on[1 - first], start, end);
     }
-    sort(points->turns, points->turn_count);
+    sort(points->turn, points->turn_count);
 }
 
-static FcPiece next_with_moving_bound(FcTurningPoints* points, double lowest, double highest) {
-    if (!(points->t < points->cell_end.t)) {
+static void next_with_moving_bound(FcTurningPoints* points, double lowest, double highest, FcPiece* piece) {
+    if (points->at == &points->sample[points->ahead]) {
         enter_cell(points, lowest, highest);
     }
-    FcPiece piece = {.start = points->t,
-                     .end = points->cell_end.t,
-                     .start_bound = points->D,
-                     .end_bound = points->cell_end.D,
-                     .nears_upper = points->nears_upper,
-                     .nears_lower = points->nears_lower};
-    if (points->next_turn < points->turn_count) {
-        const FcTurningPoint turn = points->turns[points->next_turn++];
-        piece.end = turn.t;
-        piece.end_bound = fc_bound(points->scene, turn.t);
-        points->evaluations += 1.0;
-        points->nears_upper ^= turn.which == 0;
-        points->nears_lower ^= turn.which == 1;
+    piece->start = points->at;
+    piece->nears[0] = nears(points->at, 0);
+    piece->nears[1] = nears(points->at, 1);
+    if (points->next_turn > 0) {
+        const FcTurningPoint* turned = &points->turn[points->next_turn - 1];
+        piece->nears[turned->which] = turned->nears_after;
     }
-    points->t = piece.end;
-    points->D = piece.end_bound;
-    return piece;
+    piece->turns = points->next_turn < points->turn_count;
+    piece->end = piece->turns ? &points->turn[points->next_turn++].at : &points->sample[points->ahead];
+    points->at = piece->end;
 }
 
-FcPiece fc_turning_points_next(FcTurningPoints* points, double lowest, double highest) {
-    assert(points->t < points->end);
-    return points->constant_bound ? next_with_constant_bound(points)
-                                  : next_with_moving_bound(points, lowest, highest);
+void fc_turning_points_next(FcTurningPoints* points, double lowest, double highest, FcPiece* piece) {
+    assert(points->at->t < points->end);
+    if (points->constant_bound) {
+        next_with_constant_bound(points, piece);
+    } else {
+        next_with_moving_bound(points, lowest, highest, piece);
+    }
 }

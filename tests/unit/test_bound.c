@@ -42,7 +42,73 @@ static void what_stands_still_is_known(const FcScene* scene) {
     CHECK(fc_bound_is_constant(scene) == !D_moves);
 }
 
+static void are_alike(const FcBoundMotion* a, const FcBoundMotion* b, double omega) {
+    CHECK_WITHIN(a->t, b->t, 1e-15 / omega);
+    CHECK_WITHIN(a->V, b->V, 1e-13);
+    CHECK_WITHIN(a->V_rate, b->V_rate, 1e-13 * omega);
+    CHECK_NEAR(a->sigma, b->sigma, 1e-13);
+    CHECK_NEAR(a->limit, b->limit, 1e-13);
+    CHECK_NEAR(a->D, b->D, 1e-13);
+    CHECK_WITHIN(a->D_rate, b->D_rate, 1e-13 * omega * b->D);
+    CHECK_WITHIN(a->sin_theta, b->sin_theta, 1e-14);
+}
+
+// Two periods of them, one after the other.
+static void many_motions_are_each_as_alone(const FcScene* scene) {
+    enum { COUNT = 33 };
+    FcBoundMotion at[COUNT];
+    fc_bound_motions(scene, 0.1 * PERIOD, PERIOD / 16, COUNT, at);
+    for (int i = 0; i < COUNT; i++) {
+        const FcBoundMotion alone = fc_bound_motion(scene, 0.1 * PERIOD + i * (PERIOD / 16));
+        are_alike(&at[i], &alone, TWO_PI * F);
+    }
+}
+
+// Nearby the errors fall with the third power of the distance.
+static void nearby_it_is_a_parabola(const FcScene* scene, double t) {
+    const FcBoundMotion at = fc_bound_motion(scene, t);
+    double error[2];
+    for (int k = 0; k < 2; k++) {
+        const double later = t + (k == 0 ? 1e-2 : 1e-3) * PERIOD;
+        const FcBoundMotion there = fc_bound_motion(scene, later);
+        const FcBoundMotion nearby = fc_bound_nearby(&at, later);
+        CHECK(nearby.t == later);
+        error[k] = fabs(nearby.D - there.D) / there.D;
+        CHECK_WITHIN(nearby.V, there.V, 1e-2); // of second order
+        CHECK_WITHIN(nearby.d, there.d, 1e-2 * fabs(nearby.d - at.d));
+    }
+    CHECK(error[0] < 3e-3 && error[1] < 1e-12 + 3e-3 * error[0]);
+}
+
+static void of_a_standing_bound_V_moves_alone(const FcScene* scene, double t) {
+    const FcBoundMotion now = fc_bound_motion(scene, t);
+    const FcBoundMotion at = {.t = 1.0, .V = 2.0, .D = 3.0, .limit = 4.0};
+    const FcBoundMotion standing = fc_bound_standing(scene, &at, t);
+    CHECK(standing.D == 3.0 && standing.D_rate == 0.0 && standing.limit == 4.0 && standing.t == t);
+    CHECK_NEAR(standing.V, now.V, 1e-15);
+    CHECK_NEAR(standing.V_rate, now.V_rate, 1e-15);
+    CHECK_WITHIN(standing.sin_theta, now.sin_theta, 1e-15);
+}
+
+static void the_common_smooth_time_is_nowhere_too_long(const FcScene* scene) {
+    const double common = fc_bound_common_smooth_time(scene, PERIOD);
+    CHECK(common > 0.0 || scene->floats || scene->drive.E.rate != 0.0);
+    for (double t = 0.0; t < PERIOD; t += 0.01 * PERIOD) {
+        const double rate = TWO_PI * F + fabs(fc_scene_log_rates(scene, t).sigma);
+        CHECK(common * rate < 1.0 + 1e-12);
+    }
+}
+
+// Beyond the bound a bristle loses sigma (delta^2 - D^2) / 2.
+static void what_is_beyond_is_lost(void) {
+    const FcBoundMotion at = {.sigma = 3.0, .D = 2.0};
+    CHECK(fc_bound_reached(&at, 1.5) == 1.5 && fc_bound_loss(&at, 1.5) == 0.0);
+    CHECK(fc_bound_reached(&at, 4.0) == 2.0 && fc_bound_loss(&at, 4.0) == 18.0);
+    CHECK(fc_bound_reached(&at, -4.0) == -2.0 && fc_bound_loss(&at, -4.0) == 18.0);
+}
+
 int main(void) {
+    what_is_beyond_is_lost();
     for (int k = 0; k < KINDS; k++) {
         Kind one = kind(k);
         one.friction.model = FC_ELASTIC_PLASTIC;
@@ -51,7 +117,11 @@ int main(void) {
             for (double t = 0.01 * PERIOD; t < PERIOD; t += 0.09 * PERIOD) {
                 motion_agrees_with_the_scene(&scene, t);
                 rates_are_derivatives(&scene, t);
+                nearby_it_is_a_parabola(&scene, t);
+                of_a_standing_bound_V_moves_alone(&scene, t);
             }
+            many_motions_are_each_as_alone(&scene);
+            the_common_smooth_time_is_nowhere_too_long(&scene);
             what_stands_still_is_known(&scene);
         }
     }
