@@ -27,6 +27,9 @@ from frictionlab.check.random_mutants import check_random_mutants
 from frictionlab.project import ROOT, UserError
 
 FUZZERS = {"call_sequence": 100, "state_bytes": 600}  # name: longest input in bytes
+# The tests that call the library. Left out: pages in a browser; commands, releases and examples, which build
+# or start something of their own; times; and the references, which load no FMU.
+OF_LIBRARY = ("tests/fmi2", "tests/solver", "tests/physics", "tests/batch", "tests/package", "tests/paper")
 LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
 
 
@@ -38,7 +41,7 @@ class Skipped(Exception):
 class Extent:
     """How long the runs are."""
 
-    tests: tuple[str, ...]
+    tests: tuple[str, ...]  # of the library
     fuzz_seconds: int
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
@@ -46,7 +49,7 @@ class Extent:
     seed: int = 0  # of the mutants
 
 
-FULL = Extent(("tests",), 3600, 10_000_000, ("1e9", "1e5"), 40)
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 40)
 QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 10)
 CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 4)
 
@@ -89,7 +92,9 @@ def _runtimes(*names: str) -> str:
 
 
 def check_sanitize(extent: Extent) -> None:
-    """The tests on a library built with AddressSanitizer and UndefinedBehaviorSanitizer."""
+    """The library's tests and the C unit tests with AddressSanitizer and UndefinedBehaviorSanitizer."""
+    folder = build_targets("asan", ["unit_tests"])
+    _run([str(Path(sys.executable).with_name("ctest")), "--test-dir", str(folder), "--output-on-failure"])
     runtimes = _runtimes("libasan.so", "libubsan.so")
     environment = {
         "LD_PRELOAD": runtimes,
