@@ -71,22 +71,22 @@ static FcRootFunction evaluate(void* context, double t) {
                   regime->delta + fc_path_at_phase(&regime->path, t, of->last.sin_theta));
 }
 
-// How the bound moves where the stuck bristle, deflected by delta_start and delta_end at the ends of the piece, meets
-// side * D. At an infinite t if it does not.
-static FcBoundMotion meeting(const Regime* regime, const FcPiece* piece, double side, double delta_start,
-                             double delta_end) {
-    const FcBoundMotion never = {.t = INFINITY};
+// Whether the stuck bristle, deflected by delta_start and delta_end at the ends of the piece, meets side * D; *there, the
+// bound's motion at the start, becomes that at the meeting.
+static bool meets(const Regime* regime, const FcPiece* piece, double side, double delta_start,
+                  double delta_end, FcBoundMotion* there) {
     if (side * delta_start >= piece->start->D * (1.0 - ON_BOUND)) {
-        return piece->nears[side < 0.0] ? *piece->start : never;
+        return piece->nears[side < 0.0];
     }
     if (!(side * delta_end > piece->end->D)) {
-        return never;
+        return false;
     }
     Beyond of = {regime, side, *piece->start};
     const double t = fc_bracketed_root(
         evaluate, &of, piece->start->t, beyond(piece->start, side, delta_start), piece->end->t,
         beyond(piece->end, side, delta_end), regime->points->last_step, regime->evaluations);
-    return fc_bound_nearby(&of.last, t);
+    *there = fc_bound_nearby(&of.last, t);
+    return true;
 }
 
 static double stuck_at(const Regime* regime, const FcPiece* piece) {
@@ -103,13 +103,15 @@ static double cross(Regime* regime, const FcPiece* piece, double delta) {
     }
     if (regime->side == 0.0) {
         const double end = stuck_at(regime, piece);
-        const FcBoundMotion upper = meeting(regime, piece, 1.0, delta, end);
-        const FcBoundMotion lower = meeting(regime, piece, -1.0, delta, end);
-        const FcBoundMotion* first = upper.t <= lower.t ? &upper : &lower;
-        const double side = upper.t <= lower.t ? 1.0 : -1.0;
-        if (!(first->t <= piece->end->t)) {
+        FcBoundMotion upper = *piece->start;
+        FcBoundMotion lower = *piece->start;
+        const bool meets_upper = meets(regime, piece, 1.0, delta, end, &upper);
+        const bool meets_lower = meets(regime, piece, -1.0, delta, end, &lower);
+        if (!meets_upper && !meets_lower) {
             return end;
         }
+        const double side = meets_upper && !(meets_lower && lower.t < upper.t) ? 1.0 : -1.0;
+        const FcBoundMotion* first = side > 0.0 ? &upper : &lower;
         end_regime(regime, first, side * first->D);
         begin_slip(regime, side, first);
     }
