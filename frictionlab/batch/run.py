@@ -93,7 +93,7 @@ class _Running:
             guid=batch.fmu.guid,
             scenarios=batch.scenarios,
             starts=len(batch.starts),
-            start=_array(Start, [self._start(*item) for item in batch.starts.items()]),
+            start=_array(Start, [self._start(name, column) for name, column in batch.starts.items()]),
             variables=len(references),
             variable=_array(ctypes.c_uint, references),
             results=len(results),
@@ -129,6 +129,7 @@ class _Running:
                 while worker.is_alive():
                     worker.join(POLL)
                     self._tell(progress)
+            self._tell(progress)
         except BaseException:
             self.runner.batch_stop(self.handle)
             until = time.monotonic() + STOP
@@ -183,7 +184,8 @@ class _Running:
 
 
 def _column(array: np.ndarray) -> Column:
-    return Column(array.ctypes.data, 0 if array.size == 1 else 1)
+    address, _ = array.__array_interface__["data"]  # sooner than array.ctypes.data
+    return Column(address, 0 if array.size == 1 else 1)
 
 
 def _array(kind: type, items: list) -> ctypes.Array:

@@ -64,6 +64,7 @@ class Experiment(ABC):
         self._shifts = self._all_shifts()
         self._places = self._all_places()
         self._lead = np.argmax(self._shifts > 0.0, axis=1)  # a coordinate that each moves
+        self._lengths = self._shifts.max(axis=1)
 
     @abstractmethod
     def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
@@ -112,16 +113,11 @@ class Experiment(ABC):
         By differences to one side, or to both; nuisances of single rows are shifted together.
         """
         inward = np.where(x + DIFFERENCE > self.high, -1.0, 1.0)
-        sides = np.stack([inward, -inward] if central else [inward])[:, None]
-        shifts = sides * self._shifts[:, None]  # [side, shift, point, coordinate]
-        forces = self.forces(np.concatenate([x, (x + shifts).reshape(-1, x.shape[1])]), tolerance)
-        forces = forces.reshape(-1, len(x), len(self.force))
-        here, there = forces[0], forces[1:].reshape(*shifts.shape[:3], len(self.force))
-        slopes = (there - here) / shifts[:, np.arange(len(self._lead)), :, self._lead].transpose(1, 0, 2)[
-            ..., None
-        ]
-        known = np.isfinite(slopes)  # on a side where the FMU refuses there is no slope
-        slopes = np.sum(slopes, axis=0, where=known) / np.maximum(np.sum(known, axis=0), 1) * self.weight
+        here, slopes = self._slopes(x, inward, tolerance)
+        if central:
+            back = self._slopes(x, -inward, tolerance)[1]
+            slopes = 0.5 * (np.where(np.isnan(slopes), back, slopes) + np.where(np.isnan(back), slopes, back))
+        slopes = np.where(np.isnan(slopes), 0.0, slopes * self.weight)  # none where the FMU refuses
         r = self._residuals(x, here, targets)
         jacobian = np.zeros((*r.shape, x.shape[1]))
         shift, row, column = self._places
@@ -130,6 +126,14 @@ class Experiment(ABC):
         for k, j in enumerate(self._measured):
             jacobian[:, len(self.force) + k, n + j] = 1.0
         return r, jacobian
+
+    def _slopes(self, x: np.ndarray, side: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+        """Forces, and their differences [shift, point, row] over each shift to a side."""
+        shifts = side * self._shifts[:, None]  # [shift, point, coordinate]
+        forces = self.forces(np.concatenate([x, (x + shifts).reshape(-1, x.shape[1])]), tolerance)
+        forces = forces.reshape(1 + len(shifts), len(x), len(self.force))
+        lengths = (side[:, self._lead] * self._lengths).T
+        return forces[0], (forces[1:] - forces[0]) / lengths[:, :, None]
 
     def _all_places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Shift, row and column of each derivative of a force that may differ from zero."""
@@ -175,7 +179,7 @@ class Rows(Experiment):
 
     def _moving(self, points: np.ndarray) -> dict[str, np.ndarray]:
         """Start values of the FMU that differ from point to point, broadcasting to [point, row]."""
-        values = {}
+        values: dict[str, np.ndarray] = {}
         for k, one in enumerate(self.rows.uncertain):
             change = np.zeros((len(points), len(self.force)))
             rows = slice(None) if one.row is None else slice(one.row, one.row + 1)

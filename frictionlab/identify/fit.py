@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from scipy import stats
@@ -121,16 +122,17 @@ def fits_of(experiment: Experiment, targets: np.ndarray, found: Solutions, count
 def _ended(
     experiment: Experiment, points: np.ndarray, targets: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """One step more, with tight tolerance and central differences: points, residuals, derivatives there."""
+    """One step more, with tight tolerance and central differences: points, residuals there, derivatives.
+
+    A step of a search that has ended is far shorter than the derivatives need to change.
+    """
     r, jacobian = experiment.with_slopes(points, targets, TIGHT, central=True)
     on_bound = (points <= experiment.low) | (points >= experiment.high)
     last = points + steps(jacobian, r, np.full(len(points), 1e-9), on_bound)
     last = np.clip(last, experiment.low, experiment.high)
-    r_last, jacobian_last = experiment.with_slopes(last, targets, TIGHT, central=True)
+    r_last = experiment.at(last, targets, TIGHT)
     better = np.sum(r_last**2, axis=1) < np.sum(r**2, axis=1)
-    points = np.where(better[:, None], last, points)
-    r = np.where(better[:, None], r_last, r)
-    return points, r, np.where(better[:, None, None], jacobian_last, jacobian)
+    return np.where(better[:, None], last, points), np.where(better[:, None], r_last, r), jacobian
 
 
 def start_points(experiment: Experiment, targets: np.ndarray, samples: int | None, starts: int) -> np.ndarray:
@@ -140,8 +142,8 @@ def start_points(experiment: Experiment, targets: np.ndarray, samples: int | Non
         given = experiment.start([p.to_coordinate(p.start) for p in parameters])
         return np.broadcast_to(given, (len(targets), 1, len(given)))
     low, high = (np.array([p.to_coordinate(p.search[k]) for p in parameters]) for k in (0, 1))
-    samples = samples or 16 * 2 ** len(parameters)
-    sample = low + (high - low) * qmc.Sobol(len(parameters), scramble=False).random(samples)
+    samples = samples or 8 * 2 ** len(parameters)
+    sample = low + (high - low) * _sobol(len(parameters), samples)
     for k, p in enumerate(parameters):
         if p.start is not None:
             sample[:, k] = p.to_coordinate(p.start)
@@ -155,6 +157,11 @@ def start_points(experiment: Experiment, targets: np.ndarray, samples: int | Non
     )
     best = np.argsort(np.where(np.isnan(squares), np.inf, squares), axis=1)[:, :starts]
     return points[best]
+
+
+@cache
+def _sobol(dimensions: int, samples: int) -> np.ndarray:
+    return qmc.Sobol(dimensions, scramble=False).random(samples)
 
 
 def region_bound(experiment: Experiment, result: Fit) -> float:

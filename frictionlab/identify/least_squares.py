@@ -15,6 +15,7 @@ ROUNDS = 60
 LONGEST = 2.0  # of a step, in coordinates: a factor of 7
 SHORTEST = 1e-5  # step that ends the search
 GAIN = 1e-3  # relative fall of the sum of squares that ends it
+FIRM = 1.0  # least damping after a step that failed: it halves the next one
 MERGED = 0.02  # in coordinates: searches of one problem that come so close go on as one
 
 
@@ -40,16 +41,18 @@ def solve(
     starts: np.ndarray,
     targets: np.ndarray,
     held: np.ndarray | None = None,
-    gain: float = GAIN,
+    enough: float | np.ndarray = 0.0,
     together: int = 1,
 ) -> Solutions:
     """From each start; targets and held (coordinates that stay where they are) have a row a problem.
 
-    A relative gain below `gain` ends the search. Each `together` successive ones are searches for the
+    A search ends where the sum of squares falls in a step by less than GAIN of it, or less than enough (one
+    for all, or one for each). Each `together` successive ones are searches for the
     least of one problem: of those that meet only the best goes on.
     """
     x = np.clip(starts, residuals.low, residuals.high)
     held = np.zeros(x.shape, bool) if held is None else held
+    enough = np.broadcast_to(enough, len(x))
     r, jacobian = residuals.with_slopes(x, targets)
     squares = _squares(r)
     damping = np.full(len(x), 1e-3)
@@ -65,8 +68,11 @@ def solve(
         found = _squares(r_trial)
         better = found < squares[on]
         small = np.max(np.abs(trial - x[on]), axis=1) < SHORTEST
-        ends = small | (better & (squares[on] - found <= gain * squares[on])) | (damping[on] > 1e9)
-        damping[on] = np.where(better, np.maximum(damping[on] / 10.0, 1e-12), damping[on] * 8.0)
+        little = squares[on] - found <= np.maximum(GAIN * squares[on], enough[on])
+        ends = small | (better & little) | (damping[on] > 1e9)
+        damping[on] = np.where(
+            better, np.maximum(0.1 * damping[on], 1e-12), np.maximum(8.0 * damping[on], FIRM)
+        )
         moved = on[better]
         x[moved], r[moved], squares[moved] = trial[better], r_trial[better], found[better]
         jacobian[moved] = jacobian_trial[better]
@@ -79,13 +85,12 @@ def solve(
 def _met(x: np.ndarray, squares: np.ndarray, together: int) -> np.ndarray:
     """Which searches have come to where a better one of the same problem is."""
     places = x.reshape(-1, together, x.shape[1])
-    apart = np.max(np.abs(places[:, :, None] - places[:, None]), axis=-1)
+    near = (np.abs(places[:, :, None] - places[:, None]) < MERGED).all(axis=-1)
     least = squares.reshape(-1, together)
     order = np.arange(together)
-    ahead = (least[:, None] < least[:, :, None]) | (
-        (least[:, None] == least[:, :, None]) & (order[None, :] < order[:, None])
-    )
-    return np.any((apart < MERGED) & ahead, axis=2).reshape(-1)
+    ahead = least[:, None] < least[:, :, None]
+    ahead |= (least[:, None] == least[:, :, None]) & (order[None, :] < order[:, None])
+    return (near & ahead).any(axis=2).reshape(-1)
 
 
 def _squares(r: np.ndarray) -> np.ndarray:
@@ -97,20 +102,21 @@ def _fixed(
     residuals: Residuals, x: np.ndarray, jacobian: np.ndarray, r: np.ndarray, held: np.ndarray
 ) -> np.ndarray:
     """Coordinates that are held, or lie on a bound with the sum of squares falling beyond it."""
+    at_bound = (x <= residuals.low) | (x >= residuals.high)
+    if not at_bound.any():
+        return held
     slope = np.einsum("mij,mi->mj", jacobian, r)
     return held | ((x <= residuals.low) & (slope > 0.0)) | ((x >= residuals.high) & (slope < 0.0))
 
 
 def steps(jacobian: np.ndarray, r: np.ndarray, damping: np.ndarray, fixed: np.ndarray) -> np.ndarray:
     """The damped Gauss-Newton steps, none longer than LONGEST."""
-    jacobian = np.where(fixed[:, None, :], 0.0, jacobian)
-    transposed = jacobian.transpose(0, 2, 1)
-    curvature = transposed @ jacobian
-    diagonal = np.einsum("mjj->mj", curvature)
+    transposed = np.where(fixed[:, :, None], 0.0, jacobian.transpose(0, 2, 1))
+    curvature = transposed @ transposed.transpose(0, 2, 1)
+    k = np.arange(curvature.shape[1])
+    diagonal = curvature[:, k, k]
     most = np.maximum(diagonal.max(axis=1, keepdims=True), 1e-300)
-    added = damping[:, None] * np.maximum(diagonal, 1e-9 * most) + 1e-14 * most
-    n = curvature.shape[1]
-    matrix = curvature + added[:, :, None] * np.eye(n)
-    step = -np.linalg.solve(matrix, transposed @ r[:, :, None])[:, :, 0]
-    longest = np.max(np.abs(step), axis=1, keepdims=True)
-    return np.where(fixed, 0.0, step * np.minimum(1.0, LONGEST / np.maximum(longest, 1e-300)))
+    curvature[:, k, k] += damping[:, None] * np.maximum(diagonal, 1e-9 * most) + 1e-14 * most
+    step = -np.linalg.solve(curvature, transposed @ r[:, :, None])[:, :, 0]
+    longest = np.abs(step).max(axis=1, keepdims=True)
+    return step * np.minimum(1.0, LONGEST / np.maximum(longest, 1e-300))

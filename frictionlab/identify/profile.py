@@ -23,7 +23,7 @@ FARTHEST = math.log(1e6)  # of a logarithm, or the end of the search where that 
 LOOKS = 12  # at most, for an end
 LARGEST, SMALLEST = 3.0, 1.2  # factors by which the distance grows until an end is passed
 NEAR = 0.005  # relative, of the square root of the rise: close enough to the end
-GAIN = 5e-3  # relative: of a sum of squares, a bound of which is sought
+ENOUGH = 5e-3  # of the rise at an end: a smaller fall ends the search for the least sum of squares
 
 
 @dataclass
@@ -39,6 +39,7 @@ class _End:
     near_point: np.ndarray | None = None
     far: float = math.inf
     far_rise: float = math.inf
+    gap: float = math.inf  # before the last look
     ended: bool = False
 
     def take(self, rise: float, point: np.ndarray) -> None:
@@ -54,9 +55,9 @@ class _End:
             self.place = min(max(ahead, SMALLEST * self.near), LARGEST * self.near, self.reach)
         else:
             gap = self.far - self.near
-            steep = math.isfinite(self.far_rise)
-            part = (1.0 - self.near_rise) / (self.far_rise - self.near_rise) if steep else 0.5
-            self.place = self.near + gap * min(max(part, 0.1), 0.9)
+            is_line = math.isfinite(self.far_rise) and gap <= 0.5 * self.gap  # else halved
+            part = (1.0 - self.near_rise) / (self.far_rise - self.near_rise) if is_line else 0.5
+            self.place, self.gap = self.near + gap * min(max(part, 0.05), 0.95), gap
 
     @property
     def distance(self) -> float:
@@ -172,14 +173,9 @@ def _look(
     starts = [each + each[:1] * (together - len(each)) for each in starts]  # equal ones meet at once
     held = np.zeros((len(ends) * together, starts[0][0].size), bool)
     held[np.arange(len(held)), np.repeat([end.k for end in ends], together)] = True
-    found = solve(
-        experiment,
-        np.array(starts).reshape(len(held), -1),
-        np.repeat(targets, together, axis=0),
-        held,
-        GAIN,
-        together,
-    )
+    points = np.array(starts).reshape(len(held), -1)
+    enough = np.repeat([ENOUGH * _rise(one) for one in results], together)
+    found = solve(experiment, points, np.repeat(targets, together, axis=0), held, enough, together)
     squares = found.squares.reshape(-1, together)
     points = found.x.reshape(len(ends), together, -1)
     for end, one, each, there in zip(ends, results, squares, points, strict=True):
