@@ -29,7 +29,7 @@ typedef struct {
 
 FcBoundMotion fc_bound_motion(const FcScene* scene, double t);
 
-// At t, t + step, ..., a tenth of the price each: the angle's sine and cosine are rotated from one to the next.
+// At t, t + step, ..., at half the price each: the angle's sine and cosine are rotated from one to the next.
 void fc_bound_motions(const FcScene* scene, double t, double step, int count, FcBoundMotion* at);
 
 // V, D, d and their rates at a time t so near to it that terms of third order of D and d don't count; the rest stays as
