@@ -74,7 +74,7 @@ def simulate_many(
 
     BatchError before anything runs where a name, a value or a length is wrong; it names column and row,
     counted from 0. At a KeyboardInterrupt the threads stop after their present step, and within a second
-    it goes on to the caller.
+    it goes on to the caller; a few steps of the default method are run without a thread, to their end.
     """
     batch = prepared(
         loaded_fmu(fmu, runner(built_runner())),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from frictionlab.batch import simulate_many
 from frictionlab.fmu import FrictionFmu
 from frictionlab.validate.measurements import Loop
 
@@ -33,14 +34,15 @@ def along_path(fmu: FrictionFmu, data: Loop, start_values: dict[str, float | str
     """F_t [N] at the samples, the velocity held between them."""
     steps = np.diff(data.time)
     velocities = np.diff(data.position) / steps
-    friction = np.empty(len(data.time))
-    with fmu.session({**start_values, "V": velocities[0]}) as session:
-        friction[0] = session.get("F_t")
-        for k, (h, V) in enumerate(zip(steps, velocities, strict=True)):
-            session.set("V", V)
-            session.step(h)
-            friction[k + 1] = session.get("F_t")
-    return friction
+    found = simulate_many(
+        fmu.path,
+        {**start_values, "V": velocities[0]},
+        {"F_t": ("F_t", "samples")},
+        inputs={"V": np.concatenate([velocities[:1], velocities])},
+        steps=np.concatenate([[0.0], steps]),  # one of no length gives the force at the first sample
+        unit="s",
+    )
+    return found["F_t"]
 
 
 def fit(fmu: FrictionFmu, data: Loop, law: str) -> LoopFit:
