@@ -145,6 +145,8 @@ typedef struct {
     double smooth;       // s
     double bell;         // s, that the Stribeck curve allows
     double layer, layer_ahead;
+    bool
+        starts; // with a transient: not stepped over, though it be allowed to be, since what is estimated then is far off
     bool ends_at_event;
     double allowed_last; // relative error of a panel that ends at the event
     int for_transient, for_lag, for_last, for_quadrature;
@@ -159,7 +161,7 @@ static double length(const Limits* limits, int kind) {
     const double distances = DISTANCES[kind][limits->for_lag];
     double h = least(SMOOTH[kind][finest(limits)] * limits->smooth, distances * limits->after);
     h = least(h, limits->bell);
-    if (limits->for_transient > 0) {
+    if (limits->for_transient > 0 || limits->starts) {
         h = least(h, LAYERS[kind][limits->for_transient] * limits->layer);
     }
     const double shrink = distances / (1.0 + distances);
@@ -191,9 +193,9 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     limits->for_last = more(decades(limits->allowed_last), caution);
     limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
     // The curve's bell is no exponential: few stages show little of what they miss of it.
-    const int least_kind = isfinite(limits->bell) ? KINDS - 1 : 0;
+    const int least_kind = isfinite(limits->bell) ? KINDS - 1 : limits->starts ? 1 : 0;
     const int finer = finest(limits);
-    int kind = isfinite(limits->bell) || finer > 5 ? 2 : finer > 1 ? 1 : 0;
+    int kind = isfinite(limits->bell) || finer > 5 ? 2 : finer > 1 || limits->starts ? 1 : 0;
     double h = length(limits, kind);
     if (h >= limits->left) {
         while (kind > least_kind && length(limits, kind - 1) >= limits->left) {
@@ -255,6 +257,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .bell = bell,
         .layer = stretch->w_a,
         .layer_ahead = stretch->w_b,
+        .starts = x == 0.0 && transient > mesh->allowed,
         // The impulse and the work of a constant force are exact, those of another as good as the quadrature.
         .for_quadrature = mesh->moving_limit ? decades(mesh->allowed) : 0,
         .ends_at_event = known && stretch->event <= stretch->end,
