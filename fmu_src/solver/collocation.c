@@ -14,12 +14,14 @@
 #include "solver/gauss_panel.h"
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
+#include "solver/stribeck_bell.h"
 
 // What an estimated error may be, over the tolerance. Estimates are 10 to 10^5 times too large for most panels and rarely
 // too small. The end sees the last panels as they are; in the mean the few that are too small drown.
 static const double OF_THE_MEAN = 10.0;
 static const double AT_THE_END = 0.2;
 static const double OF_GAUSS_PANELS = 2.0;
+static const double OF_BELLS = 0.2;
 // Rounding in a panel, over the limit: asking for less would only shorten panels.
 static const double ROUNDING = 2e-13;
 // Panels that are refused in a row before one is taken as it is: rounding rules by then.
@@ -29,6 +31,7 @@ enum { MOST_TRIES = 12, MOST_CAUTION = 6 };
 // P is 0 from the beginning and Q starts from there.
 typedef struct {
     const FcScene* scene;
+    const FcScene* beyond_bells; // the same where it has no Stribeck curve
     FcMap map;
     double end;               // s
     double tolerance;         // N, of the force
@@ -36,6 +39,7 @@ typedef struct {
     double per_deflection;    // 1/m, about sigma / g
     double scale;             // m, size of the deflection at the start
     double speed;             // m/s
+    double relative;          // 1, the tolerance
     double digits;            // asked for
     double held;              // N, s g in a stretch with a constant limit, else 0
     double evaluations;       // in the communication step so far
@@ -52,6 +56,14 @@ static FcTrajectories trajectories(const Progress* progress) {
 // Gauss panels for a stretch over which the bristle relaxes by less than this.
 static const double SOFT = 7.0;
 
+// By about how much the phase and ln(sigma) move in a duration [s].
+static double moving(const FcScene* scene, double duration) {
+    const FcDrive* drive = &scene->drive;
+    const double of_sigma =
+        2.0 * scene->at_E.decay * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
+    return duration * (drive->omega + of_sigma);
+}
+
 // Number of nodes for a panel over which about this much changes, for so many digits.
 static double nodes_for(double digits, double change) { return 2.0 + 0.6 * digits + 0.5 * change; }
 
@@ -60,47 +72,95 @@ static int panel_of_nodes(double nodes) {
     return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12;
 }
 
-// Goes through a stretch with Gauss panels as far as they are accurate. Returns the time they reach.
-static double cross_softly(Progress* progress, const FcStretch* stretch) {
-    const double length = stretch->end - stretch->start;
+// A part of a stretch, in a bell of the Stribeck curve or between two.
+typedef struct {
+    const FcScene* scene; // of the coefficients there
+    double start, end;    // s
+    double share;         // 1, of the stretch
+    double relaxes;       // 1, over the stretch, in a bell; else 0
+    double change;        // of the bell
+} Section;
+
+// Goes through a section with Gauss panels as far as they are accurate. Returns the time they reach.
+static double cross_section(Progress* progress, const Section* section) {
+    const double length = section->end - section->start;
     const FcDrive* drive = &progress->scene->drive;
     const double relaxes =
-        progress->per_deflection * fabs(fc_drive_displacement(drive, stretch->start, stretch->end));
-    const double moves =
-        length * (drive->omega + 2.0 * progress->scene->at_E.decay *
-                                     (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega));
-    if (!(relaxes < SOFT && moves < 15.0) || fc_has_stribeck_curve(progress->scene->friction)) {
-        return stretch->start;
-    }
-    const double change = 1.4 * moves + 2.0 * relaxes;
-    const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(progress->digits, 0.0));
+        progress->per_deflection * fabs(fc_drive_displacement(drive, section->start, section->end));
+    const double change = 1.4 * moving(progress->scene, length) + 2.0 * relaxes + section->change;
+    const double digits = progress->digits + log10(section->share);
+    const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(digits, 0.0));
     const double pieces = fc_most(1.0, ceil(0.5 * change / room));
-    int count = panel_of_nodes(nodes_for(progress->digits, change / pieces));
-    if (progress->nodes > count) { // the stretches of an interval are alike
+    int count = panel_of_nodes(nodes_for(digits, change / pieces));
+    if (section->change == 0.0 && progress->nodes > count) { // the stretches of an interval are alike
         count = progress->nodes;
     }
     double h = length / pieces;
-    double t = stretch->start;
-    const double allowed = OF_GAUSS_PANELS * progress->tolerance;
-    while (t < stretch->end) {
-        const double left = stretch->end - t;
+    double t = section->start;
+    const double allowed = (section->change > 0.0 ? OF_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
+    while (t < section->end) {
+        const double left = section->end - t;
         h = h < 0.9 * left ? h : left;
         const FcTrajectories from = trajectories(progress);
         FcPanel panel;
-        fc_gauss_panel(progress->scene, t, h, count, &from, &panel);
+        fc_gauss_panel(section->scene, t, h, count, &from, &panel);
         progress->evaluations += count;
         // count nodes resolve e^G where G grows by less than half of count; beyond that the estimates say little.
-        if (panel.z < 0.5 * count && panel.end_error <= allowed * fc_least(1.0, panel.z) &&
-            panel.mean_error <= allowed) {
+        if (panel.z < 0.5 * count &&
+            panel.end_error <= allowed * fc_least(1.0, fc_most(panel.z, section->relaxes)) &&
+            section->share * panel.mean_error <= allowed) {
             progress->map = fc_map_compose(&progress->map, &panel.map);
-            t = h < left ? t + h : stretch->end;
+            t = h < left ? t + h : section->end;
         } else if (count < FC_GAUSS_MOST_NODES) {
             count = panel_of_nodes(count + 1.0);
-            progress->nodes = count;
+            if (section->change == 0.0) {
+                progress->nodes = count;
+            }
         } else if (h * pieces > 0.2 * length) {
             h *= 0.5;
         } else {
             return t;
+        }
+    }
+    return section->end;
+}
+
+// What a bell adds to the change over a panel.
+static const double BELL_CHANGE = 8.0;
+
+// Whether a stretch that is all in a bell goes through so much of it that nodes spread evenly may miss it.
+static bool is_narrow_somewhere(const FcScene* scene, const FcStretch* stretch) {
+    const FcDrive* drive = &scene->drive;
+    const double moves = 2.0 * drive->vibration.V_1 + fabs(drive->V.rate) * (stretch->end - stretch->start);
+    return stretch->bells.after == stretch->end && fc_has_stribeck_curve(scene->friction) &&
+           moves > 3.0 * scene->friction->V_S;
+}
+
+// Goes through a stretch with Gauss panels as far as they are accurate. Returns the time they reach.
+static double cross_softly(Progress* progress, const FcStretch* stretch) {
+    const double length = stretch->end - stretch->start;
+    const double relaxes = progress->per_deflection *
+                           fabs(fc_drive_displacement(&progress->scene->drive, stretch->start, stretch->end));
+    if (!(relaxes < SOFT && moving(progress->scene, length) < 15.0)) {
+        return stretch->start;
+    }
+    if (is_narrow_somewhere(progress->scene, stretch)) {
+        return stretch->start;
+    }
+    const double ends[] = {stretch->start, stretch->bells.after, stretch->bells.before, stretch->end};
+    for (int i = 0; i < 3; i++) {
+        if (ends[i + 1] > ends[i]) {
+            const bool in_bell = i != 1;
+            const Section section = {.scene = in_bell ? progress->scene : progress->beyond_bells,
+                                     .start = ends[i],
+                                     .end = ends[i + 1],
+                                     .share = (ends[i + 1] - ends[i]) / length,
+                                     .relaxes = in_bell ? relaxes : 0.0,
+                                     .change = in_bell ? BELL_CHANGE : 0.0};
+            const double reached = cross_section(progress, &section);
+            if (reached < section.end) {
+                return reached;
+            }
         }
     }
     return stretch->end;
@@ -148,7 +208,9 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
             plan.h = fc_least(left, 4e-16 * stretch->end);
         }
         for (int tries = 0;; tries++) {
-            fc_radau_panel(scene, plan.stages, at.t, plan.h, sign, &from, &panel);
+            const bool in_bell = at.t < stretch->bells.after || at.t >= stretch->bells.before;
+            fc_radau_panel(in_bell ? scene : progress->beyond_bells, plan.stages, at.t, plan.h, sign, &from,
+                           &panel);
             progress->evaluations += plan.stages;
             double excess;
             if (is_accurate(progress, mesh, stretch, &plan, &at, &panel, &excess) || tries == MOST_TRIES) {
@@ -214,6 +276,19 @@ static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStr
     }
 }
 
+static FcBells bells_of(const Progress* progress, const FcStretch* stretch) {
+    const FcTrajectories from = trajectories(progress);
+    const FcBellStretch known = {
+        .start = stretch->start,
+        .end = stretch->end,
+        .interval = progress->end,
+        .tolerance = progress->relative,
+        .deflection = fc_most(fabs(from.delta_0), fabs(from.scale)),
+        .last = stretch->end >= progress->end,
+    };
+    return fc_bells(progress->scene, &known);
+}
+
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations) {
     assert(duration >= 0.0 && options->tolerance > 0.0);
@@ -232,9 +307,16 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
         .largest_stiffness = largest_stiffness,
         .per_deflection = middle.sigma / middle.limit,
         .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
+        .relative = options->tolerance,
         .digits = -log10(options->tolerance),
         .evaluations = *evaluations,
     };
+    FcSceneBeyondBells beyond;
+    progress.beyond_bells = scene;
+    if (fc_has_stribeck_curve(scene->friction)) {
+        fc_scene_beyond_bells(scene, &beyond);
+        progress.beyond_bells = &beyond.scene;
+    }
     if (for_one_start) {
         progress.map.relaxation = 1.0;
         progress.map.offset = delta_0;
@@ -255,6 +337,7 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
             .event = event.time < horizon ? event.time : INFINITY,
             .reversal = event.reversal,
         };
+        stretch.bells = bells_of(&progress, &stretch);
         const double reached = cross_softly(&progress, &stretch);
         if (reached < stretch.end) {
             if (!has_mesh) {

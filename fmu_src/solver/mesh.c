@@ -110,8 +110,8 @@ static double smooth_time(const FcScene* scene, const FcSmoothness* smooth, doub
     return 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)); // rate x + curvature x^2 / 2 = 1
 }
 
-// Largest g / sigma over the interval [m]: at the largest separation.
-static double largest_saturation(const FcScene* scene, double h) {
+// At the largest separation.
+double fc_mesh_largest_saturation(const FcScene* scene, double h) {
     if (scene->floats || scene->drive.E.rate != 0.0) {
         return INFINITY;
     }
@@ -128,7 +128,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
         .force = fc_scene_force_scale(scene),
         .allowed = tolerance,
         .moving_limit = fc_limit_follows_load(scene->friction) || fc_has_stribeck_curve(scene->friction),
-        .saturation = largest_saturation(scene, end),
+        .saturation = fc_mesh_largest_saturation(scene, end),
         .smooth = smoothness(scene, end),
     };
 }
@@ -138,12 +138,16 @@ static int decades(double allowed) {
     return allowed >= 0.3 ? 0 : (int)least(FINEST, 0.15 - 0.30103 * ilogb(allowed));
 }
 
+// Tolerances from which on fewer stages resolve the Stribeck curve.
+static const double BELL_OF_FEW_STAGES = 5e-5;
+
 // What limits a panel.
 typedef struct {
     double left;         // s, to the stretch's end
     double after, ahead; // s, distances from the events, widened by their layers
     double smooth;       // s
     double bell;         // s, that the Stribeck curve allows
+    bool fine;           // the bell needs the most stages
     double layer, layer_ahead;
     bool
         starts; // with a transient: not stepped over, though it be allowed to be, since what is estimated then is far off
@@ -193,9 +197,10 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     limits->for_last = more(decades(limits->allowed_last), caution);
     limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
     // The curve's bell is no exponential: few stages show little of what they miss of it.
-    const int least_kind = isfinite(limits->bell) ? KINDS - 1 : limits->starts ? 1 : 0;
+    const int of_bell = !isfinite(limits->bell) ? 0 : limits->fine ? KINDS - 1 : 1;
+    const int least_kind = of_bell > 0 ? of_bell : limits->starts ? 1 : 0;
     const int finer = finest(limits);
-    int kind = isfinite(limits->bell) || finer > 5 ? 2 : finer > 1 || limits->starts ? 1 : 0;
+    int kind = of_bell == 2 || finer > 5 ? 2 : finer > 1 || least_kind == 1 ? 1 : 0;
     double h = length(limits, kind);
     if (h >= limits->left) {
         while (kind > least_kind && length(limits, kind - 1) >= limits->left) {
@@ -226,7 +231,9 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     const double smooth = smooth_time(mesh->scene, &mesh->smooth, at->t);
     // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
     // finer where the tolerance comes near to rounding
-    const double bell = (mesh->allowed < 1e-7 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t);
+    const bool in_bell = at->t < stretch->bells.after || at->t >= stretch->bells.before;
+    const double bell =
+        in_bell ? (mesh->allowed < 1e-7 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t) : INFINITY;
     const double drift = most(0.0, 1.0 / smooth - mesh->scene->drive.omega) + 1.0 / bell;
 
     // How long an error lives, and times how long the lag's panel: the larger of here and at the event ahead, whose
@@ -255,6 +262,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .ahead = ahead,
         .smooth = smooth,
         .bell = bell,
+        .fine = mesh->allowed < BELL_OF_FEW_STAGES,
         .layer = stretch->w_a,
         .layer_ahead = stretch->w_b,
         .starts = x == 0.0 && transient > mesh->allowed,
@@ -275,6 +283,9 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         limits.allowed_last =
             least(base * mesh->end / (stretch->w_b * last_counts + tiny), at_end / (last_counts + tiny));
         plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
+    }
+    if (!in_bell) {
+        plan.h = least(plan.h, stretch->bells.before - at->t);
     }
     plan.lives = lives;
     plan.grows = smooth;

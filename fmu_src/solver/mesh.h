@@ -21,6 +21,7 @@
 #include <stdbool.h>
 
 #include "model/scene.h"
+#include "solver/stribeck_bell.h"
 
 // How fast the phase and the logarithms of sigma and g move at the most, and whether the surfaces come so close, or the
 // modulus or the load move so far, that they have to be followed instead of bounded.
@@ -49,6 +50,7 @@ typedef struct {
     double back;       // s, from the start back to what the panels are graded away from
     double
         transient; // 1, at the interval's start: |force - what it settles to| over the mesh's force; elsewhere infinite
+    FcBells bells;     // where the Stribeck curve matters
     double path_after; // m, path from the end to the next reversal or the interval's end
 } FcStretch;
 
@@ -69,6 +71,9 @@ typedef struct {
 } FcPlan;
 
 FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance);
+
+// Largest g / sigma over [0, h] [m]: what happened fades by e over that path at least. Infinite where E or the surfaces move.
+double fc_mesh_largest_saturation(const FcScene* scene, double h);
 
 // Time [s] in which the bristle relaxes by 1 from t on, with sigma and g as they are at the time inside, which is t or
 // the interval's end before it: beyond it the inputs are not known.

@@ -134,7 +134,7 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
         of_separation(scene, drive->d.value + drive->d.rate * middle + d_c, moved, count, halved_exponent,
                       at);
     }
-    if (scene->friction->model == FC_LUGRE) {
+    if (fc_has_stribeck_curve(scene->friction)) {
         for (int i = 0; i < count; i++) {
             at->limit[i] *= fc_stribeck(scene->friction, at->V[i]);
         }
