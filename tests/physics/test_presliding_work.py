@@ -31,7 +31,8 @@ def test_work_and_heat_of_every_period(fmu: FrictionFmu, sigma: float, F_C: floa
     }
     expected = 4.0 / 3.0 * sigma**2 * X**3 / F_C
     swing = 0.5 * sigma * X**2  # J, stored and given back; the sum of the work is rounded like it
-    rel = max(1e-8, 1e-4 * tolerance)  # the tolerance is F_C's, and the force here a small part of it
+    # The tolerance is F_C's and would allow all of it, but a tenth of it is held relative to the work itself.
+    rel = max(1e-8, 0.1 * tolerance)
     with fmu.session(start) as session:
         sums = [(0.0, 0.0)]
         for _ in range(4):
