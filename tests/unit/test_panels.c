@@ -131,6 +131,17 @@ static void check_errors(PanelOf panel_of, int count, double length, double stif
     const double rounding = 1e-13 * 55.0;
     CHECK(error <= 10.0 * panel.end_error + rounding);
     CHECK(impulse_error <= 10.0 * panel.mean_error + rounding);
+
+    // Of a map for any start, what a start a thousand times as far away would be off by, in the mean force and in the
+    // heat over the path.
+    const double far = 1e3 * 55.0 / stiffness;
+    const FcTrajectories any = {.delta_0 = from.delta_0, .scale = far, .speed = from.speed};
+    panel_of(&scene, count, h, &any, &panel);
+    const double mean_error = far * fabs(panel.map.impulse_slope - exact.impulse_slope) / h;
+    const double heat_error = far * far * fabs(panel.map.heat_square - exact.heat_square) / (h * from.speed);
+    CHECK(mean_error <= 10.0 * panel.mean_error + 1e3 * rounding);
+    const bool is_refused = panel.mean_error > 0.01 * far * stiffness; // far too long at any tolerance
+    CHECK(is_refused || heat_error <= 10.0 * panel.mean_error + 1e6 * rounding);
 }
 
 static void estimates_bound_the_errors(void) {
