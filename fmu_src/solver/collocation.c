@@ -14,6 +14,7 @@
 #include "solver/gauss_panel.h"
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
+#include "solver/settled_panel.h"
 #include "solver/stribeck_bell.h"
 
 // What an estimated error may be, over the tolerance. Estimates are 10 to 10^5 times too large for most panels and rarely
@@ -201,6 +202,15 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
                  mesh->force;
         if (at.gone == 0.0) {
             at.transient = fc_least(at.lag, stretch->transient);
+        }
+        const FcSettledStart from_here = {mesh, stretch, &at, sign, panel.sigma, panel.limit};
+        FcMap rest;
+        double rest_displacement;
+        if (fc_settled_panel(&from_here, &rest, &rest_displacement)) {
+            progress->map = fc_map_compose(&progress->map, &rest);
+            progress->evaluations += 1.0;
+            displacement += rest_displacement;
+            break;
         }
         FcPlan plan = fc_mesh_plan(mesh, stretch, &at, caution);
         const double left = stretch->end - at.t;

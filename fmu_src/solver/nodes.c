@@ -178,7 +178,8 @@ void fc_node_coefficients(const FcScene* scene, double t, double h, const double
         with_series(scene, t, h, node, 10, angle, exponent, at);
         break;
     default:
-        with_series(scene, t, h, node, count, angle, exponent, at);
+        assert(count == FC_MOST_NODES);
+        with_series(scene, t, h, node, FC_MOST_NODES, angle, exponent, at);
         break;
     }
 }

@@ -1,0 +1,116 @@
+#include "solver/settled_panel.h"
+
+#include <math.h>
+
+#include "model/constants.h"
+
+// Bounds are held this far below the tolerance.
+static const double SHARE = 0.3;
+// Of the force: a transient of that much is there where the bristle is told to have settled.
+static const double ROUNDING = 4e-16;
+
+// |V| [m/s].
+static double speed_at_start(const FcSettledStart* from) {
+    return from->at->rate * from->limit / from->sigma;
+}
+
+// Integral of 1 / |V| [s2/m] from the panel's start to its end, at the most but for a factor of 2: |V| grows about linearly
+// from what it came from and falls so towards the reversal, whose layer is w_b wide.
+static double slowness(const FcSettledStart* from) {
+    const FcStretch* stretch = from->stretch;
+    const FcDrive* drive = &from->mesh->scene->drive;
+    const double t = from->at->t;
+    const double duration = stretch->end - t;
+    const double after = t - stretch->start + stretch->back;
+    double slow = after / speed_at_start(from) * log1p(duration / after);
+    if (stretch->event <= stretch->end) {
+        slow += (2.0 + log1p(duration / stretch->w_b)) / fabs(fc_drive_V_rate(drive, stretch->end));
+    } else if (isfinite(stretch->event)) {
+        const double ahead = stretch->event - stretch->end + stretch->w_b;
+        slow += ahead / fabs(fc_drive_V(drive, stretch->end)) * log1p(duration / ahead);
+    }
+    return slow;
+}
+
+// Error of the force at the end, over the limit: of second order in the lag.
+static double error_at_end(const FcSettledStart* from, double drift) {
+    const FcStretch* stretch = from->stretch;
+    if (stretch->event <= stretch->end) {
+        const double lag = drift * stretch->w_b;
+        return lag * (lag + from->mesh->smooth.rate * stretch->w_b);
+    }
+    const double relaxes =
+        from->mesh->saturation / fabs(fc_drive_V(&from->mesh->scene->drive, stretch->end)); // s
+    const double after = stretch->end - stretch->start + stretch->back;
+    const double ahead = isfinite(stretch->event) ? stretch->event - stretch->end : INFINITY;
+    const double changes = from->mesh->smooth.rate + 1.0 / fmin(after, ahead);
+    return drift * relaxes * relaxes * changes;
+}
+
+static bool is_possible(const FcMesh* mesh, const FcStretch* stretch) {
+    return !mesh->moving_limit && !mesh->smooth.follows_d_and_E && isfinite(mesh->saturation) &&
+           (stretch->event > stretch->end || stretch->reversal);
+}
+
+// Cheap tests first: they fail on most panels.
+static bool is_accurate(const FcSettledStart* from, double* displacement) {
+    const FcMesh* mesh = from->mesh;
+    const FcStretch* stretch = from->stretch;
+    const FcPlace* at = from->at;
+    if (!(at->rate > 0.0) || !is_possible(mesh, stretch)) {
+        return false;
+    }
+    const double allowed = SHARE * mesh->allowed;
+    const double drift = mesh->smooth.rate - mesh->scene->drive.omega; // 1/s, |rho| at the most
+    const double after = at->t - stretch->start + stretch->back;
+    const double lag_lasts = 2.0 * drift * mesh->saturation;
+    const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (at->lag + ROUNDING); // 1/s
+    if (mesh->smooth.rate + 1.0 / after > allowed_changes ||
+        lag_lasts * after > allowed * mesh->end * speed_at_start(from)) {
+        return false;
+    }
+    if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(mesh->scene, at->t) > allowed_changes) {
+        return false;
+    }
+    *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, stretch->end);
+    return at->lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
+           lag_lasts * slowness(from) <= allowed * mesh->end && error_at_end(from, drift) <= allowed;
+}
+
+// What the force lags behind the limit at the end, over the limit.
+static double lag_at_end(const FcSettledStart* from, const FcCoefficients* end) {
+    const FcStretch* stretch = from->stretch;
+    const FcLogRates rates = fc_scene_log_rates(from->mesh->scene, stretch->end);
+    if (stretch->event <= stretch->end) {
+        return rates.sigma * stretch->w_b * 0.5 * sqrt(FC_PI);
+    }
+    return rates.sigma / -fc_coefficients_rate(end);
+}
+
+bool fc_settled_panel(const FcSettledStart* from, FcMap* map, double* displacement) {
+    if (!is_accurate(from, displacement)) {
+        return false;
+    }
+    const FcStretch* stretch = from->stretch;
+    const FcCoefficients end = fc_scene_coefficients(from->mesh->scene, stretch->end);
+    const double force = from->sign * from->limit;
+    const double D = force / from->sigma;
+    const double V = from->sign * speed_at_start(from);
+    const double X = *displacement;
+    const double relaxes = 1.0 / from->at->rate; // s
+    // The transient is (delta_0 - D) e^-rt, and sigma r D = sigma V.
+    *map = (FcMap){
+        .relaxation = 1.0,
+        .offset = force * (1.0 + lag_at_end(from, &end)) / end.sigma,
+        .impulse_slope = from->sigma * relaxes,
+        .impulse_offset = force * (stretch->end - from->at->t - relaxes),
+        .work_slope = force,
+        .work_offset = force * (X - D),
+        .drag_slope = -V,
+        .drag_offset = V * D,
+        .heat_square = 0.5 * from->sigma,
+        .heat_slope = force,
+        .heat_offset = force * (X - 1.5 * D),
+    };
+    return true;
+}

@@ -1,0 +1,28 @@
+// The rest of a stretch once the bristle follows its constant limit, in closed form.
+//
+// With s = sgn V, the settled deflection D = s g / sigma and y = sigma delta - s g, the bristle obeys
+//
+//     y' = rho (s g + y) - r y,     r = sigma |V| / g,     rho = sigma' / sigma
+//
+// A transient y decays with r; what stays is the lag s g rho / r, and next to it a part of about 1 / (r T), T being the
+// time over which r or rho change. Where the mean of the lag over the interval is within the tolerance, only the end and
+// the transient are left to be told. Without vibration of the stiffness there is no lag at all.
+#ifndef FC_SOLVER_SETTLED_PANEL_H
+#define FC_SOLVER_SETTLED_PANEL_H
+
+#include "solver/affine_map.h"
+#include "solver/mesh.h"
+
+// Where and of what the panel to the stretch's end begins.
+typedef struct {
+    const FcMesh* mesh;
+    const FcStretch* stretch;
+    const FcPlace* at;
+    double sign;         // of V
+    double sigma, limit; // N/m, N, there
+} FcSettledStart;
+
+// Whether the panel's error is small enough for what the interval is allowed; if so, its map and its displacement [m].
+bool fc_settled_panel(const FcSettledStart* start, FcMap* map, double* displacement);
+
+#endif
