@@ -1,5 +1,6 @@
 // The default method over an interval against brute force: short steps of constant coefficients, those of the step's
-// middle, each solved exactly. Their error falls with the square of the step; with 4e5 steps a period it is below 1e-8.
+// middle, each solved exactly. Their error falls with the square of the step; with 4e5 steps a period it is below 1e-8,
+// but for the end of a stiff contact: there the bristle has settled on what the last step's middle asks for.
 #include "check.h"
 #include "solver/collocation.h"
 #include "table_1.h"
@@ -51,8 +52,9 @@ static double evaluations_of(const Slider* slider, double h, double tolerance) {
     fc_map_apply(&map, &found);
     const FcStepResult exact = brute_force(scene, h, delta_0);
     const double path = fc_drive_largest_speed(&scene->drive, h) * h;
+    const double of_last_step = fabs(fc_scene_log_rates(scene, h).sigma) * h / STEPS;
     CHECK_WITHIN(fc_scene_stiffness(scene, h) * found.delta, fc_scene_stiffness(scene, h) * exact.delta,
-                 tolerance * F_C);
+                 (tolerance + of_last_step) * F_C);
     CHECK_WITHIN(found.impulse, exact.impulse, tolerance * F_C * h);
     CHECK_WITHIN(found.work, exact.work, tolerance * F_C * path);
     CHECK_WITHIN(found.heat, exact.heat, tolerance * F_C * path);
@@ -93,5 +95,5 @@ int main(void) {
     every_stiffness_and_tolerance();
     a_settled_stretch_is_one_panel();
     ends_around_a_reversal();
-    return 0;
+    return check_result();
 }
