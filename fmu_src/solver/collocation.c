@@ -117,7 +117,7 @@ static double cross_section(Progress* progress, const Section* section) {
             if (section->change == 0.0) {
                 progress->nodes = count;
             }
-        } else if (h * pieces > 0.2 * length) {
+        } else if (h * pieces > 0.2 * length && t + 0.5 * h > t) {
             h *= 0.5;
         } else {
             return t;
