@@ -3,7 +3,9 @@
 //
 //     little relaxes in the stretch     one or a few Gauss panels, without a linear system
 //     else, or where those miss         Radau panels of 3, 5 or 9 stages on the mesh of solver/mesh.h
+//     once it follows its limit         the rest of the stretch in closed form (solver/settled_panel.h)
 //
+// LuGre's limit depends on V in bells around the reversals and on nothing but the load beyond (solver/stribeck_bell.h).
 // Every panel's error is estimated and held against what an error may be there, so that F_t at the interval's end and
 // its mean stay within the tolerance.
 #include "solver/collocation.h"

@@ -2,7 +2,7 @@
 //
 // One idea: what may an error of the force be here, so that F_t at the end and its mean stay within the tolerance? The
 // bristle forgets. An error made at t lives for a time K, until it has relaxed: in the mean it counts K / H, H being
-// the interval. The end sees it only if less than ln(1 / tolerance) relaxes in between.
+// the interval. The end sees e^-z of it, z being what relaxes in between.
 //
 // Two things are to be resolved. What is left of a transient counts while it lives; its panels are measured in layers,
 // the time in which the bristle relaxes after the reversal. The lag behind a moving limit lasts; its panels are measured

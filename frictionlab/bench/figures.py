@@ -52,6 +52,48 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
     return style.save_both(figure, folder, "work-precision")
 
 
+def price(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folder: Path) -> list[Path]:
+    """The default's cost over that of the cheapest other method: scenes downwards, accuracies to the right."""
+    accuracies = sorted({float(str(row["accuracy"])) for row in rows}, reverse=True)
+    ratio = {(row["case"], row["accuracy"]): row for row in rows}
+    figure, axes = style.subplots(1, 1, size=(10.5, 0.42 * len(titles) + 1.6))
+    values = np.array([[float(str(ratio[name, a]["ratio"])) for a in accuracies] for name in titles])
+    shown = np.where(values > 0.0, np.log10(np.maximum(values, 1e-6)), -3.0)
+    axes.imshow(shown, cmap="RdYlGn_r", vmin=-1.5, vmax=1.5, aspect="auto")
+    for i, name in enumerate(titles):
+        for j, accuracy in enumerate(accuracies):
+            row = ratio[name, accuracy]
+            text = "alone" if values[i, j] == 0.0 else f"{values[i, j]:.2g}\n{row['cheapest_other']}"
+            axes.text(j, i, text, ha="center", va="center", fontsize=6.5)
+    axes.set_xticks(range(len(accuracies)), [f"{a:.0e}".replace("e-0", "e-") for a in accuracies])
+    axes.set_yticks(range(len(titles)), list(titles.values()))
+    axes.tick_params(length=0)
+    axes.grid(visible=False)
+    axes.set_xlabel(r"error of $F_t$ and its mean at most, over $F_C$")
+    axes.set_title("CPU time of the default over that of the cheapest other method, named below")
+    return style.save_both(figure, folder, "work-precision-price")
+
+
+def work_against_tolerance(points: Sequence[Point], titles: Mapping[str, str], folder: Path) -> list[Path]:
+    """What the default does for a vibration period, against what is asked of it."""
+    figure, axes = style.subplots(1, 2, size=(10.4, 4.2))
+    own = [p for p in points if p.method == "collocation" and not p.failure and "σ" in titles[p.case]]
+    for case in dict.fromkeys(p.case for p in own):
+        mine = [p for p in own if p.case == case]
+        tolerances = [p.setting for p in mine]
+        axes[0].loglog(tolerances, [p.evaluations for p in mine], ".-", label=titles[case])
+        axes[1].loglog(tolerances, [1e6 * p.cpu for p in mine], ".-", label=titles[case])
+    for panel, label in zip(
+        axes, ("evaluations per 50 µs simulated", "CPU time per 50 µs simulated [µs]"), strict=True
+    ):
+        panel.set_xlabel("solver.tolerance")
+        panel.set_ylabel(label)
+        panel.invert_xaxis()
+    handles, names = axes[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncols=3)
+    return style.save_both(figure, folder, "work-tolerance")
+
+
 def _diagram(axes: Axes, points: Sequence[Point]) -> None:
     failures: list[tuple[str, str]] = []
     for method in dict.fromkeys(p.method for p in points):

@@ -36,6 +36,7 @@ independent reference. Then the error against the communication step for held an
 cost of one step against the number of vibration periods in it."""
 
 MATCHED_ERROR = 1e-9
+ACCURACIES = tuple(10.0**-k for k in range(2, 13))
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,34 @@ def cost_at(points: Sequence[Point], error: float) -> float:
         return front[0].cpu
     errors = [-math.log(max(p.error, 1e-17)) for p in front]
     return math.exp(np.interp(-math.log(error), errors, [math.log(p.cpu) for p in front]))
+
+
+def price(points: Sequence[Point], accuracies: Sequence[float] = ACCURACIES) -> list[dict[str, object]]:
+    """What the default costs over the cheapest other method, in every scene at every accuracy.
+
+    A setting reaches an accuracy if its error does; a fixed step only if the next smaller one does too, so that
+    luck at one step does not count. Where nothing else reaches it, `ratio` is 0; where the default does not, NaN.
+    """
+    rows: list[dict[str, object]] = []
+    for case in dict.fromkeys(p.case for p in points):
+        for accuracy in accuracies:
+            costs = {}
+            for method in dict.fromkeys(p.method for p in points):
+                own = sorted(
+                    (p for p in points if p.case == case and p.method == method and not p.failure),
+                    key=lambda p: p.setting,
+                )
+                errors = [p.error for p in own]
+                if method in FIXED_STEP:
+                    errors = [max(pair) for pair in zip(errors, [*errors[1:], math.inf], strict=True)]
+                reached = [p.cpu for p, error in zip(own, errors, strict=True) if error <= accuracy]
+                if reached:
+                    costs[method] = min(reached)
+            default = costs.pop("collocation", math.nan)
+            rival = min(costs, key=costs.__getitem__, default="")
+            ratio = default / costs[rival] if rival else 0.0 * default
+            rows.append({"case": case, "accuracy": accuracy, "cheapest_other": rival, "ratio": ratio})
+    return rows
 
 
 def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
@@ -250,15 +279,19 @@ def run(options: argparse.Namespace) -> None:
         progress.advance(task)
         held = held_step(bench, quick)
     compared = ratios(points)
+    prices = price(points)
     written = [
         write_csv([p.row() for p in points], output / "work-precision.csv"),
         write_csv(compared, output / "work-precision-ratios.csv"),
+        write_csv(prices, output / "work-precision-price.csv"),
         write_csv(step_sizes, output / "step-size.csv"),
         write_csv(periods, output / "periods.csv"),
         write_machine(output / "machine.json"),
     ]
     titles = {case.name: case.title for case in chosen}
     written += figures.work_precision(points, titles, output)
+    written += figures.price(prices, titles, output)
+    written += figures.work_against_tolerance(points, titles, output)
     written += figures.step_sizes(step_sizes, output)
     written += figures.periods(periods, output)
     if options.docs:
