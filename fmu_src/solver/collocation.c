@@ -101,9 +101,9 @@ static double cross_section(Progress* progress, const Section* section) {
     double h = length / pieces;
     double t = section->start;
     const double allowed = (section->change > 0.0 ? OF_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
-    while (t < section->end) {
+    while (t < section->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const double left = section->end - t;
-        h = h < 0.9 * left ? h : left;
+        h = h < 0.9 * left && t + h > t ? h : left;
         const FcTrajectories from = trajectories(progress);
         FcPanel panel;
         fc_gauss_panel(section->scene, t, h, count, &from, &panel);
@@ -289,16 +289,21 @@ static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStr
 }
 
 static FcBells bells_of(const Progress* progress, const FcStretch* stretch) {
+    const FcScene* scene = progress->scene;
+    if (!fc_has_stribeck_curve(scene->friction)) {
+        return (FcBells){stretch->start, stretch->end};
+    }
     const FcTrajectories from = trajectories(progress);
+    const FcDriveEvent later = fc_drive_next_event(&scene->drive, stretch->end, progress->end);
     const FcBellStretch known = {
         .start = stretch->start,
         .end = stretch->end,
         .interval = progress->end,
         .tolerance = progress->relative,
         .deflection = fc_most(fabs(from.delta_0), fabs(from.scale)),
-        .last = stretch->end >= progress->end,
+        .path_after = fabs(fc_drive_displacement(&scene->drive, stretch->end, later.time)),
     };
-    return fc_bells(progress->scene, &known);
+    return fc_bells(scene, &known);
 }
 
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,

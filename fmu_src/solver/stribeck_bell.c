@@ -35,8 +35,8 @@ static double width(const FcDrive* drive, double t, double side, double reach, d
 }
 
 // Whether a bell at t is too narrow to be seen. While V goes through it the bristle relaxes by at most dz; by dz of itself
-// the force then differs, until it is forgotten; and the heat sigma r delta^2 goes with 1 / g in it.
-static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, double t) {
+// the force then differs, until it is forgotten, which the path after tells; and the heat sigma r delta^2 goes with 1 / g in it.
+static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, double t, double path_after) {
     const FcDrive* drive = &scene->drive;
     const double V_S = scene->friction->V_S;
     const double excess = scene->friction->staticRatio - 1.0;
@@ -51,8 +51,8 @@ static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, doub
     const double speed = fc_drive_largest_speed(drive, stretch->interval);
     const double of_heat = excess * force * force * V_S * tau / (speed * stretch->interval);
     const double allowed = LEFT_OUT * stretch->tolerance;
-    const bool seen_at_end = stretch->last || path < (6.0 - log(stretch->tolerance)) *
-                                                         fc_mesh_largest_saturation(scene, stretch->interval);
+    const bool seen_at_end =
+        path_after < (6.0 - log(stretch->tolerance)) * fc_mesh_largest_saturation(scene, stretch->interval);
     return lasts * memory / stretch->interval + of_heat <= allowed && (lasts <= allowed || !seen_at_end);
 }
 
@@ -77,10 +77,11 @@ FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch) {
     }
     const double after = width(&scene->drive, stretch->start, 1.0, reach, length);
     const double before = width(&scene->drive, stretch->end, -1.0, reach, length);
-    if (after > 0.0 && !is_left_out(scene, stretch, stretch->start)) {
+    const double path = fabs(fc_drive_displacement(&scene->drive, stretch->start, stretch->end));
+    if (after > 0.0 && !is_left_out(scene, stretch, stretch->start, path)) {
         bells.after = stretch->start + after;
     }
-    if (before > 0.0 && !is_left_out(scene, stretch, stretch->end)) {
+    if (before > 0.0 && !is_left_out(scene, stretch, stretch->end, stretch->path_after)) {
         bells.before = stretch->end - before;
     }
     if (!(bells.after < bells.before)) {

@@ -27,7 +27,7 @@ typedef struct {
     double interval;   // s, that the mean is taken over
     double tolerance;  // 1
     double deflection; // m, at the start, at the most
-    bool last;         // the interval ends with it
+    double path_after; // m, from its end to the next event or the end of the interval
 } FcBellStretch;
 
 // Bells at the start and at the end: [start, after] and [before, end]. Without any, after = start and before = end; where

@@ -137,7 +137,7 @@ def price(points: Sequence[Point], accuracies: Sequence[float] = ACCURACIES) -> 
                 )
                 errors = [p.error for p in own]
                 if method in FIXED_STEP:
-                    errors = [max(pair) for pair in zip(errors, [*errors[1:], math.inf], strict=True)]
+                    errors = [max(pair) for pair in zip(errors, [*errors, math.inf][1:], strict=True)]
                 reached = [p.cpu for p, error in zip(own, errors, strict=True) if error <= accuracy]
                 if reached:
                     costs[method] = min(reached)
