@@ -21,6 +21,7 @@ COLOUR = {
 }
 LINE = {"scipy BDF": "--", "PythonFMU": ":", "plain CVODE": "--"}
 MARKER = {"collocation": "o", "cvode": "s", "plain CVODE": "D", "scipy LSODA": "^", "PythonFMU": "v"}
+SHORT = {"backwardEuler": "b. Euler", "explicitEuler": "e. Euler", "plain CVODE": "CVODE"}
 SMALLEST_ERROR = 1e-16
 REASONS = {
     "too long for solver.method": "unstable: refused",
@@ -53,7 +54,7 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
 
 
 def price(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folder: Path) -> list[Path]:
-    """The default's cost over that of the cheapest other method: scenes downwards, accuracies to the right."""
+    """The default's cost over that of the cheapest other: scenes downwards, accuracies to the right."""
     accuracies = sorted({float(str(row["accuracy"])) for row in rows}, reverse=True)
     ratio = {(row["case"], row["accuracy"]): row for row in rows}
     figure, axes = style.subplots(1, 1, size=(10.5, 0.42 * len(titles) + 1.6))
@@ -63,8 +64,10 @@ def price(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folde
     for i, name in enumerate(titles):
         for j, accuracy in enumerate(accuracies):
             row = ratio[name, accuracy]
-            text = "alone" if values[i, j] == 0.0 else f"{values[i, j]:.2g}\n{row['cheapest_other']}"
-            axes.text(j, i, text, ha="center", va="center", fontsize=6.5)
+            rival = SHORT.get(str(row["cheapest_other"]), row["cheapest_other"])
+            text = "alone" if values[i, j] == 0.0 else f"{values[i, j]:.2g}\n{rival}"
+            colour = "white" if shown[i, j] < -1.0 else style.BLACK
+            axes.text(j, i, text, ha="center", va="center", fontsize=7, color=colour)
     axes.set_xticks(range(len(accuracies)), [f"{a:.0e}".replace("e-0", "e-") for a in accuracies])
     axes.set_yticks(range(len(titles)), list(titles.values()))
     axes.tick_params(length=0)
@@ -77,7 +80,8 @@ def price(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folde
 def work_against_tolerance(points: Sequence[Point], titles: Mapping[str, str], folder: Path) -> list[Path]:
     """What the default does for a vibration period, against what is asked of it."""
     figure, axes = style.subplots(1, 2, size=(10.4, 4.2))
-    own = [p for p in points if p.method == "collocation" and not p.failure and "σ" in titles[p.case]]
+    good = [p for p in points if p.method == "collocation" and not p.failure]
+    own = [p for p in good if p.case.startswith("vibrating")]
     for case in dict.fromkeys(p.case for p in own):
         mine = [p for p in own if p.case == case]
         tolerances = [p.setting for p in mine]

@@ -123,8 +123,9 @@ def cost_at(points: Sequence[Point], error: float) -> float:
 def price(points: Sequence[Point], accuracies: Sequence[float] = ACCURACIES) -> list[dict[str, object]]:
     """What the default costs over the cheapest other method, in every scene at every accuracy.
 
-    A setting reaches an accuracy if its error does; a fixed step only if the next smaller one does too, so that
-    luck at one step does not count. Where nothing else reaches it, `ratio` is 0; where the default does not, NaN.
+    A setting reaches an accuracy if its error does; a fixed step only if the next smaller one does too, so
+    that luck at one step does not count. Where nothing else reaches it, `ratio` is 0; where the default does
+    not, NaN.
     """
     rows: list[dict[str, object]] = []
     for case in dict.fromkeys(p.case for p in points):
