@@ -220,7 +220,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
             plan.h = fc_least(left, 4e-16 * stretch->end);
         }
         for (int tries = 0;; tries++) {
-            const bool in_bell = at.t < stretch->bells.after || at.t >= stretch->bells.before;
+            const bool in_bell = fc_in_bell(&stretch->bells, at.t);
             fc_radau_panel(in_bell ? scene : progress->beyond_bells, plan.stages, at.t, plan.h, sign, &from,
                            &panel);
             progress->evaluations += plan.stages;

@@ -231,7 +231,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     const double smooth = smooth_time(mesh->scene, &mesh->smooth, at->t);
     // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
     // finer where the tolerance comes near to rounding
-    const bool in_bell = at->t < stretch->bells.after || at->t >= stretch->bells.before;
+    const bool in_bell = fc_in_bell(&stretch->bells, at->t);
     const double bell =
         in_bell ? (mesh->allowed < 1e-7 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t) : INFINITY;
     const double drift = most(0.0, 1.0 / smooth - mesh->scene->drive.omega) + 1.0 / bell;

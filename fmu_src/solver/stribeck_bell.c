@@ -34,17 +34,23 @@ static double width(const FcDrive* drive, double t, double side, double reach, d
     return fmin(x, most);
 }
 
+// Largest sigma over the least limit [1/m].
+static double most_per_path(const FcScene* scene, const FcBellStretch* stretch) {
+    return fc_scene_largest_stiffness(scene, stretch->interval) /
+           fc_scene_smallest_limit(scene, stretch->interval);
+}
+
 // Whether a bell at t is too narrow to be seen. While V goes through it the bristle relaxes by at most dz; by dz of itself
 // the force then differs, until it is forgotten, which the path after tells; and the heat sigma r delta^2 goes with 1 / g in it.
 static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, double t, double path_after) {
     const FcDrive* drive = &scene->drive;
     const double V_S = scene->friction->V_S;
     const double excess = scene->friction->staticRatio - 1.0;
-    const double per_path = fc_scene_largest_stiffness(scene, stretch->interval) /
-                            fc_scene_smallest_limit(scene, stretch->interval);
     const double tau = time_of_change(drive, t, V_S);
     const double path = fabs(fc_drive_displacement(drive, stretch->start, stretch->end));
-    const double force = fmin(1.0 + excess, per_path * (stretch->deflection + path));
+    const double per_path = most_per_path(scene, stretch);
+    const double force =
+        fmax(per_path * stretch->deflection, fmin(1.0 + excess, per_path * (stretch->deflection + path)));
     const double dz = fmin(1.0, per_path * V_S * tau);
     const double lasts = excess * force * dz;
     const double memory = fmin(stretch->interval, tau + fc_mesh_relaxation_layer(scene, t, t));
@@ -67,10 +73,16 @@ static bool may_dip_inside(const FcDrive* drive, const FcBellStretch* stretch, d
 FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch) {
     FcBells bells = {stretch->start, stretch->end};
     const double excess = scene->friction->staticRatio - 1.0;
-    if (!fc_has_stribeck_curve(scene->friction) || excess <= BEYOND * stretch->tolerance) {
+    if (!fc_has_stribeck_curve(scene->friction)) {
         return bells;
     }
-    const double reach = scene->friction->V_S * sqrt(log(excess / (BEYOND * stretch->tolerance)));
+    // The curve's rest moves the force by that part of it, and the force may be far beyond the limit.
+    const double beyond =
+        BEYOND * stretch->tolerance / fmax(1.0, most_per_path(scene, stretch) * stretch->deflection);
+    if (excess <= beyond) {
+        return bells;
+    }
+    const double reach = scene->friction->V_S * sqrt(log(excess / beyond));
     const double length = stretch->end - stretch->start;
     if (may_dip_inside(&scene->drive, stretch, reach)) {
         return (FcBells){stretch->end, stretch->end};

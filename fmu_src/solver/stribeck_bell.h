@@ -12,6 +12,8 @@
 #ifndef FC_SOLVER_STRIBECK_BELL_H
 #define FC_SOLVER_STRIBECK_BELL_H
 
+#include <stdbool.h>
+
 #include "model/scene.h"
 
 // The scene without its Stribeck curve.
@@ -36,5 +38,9 @@ typedef struct {
     double after, before; // s
 } FcBells;
 FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch);
+
+static inline bool fc_in_bell(const FcBells* bells, double t) {
+    return t < bells->after || t >= bells->before;
+}
 
 #endif
