@@ -35,23 +35,23 @@ enum { MOST_TRIES = 12, MOST_CAUTION = 6 };
 typedef struct {
     const FcScene* scene;
     const FcScene* beyond_bells; // the same where it has no Stribeck curve
-    FcMap map;
-    double end;               // s
-    double tolerance;         // N, of the force
-    double largest_stiffness; // N/m
-    double per_deflection;    // 1/m, about sigma / g
-    double scale;             // m, size of the deflection at the start
-    double speed;             // m/s
-    double relative;          // 1, the tolerance
-    double digits;            // asked for
-    double held;              // N, s g in a stretch with a constant limit, else 0
-    double evaluations;       // in the communication step so far
-    int nodes;                // that the last Gauss panel needed
+    FcMap* map;                  // of what is crossed
+    double end;                  // s
+    double tolerance;            // N, of the force
+    double largest_stiffness;    // N/m
+    double per_deflection;       // 1/m, about sigma / g
+    double scale;                // m, size of the deflection at the start
+    double speed;                // m/s
+    double relative;             // 1, the tolerance
+    double digits;               // asked for
+    double held;                 // N, s g in a stretch with a constant limit, else 0
+    double evaluations;          // in the communication step so far
+    int nodes;                   // that the last Gauss panel needed
 } Progress;
 
 static FcTrajectories trajectories(const Progress* progress) {
-    return (FcTrajectories){.delta_0 = progress->map.offset,
-                            .scale = (1.0 - progress->map.relaxation) * progress->scale,
+    return (FcTrajectories){.delta_0 = progress->map->offset,
+                            .scale = (1.0 - progress->map->relaxation) * progress->scale,
                             .speed = progress->speed,
                             .held = progress->held};
 }
@@ -112,7 +112,7 @@ static double cross_section(Progress* progress, const Section* section) {
         if (panel.z < 0.5 * count &&
             panel.end_error <= allowed * fc_least(1.0, fc_most(panel.z, section->relaxes)) &&
             section->share * panel.mean_error <= allowed) {
-            progress->map = fc_map_compose(&progress->map, &panel.map);
+            *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
         } else if (count < FC_GAUSS_MOST_NODES) {
             count = panel_of_nodes(count + 1.0);
@@ -209,7 +209,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         FcMap rest;
         double rest_displacement;
         if (fc_settled_panel(&from_here, &rest, &rest_displacement)) {
-            progress->map = fc_map_compose(&progress->map, &rest);
+            *progress->map = fc_map_compose(progress->map, &rest);
             progress->evaluations += 1.0;
             displacement += rest_displacement;
             break;
@@ -236,7 +236,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
             }
             caution += caution < MOST_CAUTION;
         }
-        progress->map = fc_map_compose(&progress->map, &panel.map);
+        *progress->map = fc_map_compose(progress->map, &panel.map);
         displacement += panel.displacement;
         at.gone += panel.z;
         at.rate = panel.rate;
@@ -245,8 +245,8 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
     // The bristle is settled nearly everywhere: its force is the limit, and what the quadratures of work and heat miss is
     // that force times what they miss of the displacement.
     const double missed = fc_drive_displacement(&scene->drive, t, stretch->end) - displacement;
-    progress->map.work_offset += progress->held * missed;
-    progress->map.heat_offset += progress->held * missed;
+    progress->map->work_offset += progress->held * missed;
+    progress->map->heat_offset += progress->held * missed;
 }
 
 // Without stiffness there is no force: the bristle goes with V.
@@ -306,9 +306,8 @@ static FcBells bells_of(const Progress* progress, const FcStretch* stretch) {
     return fc_bells(scene, &known);
 }
 
-FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
-                              double delta_0, FcMapScope scope, double* evaluations) {
-    assert(duration >= 0.0 && options->tolerance > 0.0);
+static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcSolverOptions* options,
+                    double duration, double delta_0, FcMapScope scope, double* evaluations) {
     const double force = fc_scene_force_scale(scene);
     const double largest_stiffness = fc_scene_largest_stiffness(scene, duration);
     if (!isfinite(force / largest_stiffness)) {
@@ -316,9 +315,11 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
     }
     const bool for_one_start = scope == FC_MAP_THIS_START;
     const FcCoefficients middle = fc_scene_coefficients(scene, 0.5 * duration);
+    FcMap map = fc_map_identity();
     Progress progress = {
         .scene = scene,
-        .map = fc_map_identity(),
+        .beyond_bells = beyond_bells,
+        .map = &map,
         .end = duration,
         .tolerance = options->tolerance * force,
         .largest_stiffness = largest_stiffness,
@@ -328,15 +329,9 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
         .digits = -log10(options->tolerance),
         .evaluations = *evaluations,
     };
-    FcSceneBeyondBells beyond;
-    progress.beyond_bells = scene;
-    if (fc_has_stribeck_curve(scene->friction)) {
-        fc_scene_beyond_bells(scene, &beyond);
-        progress.beyond_bells = &beyond.scene;
-    }
     if (for_one_start) {
-        progress.map.relaxation = 1.0;
-        progress.map.offset = delta_0;
+        map.relaxation = 1.0;
+        map.offset = delta_0;
     } else {
         const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
         progress.scale = fmax(fabs(delta_0), start.limit / start.sigma);
@@ -367,7 +362,18 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
         before = stretch;
     }
     *evaluations = progress.evaluations;
-    return progress.map;
+    return map;
+}
+
+FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
+                              double delta_0, FcMapScope scope, double* evaluations) {
+    assert(duration >= 0.0 && options->tolerance > 0.0);
+    if (!fc_has_stribeck_curve(scene->friction)) {
+        return map_of(scene, scene, options, duration, delta_0, scope, evaluations);
+    }
+    FcSceneBeyondBells beyond;
+    fc_scene_beyond_bells(scene, &beyond);
+    return map_of(scene, &beyond.scene, options, duration, delta_0, scope, evaluations);
 }
 
 void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
