@@ -7,6 +7,8 @@
 // Of the tolerance: what the curve may leave beyond a bell, and what a bell may do that is left out.
 static const double BEYOND = 0.01;
 static const double LEFT_OUT = 0.01;
+// Of a width that was estimated too short.
+enum { MOST_GROWTHS = 32 };
 
 void fc_scene_beyond_bells(const FcScene* scene, FcSceneBeyondBells* beyond) {
     beyond->friction = *scene->friction;
@@ -28,10 +30,13 @@ static double width(const FcDrive* drive, double t, double side, double reach, d
         return 0.0;
     }
     double x = time_of_change(drive, t, reach - V);
-    while (x < most && fabs(fc_drive_V(drive, t + side * x)) < reach) {
+    for (int i = 0; x < most && i < MOST_GROWTHS; i++) {
+        if (fabs(fc_drive_V(drive, t + side * x)) >= reach) {
+            return x;
+        }
         x *= 1.5;
     }
-    return fmin(x, most);
+    return most;
 }
 
 // Largest sigma over the least limit [1/m].
