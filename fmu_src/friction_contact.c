@@ -204,7 +204,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     }
     fc_friction_contact_update_outputs(&fresh);
     v->F_t_mean = v->F_t;
-    if (!isfinite(v->F_t)) {
+    if (!isfinite(v->F_t) || !isfinite(v->sigma)) {
         return fc_message_set(
             message, "F_t = sigma delta_0 is beyond the largest number: delta_0 = %.9g m, sigma = %.9g N/m",
             v->delta_0, v->sigma);

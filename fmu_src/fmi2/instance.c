@@ -65,11 +65,11 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
         }
         fc_friction_contact_update_outputs(contact);
         const FcVariables* v = &contact->state.variables;
-        if (!isfinite(v->F_t) || !isfinite(v->A_r) || !isfinite(v->F_n)) {
-            return fc_message_set(
-                message,
-                "F_t = sigma delta or A_r is beyond the largest number: sigma = %.9g N/m, delta = %.9g m",
-                v->sigma, v->delta);
+        if (!isfinite(v->F_t) || !isfinite(v->sigma) || !isfinite(v->A_r) || !isfinite(v->F_n)) {
+            return fc_message_set(message,
+                                  "F_t = sigma delta, sigma or A_r is beyond the largest number: sigma = "
+                                  "%.9g N/m, delta = %.9g m",
+                                  v->sigma, v->delta);
         }
     }
     instance->experiment.outputs_stale = 0;
