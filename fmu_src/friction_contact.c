@@ -204,6 +204,9 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     }
     fc_friction_contact_update_outputs(&fresh);
     v->F_t_mean = v->F_t;
+    if (!isfinite(v->A_r) || !isfinite(v->F_n)) {
+        return fail_stiffness(message, v->d, v->E);
+    }
     if (!isfinite(v->F_t) || !isfinite(v->sigma)) {
         return fc_message_set(
             message, "F_t = sigma delta_0 is beyond the largest number: delta_0 = %.9g m, sigma = %.9g N/m",
