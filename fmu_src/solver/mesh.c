@@ -135,7 +135,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
 
 // Decades of accuracy that a panel needs for this allowed relative error.
 static int decades(double allowed) {
-    return allowed >= 0.3 ? 0 : (int)least(FINEST, 0.15 - 0.30103 * ilogb(allowed));
+    return !(allowed < 0.3) ? 0 : (int)least(FINEST, 0.15 - 0.30103 * ilogb(allowed)); // 0 for no number too
 }
 
 // Tolerances from which on fewer stages resolve the Stribeck curve.
@@ -254,7 +254,8 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     lag_counts = least(lag_counts, rest * least(rest, smooth));
 
     const double transient = at->gone > 0.0 ? least(at->transient, 1e6) : at->lag;
-    const int gone_decades = (int)least(1e3, 0.434 * at->gone);
+    const double gone = 0.434 * at->gone; // negative, or no number, where the stiffness overflows
+    const int gone_decades = gone > 0.0 ? (int)least(1e3, gone) : 0;
     const double last_counts = drift * least(stretch->w_b, smooth) + at->lag;
     Limits limits = {
         .left = stretch->end - at->t,
