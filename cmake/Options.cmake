@@ -30,8 +30,9 @@ endif()
 if(FC_FUZZ)
     # Work that is refused is refused soon, so that a fuzzer can tell a hang. Only the project's own code tells which
     # ways it goes, and not what it compares: that took most of an execution, and there are no magic values to find.
+    # What the code takes for granted is asserted.
     target_compile_options(fc_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp
-                           -DFC_MOST_EVALUATIONS=2e3)
+                           -DFC_MOST_EVALUATIONS=2e3 -UNDEBUG)
 endif()
 if(FC_COVERAGE)
     target_compile_options(fc_options INTERFACE --coverage -O0 -g)

@@ -50,7 +50,7 @@ static Parts radius_parts(const FcContactParameters* p, double x) {
 }
 
 FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E) {
-    assert(E > 0.0);
+    assert(!(E <= 0.0)); // no number goes through
     const double x = relative_critical_interference(p, E);
     const double beta = p->eta * p->R * p->R_q;
     const Parts load = load_parts(p, E, x);
@@ -81,7 +81,7 @@ static double stiffness(const FcContactAtModulus* c, double d, double e) {
 }
 
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d) {
-    assert(d > 0.0);
+    assert(!(d <= 0.0)); // no number goes through
     const double e = exp(-c->decay * d);
     return (FcContactResponse){.sigma = stiffness(c, d, e), .A_r = c->area_0 * e, .F_n = c->load_0 * e};
 }

@@ -87,6 +87,12 @@ double fc_drive_V_curvature(const FcDrive* drive, double t) {
     return -drive->vibration.V_1 * drive->omega * drive->omega * cos(theta(drive, t));
 }
 
+double fc_drive_time_of_change(const FcDrive* drive, double t, double change) {
+    const double rate = fabs(fc_drive_V_rate(drive, t));
+    const double curvature = fabs(fc_drive_V_curvature(drive, t));
+    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
+}
+
 double fc_drive_d_rate(const FcDrive* drive, double t) {
     return drive->d.rate -
            drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);

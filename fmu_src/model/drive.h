@@ -64,6 +64,9 @@ double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of
 double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h]
 
+// Time [s] in which V moves by change [m/s] at t: the root of |V'| x + |V''| x^2 / 2 = change.
+double fc_drive_time_of_change(const FcDrive* drive, double t, double change);
+
 // integral of V over [t0, t1] [m], exact.
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1);
 

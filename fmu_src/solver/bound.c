@@ -135,7 +135,8 @@ static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
     }
     const double log_rate = log_rate_at(scene, t);
     const double tau = SMALL_PART * fc_bound_smooth_time(scene, t, at->d, at->d_rate);
-    const double log_curvature = (log_rate_at(scene, t + tau) - log_rate_at(scene, t - tau)) / (2.0 * tau);
+    const double log_curvature =
+        isfinite(tau) ? (log_rate_at(scene, t + tau) - log_rate_at(scene, t - tau)) / (2.0 * tau) : 0.0;
     at->D_rate = at->D * log_rate;
     at->D_curvature = at->D * (log_rate * log_rate + log_curvature);
 }

@@ -11,6 +11,7 @@
 #include "solver/collocation.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 #include "solver/gauss_panel.h"
@@ -135,8 +136,7 @@ static const double BELL_CHANGE = 8.0;
 static bool is_narrow_somewhere(const FcScene* scene, const FcStretch* stretch) {
     const FcDrive* drive = &scene->drive;
     const double moves = 2.0 * drive->vibration.V_1 + fabs(drive->V.rate) * (stretch->end - stretch->start);
-    return stretch->bells.after == stretch->end && fc_has_stribeck_curve(scene->friction) &&
-           moves > 3.0 * scene->friction->V_S;
+    return stretch->bells.after == stretch->end && moves > 3.0 * scene->friction->V_S;
 }
 
 // Goes through a stretch with Gauss panels as far as they are accurate. Returns the time they reach.
@@ -144,10 +144,8 @@ static double cross_softly(Progress* progress, const FcStretch* stretch) {
     const double length = stretch->end - stretch->start;
     const double relaxes = progress->per_deflection *
                            fabs(fc_drive_displacement(&progress->scene->drive, stretch->start, stretch->end));
-    if (!(relaxes < SOFT && moving(progress->scene, length) < 15.0)) {
-        return stretch->start;
-    }
-    if (is_narrow_somewhere(progress->scene, stretch)) {
+    if (!(relaxes < SOFT && moving(progress->scene, length) < 15.0) ||
+        is_narrow_somewhere(progress->scene, stretch)) {
         return stretch->start;
     }
     const double ends[] = {stretch->start, stretch->bells.after, stretch->bells.before, stretch->end};
@@ -217,7 +215,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         FcPlan plan = fc_mesh_plan(mesh, stretch, &at, caution);
         const double left = stretch->end - at.t;
         if (!(at.t + plan.h > at.t)) {
-            plan.h = fc_least(left, 4e-16 * stretch->end);
+            plan.h = fc_least(left, fmax(4e-16 * stretch->end, DBL_MIN));
         }
         for (int tries = 0;; tries++) {
             const bool in_bell = fc_in_bell(&stretch->bells, at.t);
@@ -232,7 +230,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
             if (plan.stages < FC_RADAU_MOST_STAGES) {
                 plan.stages = plan.stages == 3 ? 5 : 9;
             } else {
-                plan.h *= fc_most(0.4, 0.85 * pow(excess, -1.0 / 12.0));
+                plan.h *= fmax(0.4, 0.85 * pow(excess, -1.0 / 12.0)); // 0.4 where the error is no number
             }
             caution += caution < MOST_CAUTION;
         }

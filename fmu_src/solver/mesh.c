@@ -34,17 +34,10 @@ static const double LAST[KINDS] = {5, 13, 41};
 static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) { return a > b ? a : b; }
 
-// Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved: the root of
-// |V'| x + |V''| x^2 / 2 = V_S + |V| / 2. Infinite where g does not depend on V.
+// Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved.
 static double stribeck_time(const FcScene* scene, double t) {
-    if (!fc_has_stribeck_curve(scene->friction)) {
-        return INFINITY;
-    }
-    const FcDrive* drive = &scene->drive;
-    const double change = scene->friction->V_S + 0.5 * fabs(fc_drive_V(drive, t));
-    const double rate = fabs(fc_drive_V_rate(drive, t));
-    const double curvature = fabs(fc_drive_V_curvature(drive, t));
-    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
+    const double change = scene->friction->V_S + 0.5 * fabs(fc_drive_V(&scene->drive, t));
+    return fc_drive_time_of_change(&scene->drive, t, change);
 }
 
 // About the least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts where V only touches zero.

@@ -17,19 +17,13 @@ void fc_scene_beyond_bells(const FcScene* scene, FcSceneBeyondBells* beyond) {
     beyond->scene.friction = &beyond->friction;
 }
 
-// Time [s] in which V moves by change at t: the root of |V'| x + |V''| x^2 / 2 = change.
-static double time_of_change(const FcDrive* drive, double t, double change) {
-    const double rate = fabs(fc_drive_V_rate(drive, t));
-    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * fabs(fc_drive_V_curvature(drive, t)) * change));
-}
-
 // Width [s] of the bell at t, at most `most`, that goes on to the side (1 or -1): until |V| is the reach [m/s].
 static double width(const FcDrive* drive, double t, double side, double reach, double most) {
     const double V = fabs(fc_drive_V(drive, t));
     if (V >= reach) {
         return 0.0;
     }
-    double x = time_of_change(drive, t, reach - V);
+    double x = fc_drive_time_of_change(drive, t, reach - V);
     for (int i = 0; x < most && i < MOST_GROWTHS; i++) {
         if (fabs(fc_drive_V(drive, t + side * x)) >= reach) {
             return x;
@@ -39,21 +33,15 @@ static double width(const FcDrive* drive, double t, double side, double reach, d
     return most;
 }
 
-// Largest sigma over the least limit [1/m].
-static double most_per_path(const FcScene* scene, const FcBellStretch* stretch) {
-    return fc_scene_largest_stiffness(scene, stretch->interval) /
-           fc_scene_smallest_limit(scene, stretch->interval);
-}
-
-// Whether a bell at t is too narrow to be seen. While V goes through it the bristle relaxes by at most dz; by dz of itself
-// the force then differs, until it is forgotten, which the path after tells; and the heat sigma r delta^2 goes with 1 / g in it.
-static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, double t, double path_after) {
+// Whether a bell at t is too narrow to be seen, in a stretch of that path [m], with sigma / g per_path [1/m] at the most.
+// While V goes through it the bristle relaxes by at most dz; by dz of itself the force then differs, until it is
+// forgotten, which the path after tells; and the heat sigma r delta^2 goes with 1 / g in it.
+static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, double path, double per_path,
+                        double t, double path_after) {
     const FcDrive* drive = &scene->drive;
     const double V_S = scene->friction->V_S;
     const double excess = scene->friction->staticRatio - 1.0;
-    const double tau = time_of_change(drive, t, V_S);
-    const double path = fabs(fc_drive_displacement(drive, stretch->start, stretch->end));
-    const double per_path = most_per_path(scene, stretch);
+    const double tau = fc_drive_time_of_change(drive, t, V_S);
     const double force =
         fmax(per_path * stretch->deflection, fmin(1.0 + excess, per_path * (stretch->deflection + path)));
     const double dz = fmin(1.0, per_path * V_S * tau);
@@ -78,12 +66,10 @@ static bool may_dip_inside(const FcDrive* drive, const FcBellStretch* stretch, d
 FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch) {
     FcBells bells = {stretch->start, stretch->end};
     const double excess = scene->friction->staticRatio - 1.0;
-    if (!fc_has_stribeck_curve(scene->friction)) {
-        return bells;
-    }
+    const double per_path = fc_scene_largest_stiffness(scene, stretch->interval) /
+                            fc_scene_smallest_limit(scene, stretch->interval); // 1/m
     // The curve's rest moves the force by that part of it, and the force may be far beyond the limit.
-    const double beyond =
-        BEYOND * stretch->tolerance / fmax(1.0, most_per_path(scene, stretch) * stretch->deflection);
+    const double beyond = BEYOND * stretch->tolerance / fmax(1.0, per_path * stretch->deflection);
     if (excess <= beyond) {
         return bells;
     }
@@ -95,10 +81,10 @@ FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch) {
     const double after = width(&scene->drive, stretch->start, 1.0, reach, length);
     const double before = width(&scene->drive, stretch->end, -1.0, reach, length);
     const double path = fabs(fc_drive_displacement(&scene->drive, stretch->start, stretch->end));
-    if (after > 0.0 && !is_left_out(scene, stretch, stretch->start, path)) {
+    if (after > 0.0 && !is_left_out(scene, stretch, path, per_path, stretch->start, path)) {
         bells.after = stretch->start + after;
     }
-    if (before > 0.0 && !is_left_out(scene, stretch, stretch->end, stretch->path_after)) {
+    if (before > 0.0 && !is_left_out(scene, stretch, path, per_path, stretch->end, stretch->path_after)) {
         bells.before = stretch->end - before;
     }
     if (!(bells.after < bells.before)) {

@@ -37,6 +37,7 @@ typedef struct {
 typedef struct {
     double after, before; // s
 } FcBells;
+// The scene has a Stribeck curve.
 FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch);
 
 static inline bool fc_in_bell(const FcBells* bells, double t) {

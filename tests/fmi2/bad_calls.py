@@ -72,6 +72,7 @@ OUT_OF_BOUNDS = [
     _set("contact.sigma", 0.0, "below its minimum 1e-06 N/m"),
     _set("contact.stiffnessScale", -1.0, "= -1 is below its minimum 1e-15"),
     _set("vibration.f", 0.0, "0 Hz", "below its minimum 1e-06 Hz"),
+    _set("vibration.f", 1e16, "1e+16 Hz", "above its maximum 1e+15 Hz"),
     _set("vibration.V_1", -1.0, "-1 m/s", "below its minimum 0 m/s"),
     _set("vibration.a_d", -1e-6, "-1e-06 m", "below its minimum 0 m"),
     _set("contact.nu", 0.6, "0.6", "above its maximum 0.5", state="instantiated"),
