@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
     if (!fmi2_instance_make(&instance, &fmu, "bare", argv[2], NULL)) {
         stop(instance.said);
     }
+    fmi2_instance_log_errors(&instance); // as a batch does
     const double settle = strtod(argv[3], NULL);
     const long samples = strtol(argv[4], NULL, 10);
     const fmi2ValueReference frequency = (fmi2ValueReference)number();

@@ -282,10 +282,7 @@ static bool get_ready(Worker* w) {
     if (!fmi2_instance_make(&w->instance, fmu, "batch", w->batch->plan.guid, w->batch->plan.resources)) {
         return false;
     }
-    // Writing messages that nobody reads takes longer than a short scenario. An FMU may not know the category.
-    const fmi2String errors[] = {"logStatusError"};
-    fmu->SetDebugLogging(w->instance.component, fmi2True, 1, errors);
-    w->instance.said[0] = '\0';
+    fmi2_instance_log_errors(&w->instance);
     return true;
 }
 

@@ -121,6 +121,14 @@ bool fmi2_instance_make(Fmi2Instance* instance, const Fmi2Library* library, cons
     return instance->component != NULL;
 }
 
+void fmi2_instance_log_errors(Fmi2Instance* instance) {
+    static const fmi2String errors[] = {"logStatusError"};
+    const long before = instance->errors;
+    instance->library->SetDebugLogging(instance->component, fmi2True, 1, errors);
+    instance->errors = before;
+    instance->said[0] = '\0';
+}
+
 void fmi2_instance_free(Fmi2Instance* instance) {
     if (instance->component) {
         instance->library->FreeInstance(instance->component);
