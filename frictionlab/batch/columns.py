@@ -27,21 +27,22 @@ def start_values(fmu: LoadedFmu, values: Mapping[str, object]) -> dict[str, np.n
     columns = {}
     for name, value in values.items():
         variable = fmu.variable(str(name), f"column {name}", SETTABLE)
-        columns[name] = _numbers(variable, np.asarray(value), f"column {name}")
+        columns[name] = _numbers(variable, _cells(value, f"column {name}"), f"column {name}")
     return columns
 
 
-def common_shape(columns: Mapping[str, np.ndarray]) -> tuple[int, ...]:
-    """What the columns broadcast to."""
-    shape: tuple[int, ...] = ()
+def common_shape(columns: Mapping[str, np.ndarray], rows: int | None = None) -> tuple[int, ...]:
+    """What the columns broadcast to: the rows of a frame, where there is one."""
+    shape: tuple[int, ...] = () if rows is None else (rows,)
     for name, column in columns.items():
         try:
-            shape = np.broadcast_shapes(shape, column.shape)
+            wider = np.broadcast_shapes(shape, column.shape)
         except ValueError:
-            raise BatchError(
-                f"column {name}: its {_shape(column.shape)} values do not go with "
-                f"the {_shape(shape)} of those before it"
-            ) from None
+            wider = None
+        if wider is None or (rows is not None and wider != (rows,)):
+            those = f"{_shape(shape)} of those before it" if rows is None else f"{rows} rows of the frame"
+            raise BatchError(f"column {name}: its {_shape(column.shape)} values do not go with the {those}")
+        shape = wider
     return shape
 
 
@@ -54,11 +55,20 @@ def flat(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 def numbers_of(value: object, where: str, least: float = -math.inf) -> np.ndarray:
     """Finite numbers, none below the least."""
-    array = _numbers(None, np.asarray(value), where)
+    array = _numbers(None, _cells(value, where), where)
     if (array < least).any():
         row = np.argmax(array < least)
         raise BatchError(f"{where}{_row(array, row)}: {array.flat[row]:g} must be at least {least:g}")
     return array
+
+
+def _cells(value: object, where: str) -> np.ndarray:
+    if isinstance(value, np.ma.MaskedArray) and value.mask.any():
+        raise BatchError(f"{where}{_row(value.mask, int(np.argmax(value.mask)))}: is masked")
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise BatchError(f"{where}: its rows are not of one length") from None
 
 
 def _shape(shape: tuple[int, ...]) -> str:
@@ -112,6 +122,9 @@ def _number(cell: object, items: Mapping[str, float], where: str) -> float:
         if cell not in items:
             raise BatchError(f"{where}: {cell[:40]!r} is not one of {', '.join(items)}")
         return items[cell]
-    if isinstance(cell, (numbers.Real, np.bool_)):
-        return float(cell)
+    if isinstance(cell, (numbers.Real, np.bool_)) and not isinstance(cell, np.timedelta64):
+        try:
+            return float(cell)
+        except OverflowError:
+            raise BatchError(f"{where}: is beyond the largest number") from None
     raise BatchError(f"{where}: {str(cell)[:40]!r} is not a number")

@@ -24,13 +24,15 @@ import numpy.typing as npt
 
 from ..project import ROOT
 from .errors import BatchError
-from .prepare import Outputs, Unit, prepared
+from .prepare import Outputs, Unit, check_whole, prepared
 from .run import Progress
 from .runner import runner
 from .unpacked import loaded_fmu
 
 if TYPE_CHECKING:
     import pandas as pd
+
+MOST_THREADS = 1024
 
 
 def simulate_many(
@@ -54,7 +56,7 @@ def simulate_many(
     fmu       a .fmu file with a binary for this platform, or its bytes
     values    what is set at the start: name of an input or parameter -> values in the units of the model
               description, those of an enumeration as names of its items or as numbers. Arrays broadcast
-              as in NumPy; a row of a frame is a scenario
+              as in NumPy; a row of a frame is a scenario, and nothing broadcasts beyond its rows
     outputs   names of variables to be read; or name of a result -> variable, or (variable, statistic)
               with a statistic of "end" (after the last step, the default), "change" (since the settling),
               "mean", "min", "max" (of the samples), "samples" (all of them: one axis more; in a frame the
@@ -68,7 +70,7 @@ def simulate_many(
     steps     lengths of the steps, in the unit, in place of duration and samples
     errors    "raise": BatchError with the message of the first scenario that the FMU refuses;
               "keep": its results are NaN and "reason", one result more, holds the message (else None)
-    threads   that run at once; one for each processor that this process may use
+    threads   that run at once, up to 1024; one for each processor that this process may use
     progress  True: a bar on a terminal; or a function that is told how many scenarios are finished and
               how many of them refused
 
@@ -90,8 +92,8 @@ def simulate_many(
     )
     if errors not in ("raise", "keep"):
         raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
-    if threads is not None and not threads >= 1:
-        raise BatchError(f"threads = {threads}: must be at least 1")
+    if threads is not None:
+        check_whole(threads, MOST_THREADS, "threads =")
     with _shown(progress, batch.scenarios) as shown:
         results = batch.run(threads or processors(), errors == "raise", shown)
     if errors == "raise":

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -46,18 +47,22 @@ def prepared(
         samples = len(lengths)
     if unit not in ("period", "s"):
         raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
-    check_samples(samples, "samples =")
+    check_whole(samples, MOST_SAMPLES, "samples =")
     if settle is None:
         settle = 0.0 if settled or unit == "s" else SETTLING
     starts = start_values(fmu, _settled(fmu, values) if settled else _named(values))
     spans = {"settle": numbers_of(settle, "settle", 0.0), "duration": numbers_of(duration, "duration", 0.0)}
-    shape = common_shape(starts | spans)
+    shape = common_shape(starts | spans, None if isinstance(values, Mapping) else len(values))
+    try:
+        columns = {name: flat(column, shape) for name, column in (starts | spans).items()}
+    except (MemoryError, ValueError):  # more than can be addressed
+        raise BatchError(f"no memory for {math.prod(shape)} scenarios") from None
     return Batch(
         fmu,
         shape,
-        {name: flat(column, shape) for name, column in starts.items()},
-        flat(spans["settle"], shape),
-        flat(spans["duration"], shape),
+        {name: columns[name] for name in starts},
+        columns["settle"],
+        columns["duration"],
         int(samples),
         _read(fmu, outputs),
         fmu.variable("vibration.f", "unit").valueReference if unit == "period" else None,
@@ -86,15 +91,17 @@ def _row(array: np.ndarray, where: str) -> np.ndarray:
     return np.ascontiguousarray(array)
 
 
-def check_samples(samples: object, where: str) -> None:
-    is_whole = isinstance(samples, (int, np.integer)) and not isinstance(samples, bool)
-    if not is_whole or not 1 <= samples <= MOST_SAMPLES:
-        raise BatchError(f"{where} {samples}: must be a whole number from 1 to {MOST_SAMPLES}")
+def check_whole(number: object, most: int, where: str) -> None:
+    is_whole = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
+    if not is_whole or not 1 <= number <= most:
+        raise BatchError(f"{where} {number}: must be a whole number from 1 to {most}")
 
 
 def _named(values: Mapping[str, npt.ArrayLike] | pd.DataFrame) -> Mapping[str, npt.ArrayLike]:
     if isinstance(values, Mapping):
         return values
+    if not hasattr(values, "columns"):
+        raise BatchError("values: must be a mapping of names to values, or a pandas frame")
     if not values.columns.is_unique:
         name = values.columns[values.columns.duplicated()][0]
         raise BatchError(f"column {name}: is there twice")
@@ -105,19 +112,27 @@ def _settled(
     fmu: LoadedFmu, values: Mapping[str, npt.ArrayLike] | pd.DataFrame
 ) -> Mapping[str, npt.ArrayLike]:
     fmu.variable("initialState", "settled")
-    if "initialState" in values:
+    named = _named(values)
+    if "initialState" in named:
         raise BatchError("column initialState: settled gives it already")
-    return {**_named(values), "initialState": "Settled"}
+    return {**named, "initialState": "Settled"}
+
+
+def _pair(output: Output, where: str) -> tuple[str, Statistic]:
+    pair = (output, "end") if isinstance(output, str) else output
+    if not isinstance(pair, (tuple, list)) or len(pair) != 2 or not isinstance(pair[0], str):
+        raise BatchError(f"{where}: {str(output)[:40]} is neither a variable nor (variable, statistic)")
+    return pair[0], pair[1]
 
 
 def _read(fmu: LoadedFmu, outputs: Outputs) -> dict[str, tuple[int, Statistic]]:
     """Name of each result -> value reference and statistic."""
-    if isinstance(outputs, str):
+    if isinstance(outputs, str) or not isinstance(outputs, Iterable):
         raise BatchError(f"outputs = {outputs!r}: must be a sequence of names, or a mapping")
     named = dict(outputs) if isinstance(outputs, Mapping) else {name: name for name in outputs}
     read = {}
     for name, output in named.items():
-        variable, statistic = (output, "end") if isinstance(output, str) else output
+        variable, statistic = _pair(output, f"output {name}")
         found = fmu.variable(variable, f"output {name}")
         if found.type != "Real":
             raise BatchError(f"output {name}: {variable} is of type {found.type}; only Real is read")

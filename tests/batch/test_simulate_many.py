@@ -149,6 +149,18 @@ class TestShapes:
         assert list(got.index) == ["a", "b"]
         assert list(got.columns) == ["F[0]", "F[1]", "W"]
 
+    def test_frame_without_columns(self, fmu_path: Path) -> None:
+        got = simulate_many(fmu_path, pd.DataFrame(index=["a", "b"]))
+        assert list(got.index) == ["a", "b"]
+
+    @pytest.mark.parametrize(("settle", "size"), [([1.0, 2.0, 3.0], "3"), ([[1.0], [2.0]], "2 x 1")])
+    def test_frame_is_not_broadcast(self, fmu_path: Path, settle: list, size: str) -> None:
+        """Else its index would not fit the results, which was found after they had all been computed."""
+        for rows in (1, 2):
+            frame = pd.DataFrame({"V": [0.1] * rows})
+            with pytest.raises(BatchError, match=f"its {size} values do not go with the {rows} rows of the"):
+                simulate_many(fmu_path, frame, settle=settle)
+
     def test_no_column_is_one_scenario(self, fmu_path: Path) -> None:
         assert simulate_many(fmu_path, {})["F_t_mean"].shape == ()
 
@@ -202,6 +214,15 @@ class TestRefusals:
             (pd.DataFrame({"V": [0.1, pd.NA]}), "column V, row 1: '<NA>' is not a number"),
             (pd.DataFrame([[1, 2]], columns=["V", "V"]), "column V: is there twice"),
             ({3: 0.1}, "column 3: 3 is no variable of the FMU"),
+            ({"V": np.ma.array([[0.1, 0.2]], mask=[[0, 1]])}, r"column V, row \(0, 1\): is masked"),
+            ({"V": [[0.1, 0.2], [0.3]]}, "column V: its rows are not of one length"),
+            ({"V": [0.1, 10**400]}, "column V, row 1: is beyond the largest number"),
+            ({"V": np.array([5], dtype="m8[s]")}, "column V, row 0: '5 seconds' is not a number"),
+            ([0.1, 0.2], "values: must be a mapping of names to values, or a pandas frame"),
+            (
+                {"V": np.ones((10**6, 1)), "d": np.full(10**6, 14e-6)},
+                "no memory for 1000000000000 scenarios",
+            ),
         ],
     )  # fmt: skip
     def test_wrong_values(self, fmu_path: Path, values: dict, message: str) -> None:
@@ -226,7 +247,12 @@ class TestRefusals:
             ({"duration": [1.0] * 3}, "column duration: its 3 values do not go with the 2 of those"),
             ({"unit": "ms"}, "unit = 'ms': must be 'period' or 's'"),
             ({"errors": "ignore"}, "errors = 'ignore'"),
-            ({"threads": 0}, "threads = 0: must be at least 1"),
+            ({"threads": 0}, "threads = 0: must be a whole number from 1 to 1024"),
+            ({"threads": 1.5}, "threads = 1.5: must be a whole number from 1 to 1024"),
+            ({"threads": 10**6}, "threads = 1000000: must be a whole number from 1 to 1024"),
+            ({"outputs": None}, "outputs = None: must be a sequence"),
+            ({"outputs": {"a": ("F_t",)}}, r"output a: \('F_t',\) is neither a variable nor \(variable,"),
+            ({"outputs": [3]}, r"output 3: 3 is neither a variable nor \(variable, statistic\)"),
             ({"steps": [[1.0]]}, "steps: must be a row of numbers"),
             ({"steps": [1.0, -1.0]}, "steps, row 1: -1 must be at least 0"),
             ({"inputs": {"V": [0.1]}, "steps": [1.0, 1.0]}, "input V: 1 values for 2 steps"),
