@@ -1,6 +1,10 @@
 """Runs jobs of the C drivers in bench/: communication steps through the FMI functions, timed without Python.
 
 A job is a scene with its communication steps; a result is its outputs, cost, or the reason why it failed.
+
+`frictionlab.batch` does not serve for this: what is timed here are the steps alone, without the
+initialization, of one run that is repeated until its median is steady, from a start time and with input
+derivatives. Errors are those of the timed run's own outputs, so that no second run is needed for them.
 """
 
 from __future__ import annotations
