@@ -129,6 +129,28 @@ static bool is_to_be_checked(const FcScene* scene) {
            fc_limit_follows_load(scene->friction);
 }
 
+// The outputs at the beginning of the scene.
+static bool find_outputs(const FcScene* scene, double delta, FcOutputs* outputs, FcMessage* message) {
+    const FcOutputs now = fc_scene_outputs(scene, 0.0, delta);
+    if (!isfinite(now.sigma) || !isfinite(now.A_r) || !isfinite(now.F_n)) {
+        return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
+    }
+    if (!isfinite(now.F_t)) {
+        return fc_message_set(
+            message, "F_t = sigma delta is beyond the largest number: sigma = %.9g N/m, delta = %.9g m",
+            now.sigma, delta);
+    }
+    *outputs = now;
+    return true;
+}
+
+static void set_outputs(FcVariables* v, const FcOutputs* now) {
+    v->F_t = now->F_t;
+    v->F_n = now->F_n;
+    v->sigma = now->sigma;
+    v->A_r = now->A_r;
+}
+
 static const double HELD[FC_INPUT_COUNT] = {0};
 
 // The time t [s] must tell the phase of the vibration.
@@ -149,9 +171,26 @@ static FcScene held_scene(FcFrictionContact* contact) {
     return scene_from(contact, contact->state.time, contact->state.time_rest, HELD, 0.0);
 }
 
-bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
+// Single bounds do not see all: the separation must stay positive under vibration, the stiffness and the limit be
+// finite numbers above 0, the time tell the phase.
+static bool check_present(FcFrictionContact* contact, FcMessage* message) {
     const FcScene scene = held_scene(contact);
     return check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
+}
+
+static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
+    FcVariables* v = &contact->state.variables;
+    const FcScene scene = fc_friction_contact_scene(contact);
+    FcOutputs now;
+    if (!find_outputs(&scene, v->delta, &now, message)) {
+        return false;
+    }
+    set_outputs(v, &now);
+    return true;
+}
+
+bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message) {
+    return check_present(contact, message) && update_outputs(contact, message);
 }
 
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message) {
@@ -187,7 +226,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     state->W_f_rest = 0.0;
     state->Q_f_rest = 0.0;
     memcpy(state->rate, HELD, sizeof state->rate);
-    if (!fc_friction_contact_check(&fresh, message)) {
+    if (!check_present(&fresh, message)) {
         return false;
     }
     FcVariables* v = &state->variables;
@@ -202,19 +241,10 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
             "%.9g m at d = %.9g m moves the contact over too many orders of magnitude",
             FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
     }
-    fc_friction_contact_update_outputs(&fresh);
-    v->F_t_mean = v->F_t;
-    if (!isfinite(v->A_r) || !isfinite(v->F_n)) {
-        return fail_stiffness(message, v->d, v->E);
-    }
-    if (!isfinite(v->F_t) || !isfinite(v->sigma)) {
-        return fc_message_set(
-            message, "F_t = sigma delta_0 is beyond the largest number: delta_0 = %.9g m, sigma = %.9g N/m",
-            v->delta_0, v->sigma);
-    }
-    if (!fc_friction_contact_prepare(&fresh, v->solver.method, message)) {
+    if (!update_outputs(&fresh, message) || !fc_friction_contact_prepare(&fresh, v->solver.method, message)) {
         return false;
     }
+    v->F_t_mean = v->F_t;
     *contact = fresh;
     return true;
 }
@@ -267,13 +297,6 @@ static void accumulate(double* sum, double* rest, double part) {
     *sum += all;
 }
 
-static void set_outputs(FcVariables* v, const FcOutputs* now) {
-    v->F_t = now->F_t;
-    v->F_n = now->F_n;
-    v->sigma = now->sigma;
-    v->A_r = now->A_r;
-}
-
 // The inputs where they end, the deflection, the sums; the rates of the next step are those of the last one now.
 static void commit(FcFrictionState* state, double h, const FcStepResult* result) {
     FcVariables* v = &state->variables;
@@ -321,13 +344,13 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const double time_rest = rounding_of_sum(t, h);
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
-    const FcOutputs now = fc_scene_outputs(&end, 0.0, result.delta);
-    const double F_t_mean = h > 0.0 ? result.impulse / h : now.F_t;
-    if (!isfinite(now.sigma) || !isfinite(now.A_r)) {
-        return fail_stiffness(message, v->d, v->E);
+    FcOutputs now;
+    if (!find_outputs(&end, result.delta, &now, message)) {
+        return false;
     }
-    if (!isfinite(now.F_t) || !isfinite(now.F_n) || !isfinite(F_t_mean) || !isfinite(result.delta) ||
-        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat)) {
+    const double F_t_mean = h > 0.0 ? result.impulse / h : now.F_t;
+    if (!isfinite(F_t_mean) || !isfinite(result.delta) || !isfinite(v->W_f + result.work) ||
+        !isfinite(v->Q_f + result.heat)) {
         return fc_message_set(
             message,
             "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
@@ -340,13 +363,6 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     contact->state.time = t + h;
     contact->state.time_rest = time_rest;
     return true;
-}
-
-void fc_friction_contact_update_outputs(FcFrictionContact* contact) {
-    FcVariables* v = &contact->state.variables;
-    const FcScene scene = fc_friction_contact_scene(contact);
-    const FcOutputs now = fc_scene_outputs(&scene, 0.0, v->delta);
-    set_outputs(v, &now);
 }
 
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h) {

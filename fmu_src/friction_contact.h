@@ -72,16 +72,13 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message);
 void fc_friction_contact_free(FcFrictionContact* contact); // frees what the two above allocated
 
-// Checks what single bounds can't: the separation stays positive under vibration, the stiffness and the limit are
-// finite numbers above 0.
-bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
-
 // Advances from t to t + h [s], h >= 0. The inputs move at next_rate and stay where they end.
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
 
-// Recomputes F_t, F_n, sigma, A_r from the state and the present inputs and parameters (delta, F_t_mean, W_f and Q_f are
-// what the last step left). Call after an input or a tunable parameter changed and before an output is read.
-void fc_friction_contact_update_outputs(FcFrictionContact* contact);
+// Recomputes F_t, F_n, sigma, A_r from the state and the present inputs and parameters, whose combination it checks
+// (delta, F_t_mean, W_f and Q_f are what the last step left). Call after an input or a tunable parameter changed and
+// before an output is read.
+bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // The scene that begins at the present time, with the inputs moving at the rates of the last step or, where new ones
 // have been set, of the next. It points into the contact.

@@ -59,18 +59,8 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
         }
         contact->state = trial.state;
         fc_friction_contact_free(&trial);
-    } else {
-        if (!fc_friction_contact_check(contact, message)) {
-            return false;
-        }
-        fc_friction_contact_update_outputs(contact);
-        const FcVariables* v = &contact->state.variables;
-        if (!isfinite(v->F_t) || !isfinite(v->sigma) || !isfinite(v->A_r) || !isfinite(v->F_n)) {
-            return fc_message_set(message,
-                                  "F_t = sigma delta, sigma or A_r is beyond the largest number: sigma = "
-                                  "%.9g N/m, delta = %.9g m",
-                                  v->sigma, v->delta);
-        }
+    } else if (!fc_friction_contact_refresh(contact, message)) {
+        return false;
     }
     instance->experiment.outputs_stale = 0;
     return true;

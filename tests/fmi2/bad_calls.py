@@ -407,6 +407,14 @@ COMBINATIONS = [
         mend=lambda i: i.set({"vibration.a_d": 0.0}),
     ),
     BadCall(
+        "leaving initialization mode while sigma delta_0 overflows",
+        "initialization",
+        lambda i: i.call("fmi2ExitInitializationMode"),
+        ("fmi2ExitInitializationMode: F_t = sigma delta is beyond", "delta = 1e+303 m"),
+        prepare=lambda i: i.set({"delta_0": 1e303}),
+        mend=lambda i: i.set({"delta_0": 0.0}),
+    ),
+    BadCall(
         "reading F_t = sigma delta with contact.sigma raised until it overflows",
         "step complete",
         lambda i: i.call("fmi2GetReal", i.references(["F_t"]), 1, (c_double * 1)()),
