@@ -24,8 +24,9 @@
 // too small. The end sees the last panels as they are; in the mean the few that are too small drown.
 static const double OF_THE_MEAN = 10.0;
 static const double AT_THE_END = 0.2;
-static const double OF_GAUSS_PANELS = 2.0;
+static const double OF_GAUSS_PANELS = 10.0;
 static const double OF_BELLS = 0.2;
+static const double OF_THE_MEAN_IN_BELLS = 1.0;
 // Rounding in a panel, over the limit: asking for less would only shorten panels.
 static const double ROUNDING = 2e-13;
 // Panels that are refused in a row before one is taken as it is: rounding rules by then.
@@ -68,6 +69,9 @@ static double moving(const FcScene* scene, double duration) {
     return duration * (drive->omega + of_sigma);
 }
 
+// About -log10(x) of 0 < x <= 1, down to the next power of two.
+static double digits_of(double x) { return -0.30103 * ilogb(x); }
+
 // Number of nodes for a panel over which about this much changes, for so many digits.
 static double nodes_for(double digits, double change) { return 2.0 + 0.6 * digits + 0.5 * change; }
 
@@ -92,7 +96,7 @@ static double cross_section(Progress* progress, const Section* section) {
     const double relaxes =
         progress->per_deflection * fabs(fc_drive_displacement(drive, section->start, section->end));
     const double change = 1.4 * moving(progress->scene, length) + 2.0 * relaxes + section->change;
-    const double digits = progress->digits + log10(section->share);
+    const double digits = progress->digits - digits_of(section->share);
     const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(digits, 0.0));
     const double pieces = fc_most(1.0, ceil(0.5 * change / room));
     int count = panel_of_nodes(nodes_for(digits, change / pieces));
@@ -177,7 +181,8 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
                                                          1.0 + 2.0 * plan->lives / plan->grows);
     const double lives = fc_least(plan->lives, progress->end - at->t);
     const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
-    *excess = of_mean / fc_most(OF_THE_MEAN * whole, rounding);
+    const double share = fc_in_bell(&stretch->bells, at->t) ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN;
+    *excess = of_mean / fc_most(share * whole, rounding);
     const double at_end = end_error / fc_most(AT_THE_END * whole, rounding);
     if (at_end > *excess) {
         *excess = fc_most(*excess, fc_mesh_left_at_end(mesh, stretch, at->t + plan->h) * at_end);
@@ -324,7 +329,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .per_deflection = middle.sigma / middle.limit,
         .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
         .relative = options->tolerance,
-        .digits = -log10(options->tolerance),
+        .digits = digits_of(options->tolerance),
         .evaluations = *evaluations,
     };
     if (for_one_start) {

@@ -56,15 +56,17 @@ FC_INLINE void exponentials(int n, const double* x, double largest, double* e) {
 }
 
 // Of a quadrature that is exact up to the degree 2 n - 1: the tail, falling on for three quarters of the n degrees that it
-// would fall for if it fell evenly.
+// would fall for if it fell evenly; as it falls there, or as it fell from the largest value on, whichever is less.
 FC_INLINE double quadrature_error(const FcGaussRule* rule, int n, const double* f) {
     const FcTail tail = fc_tail_of(n, &rule->tail[0][0], FC_GAUSS_MOST_NODES, f);
+    const double largest = fc_largest(n, f);
     const double fall_3 = tail.fall * tail.fall * tail.fall;
-    double error = fc_beyond_rounding(n, f, tail.top);
+    double falls = 1.0;
     for (int k = 0; k < n / 4; k++) {
-        error *= fall_3;
+        falls *= fall_3;
     }
-    return error;
+    const double fell_half = sqrt(tail.top / (largest + 1e-300));
+    return fc_beyond_rounding(largest, tail.top) * fc_most(falls, fell_half * sqrt(fell_half));
 }
 
 FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, double t, double h,

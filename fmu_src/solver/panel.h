@@ -92,14 +92,16 @@ FC_INLINE FcTail fc_tail_of(int n, const double* row, int stride, const double* 
     return tail;
 }
 
-// Of a tail, what is more than the rounding of the function over the nodes.
-FC_INLINE double fc_beyond_rounding(int n, const double* f, double top) {
+FC_INLINE double fc_largest(int n, const double* f) {
     double largest = 0.0;
     for (int i = 0; i < n; i++) {
         largest = fc_most(largest, fabs(f[i]));
     }
-    return fc_most(0.0, top - 3e-14 * largest);
+    return largest;
 }
+
+// Of a tail, what is more than the rounding of a function of that size.
+FC_INLINE double fc_beyond_rounding(double largest, double top) { return fc_most(0.0, top - 3e-14 * largest); }
 
 // What the quadratures of F, of F V and of the heat F^2 |V| / g are estimated by: one function whose tail has all three.
 // Of the last two, only those of F - held: what the constant force held does is put right by the displacement, which is

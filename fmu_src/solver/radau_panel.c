@@ -63,7 +63,7 @@ FC_INLINE double unresolved(const FcRadauRule* rule, int n, const double* slope,
 
 FC_INLINE double quadrature_error(const FcRadauRule* rule, int n, const double* f) {
     const FcTail tail = fc_tail_of(n, &rule->tail[0][0], FC_RADAU_MOST_STAGES, f);
-    return fc_beyond_rounding(n, f, tail.top) * tail.fall * acting_part(n, tail.fall);
+    return fc_beyond_rounding(fc_largest(n, f), tail.top) * tail.fall * acting_part(n, tail.fall);
 }
 
 // What the mean over a panel sees of a defect at the most: it changes sign between the nodes.

@@ -14,6 +14,12 @@ static double speed_at_start(const FcSettledStart* from) {
     return from->at->rate * from->limit / from->sigma;
 }
 
+// Integral of x / (x + tau) over a duration [s]; the duration where x is infinite.
+static double fading(double x, double duration) { return isfinite(x) ? x * log1p(duration / x) : duration; }
+
+// Of the smaller of x and the duration: ln 2.
+static const double LEAST_FADING = 0.69;
+
 // Integral of 1 / |V| [s2/m] from the panel's start to its end, at the most but for a factor of 2: |V| grows about linearly
 // from what it came from and falls so towards the reversal, whose layer is w_b wide.
 static double slowness(const FcSettledStart* from) {
@@ -22,12 +28,12 @@ static double slowness(const FcSettledStart* from) {
     const double t = from->at->t;
     const double duration = stretch->end - t;
     const double after = t - stretch->start + stretch->back;
-    double slow = after / speed_at_start(from) * log1p(duration / after);
+    double slow = fading(after, duration) / speed_at_start(from);
     if (stretch->event <= stretch->end) {
         slow += (2.0 + log1p(duration / stretch->w_b)) / fabs(fc_drive_V_rate(drive, stretch->end));
     } else if (isfinite(stretch->event)) {
         const double ahead = stretch->event - stretch->end + stretch->w_b;
-        slow += ahead / fabs(fc_drive_V(drive, stretch->end)) * log1p(duration / ahead);
+        slow += fading(ahead, duration) / fabs(fc_drive_V(drive, stretch->end));
     }
     return slow;
 }
@@ -43,13 +49,18 @@ static double error_at_end(const FcSettledStart* from, double drift) {
         from->mesh->saturation / fabs(fc_drive_V(&from->mesh->scene->drive, stretch->end)); // s
     const double after = stretch->end - stretch->start + stretch->back;
     const double ahead = isfinite(stretch->event) ? stretch->event - stretch->end : INFINITY;
-    const double changes = from->mesh->smooth.rate + 1.0 / fmin(after, ahead);
+    const double changes = from->mesh->smooth.rate + 1.0 / fmin(fmin(after, ahead), stretch->end - from->at->t);
     return drift * relaxes * relaxes * changes;
 }
 
 static bool is_possible(const FcMesh* mesh, const FcStretch* stretch) {
     return !mesh->moving_limit && !mesh->smooth.follows_d_and_E && isfinite(mesh->saturation) &&
            (stretch->event > stretch->end || stretch->reversal);
+}
+
+// With a constant V the integral of the lag is known, and only its second order is missed.
+static bool V_is_constant(const FcDrive* drive) {
+    return drive->V.rate == 0.0 && drive->vibration.V_1 == 0.0;
 }
 
 // Cheap tests first: they fail on most panels.
@@ -65,8 +76,10 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const double after = at->t - stretch->start + stretch->back;
     const double lag_lasts = 2.0 * drift * mesh->saturation;
     const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (at->lag + ROUNDING); // 1/s
+    const bool known = V_is_constant(&mesh->scene->drive);
     if (mesh->smooth.rate + 1.0 / after > allowed_changes ||
-        lag_lasts * after > allowed * mesh->end * speed_at_start(from)) {
+        (!known && lag_lasts * LEAST_FADING * fmin(after, stretch->end - at->t) >
+                       allowed * mesh->end * speed_at_start(from))) {
         return false;
     }
     if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(mesh->scene, at->t) > allowed_changes) {
@@ -74,7 +87,8 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     }
     *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, stretch->end);
     return at->lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
-           lag_lasts * slowness(from) <= allowed * mesh->end && error_at_end(from, drift) <= allowed;
+           (known || lag_lasts * slowness(from) <= allowed * mesh->end) &&
+           error_at_end(from, drift) <= allowed;
 }
 
 // What the force lags behind the limit at the end, over the limit.
@@ -112,5 +126,13 @@ bool fc_settled_panel(const FcSettledStart* from, FcMap* map, double* displaceme
         .heat_slope = force,
         .heat_offset = force * (X - 1.5 * D),
     };
+    if (V_is_constant(&from->mesh->scene->drive)) {
+        // sigma' / (sigma r), integrated over the path
+        const double of_lag = force * (D - force / end.sigma);
+        map->impulse_offset += of_lag / V;
+        map->work_offset += of_lag;
+        map->heat_offset += 2.0 * of_lag;
+        map->drag_offset += V * (force / end.sigma - D);
+    }
     return true;
 }
