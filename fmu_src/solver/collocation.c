@@ -25,8 +25,10 @@
 static const double OF_THE_MEAN = 10.0;
 static const double AT_THE_END = 0.2;
 static const double OF_GAUSS_PANELS = 10.0;
-static const double OF_BELLS = 0.2;
+// The same in bells of the Stribeck curve, where estimates are up to ten times too small.
 static const double OF_THE_MEAN_IN_BELLS = 1.0;
+static const double AT_THE_END_IN_BELLS = 0.05;
+static const double OF_GAUSS_PANELS_IN_BELLS = 0.2;
 // Rounding in a panel, over the limit: asking for less would only shorten panels.
 static const double ROUNDING = 2e-13;
 // Panels that are refused in a row before one is taken as it is: rounding rules by then.
@@ -105,7 +107,8 @@ static double cross_section(Progress* progress, const Section* section) {
     }
     double h = length / pieces;
     double t = section->start;
-    const double allowed = (section->change > 0.0 ? OF_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
+    const double allowed =
+        (section->change > 0.0 ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
     while (t < section->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const double left = section->end - t;
         h = h < 0.9 * left && t + h > t ? h : left;
@@ -181,9 +184,9 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
                                                          1.0 + 2.0 * plan->lives / plan->grows);
     const double lives = fc_least(plan->lives, progress->end - at->t);
     const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
-    const double share = fc_in_bell(&stretch->bells, at->t) ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN;
-    *excess = of_mean / fc_most(share * whole, rounding);
-    const double at_end = end_error / fc_most(AT_THE_END * whole, rounding);
+    const bool in_bell = fc_in_bell(&stretch->bells, at->t);
+    *excess = of_mean / fc_most((in_bell ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN) * whole, rounding);
+    const double at_end = end_error / fc_most((in_bell ? AT_THE_END_IN_BELLS : AT_THE_END) * whole, rounding);
     if (at_end > *excess) {
         *excess = fc_most(*excess, fc_mesh_left_at_end(mesh, stretch, at->t + plan->h) * at_end);
     }

@@ -101,7 +101,9 @@ FC_INLINE double fc_largest(int n, const double* f) {
 }
 
 // Of a tail, what is more than the rounding of a function of that size.
-FC_INLINE double fc_beyond_rounding(double largest, double top) { return fc_most(0.0, top - 3e-14 * largest); }
+FC_INLINE double fc_beyond_rounding(double largest, double top) {
+    return fc_most(0.0, top - 3e-14 * largest);
+}
 
 // What the quadratures of F, of F V and of the heat F^2 |V| / g are estimated by: one function whose tail has all three.
 // Of the last two, only those of F - held: what the constant force held does is put right by the displacement, which is

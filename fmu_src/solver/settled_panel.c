@@ -49,7 +49,8 @@ static double error_at_end(const FcSettledStart* from, double drift) {
         from->mesh->saturation / fabs(fc_drive_V(&from->mesh->scene->drive, stretch->end)); // s
     const double after = stretch->end - stretch->start + stretch->back;
     const double ahead = isfinite(stretch->event) ? stretch->event - stretch->end : INFINITY;
-    const double changes = from->mesh->smooth.rate + 1.0 / fmin(fmin(after, ahead), stretch->end - from->at->t);
+    const double changes =
+        from->mesh->smooth.rate + 1.0 / fmin(fmin(after, ahead), stretch->end - from->at->t);
     return drift * relaxes * relaxes * changes;
 }
 
