@@ -20,7 +20,7 @@ from pathlib import Path
 
 import dask
 import numpy as np
-from distributed import Client, Future, LocalCluster, as_completed
+from distributed import Client, Future, LocalCluster
 from distributed.client import FutureCancelledError
 from distributed.comm import CommClosedError
 from distributed.scheduler import KilledWorker
@@ -28,6 +28,7 @@ from distributed.scheduler import KilledWorker
 from frictionlab.project import UserError
 from frictionlab.sweep.scenario import RESULTS, Results
 from frictionlab.sweep.spans import Chunks, Span
+from frictionlab.sweep.stop import Stop, kept_from_children
 
 CONNECT_SECONDS = 5.0
 IN_HAND = 2  # chunks of each worker: one that it runs, and one that waits there
@@ -76,17 +77,14 @@ def _local(workers: int, folder: Path) -> Iterator[Client]:
         }
     )
     os.environ.setdefault("PYTHONWARNINGS", "ignore")  # what is killed says nothing of it
-    # Control-C is this process's to handle: what it starts inherits that it is ignored.
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="localhost:0")
+        with kept_from_children():
+            cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="localhost:0")
     except (OSError, RuntimeError) as error:
         raise UserError(
             "worker processes here can't be reached through the loopback interface: "
             f"{error.__cause__ or error}"
         ) from None
-    finally:
-        signal.signal(signal.SIGINT, handler)
     with cluster, Client(cluster) as client:
         try:
             yield client
@@ -112,33 +110,36 @@ def run(
     work: object,
     values: Callable[[Span], Mapping[str, np.ndarray]],
     chunks: Chunks,
+    stop: Stop[Future] | None = None,
 ) -> Iterator[tuple[Span, Results]]:
-    """Results of function(work, values(chunk)) for all chunks, as they come."""
+    """Results of function(work, values(chunk)) for all chunks, as they come, until an end is asked for."""
+    stop = stop or Stop()
     # The work is a task of its own: what is lost with a worker is made again.
     shared = client.submit(copy.copy, work, pure=False)
     todo = iter(chunks)
 
-    def submit(span: Span) -> Future:
-        return client.submit(function, shared, values(span), pure=False)
+    submitted: dict[Future, Span] = {}
 
-    def more(count: int) -> dict[Future, Span]:
-        return {submit(span): span for span in itertools.islice(todo, count)}
+    def submit(count: int) -> None:
+        for span in itertools.islice(todo, count):
+            future = client.submit(function, shared, values(span), pure=False)
+            submitted[future] = span
+            future.add_done_callback(stop.add)
 
-    submitted = more(IN_HAND * sum(client.nthreads().values()))
+    submit(IN_HAND * sum(client.nthreads().values()))
     suspects: list[Span] = []
-    completed = as_completed(list(submitted), raise_errors=False)
-    for future in completed:
-        span = submitted.pop(future)  # lets the cluster forget it
+    while submitted:
+        future = stop.wait()
+        span = submitted.pop(future)
         results = _result(future)
         if results is None:
             suspects.append(span)
         else:
             chunks.learn(span[1] - span[0], float(np.sum(results.columns["seconds"])))
             yield span, results
-        for new, of_it in more(1).items():
-            submitted[new] = of_it
-            completed.add(new)
-    yield from _alone(function, work, values, suspects)
+        del future  # lets the cluster forget it
+        submit(1)
+    yield from _alone(function, work, values, suspects, stop)
 
 
 def _alone(
@@ -146,25 +147,28 @@ def _alone(
     work: object,
     values: Callable[[Span], Mapping[str, np.ndarray]],
     suspects: list[Span],
+    stop: Stop[Future],
 ) -> Iterator[tuple[Span, Results]]:
     """Chunks whose workers died, in processes of their own here; halved each time that one dies."""
-    ignored = (signal.SIGINT, signal.SIG_IGN)
     while suspects:
-        with ProcessPoolExecutor(1, get_context("spawn"), signal.signal, ignored) as pool:
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
             while suspects:
-                first, stop = suspects.pop()
+                stop.check()
+                first, end = suspects.pop()
                 try:
-                    results = pool.submit(function, work, values((first, stop))).result()
+                    with kept_from_children():
+                        task = pool.submit(function, work, values((first, end)))
+                    results = task.result()
                 except BrokenProcessPool:
                     break
-                yield (first, stop), results
+                yield (first, end), results
             else:
                 return
-        if stop - first == 1:
-            yield (first, stop), given_up()
+        if end - first == 1:
+            yield (first, end), given_up()
         else:
-            middle = (first + stop) // 2
-            suspects += [(middle, stop), (first, middle)]
+            middle = (first + end) // 2
+            suspects += [(middle, end), (first, middle)]
 
 
 def given_up() -> Results:

@@ -33,6 +33,7 @@ from frictionlab.sweep.plan import Scenarios
 from frictionlab.sweep.scenario import RESULTS, Results
 from frictionlab.sweep.shipping import shipped
 from frictionlab.sweep.spans import MOST, Chunks, missing
+from frictionlab.sweep.stop import Stop, held_back
 from frictionlab.sweep.store import Store, opened
 from frictionlab.values import Variables
 
@@ -140,11 +141,13 @@ def sweep(options: argparse.Namespace, console: Console) -> str:
         "python": platform.python_version(),
         "machine": platform.machine(),
     }
-    with opened(options.output, plan, options.fresh) as store:
+    runner = built_runner().read_bytes()
+    with held_back() as stop, opened(options.output, plan, options.fresh) as store:
+        stop.check()
         if store.is_whole():
             good, bad = store.counts()
             return f"nothing to do: {options.output} holds all {good} results ({bad} failed scenarios apart)"
-        return _run(options, console, store, scenarios, content)
+        return _run(options, console, store, scenarios, (content, runner), stop)
 
 
 @dataclass
@@ -165,28 +168,34 @@ class Progress:
 
 
 def _run(
-    options: argparse.Namespace, console: Console, store: Store, scenarios: Scenarios, fmu: bytes
+    options: argparse.Namespace,
+    console: Console,
+    store: Store,
+    scenarios: Scenarios,
+    files: tuple[bytes, bytes],
+    stop: Stop,
 ) -> str:
+    """files: the FMU and the batch runner."""
     missing_spans = missing(scenarios.count, store.done())
     progress = Progress(scenarios.count, scenarios.count - sum(stop - first for first, stop in missing_spans))
-    runner = built_runner().read_bytes()
     with (
         _bar(console, progress) as show,
         cluster.connected(options.scheduler, options.workers, store.work) as client,
     ):
         code = shipped(client, store.work) if options.scheduler else scenario
-        work = code.Work(fmu, runner, fmpy.platform, options.settle, options.samples)
+        stop.check()
+        work = code.Work(*files, fmpy.platform, options.settle, options.samples)
         cores = sum(client.nthreads().values())
         chunks = Chunks(missing_spans, options.chunk, cores)
         begin = time.perf_counter()
         for span, results in cluster.run(
-            client, code.run_chunk, work, lambda span: scenarios.rows(*span), chunks
+            client, code.run_chunk, work, lambda span: scenarios.rows(*span), chunks, stop
         ):
             store.keep(span, scenarios.shown(*span), results)
             progress.add(results)
             progress.elapsed = time.perf_counter() - begin
             show()
-    good, bad = store.finish(list(RESULTS))
+    good, bad = store.finish(list(RESULTS), stop.check)
     lines = [f"{good} results in {store.folder / 'results.parquet'}"]
     if bad:
         lines.append(f"{bad} failed scenarios, with reasons, in {store.folder / 'failed.csv'}")

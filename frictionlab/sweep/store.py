@@ -106,10 +106,13 @@ class Store:
             with unfinished.open("rb") as file:
                 os.fsync(file.fileno())
             unfinished.replace(self.folder / name)
-        except OSError as error:
+        except BaseException as error:
             with contextlib.suppress(OSError):
                 unfinished.unlink()
-            raise UserError(f"{self.folder / name}: can't be written: {error.strerror or error}") from None
+            if isinstance(error, OSError):
+                reason = error.strerror or error
+                raise UserError(f"{self.folder / name}: can't be written: {reason}") from None
+            raise
 
     def is_whole(self) -> bool:
         return (self.folder / "results.parquet").exists()
@@ -143,13 +146,21 @@ class Store:
         )
         self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: _write_table(table, path))
 
-    def finish(self, results: Sequence[str]) -> tuple[int, int]:
-        """Joins the parts; the numbers of good and failed scenarios."""
+    def finish(self, results: Sequence[str], check: Callable[[], None]) -> tuple[int, int]:
+        """Joins the parts; the numbers of good and failed scenarios. Calls check often: it may raise."""
+
+        def join(name: str, writer: Callable, chosen: Callable[[pa.Table], pa.Table]) -> int:
+            def checked(table: pa.Table) -> pa.Table:
+                check()
+                return chosen(table)
+
+            return self._join(name, writer, checked)
+
         good = bad = 0
         if any(_has_failed(part) for part in self._parts()):
-            bad = self._join("failed.parquet", _parquet_writer, lambda table: _failed(table, results))
-            self._join("failed.csv", csv.CSVWriter, lambda table: _failed(table, results))
-        good = self._join("results.parquet", _parquet_writer, _good)
+            bad = join("failed.parquet", _parquet_writer, lambda table: _failed(table, results))
+            join("failed.csv", csv.CSVWriter, lambda table: _failed(table, results))
+        good = join("results.parquet", _parquet_writer, _good)
         shutil.rmtree(self.folder / "parts")
         return good, bad
 

@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -32,6 +33,7 @@ from frictionlab.sweep import command as sweep
 from frictionlab.sweep.plan import Scenarios
 from frictionlab.sweep.scenario import RESULTS, Results, Work, run_chunk
 from frictionlab.sweep.spans import Chunks, missing
+from frictionlab.sweep.stop import held_back
 
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
@@ -303,6 +305,37 @@ class TestSpans:
         assert [stop - first for first, stop in fixed] == [30, 30, 30, 5]
 
 
+class TestStop:
+    """Asked for at any place, it is raised at those where nothing is cut in two."""
+
+    def test_is_raised_at_the_end_at_the_latest(self) -> None:
+        before, passed = signal.getsignal(signal.SIGINT), []
+
+        def held() -> None:
+            with held_back():
+                signal.raise_signal(signal.SIGINT)
+                passed.append("signal")
+
+        with pytest.raises(KeyboardInterrupt):
+            held()
+        assert passed == ["signal"]
+        assert signal.getsignal(signal.SIGINT) is before
+
+    def test_ends_a_wait_and_lets_events_through_before(self) -> None:
+        events = []
+
+        def held() -> None:
+            with held_back() as stop:
+                stop.add("event")
+                events.append(stop.wait())
+                threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGTERM)).start()
+                events.append(stop.wait())
+
+        with pytest.raises(KeyboardInterrupt):
+            held()
+        assert events == ["event"]
+
+
 class TestRuns:
     def test_refused_scenarios_are_kept_apart(self, fmu_path: Path, tmp_path: Path) -> None:
         output = tmp_path / "sweep"
@@ -402,6 +435,29 @@ class TestRuns:
         else:
             assert len(said.splitlines()) == 1 and said.startswith("stopped; what was computed is kept"), said
             assert left == ["parts", "sweep.json"]
+            assert all(path.suffix == ".parquet" for path in (output / "parts").iterdir())
+
+    @pytest.mark.parametrize("to_all", [True, False], ids=["group", "alone"])
+    @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
+    def test_nothing_is_left_of_a_start(
+        self,
+        fmu_path: Path,
+        tmp_path: Path,
+        started: Callable[..., subprocess.Popen],
+        by: signal.Signals,
+        to_all: bool,
+    ) -> None:
+        output = tmp_path / "sweep"
+        sweeping = started(
+            command(fmu_path, output, "--random", "1000000", "--vary", "V=0.01:1", "--workers", "2"),
+            env=environment(), stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        wait_for((output / "work").exists)
+        (os.killpg if to_all else os.kill)(sweeping.pid, by)
+        _, said = sweeping.communicate(timeout=60)
+        wait_for(lambda: not processes_of_group(sweeping.pid))
+        assert len(said.splitlines()) == 1 and said.startswith("stopped; "), said
+        assert not output.exists()
 
     def test_dask_cluster_that_loses_a_worker(
         self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
