@@ -49,12 +49,7 @@ def main() -> None:
 def look(browser: Browser, options: argparse.Namespace) -> None:
     """What needs a browser: measures and pictures."""
     if options.measure:
-        times = measure(browser, options.output)
-        for what, milliseconds in (
-            ("first picture painted after", times.first_pictures),
-            ("a page of one word after", times.empty_pages),
-            ("work of a frame", times.frames),
-        ):
+        for what, milliseconds in measure(browser, options.output).items():
             print(f"{what}: {_spread(milliseconds)}")
     if options.pictures:
         for path in take_pictures(browser, options.output, options.pictures):

@@ -20,7 +20,7 @@ from frictionlab.release.targets import CACHE, zig
 HOST = Path(__file__).with_name("assets") / "host.c"
 OPTIONS = (
     "-target", "wasm32-wasi", "-mexec-model=reactor",
-    "-std=c11", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden", "-flto",
+    "-std=c11", "-Os", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden", "-flto",
     "-Wl,--gc-sections", "-Wl,--strip-all", "-Wl,--export-dynamic",
 )  # fmt: skip
 

@@ -48,16 +48,18 @@ class Chart {
     this.data = svg("g", { "clip-path": `url(#clip-${host.id})` }, this.svg);
     this.marks = svg("g", { class: "marks" }, this.svg);
     this.content = null;
-    this.size = { width: 0, height: 0 }; // measured when it changes: asking at every frame would lay the page out
+    this.size = null; // measured when it changes: asking at every frame would lay the page out
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
   resize() {
-    const size = { width: Math.max(this.host.clientWidth, 120), height: Math.max(this.host.clientHeight, 90) };
-    if (size.width === this.size.width && size.height === this.size.height) return;
+    const { clientWidth, clientHeight } = this.host;
+    if (clientWidth === 0) return; // not shown yet
+    const size = { width: Math.max(clientWidth, 120), height: Math.max(clientHeight, 90) };
+    if (size.width === this.size?.width && size.height === this.size?.height) return;
     this.size = size;
-    this.svg.setAttribute("viewBox", `0 0 ${this.size.width} ${this.size.height}`);
+    this.svg.setAttribute("viewBox", `0 0 ${size.width} ${size.height}`);
     const inner = { x: MARGIN.left, y: MARGIN.top, ...this.inner() };
     for (const [key, value] of Object.entries(inner)) this.clipBox.setAttribute(key, value);
     if (this.content) this.draw(this.content);
@@ -73,6 +75,7 @@ class Chart {
   // rules: [{y, kind, text}], points: [{x, y, kind, title}], summary}
   draw(content) {
     this.content = content;
+    if (!this.size) return;
     const { width, height } = this.size;
     const x = this.scale(this.axes.x, content.x, MARGIN.left, width - MARGIN.right);
     const y = this.scale(this.axes.y, content.y, height - MARGIN.bottom, MARGIN.top);

@@ -31,6 +31,7 @@ class Page {
     addEventListener("hashchange", () => this.restore());
     document.querySelectorAll("#numbers, .figures").forEach(reachable);
     document.body.classList.add("ready");
+    performance.mark("ready");
   }
 
   startWorker(module) {
@@ -160,9 +161,11 @@ class Page {
       if (!(error instanceof Refusal)) throw error;
       this.refuse(error);
     }
-    clearTimeout(this.settling);
-    this.settling = setTimeout(() => this.showAddress(), PAUSE);
     this.showScene();
+    if (this.pictured) {
+      clearTimeout(this.settling);
+      this.settling = setTimeout(() => this.showAddress(), PAUSE);
+    }
     performance.measure("frame", { start: begin });
     this.pictured = true;
   }

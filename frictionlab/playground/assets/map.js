@@ -64,6 +64,7 @@ class RegimeChart extends Chart {
 
   // Puts canvas and contours between the axes.
   place() {
+    if (!this.size) return;
     const { width, height } = this.inner();
     const box = { left: MARGIN.left, top: MARGIN.top, width, height };
     for (const [side, pixels] of Object.entries(box)) this.canvas.style[side] = `${pixels}px`;
