@@ -1,4 +1,4 @@
-# What stands beside the model in the FMU: index.html, the licences, the icon, and the folder of related files.
+# What stands beside the model in the FMU: index.html, fmi-ls-ref.html, the licences, the icon, and the folder of related files.
 # Gives documentation_arguments for frictionlab.packing.archive, and documentation_files that they depend on.
 
 set(documentation_page "${CMAKE_BINARY_DIR}/generated/index.html")
@@ -11,13 +11,15 @@ add_custom_command(
     COMMENT "Writing the documentation"
     VERBATIM)
 
-# Parameter sets, experiments and their reference results (layered standard FMI-LS-REF).
+# Parameter sets, experiments and their reference results (layered standard FMI-LS-REF), and the page about them.
 set(related_folder "${CMAKE_BINARY_DIR}/generated/org.fmi-standard.fmi-ls-ref")
 set(related_manifest "${related_folder}/fmi-ls-manifest.xml")
+set(related_page "${CMAKE_BINARY_DIR}/generated/fmi-ls-ref.html")
 file(GLOB related_parts CONFIGURE_DEPENDS frictionlab/related/*.py data/related/*.csv)
 add_custom_command(
-    OUTPUT "${related_manifest}"
+    OUTPUT "${related_manifest}" "${related_page}"
     COMMAND Python3::Interpreter -B -m frictionlab.related.files "${related_folder}"
+    COMMAND Python3::Interpreter -B -m frictionlab.related.page "${related_page}"
     DEPENDS "${model_description}" ${related_parts} frictionlab/presets.py frictionlab/parameters.py
             frictionlab/description.py
     WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}"
@@ -27,6 +29,7 @@ add_custom_command(
 set(documentation_arguments
     --folder "extra/org.fmi-standard.fmi-ls-ref=${related_folder}"
     --file "documentation/index.html=${documentation_page}"
+    --file "documentation/fmi-ls-ref.html=${related_page}"
     --file model.png=docs/fmu/model.png
     --file documentation/licenses/license.txt=LICENSE)
 if(WITH_SUNDIALS)
@@ -35,4 +38,5 @@ if(WITH_SUNDIALS)
         --file documentation/licenses/sundials-notice.txt=docs/fmu/licenses/sundials-notice.txt)
 endif()
 file(GLOB documentation_licenses CONFIGURE_DEPENDS docs/fmu/licenses/*.txt)
-set(documentation_files "${documentation_page}" "${related_manifest}" docs/fmu/model.png LICENSE ${documentation_licenses})
+set(documentation_files
+    "${documentation_page}" "${related_manifest}" "${related_page}" docs/fmu/model.png LICENSE ${documentation_licenses})

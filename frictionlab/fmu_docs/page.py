@@ -46,19 +46,6 @@ def page(xml: Path, playground: bool = False) -> str:
     return text
 
 
-def files(index: Path) -> dict[str, Path]:
-    """Everything but the libraries and the sources: path in the FMU -> file."""
-    return {
-        "model.png": FMU_DOCS / "model.png",
-        "documentation/index.html": index,
-        "documentation/licenses/license.txt": ROOT / "LICENSE",
-        **{
-            f"documentation/licenses/{path.name}": path
-            for path in sorted((FMU_DOCS / "licenses").glob("*.txt"))
-        },
-    }
-
-
 def variable_tables(root: ElementTree.Element) -> str:
     """One table for each causality, in the order of the model description."""
     display_factors = {
@@ -137,7 +124,7 @@ def _allowed(kind: ElementTree.Element) -> str:
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: fmu_documentation.py index.html")
+        sys.exit("usage: python -m frictionlab.fmu_docs.page index.html")
     try:
         Path(sys.argv[1]).write_text(page(ROOT / "modelDescription.xml"), encoding="utf-8")
     except (OSError, ValueError) as error:
