@@ -1,11 +1,11 @@
-"""Runs a command by its module, as the files of scripts/ do: `python -m frictionlab sweep.command ARGS`.
+"""Runs main() of a command's module, as the files of scripts/ do: `python -m frictionlab sweep.command ARGS`.
 
 Control-C is one line and exit status 130 from the first import on.
 """
 
 from __future__ import annotations
 
-import runpy
+import importlib
 import signal
 import sys
 
@@ -25,7 +25,10 @@ def main() -> None:
     sys.unraisablehook = _take_up
     signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     try:
-        runpy.run_module(f"frictionlab.{sys.argv[0]}", run_name="__main__", alter_sys=True)
+        command = importlib.import_module(f"frictionlab.{sys.argv[0]}")
+        if asked:  # and some import caught it
+            raise KeyboardInterrupt
+        sys.exit(command.main())
     except KeyboardInterrupt:
         _stopped()
     except Exception:
