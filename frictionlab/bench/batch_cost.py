@@ -1,6 +1,6 @@
 """What a scenario costs in a batch and in a sweep, against the bare C loop over the same FMI calls.
 
-All in one run, one after the other, so that the ratios hold on any machine; the machine should be idle.
+All take turns in one run, and the medians of the turns are printed; the machine should be idle.
 The cost of a sweep is that of all its processes: what N scenarios more take, so that starting them does not
 count.
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -32,6 +33,7 @@ SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
 AROUND = ("W_f", "solver.evaluations")
 RANGES = {"V": (0.005, 0.5), "vibration.V_1": (0.1, 1.5), "d": (12e-6, 17e-6)}
 MEMORY_SCENARIOS = 1_000_000
+TURNS = 3
 
 
 def scenarios(count: int) -> dict[str, np.ndarray]:
@@ -108,28 +110,37 @@ def sweep(fmu: Path, count: int, samples: int, workers: int) -> Sweep:
     return Sweep(usage.ru_utime + usage.ru_stime, float(elapsed[1]), 1024.0 * usage.ru_maxrss)
 
 
-def measure(fmu_path: Path, program: Path, count: int, memory: bool) -> None:
+BARE = "bare C loop"
+
+
+def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> tuple[dict[str, float], float]:
+    """Processor time [s] per scenario each way, and the throughput of two workers over that of one."""
+    bare, force = bare_loop(fmu, program, count, samples)
+    batch, batch_force = one_batch(fmu.path, count, samples)
+    if not np.isclose(force, batch_force, rtol=1e-12):
+        raise UserError(f"the bare loop gives {force!r} N, the batch {batch_force!r} N")
+    few, many = (sweep(fmu.path, n, samples, 1) for n in (count, 4 * count))
+    two_few, two_many = (sweep(fmu.path, n, samples, 2) for n in (count, 4 * count))
+    costs = {
+        BARE: bare,
+        "simulate_many": batch,
+        "scripts/sweep, all processes": (many.processor - few.processor) / (3 * count),
+        "one session each in Python": sessions(fmu, max(1, count // 100), samples),
+    }
+    return costs, (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
+
+
+def measure(fmu_path: Path, program: Path, count: int, turns: int, memory: bool) -> None:
     print(f"{'processor time per scenario':40}{'us':>9}{'ratio':>8}")
     with FrictionFmu(fmu_path) as fmu:
         for samples in (64, 1):
-            bare, force = bare_loop(fmu, program, count, samples)
-            batch, batch_force = one_batch(fmu_path, count, samples)
-            if not np.isclose(force, batch_force, rtol=1e-12):
-                raise UserError(f"the bare loop gives {force!r} N, the batch {batch_force!r} N")
-            few, many = (sweep(fmu_path, n, samples, 1) for n in (count, 4 * count))
-            two_few, two_many = (sweep(fmu_path, n, samples, 2) for n in (count, 4 * count))
-            swept = (many.processor - few.processor) / (3 * count)
-            one = sessions(fmu, max(1, count // 100), samples)
             words = f"{samples} samples" if samples > 1 else "mean only"
-            for name, cost in (
-                ("bare C loop", bare),
-                ("simulate_many", batch),
-                ("scripts/sweep, all processes", swept),
-                ("one session each in Python", one),
-            ):
-                print(f"{words + ', ' + name:40}{1e6 * cost:9.1f}{cost / bare:8.2f}")
-            speedup = (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
-            print(f"{words}, throughput of two workers over one: {speedup:.2f}")
+            costs, speedups = zip(*(turn(fmu, program, count, samples) for _ in range(turns)), strict=True)
+            for name in costs[0]:
+                cost = statistics.median(one[name] for one in costs)
+                ratio = statistics.median(one[name] / one[BARE] for one in costs)
+                print(f"{words + ', ' + name:40}{1e6 * cost:9.1f}{ratio:8.2f}")
+            print(f"{words}, throughput of two workers over one: {statistics.median(speedups):.2f}")
         if memory:
             largest = sweep(fmu_path, MEMORY_SCENARIOS, 1, 2).memory
             print(f"largest process of a sweep of {MEMORY_SCENARIOS} scenarios: {largest / 2**20:.0f} MiB")
@@ -137,8 +148,8 @@ def measure(fmu_path: Path, program: Path, count: int, memory: bool) -> None:
 
 def main(argv: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="bench/batch-cost", description=__doc__.splitlines()[0])
-    parser.add_argument("--scenarios", type=int, default=50_000, help="of each measurement (50000)")
-    parser.add_argument("--quick", action="store_true", help="2000 scenarios, without the memory")
+    parser.add_argument("--scenarios", type=int, default=30_000, help="of each measurement (30000)")
+    parser.add_argument("--quick", action="store_true", help="one turn of 10000 scenarios, without the memory")
     try:
         finish(run, parser.parse_args(argv))
     except KeyboardInterrupt:
@@ -146,7 +157,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    count = 2000 if options.quick else options.scenarios
+    count = 10_000 if options.quick else options.scenarios
     if count < 100:
         raise UserError(f"--scenarios {count}: must be at least 100")
     fmu = build_fmu()
@@ -155,7 +166,9 @@ def run(options: argparse.Namespace) -> None:
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     except subprocess.CalledProcessError as error:
         raise UserError(str(error)) from None
-    measure(fmu, ROOT / "build" / "bench" / "bare_loop", count, not options.quick)
+    measure(
+        fmu, ROOT / "build" / "bench" / "bare_loop", count, 1 if options.quick else TURNS, not options.quick
+    )
 
 
 if __name__ == "__main__":
