@@ -149,7 +149,7 @@ def measure(fmu_path: Path, program: Path, count: int, turns: int, memory: bool)
 def main(argv: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="bench/batch-cost", description=__doc__.splitlines()[0])
     parser.add_argument("--scenarios", type=int, default=30_000, help="of each measurement (30000)")
-    parser.add_argument("--quick", action="store_true", help="one turn of 10000 scenarios, without the memory")
+    parser.add_argument("--quick", action="store_true", help="one turn of 10000, without the memory")
     try:
         finish(run, parser.parse_args(argv))
     except KeyboardInterrupt:

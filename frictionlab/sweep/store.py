@@ -135,13 +135,15 @@ class Store:
     def keep(self, span: Span, values: Mapping[str, np.ndarray], results: Results) -> None:
         """The rows of consecutive scenarios."""
         first, stop = span
-        reasons = [results.reasons.get(row) for row in range(stop - first)]
+        reasons = pa.nulls(stop - first, pa.string())
+        if results.reasons:
+            reasons = pa.array([results.reasons.get(row) for row in range(stop - first)], pa.string())
         table = pa.table(
             {
                 "scenario": np.arange(first, stop),
                 **{name: _arrow(column) for name, column in values.items()},
                 **results.columns,
-                "reason": pa.array(reasons, pa.string()),
+                "reason": reasons,
             }
         )
         self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: _write_table(table, path))
