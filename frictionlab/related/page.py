@@ -1,4 +1,4 @@
-"""Writes documentation/fmi-ls-ref.html of the FMU, which FMI-LS-REF recommends: what its related files are for.
+"""Writes documentation/fmi-ls-ref.html of the FMU: what its related files are for, as FMI-LS-REF recommends.
 
     python -m frictionlab.related.page HTML
 
@@ -33,23 +33,24 @@ dd {{ margin: 0 0 1rem 1.5rem; }}
 <body>
 <main>
 <h1>Related files of FrictionContact</h1>
-<p><a href="index.html">FrictionContact</a> carries them in <code>{folder}/</code>, under the manifest of the layered
-standard FMI-LS-REF.</p>
+<p><a href="index.html">FrictionContact</a> carries them in <code>{folder}/</code>,
+under the manifest of the layered standard FMI-LS-REF.</p>
 <h2>Experiments</h2>
-<p><a href="../{folder}/{experiments}">{experiments}</a> describes runs from <var>t</var> = 0 whose results the FMU must give in any
-tool. A solver that shares no code with the FMU computed them. At every step each output may differ from them by at most the
-tolerance times its own largest value in the run.</p>
+<p><a href="../{folder}/{experiments}">{experiments}</a> describes runs from <var>t</var> = 0
+whose results the FMU must give in any tool. A solver that shares no code with the FMU computed them. At every
+step each output may differ from them by at most the tolerance times its own largest value in the run.</p>
 <dl>
 {runs}
 </dl>
 <h2>Parameter sets</h2>
-<p>Start values of scenes, as parameter sets of SSP 1.0; all others keep the start values of the model description. The
-page of the live FMU offers the same scenes: its figure c is the one that is mentioned here.</p>
+<p>Start values of scenes, as parameter sets of SSP 1.0; all others keep the start values of the model
+description. The page of the live FMU offers the same scenes; figure c, where named, is that page's.</p>
 <dl>
 {sets}
 </dl>
 <h2>Checksums</h2>
-<p><a href="../{folder}/{checksums}">{checksums}</a> holds the SHA-256 sum of every other file as it was packed.</p>
+<p><a href="../{folder}/{checksums}">{checksums}</a> holds the SHA-256 sum of every other file
+as it was packed.</p>
 </main>
 </body>
 </html>
@@ -69,11 +70,8 @@ def page() -> str:
 
 
 def _run(run: Experiment) -> str:
-    start = (
-        f"Parameters {_link(f'{run.name}.ssv')}"
-        if run.values
-        else "The start values of the model description"
-    )
+    own = "The start values of the model description"
+    start = f"Parameters {_link(f'{run.name}.ssv')}" if run.values else own
     steps = f"{1e6 * run.stop:g} µs in steps of {1e6 * run.step:g} µs, tolerance {run.tolerance:g}"
     return f"<dt>{_link(run.result.name)}: {escape(run.description)}</dt>\n<dd>{start}; {steps}.</dd>"
 
@@ -87,7 +85,9 @@ def _sets(note: str, sets: list[Preset]) -> str:
 
 
 def _known(preset: Preset) -> str:
-    return "" if preset.known is None else f" (mean friction {preset.known:g} N: {str(preset.known_from).lower()})"
+    if preset.known is None:
+        return ""
+    return f" (mean friction {preset.known:g} N: {str(preset.known_from).lower()})"
 
 
 def _link(name: str) -> str:

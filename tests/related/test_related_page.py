@@ -1,4 +1,4 @@
-"""The page about the related files: in the FMU, with a link to each of them and to nothing that is not there."""
+"""The page about the related files: in the FMU, with a link to each of them, and to nothing else."""
 
 from __future__ import annotations
 
