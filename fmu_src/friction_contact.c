@@ -129,18 +129,17 @@ static bool is_to_be_checked(const FcScene* scene) {
            fc_limit_follows_load(scene->friction);
 }
 
-// The outputs at the beginning of the scene.
+// The outputs at the beginning of the scene; false where one of them is beyond the largest number.
 static bool find_outputs(const FcScene* scene, double delta, FcOutputs* outputs, FcMessage* message) {
-    const FcOutputs now = fc_scene_outputs(scene, 0.0, delta);
-    if (!isfinite(now.sigma) || !isfinite(now.A_r) || !isfinite(now.F_n)) {
+    *outputs = fc_scene_outputs(scene, 0.0, delta);
+    if (!isfinite(outputs->sigma) || !isfinite(outputs->A_r) || !isfinite(outputs->F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
-    if (!isfinite(now.F_t)) {
+    if (!isfinite(outputs->F_t)) {
         return fc_message_set(
             message, "F_t = sigma delta is beyond the largest number: sigma = %.9g N/m, delta = %.9g m",
-            now.sigma, delta);
+            outputs->sigma, delta);
     }
-    *outputs = now;
     return true;
 }
 
