@@ -78,7 +78,7 @@ static double phi_heat(double z) {
 // With r = sigma |V| / g, s = sgn V and the settled deflection D = s g / sigma:
 //     delta = D + (delta_0 - D) e^-rt,   heat = integral of sigma r delta^2 dt,   drag = V (delta_1 - delta_0).
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h) {
-    assert(at->sigma >= 0.0 && at->limit > 0.0 && h >= 0.0);
+    assert(!(at->sigma < 0.0) && at->limit > 0.0 && h >= 0.0); // a sigma that is no number goes through
     const double V = at->V;
     const double sigma = at->sigma;
     const double z = -fc_coefficients_rate(at) * h;
