@@ -47,7 +47,7 @@ def connected(scheduler: str | None, workers: int, folder: Path) -> Iterator[Cli
         logging.getLogger(name).setLevel(logging.CRITICAL)
     dask.config.set({"distributed.comm.timeouts.connect": CONNECT_SECONDS})
     if scheduler is None:
-        with _local(workers, folder) as client:
+        with _temporary_files_in(folder), _local(workers, folder) as client:
             yield client
         return
     try:
@@ -62,13 +62,25 @@ def connected(scheduler: str | None, workers: int, folder: Path) -> Iterator[Cli
 
 
 @contextlib.contextmanager
+def _temporary_files_in(folder: Path) -> Iterator[None]:
+    """Those of processes that start meanwhile: what a killed one leaves is removed with the folder."""
+    before = os.environ.get("TMPDIR")
+    os.environ["TMPDIR"] = str(folder)
+    try:
+        yield
+    finally:
+        del os.environ["TMPDIR"]
+        if before is not None:
+            os.environ["TMPDIR"] = before
+
+
+@contextlib.contextmanager
 def _local(workers: int, folder: Path) -> Iterator[Client]:
-    quiet = {"DASK_LOGGING__DISTRIBUTED": "critical", "TMPDIR": str(folder)}
     dask.config.set(
         {
             # One death makes a chunk suspect: a worker that dies again and again can stall its nanny.
             "distributed.scheduler.allowed-failures": 0,
-            "distributed.nanny.pre-spawn-environ": quiet,
+            "distributed.nanny.pre-spawn-environ": {"DASK_LOGGING__DISTRIBUTED": "critical"},
             "temporary-directory": str(folder),
             # What watches the workers all the time costs more than handing out the work.
             "distributed.worker.profile.enabled": False,
