@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from playwright.sync_api import Browser, Error, sync_playwright
+from playwright.sync_api import Browser, Error, Playwright, sync_playwright
 
 from frictionlab.project import UserError
 
@@ -25,8 +25,15 @@ def chromium() -> Iterator[Browser]:
         raise UserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")
     with sync_playwright() as playwright:
         try:
-            browser = playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])
-        except Error as error:
-            raise UserError(f"Chromium does not start: {error.message.splitlines()[0]}") from None
+            browser = _launched(playwright, executable)
+        except Error:  # on a machine with much other work the first may be gone before it answers
+            try:
+                browser = _launched(playwright, executable)
+            except Error as error:
+                raise UserError(f"Chromium does not start: {error.message.splitlines()[0]}") from None
         yield browser
         browser.close()
+
+
+def _launched(playwright: Playwright, executable: str) -> Browser:
+    return playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])

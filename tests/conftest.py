@@ -23,7 +23,9 @@ def copy_project() -> Callable[[Path], Path]:
     """Copies the project as a clean checkout has it: without .venv and build."""
 
     def copy(target: Path) -> Path:
-        left_out = shutil.ignore_patterns("build", ".git", ".venv*", ".*cache*", "__pycache__", "*.png")
+        left_out = shutil.ignore_patterns(
+            "build", ".git", ".hypothesis", ".venv*", ".*cache*", "__pycache__", "*.png"
+        )
         shutil.copytree(ROOT, target, ignore=left_out)
         shutil.copy(ROOT / "docs/fmu/model.png", target / "docs/fmu")
         return target

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +25,7 @@ from frictionlab.identify.recovery import (
     LOOP_TRUTH,
     NOISE,
     TRUTH,
+    Recovered,
     from_loops,
     from_rows,
     measurements,
@@ -44,19 +47,38 @@ def least_of(seeds: int) -> int:
     return int(stats.binom.ppf(0.001, seeds, 0.95))
 
 
+ROWS = {  # seeds, uncertainty that is stated, relative error of V_1
+    "scatter estimated": (200, None, 0.0),
+    "uncertainty stated": (200, [NOISE] * 12, 0.0),
+    "V_1 uncertain": (400, [NOISE] * 12, 0.1),
+}
+
+
+@pytest.fixture(scope="module")
+def from_kind(fmu: FrictionFmu) -> Callable[[str], Recovered]:
+    """What rows of a kind of ROWS give."""
+    return cache(lambda kind: from_rows(fmu, *ROWS[kind]))
+
+
+@pytest.fixture(scope="module")
+def from_law(fmu: FrictionFmu) -> Callable[[str, bool], Recovered]:
+    """What loops of a law give, with the uncertainty stated or not."""
+    return cache(lambda law, stated: from_loops(fmu, LOOPS, law, stated))
+
+
 @pytest.mark.parametrize(
-    ("uncertainty", "V_1_error", "seeds"),
+    "kind",
     [
-        (None, 0.0, 200),
-        pytest.param([NOISE] * 12, 0.0, 200, marks=pytest.mark.slow),
-        ([NOISE] * 12, 0.1, 100),
+        "scatter estimated",
+        pytest.param("uncertainty stated", marks=pytest.mark.slow),
+        pytest.param("V_1 uncertain", marks=pytest.mark.slow),
     ],
-    ids=["scatter estimated", "uncertainty stated", "V_1 uncertain"],
 )
 def test_intervals_hold_the_truth_in_about_95_of_100_seeds(
-    fmu: FrictionFmu, uncertainty: list[float] | None, V_1_error: float, seeds: int
+    from_kind: Callable[[str], Recovered], kind: str
 ) -> None:
-    found = from_rows(fmu, seeds, uncertainty, V_1_error)
+    found = from_kind(kind)
+    seeds, uncertainty, V_1_error = ROWS[kind]
     for name in TRUTH:
         assert sum(found.holds(name)) >= least_of(seeds), name
     if not V_1_error:
@@ -66,25 +88,27 @@ def test_intervals_hold_the_truth_in_about_95_of_100_seeds(
 
 @pytest.mark.parametrize("stated", [True, False])
 @pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic"])
-def test_loops_are_recovered_too(fmu: FrictionFmu, law: str, stated: bool) -> None:
+def test_loops_are_recovered_too(from_law: Callable[[str, bool], Recovered], law: str, stated: bool) -> None:
     """Not more often than they may: intervals that hold the truth always would be too wide."""
-    found = from_loops(fmu, LOOPS, law, stated)
+    found = from_law(law, stated)
     for name in LOOP_TRUTH:
         assert least_of(LOOPS) <= sum(found.holds(name)) <= stats.binom.ppf(0.999, LOOPS, 0.95), name
 
 
 @pytest.mark.slow
-def test_recovery_is_what_the_documents_say(fmu: FrictionFmu) -> None:
+def test_recovery_is_what_the_documents_say(
+    from_kind: Callable[[str], Recovered], from_law: Callable[[str, bool], Recovered]
+) -> None:
     """Within 1 %: another C library may round a seed to the other side of an interval's end."""
-    rows, noisy = from_rows(fmu, 100), from_rows(fmu, 400, [NOISE] * 12, 0.1)
-    loops = from_loops(fmu, 300, "Dahl")
+    noisy = from_kind("V_1 uncertain")
     said = re.search(
-        r"in (\d+) %, (\d+) % and (\d+) % of 100 seeds; .* in (\d+) %, (\d+) % and (\d+) % of 400.*"
+        r"in (\d+) %, (\d+) % and (\d+) % of 200 seeds; .* in (\d+) %, (\d+) % and (\d+) % of 400.*"
         r"in (\d+) % and (\d+) % of 300 seeds.*hold the phase in (\d+) %",
         PHYSICS,
         re.DOTALL,
     )
-    held = [100.0 * np.mean(one.holds(name)) for one in (rows, noisy, loops) for name in one.truth]
+    recovered = (from_kind("scatter estimated"), noisy, from_law("Dahl", True))
+    held = [100.0 * np.mean(one.holds(name)) for one in recovered for name in one.truth]
     linear = [one.interval(1) for one in noisy.fits]
     held.append(100.0 * np.mean([low <= TRUTH["vibration.phase_d"] <= high for low, high in linear]))
     assert [float(number) for number in said.groups()] == pytest.approx(held, abs=1.0)

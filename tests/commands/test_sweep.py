@@ -19,6 +19,7 @@ import pandas as pd
 import psutil
 import pytest
 from batch.one_by_one import sampled_period
+from deadly import deadly
 from distributed import Client
 from scipy.integrate import quad
 
@@ -31,7 +32,7 @@ from frictionlab.reference.start_values import scene_of
 from frictionlab.sweep import cluster as sweep_cluster
 from frictionlab.sweep import command as sweep
 from frictionlab.sweep.plan import Scenarios
-from frictionlab.sweep.scenario import RESULTS, Results, Work, run_chunk
+from frictionlab.sweep.scenario import RESULTS, Work, run_chunk
 from frictionlab.sweep.spans import Chunks, missing
 from frictionlab.sweep.stop import held_back
 
@@ -116,13 +117,6 @@ def evaluate(fmu_path: Path, values: dict[str, float], samples: int) -> dict[str
 
 def table_of(scenarios: Scenarios) -> pd.DataFrame:
     return pd.DataFrame(scenarios.shown(0, scenarios.count))
-
-
-def deadly(work: object, values: dict[str, np.ndarray]) -> Results:
-    """Scenario 3 kills its process."""
-    if 3 in values["number"]:
-        os._exit(1)
-    return Results({"seconds": values["number"] * 1e-3})
 
 
 @pytest.fixture

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
@@ -25,3 +26,18 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         return compiled[platform]
 
     return compile_once
+
+
+@pytest.fixture(scope="session")
+def copy_compiled(library: Callable[[str], Path]) -> Callable[..., dict[str, Path]]:
+    """In place of compile_platforms: copies what it made when it was first asked for a platform."""
+
+    def copy(platforms: Iterable[str], folder: Path, **_: object) -> dict[str, Path]:
+        libraries = {}
+        for platform in platforms:
+            compiled = library(platform)
+            shutil.copytree(compiled.parent, folder / platform)
+            libraries[platform] = folder / platform / compiled.name
+        return libraries
+
+    return copy

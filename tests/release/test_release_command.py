@@ -23,9 +23,10 @@ QUIET = {"transient": True, "disable": True}
 
 
 @pytest.fixture(scope="module")
-def released(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def released(tmp_path_factory: pytest.TempPathFactory, copy_compiled: Callable[..., dict[str, Path]]) -> Path:
     output = tmp_path_factory.mktemp("released") / "FrictionContact.fmu"
-    with Progress(**QUIET) as progress:
+    with pytest.MonkeyPatch.context() as patch, Progress(**QUIET) as progress:
+        patch.setattr(release, "compile_platforms", copy_compiled)
         release.make_release(output, ["linux64"], progress)
     return output
 
@@ -158,15 +159,20 @@ def test_output_on_a_read_only_file_system() -> None:
     assert "can't be written" in refuse(Path("/proc/FrictionContact.fmu"))
 
 
-def test_code_that_does_not_compile(
-    monkeypatch: pytest.MonkeyPatch, copy_project: Callable[[Path], Path], tmp_path: Path, released: Path
-) -> None:
-    """The compiler's first error in one line; an older release stays as it was."""
+def test_code_that_does_not_compile(copy_project: Callable[[Path], Path], tmp_path: Path) -> None:
+    """The compiler's first error in one line."""
     broken = copy_project(tmp_path / "broken")
     (broken / "fmu_src" / "model" / "contact.c").write_text("int contact(void) { return surprise; }\n")
     with pytest.raises(UserError, match=r"the build fails: .*contact\.c:1:.*surprise"):
         release.compile_platforms(["linux64"], tmp_path / "work", root=broken)
+
+
+def test_a_file_that_is_not_valid(
+    monkeypatch: pytest.MonkeyPatch, released: Path, copy_compiled: Callable[..., dict[str, Path]]
+) -> None:
+    """An older release stays as it was."""
     before = released.read_bytes()
+    monkeypatch.setattr(release, "compile_platforms", copy_compiled)
     monkeypatch.setattr(release, "validate_fmu", lambda path: ["a made-up problem\nof two lines"])
     assert refuse(released) == "the validator finds: a made-up problem of two lines"
     assert released.read_bytes() == before
