@@ -6,7 +6,8 @@
 //
 // A transient y decays with r; what stays is the lag s g rho / r, and next to it a part of about 1 / (r T), T being the
 // time over which r or rho change. Where the mean of the lag over the interval is within the tolerance, only the end and
-// the transient are left to be told. Without vibration of the stiffness there is no lag at all.
+// the transient are left to be told. Without vibration of the stiffness there is no lag at all; where V is constant, its
+// integral is s g (|D| at the start - |D| at the end) / |V|, and what is missed is of second order.
 #ifndef FC_SOLVER_SETTLED_PANEL_H
 #define FC_SOLVER_SETTLED_PANEL_H
 
