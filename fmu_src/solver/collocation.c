@@ -204,7 +204,8 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
     int caution = 0;
     double displacement = 0.0;
     progress->held = mesh->moving_limit ? 0.0 : sign * start.limit;
-    while (at.t < stretch->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
+    while (at.t < stretch->end && progress->evaluations <= FC_MOST_EVALUATIONS &&
+           !isnan(progress->map->offset)) {
         const FcTrajectories from = trajectories(progress);
         at.lag = (fabs(sign * panel.limit - panel.sigma * from.delta_0) + panel.sigma * fabs(from.scale)) /
                  mesh->force;
@@ -225,12 +226,12 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         if (!(at.t + plan.h > at.t)) {
             plan.h = fc_least(left, fmax(4e-16 * stretch->end, DBL_MIN));
         }
+        double excess;
         for (int tries = 0;; tries++) {
             const bool in_bell = fc_in_bell(&stretch->bells, at.t);
             fc_radau_panel(in_bell ? scene : progress->beyond_bells, plan.stages, at.t, plan.h, sign, &from,
                            &panel);
             progress->evaluations += plan.stages;
-            double excess;
             if (is_accurate(progress, mesh, stretch, &plan, &at, &panel, &excess) || tries == MOST_TRIES) {
                 caution -= tries == 0 && caution > 0;
                 break;
@@ -243,6 +244,9 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
             caution += caution < MOST_CAUTION;
         }
         *progress->map = fc_map_compose(progress->map, &panel.map);
+        if (!isfinite(excess)) {
+            progress->map->offset = NAN; // beyond the largest number, which the step is refused for
+        }
         displacement += panel.displacement;
         at.gone += panel.z;
         at.rate = panel.rate;

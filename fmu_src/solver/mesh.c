@@ -94,7 +94,7 @@ static double smooth_time(const FcScene* scene, const FcSmoothness* smooth, doub
     const FcDrive* drive = &scene->drive;
     // Twice the rates at t: they rise while the panel goes on.
     const double by_nearness = 2.0 * 3.0 / fc_scene_d(scene, t);
-    const double by_E = 2.0 * fabs(drive->E.rate) / fc_drive_E(drive, t);
+    const double by_E = 2.0 * (fabs(drive->E.rate) / fc_drive_E(drive, t));
     const double d_rate = fc_scene_d_rate(scene, t);
     const double floating =
         scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
