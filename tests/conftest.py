@@ -18,6 +18,11 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 ROOT = Path(__file__).resolve().parent.parent
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest files first, so that no core waits for another at the end: those that compile releases."""
+    items.sort(key=lambda item: "release" not in item.path.parts)
+
+
 @pytest.fixture(scope="session")
 def copy_project() -> Callable[[Path], Path]:
     """Copies the project as a clean checkout has it: without .venv and build."""
