@@ -180,7 +180,7 @@ static bool check_present(FcFrictionContact* contact, FcMessage* message) {
 static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    FcOutputs now = {0};
+    FcOutputs now;
     if (!find_outputs(&scene, v->delta, &now, message)) {
         return false;
     }
@@ -343,7 +343,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const double time_rest = rounding_of_sum(t, h);
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
-    FcOutputs now = {0};
+    FcOutputs now;
     if (!find_outputs(&end, result.delta, &now, message)) {
         return false;
     }

@@ -8,7 +8,7 @@ static double bound_acceleration(const FcScene* scene) {
     const FcDrive* drive = &scene->drive;
     const double d = fc_scene_d(scene, 0.0);
     const double rate = drive->omega + fabs(fc_scene_d_rate(scene, 0.0)) * (scene->at_E.decay + 1.0 / d) +
-                        fabs(drive->E.rate) / drive->E.value + fabs(drive->load.rate) / drive->load.value;
+                        fc_drive_E_growth(drive, 0.0) + fc_drive_load_growth(drive, 0.0);
     if (!(rate > 0.0)) {
         return 0.0;
     }

@@ -79,6 +79,14 @@ double fc_drive_E(const FcDrive* drive, double t) { return linear(drive->E, t); 
 
 double fc_drive_load(const FcDrive* drive, double t) { return linear(drive->load, t); }
 
+double fc_drive_E_growth(const FcDrive* drive, double t) {
+    return fabs(drive->E.rate) / fc_drive_E(drive, t);
+}
+
+double fc_drive_load_growth(const FcDrive* drive, double t) {
+    return fabs(drive->load.rate) / fc_drive_load(drive, t);
+}
+
 double fc_drive_V_rate(const FcDrive* drive, double t) {
     return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
 }

@@ -55,6 +55,8 @@ double fc_drive_V(const FcDrive* drive, double t);             // m/s
 double fc_drive_d(const FcDrive* drive, double t);             // m
 double fc_drive_E(const FcDrive* drive, double t);             // Pa
 double fc_drive_load(const FcDrive* drive, double t);          // N
+double fc_drive_E_growth(const FcDrive* drive, double t);      // 1/s, |E'| / E
+double fc_drive_load_growth(const FcDrive* drive, double t);   // 1/s, |load'| / load
 double fc_drive_V_rate(const FcDrive* drive, double t);        // m/s2
 double fc_drive_V_curvature(const FcDrive* drive, double t);   // m/s3
 double fc_drive_d_rate(const FcDrive* drive, double t);        // m/s

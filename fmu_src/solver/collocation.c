@@ -71,9 +71,6 @@ static double moving(const FcScene* scene, double duration) {
     return duration * (drive->omega + of_sigma);
 }
 
-// About -log10(x) of 0 < x <= 1, down to the next power of two.
-static double digits_of(double x) { return -0.30103 * ilogb(x); }
-
 // Number of nodes for a panel over which about this much changes, for so many digits.
 static double nodes_for(double digits, double change) { return 2.0 + 0.6 * digits + 0.5 * change; }
 
@@ -98,7 +95,7 @@ static double cross_section(Progress* progress, const Section* section) {
     const double relaxes =
         progress->per_deflection * fabs(fc_drive_displacement(drive, section->start, section->end));
     const double change = 1.4 * moving(progress->scene, length) + 2.0 * relaxes + section->change;
-    const double digits = progress->digits - digits_of(section->share);
+    const double digits = progress->digits - fc_digits(section->share);
     const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(digits, 0.0));
     const double pieces = fc_most(1.0, ceil(0.5 * change / room));
     int count = panel_of_nodes(nodes_for(digits, change / pieces));
@@ -184,9 +181,9 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
                                                          1.0 + 2.0 * plan->lives / plan->grows);
     const double lives = fc_least(plan->lives, progress->end - at->t);
     const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
-    const bool in_bell = fc_in_bell(&stretch->bells, at->t);
-    *excess = of_mean / fc_most((in_bell ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN) * whole, rounding);
-    const double at_end = end_error / fc_most((in_bell ? AT_THE_END_IN_BELLS : AT_THE_END) * whole, rounding);
+    *excess = of_mean / fc_most((plan->in_bell ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN) * whole, rounding);
+    const double at_end =
+        end_error / fc_most((plan->in_bell ? AT_THE_END_IN_BELLS : AT_THE_END) * whole, rounding);
     if (at_end > *excess) {
         *excess = fc_most(*excess, fc_mesh_left_at_end(mesh, stretch, at->t + plan->h) * at_end);
     }
@@ -226,11 +223,10 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         if (!(at.t + plan.h > at.t)) {
             plan.h = fc_least(left, fmax(4e-16 * stretch->end, DBL_MIN));
         }
+        const FcScene* here = plan.in_bell ? scene : progress->beyond_bells;
         double excess;
         for (int tries = 0;; tries++) {
-            const bool in_bell = fc_in_bell(&stretch->bells, at.t);
-            fc_radau_panel(in_bell ? scene : progress->beyond_bells, plan.stages, at.t, plan.h, sign, &from,
-                           &panel);
+            fc_radau_panel(here, plan.stages, at.t, plan.h, sign, &from, &panel);
             progress->evaluations += plan.stages;
             if (is_accurate(progress, mesh, stretch, &plan, &at, &panel, &excess) || tries == MOST_TRIES) {
                 caution -= tries == 0 && caution > 0;
@@ -336,7 +332,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .per_deflection = middle.sigma / middle.limit,
         .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
         .relative = options->tolerance,
-        .digits = digits_of(options->tolerance),
+        .digits = fc_digits(options->tolerance),
         .evaluations = *evaluations,
     };
     if (for_one_start) {

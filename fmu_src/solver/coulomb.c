@@ -28,8 +28,9 @@ static LimitIntegrals integrals_over_panel(const FcScene* scene, double start, d
 static double panel_length(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
     const double swing = scene->at_E.decay * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
-    const double by_E = 2.0 * (fabs(drive->E.rate) / fc_drive_E(drive, t)); // twice: they rise over the panel
-    const double by_load = 2.0 * fabs(drive->load.rate) / fc_drive_load(drive, t);
+    // twice: they rise over the panel
+    const double by_E = 2.0 * fc_drive_E_growth(drive, t);
+    const double by_load = 2.0 * fc_drive_load_growth(drive, t);
     return 2.0 / (drive->omega + swing + by_E + by_load);
 }
 

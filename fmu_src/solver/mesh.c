@@ -94,7 +94,7 @@ static double smooth_time(const FcScene* scene, const FcSmoothness* smooth, doub
     const FcDrive* drive = &scene->drive;
     // Twice the rates at t: they rise while the panel goes on.
     const double by_nearness = 2.0 * 3.0 / fc_scene_d(scene, t);
-    const double by_E = 2.0 * (fabs(drive->E.rate) / fc_drive_E(drive, t));
+    const double by_E = 2.0 * fc_drive_E_growth(drive, t);
     const double d_rate = fc_scene_d_rate(scene, t);
     const double floating =
         scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
@@ -128,7 +128,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
 
 // Decades of accuracy that a panel needs for this allowed relative error.
 static int decades(double allowed) {
-    return !(allowed < 0.3) ? 0 : (int)least(FINEST, 0.15 - 0.30103 * ilogb(allowed)); // 0 for no number too
+    return !(allowed < 0.3) ? 0 : (int)least(FINEST, 0.15 + fc_digits(allowed)); // 0 for no number too
 }
 
 // Tolerances from which on fewer stages resolve the Stribeck curve.
@@ -281,6 +281,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     if (!in_bell) {
         plan.h = least(plan.h, stretch->bells.before - at->t);
     }
+    plan.in_bell = in_bell;
     plan.lives = lives;
     plan.grows = smooth;
     return plan;

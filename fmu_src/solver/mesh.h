@@ -18,6 +18,7 @@
 #ifndef FC_SOLVER_MESH_H
 #define FC_SOLVER_MESH_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "model/scene.h"
@@ -54,6 +55,9 @@ typedef struct {
     double path_after; // m, path from the end to the next reversal or the interval's end
 } FcStretch;
 
+// About -log10(x), down to the next power of two.
+static inline double fc_digits(double x) { return -0.30103 * ilogb(x); }
+
 // Where the panels have got to.
 typedef struct {
     double t;
@@ -66,6 +70,7 @@ typedef struct {
 typedef struct {
     double h;     // s
     int stages;   // 3, 5 or 9
+    bool in_bell; // of the Stribeck curve
     double lives; // s, K
     double grows; // s, in which sigma may grow e-fold
 } FcPlan;

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import fmpy
@@ -133,6 +133,30 @@ def started() -> Iterator[Callable[..., subprocess.Popen]]:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
+
+
+@pytest.fixture
+def endless(fmu_path: Path, started: Callable[..., subprocess.Popen]) -> Callable[..., subprocess.Popen]:
+    """Starts a sweep of a million scenarios into a folder, with more variables of the environment."""
+
+    def start(output: Path, more: Mapping[str, str] | None = None) -> subprocess.Popen:
+        return started(
+            command(fmu_path, output, "--random", "1000000", "--vary", "V=0.01:1", "--workers", "2"),
+            env={**environment(), **(more or {})}, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+
+    return start
+
+
+TO_ALL = pytest.mark.parametrize("to_all", [True, False], ids=["group", "alone"])
+
+
+def ended(sweeping: subprocess.Popen, by: signal.Signals, to_all: bool) -> str:
+    """What a sweep said that was ended by a signal, to all its processes or to the first alone."""
+    (os.killpg if to_all else os.kill)(sweeping.pid, by)
+    _, said = sweeping.communicate(timeout=60)
+    wait_for(lambda: not processes_of_group(sweeping.pid))
+    return said
 
 
 class TestScenario:
@@ -400,27 +424,17 @@ class TestRuns:
         expected = 55.0 * 2 / np.pi * np.arcsin(coulomb["V"] / 1.44)
         assert np.allclose(coulomb["F_mean"], expected, rtol=1e-9, atol=0.0)
 
-    @pytest.mark.parametrize("to_all", [True, False], ids=["group", "alone"])
+    @TO_ALL
     @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
     def test_nothing_is_left_but_the_rows(
-        self,
-        fmu_path: Path,
-        tmp_path: Path,
-        started: Callable[..., subprocess.Popen],
-        by: signal.Signals,
-        to_all: bool,
+        self, tmp_path: Path, endless: Callable[..., subprocess.Popen], by: signal.Signals, to_all: bool
     ) -> None:
         """Control-C on a terminal reaches the workers too. What is killed leaves only its folder."""
         output, temporary = tmp_path / "sweep", tmp_path / "temporary"
         temporary.mkdir()
-        sweeping = started(
-            command(fmu_path, output, "--random", "1000000", "--vary", "V=0.01:1", "--workers", "2"),
-            env={**environment(), "TMPDIR": str(temporary)}, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
+        sweeping = endless(output, {"TMPDIR": str(temporary)})
         wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 4)
-        (os.killpg if to_all else os.kill)(sweeping.pid, by)
-        _, said = sweeping.communicate(timeout=60)
-        wait_for(lambda: not processes_of_group(sweeping.pid))
+        said = ended(sweeping, by, to_all)
         assert list(temporary.iterdir()) == []
         left = sorted(path.name for path in output.iterdir())
         if by == signal.SIGKILL:
@@ -431,25 +445,15 @@ class TestRuns:
             assert left == ["parts", "sweep.json"]
             assert all(path.suffix == ".parquet" for path in (output / "parts").iterdir())
 
-    @pytest.mark.parametrize("to_all", [True, False], ids=["group", "alone"])
+    @TO_ALL
     @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
     def test_nothing_is_left_of_a_start(
-        self,
-        fmu_path: Path,
-        tmp_path: Path,
-        started: Callable[..., subprocess.Popen],
-        by: signal.Signals,
-        to_all: bool,
+        self, tmp_path: Path, endless: Callable[..., subprocess.Popen], by: signal.Signals, to_all: bool
     ) -> None:
         output = tmp_path / "sweep"
-        sweeping = started(
-            command(fmu_path, output, "--random", "1000000", "--vary", "V=0.01:1", "--workers", "2"),
-            env=environment(), stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
+        sweeping = endless(output)
         wait_for((output / "work").exists)
-        (os.killpg if to_all else os.kill)(sweeping.pid, by)
-        _, said = sweeping.communicate(timeout=60)
-        wait_for(lambda: not processes_of_group(sweeping.pid))
+        said = ended(sweeping, by, to_all)
         assert len(said.splitlines()) == 1 and said.startswith("stopped; "), said
         assert not output.exists()
 
