@@ -40,7 +40,7 @@ def prepared(
     steps: npt.ArrayLike | None = None,
     times: bool = False,
 ) -> Batch:
-    """The batch of `simulate_many`, checked. times: one result more, "seconds" of processor time."""
+    """The batch of `simulate_many`, checked. times: one result more, "seconds" that each took."""
     lengths = None
     if steps is not None:
         lengths = _row(numbers_of(steps, "steps", 0.0), "steps")

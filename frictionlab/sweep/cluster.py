@@ -91,13 +91,18 @@ def _local(workers: int, folder: Path) -> Iterator[Client]:
     os.environ.setdefault("PYTHONWARNINGS", "ignore")  # what is killed says nothing of it
     try:
         with kept_from_children():
-            cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="localhost:0")
+            cluster = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                memory_limit=0,  # a chunk's is bounded; to watch it ten times a second costs more
+                dashboard_address="localhost:0",
+            )
     except (OSError, RuntimeError) as error:
         raise UserError(
             "worker processes here can't be reached through the loopback interface: "
             f"{error.__cause__ or error}"
         ) from None
-    with cluster, Client(cluster) as client:
+    with cluster, Client(cluster, direct_to_workers=True) as client:
         try:
             yield client
         except BaseException:

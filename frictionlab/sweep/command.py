@@ -158,7 +158,7 @@ class Progress:
     earlier: int
     new: int = 0
     failed: int = 0
-    seconds: float = 0.0  # of processor time on the workers
+    seconds: float = 0.0  # that the scenarios took on the workers
     elapsed: float = 0.0  # s
 
     def add(self, results: Results) -> None:
@@ -206,7 +206,7 @@ def _run(
         lines.append(
             f"{progress.new} scenarios in {progress.elapsed:.1f} s on {cores} workers: "
             f"{rate:.0f} per second, {rate / cores:.0f} per worker; "
-            f"{1e3 * progress.seconds / progress.new:.3g} ms of processor time each"
+            f"{1e3 * progress.seconds / progress.new:.3g} ms each"
         )
     return "\n".join(lines)
 

@@ -41,9 +41,11 @@ class Column:
         """The same as results show them: enumerations by name."""
         return (self.numbers if self.names is None else self.names)[self._index(first, stop)]
 
-    def _index(self, first: int, stop: int) -> np.ndarray:
+    def _index(self, first: int, stop: int) -> np.ndarray | slice:
         if self.picks is not None:
             return self.picks[first:stop]
+        if self.repeat == 1 and stop <= len(self.numbers):
+            return slice(first, stop)
         return np.arange(first, stop) // self.repeat % len(self.numbers)
 
     def content(self) -> Iterable[bytes]:

@@ -27,7 +27,7 @@ RESULTS = {
     "A_r_mean": "m2, mean sample of the real contact area",
     "W_period": "J, work against friction in the period",
     "evaluations": "1, evaluations of the right-hand side",
-    "seconds": "s, processor time that the scenario took on its worker",
+    "seconds": "s, time that the scenario took on its worker",
 }
 OUTPUTS: dict[str, Output] = {
     "F_mean": ("F_t_mean", "mean"),

@@ -146,7 +146,7 @@ class Store:
                 "reason": reasons,
             }
         )
-        self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: _write_table(table, path))
+        self._write(f"parts/{first:08d}-{stop - 1:08d}.parquet", lambda path: _write_part(table, path))
 
     def finish(self, results: Sequence[str], check: Callable[[], None]) -> tuple[int, int]:
         """Joins the parts; the numbers of good and failed scenarios. Calls check often: it may raise."""
@@ -224,14 +224,15 @@ def _has_failed(part: Path) -> bool:
     return reasons.null_count < len(reasons)
 
 
-def _parquet_writer(path: str | Path, schema: pa.Schema) -> pq.ParquetWriter:
+def _parquet_writer(path: str | Path, schema: pa.Schema, compression: str = "SNAPPY") -> pq.ParquetWriter:
     """Dictionaries serve names alone: numbers seldom come twice."""
     names = [field.name for field in schema if pa.types.is_string(field.type)]
-    return pq.ParquetWriter(str(path), schema, use_dictionary=names)
+    return pq.ParquetWriter(str(path), schema, use_dictionary=names, compression=compression)
 
 
-def _write_table(table: pa.Table, path: Path) -> None:
-    with _parquet_writer(path, table.schema) as file:
+def _write_part(table: pa.Table, path: Path) -> None:
+    """Not compressed: it is read once and gone."""
+    with _parquet_writer(path, table.schema, "NONE") as file:
         file.write_table(table)
 
 

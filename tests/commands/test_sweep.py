@@ -322,6 +322,16 @@ class TestSpans:
         fixed = iter(Chunks([(0, 95)], 30, 2))
         assert [stop - first for first, stop in fixed] == [30, 30, 30, 5]
 
+    def test_size_falls_towards_the_end(self) -> None:
+        """Else one worker would still run a whole chunk when the others have nothing left."""
+        chunks, sizes = Chunks([(0, 100_000)], None, 2), []
+        for first, stop in chunks:
+            sizes.append(stop - first)
+            chunks.learn(stop - first, 1e-4 * (stop - first))
+        assert max(sizes) == 5000
+        assert max(sizes[-3:]) <= 5000 / 8
+        assert [stop - first for first, stop in Chunks([(0, 10)], None, 2)] == [3, 2, 2, 1, 1, 1]
+
 
 class TestStop:
     """Asked for at any place, it is raised at those where nothing is cut in two."""
