@@ -77,7 +77,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--workers", type=int, default=os.cpu_count() or 1, help="processes here (one a core)"
     )
-    parser.add_argument("--chunk", type=int, help="scenarios handed out at a time (half a second's work)")
+    parser.add_argument("--chunk", type=int, help="scenarios handed out at a time (a second's work)")
     parser.add_argument("--settle", type=float, default=1e6, help="periods before the one that is read (1e6)")
     parser.add_argument("--samples", type=int, default=64, help="samples of that period (64)")
     parser.add_argument("--fmu", type=Path, help="use this FMU instead of building one")

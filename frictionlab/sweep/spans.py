@@ -8,7 +8,7 @@ Span = tuple[int, int]  # first scenario, and the one after the last
 
 FIRST = 50  # scenarios, while nobody knows how long they take
 MOST = 100_000  # bounds memory
-SECONDS = 0.5  # what a chunk should take: soon there, and long against what it costs to hand it out
+SECONDS = 1.0  # what a chunk should take: soon there, and long against what it costs to hand it out
 
 
 def missing(count: int, done: Iterable[Span]) -> list[Span]:

@@ -314,7 +314,7 @@ class TestSpans:
     def test_size_follows_what_a_scenario_takes(self) -> None:
         chunks = Chunks([(0, 10**6)], None, 2)
         pieces = iter(chunks)
-        for seconds, size in ((1e-4, 5000), (1e-3, 500), (100.0, 1)):  # half a second's work
+        for seconds, size in ((1e-4, 10_000), (1e-3, 1000), (100.0, 1)):  # a second's work
             for _ in range(10):
                 first, stop = next(pieces)
                 chunks.learn(stop - first, seconds * (stop - first))
@@ -328,8 +328,8 @@ class TestSpans:
         for first, stop in chunks:
             sizes.append(stop - first)
             chunks.learn(stop - first, 1e-4 * (stop - first))
-        assert max(sizes) == 5000
-        assert max(sizes[-3:]) <= 5000 / 8
+        assert max(sizes) == 10_000
+        assert max(sizes[-3:]) <= 10_000 / 8
         assert [stop - first for first, stop in Chunks([(0, 10)], None, 2)] == [3, 2, 2, 1, 1, 1]
 
 
