@@ -60,9 +60,10 @@ FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
     if (drive->omega != 0.0) {
         const double angle = theta(drive, t);
         const double c = cos(angle);
+        const double s = sin(angle);
         now.V += drive->vibration.V_1 * c;
         if (drive->vibration.a_d != 0.0) {
-            now.d += drive->vibration.a_d * (c * drive->cos_phase_d - sin(angle) * drive->sin_phase_d);
+            now.d += drive->vibration.a_d * (c * drive->cos_phase_d - s * drive->sin_phase_d);
         }
     }
     return now;
@@ -91,14 +92,22 @@ double fc_drive_V_rate(const FcDrive* drive, double t) {
     return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
 }
 
-double fc_drive_V_curvature(const FcDrive* drive, double t) {
-    return -drive->vibration.V_1 * drive->omega * drive->omega * cos(theta(drive, t));
+FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
+    FcVelocity at = {.V = linear(drive->V, t), .rate = drive->V.rate};
+    if (drive->vibration.V_1 != 0.0) {
+        const double angle = theta(drive, t);
+        const double V_1 = drive->vibration.V_1;
+        const double c = cos(angle);
+        at.V += V_1 * c;
+        at.rate -= V_1 * drive->omega * sin(angle);
+        at.curvature = -V_1 * drive->omega * drive->omega * c;
+    }
+    return at;
 }
 
-double fc_drive_time_of_change(const FcDrive* drive, double t, double change) {
-    const double rate = fabs(fc_drive_V_rate(drive, t));
-    const double curvature = fabs(fc_drive_V_curvature(drive, t));
-    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
+double fc_velocity_time_of_change(const FcVelocity* at, double change) {
+    const double rate = fabs(at->rate);
+    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * fabs(at->curvature) * change));
 }
 
 double fc_drive_d_rate(const FcDrive* drive, double t) {
@@ -177,13 +186,13 @@ static double root_of_V(const FcDrive* drive, double t0, double t1) {
     const double V_0 = fc_drive_V(drive, t0);
     double t = 0.5 * (t0 + t1);
     for (int i = 0; i < 100; i++) {
-        const double V = fc_drive_V(drive, t);
-        if ((V < 0.0) == (V_0 < 0.0)) {
+        const FcVelocity at = fc_drive_velocity(drive, t);
+        if ((at.V < 0.0) == (V_0 < 0.0)) {
             t0 = t;
         } else {
             t1 = t;
         }
-        double next = t - V / fc_drive_V_rate(drive, t);
+        double next = t - at.V / at.rate;
         if (!(next > t0 && next < t1)) {
             next = 0.5 * (t0 + t1);
         }
@@ -197,9 +206,9 @@ static double root_of_V(const FcDrive* drive, double t0, double t1) {
 
 // A dip shallower than this is smooth enough to be stepped over.
 static bool is_dip(const FcDrive* drive, double t) {
-    const double V = fc_drive_V(drive, t);
-    return V * fc_drive_V_curvature(drive, t) >= 0.0 &&
-           fabs(V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
+    const FcVelocity at = fc_drive_velocity(drive, t);
+    return at.V * at.curvature >= 0.0 &&
+           fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
 static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, double end) {

@@ -58,7 +58,6 @@ double fc_drive_load(const FcDrive* drive, double t);          // N
 double fc_drive_E_growth(const FcDrive* drive, double t);      // 1/s, |E'| / E
 double fc_drive_load_growth(const FcDrive* drive, double t);   // 1/s, |load'| / load
 double fc_drive_V_rate(const FcDrive* drive, double t);        // m/s2
-double fc_drive_V_curvature(const FcDrive* drive, double t);   // m/s3
 double fc_drive_d_rate(const FcDrive* drive, double t);        // m/s
 double fc_drive_smallest_d(const FcDrive* drive, double h);    // lower bound of d over [0, h]
 double fc_drive_largest_d(const FcDrive* drive, double h);     // upper bound of d over [0, h]
@@ -66,8 +65,16 @@ double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of
 double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h]
 
-// Time [s] in which V moves by change [m/s] at t: the root of |V'| x + |V''| x^2 / 2 = change.
-double fc_drive_time_of_change(const FcDrive* drive, double t, double change);
+// V and its derivatives.
+typedef struct {
+    double V;         // m/s
+    double rate;      // m/s2
+    double curvature; // m/s3
+} FcVelocity;
+FcVelocity fc_drive_velocity(const FcDrive* drive, double t); // all for the price of one angle
+
+// Time [s] in which V moves by change [m/s]: the root of |V'| x + |V''| x^2 / 2 = change.
+double fc_velocity_time_of_change(const FcVelocity* at, double change);
 
 // integral of V over [t0, t1] [m], exact.
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1);

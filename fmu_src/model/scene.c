@@ -103,9 +103,11 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
             rates.limit = 0.0;
         }
     }
-    const double V = fc_drive_V(drive, t);
-    rates.limit +=
-        fc_stribeck_slope(scene->friction, V) / fc_stribeck(scene->friction, V) * fc_drive_V_rate(drive, t);
+    if (fc_has_stribeck_curve(scene->friction)) {
+        const FcVelocity at = fc_drive_velocity(drive, t);
+        rates.limit +=
+            fc_stribeck_slope(scene->friction, at.V) / fc_stribeck(scene->friction, at.V) * at.rate;
+    }
     return rates;
 }
 

@@ -17,6 +17,7 @@
 #include "solver/gauss_panel.h"
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
+#include "solver/section.h"
 #include "solver/settled_panel.h"
 #include "solver/stribeck_bell.h"
 
@@ -28,7 +29,7 @@ static const double OF_GAUSS_PANELS = 10.0;
 // The same in bells of the Stribeck curve, where estimates are up to ten times too small.
 static const double OF_THE_MEAN_IN_BELLS = 1.0;
 static const double AT_THE_END_IN_BELLS = 0.05;
-static const double OF_GAUSS_PANELS_IN_BELLS = 0.2;
+static const double OF_GAUSS_PANELS_IN_BELLS = 1.0;
 // Rounding in a panel, over the limit: asking for less would only shorten panels.
 static const double ROUNDING = 2e-13;
 // Panels that are refused in a row before one is taken as it is: rounding rules by then.
@@ -60,17 +61,6 @@ static FcTrajectories trajectories(const Progress* progress) {
                             .held = progress->held};
 }
 
-// Gauss panels for a stretch over which the bristle relaxes by less than this.
-static const double SOFT = 7.0;
-
-// By about how much the phase and ln(sigma) move in a duration [s].
-static double moving(const FcScene* scene, double duration) {
-    const FcDrive* drive = &scene->drive;
-    const double of_sigma =
-        2.0 * scene->at_E.decay * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
-    return duration * (drive->omega + of_sigma);
-}
-
 // Number of nodes for a panel over which about this much changes, for so many digits.
 static double nodes_for(double digits, double change) { return 2.0 + 0.6 * digits + 0.5 * change; }
 
@@ -79,33 +69,25 @@ static int panel_of_nodes(double nodes) {
     return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12;
 }
 
-// A part of a stretch, in a bell of the Stribeck curve or between two.
-typedef struct {
-    const FcScene* scene; // of the coefficients there
-    double start, end;    // s
-    double share;         // 1, of the stretch
-    double relaxes;       // 1, over the stretch, in a bell; else 0
-    double change;        // of the bell
-} Section;
+// What a bell adds to the change over a panel, beyond its width.
+static const double BELL_CHANGE = 2.0;
 
 // Goes through a section with Gauss panels as far as they are accurate. Returns the time they reach.
-static double cross_section(Progress* progress, const Section* section) {
+static double cross_softly(Progress* progress, const FcSection* section, const FcBells* bells) {
     const double length = section->end - section->start;
-    const FcDrive* drive = &progress->scene->drive;
-    const double relaxes =
-        progress->per_deflection * fabs(fc_drive_displacement(drive, section->start, section->end));
-    const double change = 1.4 * moving(progress->scene, length) + 2.0 * relaxes + section->change;
-    const double digits = progress->digits - fc_digits(section->share);
+    const double of_bell = section->in_bell ? BELL_CHANGE + bells->reach : 0.0;
+    const double change = 1.4 * section->moves + 2.0 * section->relaxes + of_bell;
+    const double digits = section->in_bell ? bells->digits : progress->digits - fc_digits(section->share);
     const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(digits, 0.0));
     const double pieces = fc_most(1.0, ceil(0.5 * change / room));
     int count = panel_of_nodes(nodes_for(digits, change / pieces));
-    if (section->change == 0.0 && progress->nodes > count) { // the stretches of an interval are alike
+    if (!section->in_bell && progress->nodes > count) { // the stretches of an interval are alike
         count = progress->nodes;
     }
     double h = length / pieces;
     double t = section->start;
     const double allowed =
-        (section->change > 0.0 ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
+        (section->in_bell ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
     while (t < section->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const double left = section->end - t;
         h = h < 0.9 * left && t + h > t ? h : left;
@@ -115,13 +97,13 @@ static double cross_section(Progress* progress, const Section* section) {
         progress->evaluations += count;
         // count nodes resolve e^G where G grows by less than half of count; beyond that the estimates say little.
         if (panel.z < 0.5 * count &&
-            panel.end_error <= allowed * fc_least(1.0, fc_most(panel.z, section->relaxes)) &&
+            panel.end_error <= allowed * fc_least(1.0, section->in_bell ? section->forgets : panel.z) &&
             section->share * panel.mean_error <= allowed) {
             *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
         } else if (count < FC_GAUSS_MOST_NODES) {
             count = panel_of_nodes(count + 1.0);
-            if (section->change == 0.0) {
+            if (!section->in_bell) {
                 progress->nodes = count;
             }
         } else if (h * pieces > 0.2 * length && t + 0.5 * h > t) {
@@ -131,44 +113,6 @@ static double cross_section(Progress* progress, const Section* section) {
         }
     }
     return section->end;
-}
-
-// What a bell adds to the change over a panel.
-static const double BELL_CHANGE = 8.0;
-
-// Whether a stretch that is all in a bell goes through so much of it that nodes spread evenly may miss it.
-static bool is_narrow_somewhere(const FcScene* scene, const FcStretch* stretch) {
-    const FcDrive* drive = &scene->drive;
-    const double moves = 2.0 * drive->vibration.V_1 + fabs(drive->V.rate) * (stretch->end - stretch->start);
-    return stretch->bells.after == stretch->end && moves > 3.0 * scene->friction->V_S;
-}
-
-// Goes through a stretch with Gauss panels as far as they are accurate. Returns the time they reach.
-static double cross_softly(Progress* progress, const FcStretch* stretch) {
-    const double length = stretch->end - stretch->start;
-    const double relaxes = progress->per_deflection *
-                           fabs(fc_drive_displacement(&progress->scene->drive, stretch->start, stretch->end));
-    if (!(relaxes < SOFT && moving(progress->scene, length) < 15.0) ||
-        is_narrow_somewhere(progress->scene, stretch)) {
-        return stretch->start;
-    }
-    const double ends[] = {stretch->start, stretch->bells.after, stretch->bells.before, stretch->end};
-    for (int i = 0; i < 3; i++) {
-        if (ends[i + 1] > ends[i]) {
-            const bool in_bell = i != 1;
-            const Section section = {.scene = in_bell ? progress->scene : progress->beyond_bells,
-                                     .start = ends[i],
-                                     .end = ends[i + 1],
-                                     .share = (ends[i + 1] - ends[i]) / length,
-                                     .relaxes = in_bell ? relaxes : 0.0,
-                                     .change = in_bell ? BELL_CHANGE : 0.0};
-            const double reached = cross_section(progress, &section);
-            if (reached < section.end) {
-                return reached;
-            }
-        }
-    }
-    return stretch->end;
 }
 
 // Whether a panel's error is small enough; *excess is how many times it is too large.
@@ -185,45 +129,63 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
     const double at_end =
         end_error / fc_most((plan->in_bell ? AT_THE_END_IN_BELLS : AT_THE_END) * whole, rounding);
     if (at_end > *excess) {
-        *excess = fc_most(*excess, fc_mesh_left_at_end(mesh, stretch, at->t + plan->h) * at_end);
+        *excess = fc_most(*excess, fc_mesh_left_at_end(mesh, stretch, at, at->t + plan->h) * at_end);
     }
     return *excess <= 1.0;
 }
 
-// Goes through the rest of a stretch from t with Radau panels.
-static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stretch, double t) {
+static void take(Progress* progress, FcPlace* at, const FcPanel* panel) {
+    *progress->map = fc_map_compose(progress->map, &panel->map);
+    at->gone += panel->z;
+    at->rate = panel->rate;
+    at->path -= fabs(panel->displacement);
+}
+
+// Goes through a stretch from t to the end of a section with Radau panels.
+static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stretch, double t, double end) {
     const FcScene* scene = progress->scene;
-    const double V_middle = fc_drive_V(&scene->drive, 0.5 * (stretch->start + stretch->end));
-    const double sign = fc_sign(V_middle);
+    const double sign = fc_sign(stretch->displacement);
     const FcCoefficients start = fc_scene_coefficients(scene, t);
     FcPanel panel = {.rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};
-    FcPlace at = {.t = t, .rate = panel.rate};
+    FcPlace at = {
+        .t = t,
+        .rate = panel.rate,
+        .path = fabs(fc_stretch_displacement(stretch, &scene->drive, t, stretch->end)),
+        .layer = t == stretch->start ? stretch->w_a : fc_mesh_relaxation_layer(scene, t, t),
+    };
     int caution = 0;
     double displacement = 0.0;
     progress->held = mesh->moving_limit ? 0.0 : sign * start.limit;
-    while (at.t < stretch->end && progress->evaluations <= FC_MOST_EVALUATIONS &&
-           !isnan(progress->map->offset)) {
+    while (at.t < end && progress->evaluations <= FC_MOST_EVALUATIONS && !isnan(progress->map->offset)) {
         const FcTrajectories from = trajectories(progress);
         at.lag = (fabs(sign * panel.limit - panel.sigma * from.delta_0) + panel.sigma * fabs(from.scale)) /
                  mesh->force;
         if (at.gone == 0.0) {
             at.transient = fc_least(at.lag, stretch->transient);
         }
-        const FcSettledStart from_here = {mesh, stretch, &at, sign, panel.sigma, panel.limit};
-        FcMap rest;
-        double rest_displacement;
-        if (fc_settled_panel(&from_here, &rest, &rest_displacement)) {
-            *progress->map = fc_map_compose(progress->map, &rest);
+        const bool in_bell = fc_in_bell(&stretch->bells, at.t);
+        const FcScene* here = in_bell ? scene : progress->beyond_bells;
+        const FcSettledStart from_here = {.scene = here,
+                                          .mesh = mesh,
+                                          .stretch = stretch,
+                                          .at = &at,
+                                          .end = stretch->bells.before,
+                                          .sign = sign,
+                                          .sigma = panel.sigma,
+                                          .limit = panel.limit};
+        if (!in_bell && fc_settled_panel(&from_here, &panel)) {
             progress->evaluations += 1.0;
-            displacement += rest_displacement;
-            break;
+            take(progress, &at, &panel);
+            at.t = from_here.end;
+            displacement += panel.displacement;
+            continue;
         }
         FcPlan plan = fc_mesh_plan(mesh, stretch, &at, caution);
-        const double left = stretch->end - at.t;
+        const double left = end - at.t;
+        plan.h = fc_least(plan.h, left);
         if (!(at.t + plan.h > at.t)) {
             plan.h = fc_least(left, fmax(4e-16 * stretch->end, DBL_MIN));
         }
-        const FcScene* here = plan.in_bell ? scene : progress->beyond_bells;
         double excess;
         for (int tries = 0;; tries++) {
             fc_radau_panel(here, plan.stages, at.t, plan.h, sign, &from, &panel);
@@ -239,18 +201,16 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
             }
             caution += caution < MOST_CAUTION;
         }
-        *progress->map = fc_map_compose(progress->map, &panel.map);
+        take(progress, &at, &panel);
         if (!isfinite(excess)) {
             progress->map->offset = NAN; // beyond the largest number, which the step is refused for
         }
         displacement += panel.displacement;
-        at.gone += panel.z;
-        at.rate = panel.rate;
-        at.t = plan.h < left ? at.t + plan.h : stretch->end;
+        at.t = plan.h < left ? at.t + plan.h : end;
     }
     // The bristle is settled nearly everywhere: its force is the limit, and what the quadratures of work and heat miss is
     // that force times what they miss of the displacement.
-    const double missed = fc_drive_displacement(&scene->drive, t, stretch->end) - displacement;
+    const double missed = fc_stretch_displacement(stretch, &scene->drive, t, end) - displacement;
     progress->map->work_offset += progress->held * missed;
     progress->map->heat_offset += progress->held * missed;
 }
@@ -263,14 +223,20 @@ static FcMap slack_map(const FcScene* scene, double h) {
     return map;
 }
 
+// Width [s] of the layer around an event, with sigma and g as they are at the time inside.
+static double layer_at(const FcScene* scene, bool reversal, double event, double inside) {
+    return reversal ? fc_mesh_relaxation_layer(scene, event, inside)
+                    : fc_mesh_dip_layer(scene, event, inside);
+}
+
 // Layers at both ends of a stretch that begins at the interval's start, or at the event of the stretch before.
 static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStretch* before,
                        FcStretch* stretch) {
     const FcScene* scene = progress->scene;
     stretch->transient = INFINITY;
     if (stretch->start > 0.0) {
-        stretch->w_a = before->reversal ? fc_mesh_relaxation_layer(scene, stretch->start, stretch->start)
-                                        : fc_mesh_dip_layer(scene, stretch->start, stretch->start);
+        stretch->w_a = before->w_b > 0.0 ? before->w_b
+                                         : layer_at(scene, before->reversal, stretch->start, stretch->start);
         stretch->back = stretch->w_a;
     } else {
         stretch->w_a = fc_mesh_relaxation_layer(scene, 0.0, 0.0);
@@ -285,31 +251,13 @@ static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStr
                              mesh->force;
     }
     if (isfinite(stretch->event)) {
-        stretch->w_b = stretch->reversal ? fc_mesh_relaxation_layer(scene, stretch->event, stretch->end)
-                                         : fc_mesh_dip_layer(scene, stretch->event, stretch->end);
-    }
-    if (stretch->end < mesh->end) {
-        const FcDriveEvent later = fc_drive_next_event(&scene->drive, stretch->end, mesh->end);
-        stretch->path_after = fabs(fc_drive_displacement(&scene->drive, stretch->end, later.time));
+        stretch->w_b = layer_at(scene, stretch->reversal, stretch->event, stretch->end);
     }
 }
 
-static FcBells bells_of(const Progress* progress, const FcStretch* stretch) {
-    const FcScene* scene = progress->scene;
-    if (!fc_has_stribeck_curve(scene->friction)) {
-        return (FcBells){stretch->start, stretch->end};
-    }
-    const FcTrajectories from = trajectories(progress);
-    const FcDriveEvent later = fc_drive_next_event(&scene->drive, stretch->end, progress->end);
-    const FcBellStretch known = {
-        .start = stretch->start,
-        .end = stretch->end,
-        .interval = progress->end,
-        .tolerance = progress->relative,
-        .deflection = fc_most(fabs(from.delta_0), fabs(from.scale)),
-        .path_after = fabs(fc_drive_displacement(&scene->drive, stretch->end, later.time)),
-    };
-    return fc_bells(scene, &known);
+// The first event after t. One farther beyond the interval's end than the end is from t does not shape the panels.
+static FcDriveEvent event_after(const FcScene* scene, double t, double duration) {
+    return fc_drive_next_event(&scene->drive, t, duration + (duration - t));
 }
 
 static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcSolverOptions* options,
@@ -342,28 +290,59 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
         progress.scale = fmax(fabs(delta_0), start.limit / start.sigma);
     }
+    const bool has_bells = fc_has_stribeck_curve(scene->friction);
+    FcBellInterval bells;
+    FcBellEdge edge;
+    if (has_bells) {
+        bells = fc_bell_interval(scene, duration, options->tolerance);
+        edge = fc_bell_edge(scene, 0.0);
+    }
     FcMesh mesh;
     bool has_mesh = false;
     FcStretch before = {.reversal = true};
+    FcDriveEvent event = event_after(scene, 0.0, duration);
+    double displacement = fc_drive_displacement(&scene->drive, 0.0, fc_least(event.time, duration));
     while (before.end < duration && progress.evaluations <= FC_MOST_EVALUATIONS) {
-        // An event farther beyond the end than the end is from here does not shape the panels.
-        const double horizon = duration + (duration - before.end);
-        const FcDriveEvent event = fc_drive_next_event(&scene->drive, before.end, horizon);
         FcStretch stretch = {
             .start = before.end,
             .end = fc_least(event.time, duration),
-            .event = event.time < horizon ? event.time : INFINITY,
+            .event = event.time < duration + (duration - before.end) ? event.time : INFINITY,
             .reversal = event.reversal,
+            .displacement = displacement,
         };
-        stretch.bells = bells_of(&progress, &stretch);
-        const double reached = cross_softly(&progress, &stretch);
-        if (reached < stretch.end) {
-            if (!has_mesh) {
-                mesh = fc_mesh_make(scene, duration, options->tolerance);
-                has_mesh = true;
+        if (stretch.end < duration) {
+            event = event_after(scene, stretch.end, duration);
+            displacement = fc_drive_displacement(&scene->drive, stretch.end, fc_least(event.time, duration));
+            stretch.path_after = fabs(displacement);
+        }
+        stretch.bells = (FcBells){.after = stretch.start, .before = stretch.end};
+        if (has_bells) {
+            const FcBellEdge start = edge;
+            edge = fc_bell_edge(scene, stretch.end);
+            const FcTrajectories from = trajectories(&progress);
+            const double deflection = fc_most(fabs(from.delta_0), fabs(from.scale));
+            stretch.bells = fc_bells(&bells, &start, &edge, deflection, stretch.path_after);
+        }
+        const FcSections sections = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection);
+        bool has_layers = false;
+        double t = stretch.start;
+        for (int i = 0; i < sections.count; i++) {
+            const FcSection* section = &sections.at[i];
+            if (section->soft && t == section->start) {
+                t = cross_softly(&progress, section, &stretch.bells);
             }
-            add_layers(&progress, &mesh, &before, &stretch);
-            cross(&progress, &mesh, &stretch, reached);
+            if (t < section->end && (i + 1 == sections.count || sections.at[i + 1].soft)) {
+                if (!has_mesh) {
+                    mesh = fc_mesh_make(scene, duration, options->tolerance);
+                    has_mesh = true;
+                }
+                if (!has_layers) {
+                    add_layers(&progress, &mesh, &before, &stretch);
+                    has_layers = true;
+                }
+                cross(&progress, &mesh, &stretch, t, section->end);
+                t = section->end;
+            }
         }
         before = stretch;
     }

@@ -36,32 +36,31 @@ static double most(double a, double b) { return a > b ? a : b; }
 
 // Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved.
 static double stribeck_time(const FcScene* scene, double t) {
-    const double change = scene->friction->V_S + 0.5 * fabs(fc_drive_V(&scene->drive, t));
-    return fc_drive_time_of_change(&scene->drive, t, change);
+    const FcVelocity at = fc_drive_velocity(&scene->drive, t);
+    return fc_velocity_time_of_change(&at, scene->friction->V_S + 0.5 * fabs(at.V));
 }
 
 // About the least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
 double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside) {
-    const FcDrive* drive = &scene->drive;
+    const FcVelocity now = fc_drive_velocity(&scene->drive, t);
     const FcCoefficients at = fc_scene_coefficients(scene, inside);
     const double per_speed = at.sigma / at.limit;
-    const double r = per_speed * fabs(fc_drive_V(drive, t));
-    const double r_rate = per_speed * fabs(fc_drive_V_rate(drive, t));
-    const double r_curvature = per_speed * fabs(fc_drive_V_curvature(drive, t));
+    const double r = per_speed * fabs(now.V);
+    const double r_rate = per_speed * fabs(now.rate);
+    const double r_curvature = per_speed * fabs(now.curvature);
     return fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
 }
 
 double fc_mesh_dip_layer(const FcScene* scene, double t, double inside) {
-    const double curvature = fabs(fc_drive_V_curvature(&scene->drive, t));
+    const FcVelocity now = fc_drive_velocity(&scene->drive, t);
+    const double curvature = fabs(now.curvature);
     const FcCoefficients at = fc_scene_coefficients(scene, inside);
-    return fmax(sqrt(2.0 * fabs(fc_drive_V(&scene->drive, t)) / curvature),
-                cbrt(6.0 * at.limit / (at.sigma * curvature)));
+    return fmax(sqrt(2.0 * fabs(now.V) / curvature), cbrt(6.0 * at.limit / (at.sigma * curvature)));
 }
 
 double fc_mesh_settled_back(const FcScene* scene, double t) {
-    const FcDrive* drive = &scene->drive;
-    const double V = fc_drive_V(drive, t);
-    return fmin(fabs(V / fc_drive_V_rate(drive, t)), sqrt(2.0 * fabs(V / fc_drive_V_curvature(drive, t))));
+    const FcVelocity now = fc_drive_velocity(&scene->drive, t);
+    return fmin(fabs(now.V / now.rate), sqrt(2.0 * fabs(now.V / now.curvature)));
 }
 
 static bool depends_on_d(const FcScene* scene) {
@@ -115,13 +114,16 @@ double fc_mesh_largest_saturation(const FcScene* scene, double h) {
 }
 
 FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
+    const double saturation = fc_mesh_largest_saturation(scene, end);
     return (FcMesh){
         .scene = scene,
         .end = end,
         .force = fc_scene_force_scale(scene),
         .allowed = tolerance,
         .moving_limit = fc_limit_follows_load(scene->friction) || fc_has_stribeck_curve(scene->friction),
-        .saturation = fc_mesh_largest_saturation(scene, end),
+        .saturation = saturation,
+        .forgotten = -2.0 * log(tolerance) * saturation,
+        .speed = fc_drive_largest_speed(&scene->drive, end),
         .smooth = smoothness(scene, end),
     };
 }
@@ -185,12 +187,13 @@ static int more(int decades_needed, int caution) {
 
 static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int gone_decades, int caution) {
     const int transient = decades(for_transient) - gone_decades;
-    limits->for_transient = more(transient > 0 ? transient : 0, transient > 0 ? caution : 0);
+    // The curve's bell is no exponential: few stages show little of what they miss of it.
+    const int of_bell = !isfinite(limits->bell) ? 0 : limits->fine ? KINDS - 1 : 1;
+    const int first_in_bell = of_bell == 2 && limits->starts ? 1 : 0;
+    limits->for_transient = more(transient > 0 ? transient : 0, transient > 0 ? caution + first_in_bell : 0);
     limits->for_lag = more(decades(for_lag), caution);
     limits->for_last = more(decades(limits->allowed_last), caution);
     limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
-    // The curve's bell is no exponential: few stages show little of what they miss of it.
-    const int of_bell = !isfinite(limits->bell) ? 0 : limits->fine ? KINDS - 1 : 1;
     const int least_kind = of_bell > 0 ? of_bell : limits->starts ? 1 : 0;
     const int finer = finest(limits);
     int kind = of_bell == 2 || finer > 5 ? 2 : finer > 1 || least_kind == 1 ? 1 : 0;
@@ -205,7 +208,10 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     return (FcPlan){.h = h, .stages = STAGES[kind]};
 }
 
-double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, double t) {
+double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t) {
+    if (at->path - mesh->speed * (t - at->t) + stretch->path_after > mesh->forgotten) {
+        return 0.0;
+    }
     double path = stretch->path_after;
     if (t < stretch->end) {
         path += fabs(fc_drive_displacement(&mesh->scene->drive, t, stretch->end));
@@ -257,9 +263,9 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .smooth = smooth,
         .bell = bell,
         .fine = mesh->allowed < BELL_OF_FEW_STAGES,
-        .layer = stretch->w_a,
+        .layer = at->layer,
         .layer_ahead = stretch->w_b,
-        .starts = x == 0.0 && transient > mesh->allowed,
+        .starts = at->gone == 0.0 && transient > mesh->allowed,
         // The impulse and the work of a constant force are exact, those of another as good as the quadrature.
         .for_quadrature = mesh->moving_limit ? decades(mesh->allowed) : 0,
         .ends_at_event = known && stretch->event <= stretch->end,
@@ -269,7 +275,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     double for_lag = base * mesh->end / (drift * lag_counts + tiny);
     FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
 
-    const double fades = fc_mesh_left_at_end(mesh, stretch, at->t + plan.h);
+    const double fades = fc_mesh_left_at_end(mesh, stretch, at, at->t + plan.h);
     if (fades > mesh->allowed * mesh->allowed) {
         const double at_end = SHARE_AT_END * mesh->allowed / fades;
         for_transient = least(for_transient, at_end / (transient + tiny));

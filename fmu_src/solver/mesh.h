@@ -38,6 +38,8 @@ typedef struct {
     double allowed;    // 1    error of F_t at the end and of its mean, over force
     bool moving_limit; // g is no constant
     double saturation; // m    largest g / sigma: over this path errors fade by e at least
+    double forgotten;  // m    over this path they fade below the square of what is allowed
+    double speed;      // m/s  largest |V|
     FcSmoothness smooth;
 } FcMesh;
 
@@ -51,8 +53,9 @@ typedef struct {
     double back;       // s, from the start back to what the panels are graded away from
     double
         transient; // 1, at the interval's start: |force - what it settles to| over the mesh's force; elsewhere infinite
-    FcBells bells;     // where the Stribeck curve matters
-    double path_after; // m, path from the end to the next reversal or the interval's end
+    FcBells bells;       // where the Stribeck curve matters
+    double displacement; // m
+    double path_after;   // m, path from the end to the next reversal or the interval's end
 } FcStretch;
 
 // About -log10(x), down to the next power of two.
@@ -65,6 +68,8 @@ typedef struct {
     double lag;       // 1, |force - what it settles to| over the mesh's force
     double transient; // 1, the lag at the stretch's start
     double gone;      // 1, integral of the rate since then
+    double path;      // m, to the stretch's end
+    double layer;     // s, in which the bristle relaxes by 1 from where the panels start
 } FcPlace;
 
 typedef struct {
@@ -90,8 +95,9 @@ double fc_mesh_dip_layer(const FcScene* scene, double t, double inside);
 // Distance [s] of what V last came from at t, a reversal or a dip, when the bristle has settled there.
 double fc_mesh_settled_back(const FcScene* scene, double t);
 
-// What is left at the interval's end of an error made at t [s] in the stretch, at the most.
-double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, double t);
+// What is left at the interval's end of an error made at t [s], from here on in the stretch, at the most; 0 for less than
+// the square of what is allowed.
+double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t);
 
 // The panel from here. Each unit of caution asks for a tenth of the error.
 FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution);

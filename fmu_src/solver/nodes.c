@@ -98,8 +98,12 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
     const FcDrive* drive = &scene->drive;
     const double middle = t + 0.5 * h;
     const double angle = drive->theta_0 + drive->omega * middle;
-    const double c = angle == 0.0 ? 1.0 : cos(angle);
-    const double s = angle == 0.0 ? 0.0 : sin(angle);
+    double c = 1.0;
+    double s = 0.0;
+    if (angle != 0.0) {
+        c = cos(angle);
+        s = sin(angle);
+    }
     double sin_later[FC_MOST_NODES];
     double cos_later_less_1[FC_MOST_NODES];
     const double angle_per_node = drive->omega * h * halved_angle.factor;

@@ -26,14 +26,14 @@ static double slowness(const FcSettledStart* from) {
     const FcStretch* stretch = from->stretch;
     const FcDrive* drive = &from->mesh->scene->drive;
     const double t = from->at->t;
-    const double duration = stretch->end - t;
+    const double duration = from->end - t;
     const double after = t - stretch->start + stretch->back;
     double slow = fading(after, duration) / speed_at_start(from);
-    if (stretch->event <= stretch->end) {
-        slow += (2.0 + log1p(duration / stretch->w_b)) / fabs(fc_drive_V_rate(drive, stretch->end));
+    if (stretch->event <= from->end) {
+        slow += (2.0 + log1p(duration / stretch->w_b)) / fabs(fc_drive_V_rate(drive, from->end));
     } else if (isfinite(stretch->event)) {
-        const double ahead = stretch->event - stretch->end + stretch->w_b;
-        slow += fading(ahead, duration) / fabs(fc_drive_V(drive, stretch->end));
+        const double ahead = stretch->event - from->end + stretch->w_b;
+        slow += fading(ahead, duration) / fabs(fc_drive_V(drive, from->end));
     }
     return slow;
 }
@@ -41,22 +41,22 @@ static double slowness(const FcSettledStart* from) {
 // Error of the force at the end, over the limit: of second order in the lag.
 static double error_at_end(const FcSettledStart* from, double drift) {
     const FcStretch* stretch = from->stretch;
-    if (stretch->event <= stretch->end) {
+    if (stretch->event <= from->end) {
         const double lag = drift * stretch->w_b;
         return lag * (lag + from->mesh->smooth.rate * stretch->w_b);
     }
     const double relaxes =
-        from->mesh->saturation / fabs(fc_drive_V(&from->mesh->scene->drive, stretch->end)); // s
-    const double after = stretch->end - stretch->start + stretch->back;
-    const double ahead = isfinite(stretch->event) ? stretch->event - stretch->end : INFINITY;
-    const double changes =
-        from->mesh->smooth.rate + 1.0 / fmin(fmin(after, ahead), stretch->end - from->at->t);
+        from->mesh->saturation / fabs(fc_drive_V(&from->mesh->scene->drive, from->end)); // s
+    const double after = from->end - stretch->start + stretch->back;
+    const double ahead = isfinite(stretch->event) ? stretch->event - from->end : INFINITY;
+    const double changes = from->mesh->smooth.rate + 1.0 / fmin(fmin(after, ahead), from->end - from->at->t);
     return drift * relaxes * relaxes * changes;
 }
 
-static bool is_possible(const FcMesh* mesh, const FcStretch* stretch) {
-    return !mesh->moving_limit && !mesh->smooth.follows_d_and_E && isfinite(mesh->saturation) &&
-           (stretch->event > stretch->end || stretch->reversal);
+static bool is_possible(const FcSettledStart* from) {
+    const FcMesh* mesh = from->mesh;
+    return !fc_limit_follows_load(mesh->scene->friction) && !mesh->smooth.follows_d_and_E &&
+           isfinite(mesh->saturation) && (from->stretch->event > from->end || from->stretch->reversal);
 }
 
 // With a constant V the integral of the lag is known, and only its second order is missed.
@@ -69,7 +69,7 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const FcMesh* mesh = from->mesh;
     const FcStretch* stretch = from->stretch;
     const FcPlace* at = from->at;
-    if (!(at->rate > 0.0) || !is_possible(mesh, stretch)) {
+    if (!(at->rate > 0.0) || !is_possible(from)) {
         return false;
     }
     const double allowed = SHARE * mesh->allowed;
@@ -79,14 +79,14 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (at->lag + ROUNDING); // 1/s
     const bool known = V_is_constant(&mesh->scene->drive);
     if (mesh->smooth.rate + 1.0 / after > allowed_changes ||
-        (!known && lag_lasts * LEAST_FADING * fmin(after, stretch->end - at->t) >
+        (!known && lag_lasts * LEAST_FADING * fmin(after, from->end - at->t) >
                        allowed * mesh->end * speed_at_start(from))) {
         return false;
     }
     if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(mesh->scene, at->t) > allowed_changes) {
         return false;
     }
-    *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, stretch->end);
+    *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
     return at->lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
            (known || lag_lasts * slowness(from) <= allowed * mesh->end) &&
            error_at_end(from, drift) <= allowed;
@@ -95,30 +95,36 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
 // What the force lags behind the limit at the end, over the limit.
 static double lag_at_end(const FcSettledStart* from, const FcCoefficients* end) {
     const FcStretch* stretch = from->stretch;
-    const FcLogRates rates = fc_scene_log_rates(from->mesh->scene, stretch->end);
-    if (stretch->event <= stretch->end) {
+    const FcLogRates rates = fc_scene_log_rates(from->scene, from->end);
+    if (stretch->event <= from->end) {
         return rates.sigma * stretch->w_b * 0.5 * sqrt(FC_PI);
     }
     return rates.sigma / -fc_coefficients_rate(end);
 }
 
-bool fc_settled_panel(const FcSettledStart* from, FcMap* map, double* displacement) {
-    if (!is_accurate(from, displacement)) {
+bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
+    double X;
+    if (!is_accurate(from, &X)) {
         return false;
     }
-    const FcStretch* stretch = from->stretch;
-    const FcCoefficients end = fc_scene_coefficients(from->mesh->scene, stretch->end);
+    const FcCoefficients end = fc_scene_coefficients(from->scene, from->end);
     const double force = from->sign * from->limit;
     const double D = force / from->sigma;
     const double V = from->sign * speed_at_start(from);
-    const double X = *displacement;
     const double relaxes = 1.0 / from->at->rate; // s
+    *panel = (FcPanel){
+        .z = fabs(X) / from->mesh->saturation,
+        .rate = -fc_coefficients_rate(&end),
+        .sigma = end.sigma,
+        .limit = end.limit,
+        .displacement = X,
+    };
     // The transient is (delta_0 - D) e^-rt, and sigma r D = sigma V.
-    *map = (FcMap){
+    panel->map = (FcMap){
         .relaxation = 1.0,
         .offset = force * (1.0 + lag_at_end(from, &end)) / end.sigma,
         .impulse_slope = from->sigma * relaxes,
-        .impulse_offset = force * (stretch->end - from->at->t - relaxes),
+        .impulse_offset = force * (from->end - from->at->t - relaxes),
         .work_slope = force,
         .work_offset = force * (X - D),
         .drag_slope = -V,
@@ -127,13 +133,13 @@ bool fc_settled_panel(const FcSettledStart* from, FcMap* map, double* displaceme
         .heat_slope = force,
         .heat_offset = force * (X - 1.5 * D),
     };
-    if (V_is_constant(&from->mesh->scene->drive)) {
+    if (V_is_constant(&from->scene->drive)) {
         // sigma' / (sigma r), integrated over the path
         const double of_lag = force * (D - force / end.sigma);
-        map->impulse_offset += of_lag / V;
-        map->work_offset += of_lag;
-        map->heat_offset += 2.0 * of_lag;
-        map->drag_offset += V * (force / end.sigma - D);
+        panel->map.impulse_offset += of_lag / V;
+        panel->map.work_offset += of_lag;
+        panel->map.heat_offset += 2.0 * of_lag;
+        panel->map.drag_offset += V * (force / end.sigma - D);
     }
     return true;
 }

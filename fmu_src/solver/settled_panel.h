@@ -11,19 +11,21 @@
 #ifndef FC_SOLVER_SETTLED_PANEL_H
 #define FC_SOLVER_SETTLED_PANEL_H
 
-#include "solver/affine_map.h"
 #include "solver/mesh.h"
+#include "solver/panel.h"
 
-// Where and of what the panel to the stretch's end begins.
+// Where and of what the panel begins, and where it ends.
 typedef struct {
+    const FcScene* scene; // of the coefficients there
     const FcMesh* mesh;
     const FcStretch* stretch;
     const FcPlace* at;
+    double end;          // s, of the stretch, or where V enters the bell before it
     double sign;         // of V
-    double sigma, limit; // N/m, N, there
+    double sigma, limit; // N/m, N, at the start
 } FcSettledStart;
 
-// Whether the panel's error is small enough for what the interval is allowed; if so, its map and its displacement [m].
-bool fc_settled_panel(const FcSettledStart* start, FcMap* map, double* displacement);
+// Whether the panel's error is small enough for what the interval is allowed; if so, the panel.
+bool fc_settled_panel(const FcSettledStart* start, FcPanel* panel);
 
 #endif

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "solver/mesh.h"
+#include "solver/panel.h"
 
 // Of the tolerance: what the curve may leave beyond a bell, and what a bell may do that is left out.
 static const double BEYOND = 0.01;
@@ -17,15 +18,33 @@ void fc_scene_beyond_bells(const FcScene* scene, FcSceneBeyondBells* beyond) {
     beyond->scene.friction = &beyond->friction;
 }
 
-// Width [s] of the bell at t, at most `most`, that goes on to the side (1 or -1): until |V| is the reach [m/s].
-static double width(const FcDrive* drive, double t, double side, double reach, double most) {
-    const double V = fabs(fc_drive_V(drive, t));
+FcBellInterval fc_bell_interval(const FcScene* scene, double duration, double tolerance) {
+    const double excess = scene->friction->staticRatio - 1.0;
+    return (FcBellInterval){
+        .scene = scene,
+        .duration = duration,
+        .tolerance = tolerance,
+        .excess = excess,
+        .per_path = fc_scene_largest_stiffness(scene, duration) / fc_scene_smallest_limit(scene, duration),
+        .saturation = fc_mesh_largest_saturation(scene, duration),
+        .path = fc_drive_largest_speed(&scene->drive, duration) * duration,
+    };
+}
+
+FcBellEdge fc_bell_edge(const FcScene* scene, double t) {
+    const FcVelocity at = fc_drive_velocity(&scene->drive, t);
+    return (FcBellEdge){.t = t, .at = at, .tau = fc_velocity_time_of_change(&at, scene->friction->V_S)};
+}
+
+// Width [s] of the bell that goes on from the edge to the side (1 or -1): until |V| is the reach [m/s].
+static double width(const FcDrive* drive, const FcBellEdge* edge, double side, double reach, double most) {
+    const double V = fabs(edge->at.V);
     if (V >= reach) {
         return 0.0;
     }
-    double x = fc_drive_time_of_change(drive, t, reach - V);
+    double x = fc_velocity_time_of_change(&edge->at, reach - V);
     for (int i = 0; x < most && i < MOST_GROWTHS; i++) {
-        if (fabs(fc_drive_V(drive, t + side * x)) >= reach) {
+        if (fabs(fc_drive_V(drive, edge->t + side * x)) >= reach) {
             return x;
         }
         x *= 1.5;
@@ -33,62 +52,88 @@ static double width(const FcDrive* drive, double t, double side, double reach, d
     return most;
 }
 
-// Whether a bell at t is too narrow to be seen, in a stretch of that path [m], with sigma / g per_path [1/m] at the most.
-// While V goes through it the bristle relaxes by at most dz; by dz of itself the force then differs, until it is
-// forgotten, which the path after tells; and the heat sigma r delta^2 goes with 1 / g in it.
-static bool is_left_out(const FcScene* scene, const FcBellStretch* stretch, double path, double per_path,
-                        double t, double path_after) {
-    const FcDrive* drive = &scene->drive;
-    const double V_S = scene->friction->V_S;
-    const double excess = scene->friction->staticRatio - 1.0;
-    const double tau = fc_drive_time_of_change(drive, t, V_S);
-    const double force =
-        fmax(per_path * stretch->deflection, fmin(1.0 + excess, per_path * (stretch->deflection + path)));
-    const double dz = fmin(1.0, per_path * V_S * tau);
-    const double lasts = excess * force * dz;
-    const double memory = fmin(stretch->interval, tau + fc_mesh_relaxation_layer(scene, t, t));
-    const double speed = fc_drive_largest_speed(drive, stretch->interval);
-    const double of_heat = excess * force * force * V_S * tau / (speed * stretch->interval);
-    const double allowed = LEFT_OUT * stretch->tolerance;
-    const bool seen_at_end =
-        path_after < (6.0 - log(stretch->tolerance)) * fc_mesh_largest_saturation(scene, stretch->interval);
-    return lasts * memory / stretch->interval + of_heat <= allowed && (lasts <= allowed || !seen_at_end);
+// What of a stretch matters to its bells.
+typedef struct {
+    double force;   // 1, that the bristle may have, over the limit
+    double forgets; // 1, up to 1: by how much the bristle relaxes until the event after next, at the least
+} Stretch;
+
+// While V goes through a bell the bristle relaxes by dz at the most, and by that part of the excess the force then
+// differs.
+static double dz(const FcBellInterval* interval, const FcBellEdge* edge) {
+    return fc_least(interval->per_path * interval->scene->friction->V_S * edge->tau, 1.0);
 }
 
-// Whether |V| may fall below the reach between the stretch's ends. Minima that are no events lie above half of |V| and V_1.
-static bool may_dip_inside(const FcDrive* drive, const FcBellStretch* stretch, double reach) {
+// The heat sigma r delta^2 goes with 1 / g: the part of it that is made in the bell.
+static double of_heat(const FcBellInterval* interval, const FcBellEdge* edge) {
+    return fc_least(interval->scene->friction->V_S * edge->tau / interval->path, 1.0);
+}
+
+// |V| over V_S beyond which the rest of the curve, e^(-(V / V_S)^2) of the bell, is not seen. What differs adds up until
+// it is forgotten.
+static double reach(const FcBellInterval* interval, const Stretch* stretch, const FcBellEdge* edge) {
+    const double force = fc_most(1.0, stretch->force);
+    const double seen = interval->excess * force *
+                        fc_most(fc_least(dz(interval, edge) / stretch->forgets, 1.0),
+                                stretch->force * of_heat(interval, edge));
+    return sqrt(log(fc_most(1.0, seen / (BEYOND * interval->tolerance))));
+}
+
+// Whether a bell is too narrow to be seen. What differs lasts until it is forgotten, which the path after tells.
+static bool is_left_out(const FcBellInterval* interval, const Stretch* stretch, const FcBellEdge* edge,
+                        double path_after) {
+    const double allowed = LEFT_OUT * interval->tolerance;
+    const double lasts = interval->excess * stretch->force * dz(interval, edge);
+    const double heat = interval->excess * stretch->force * stretch->force * of_heat(interval, edge);
+    if (lasts + heat <= allowed) {
+        return true;
+    }
+    const bool seen_at_end = path_after < (6.0 - log(interval->tolerance)) * interval->saturation;
+    if (heat > allowed || (lasts > allowed && seen_at_end)) {
+        return false;
+    }
+    const double memory =
+        fmin(interval->duration, edge->tau + fc_mesh_relaxation_layer(interval->scene, edge->t, edge->t));
+    return lasts * memory / interval->duration + heat <= allowed;
+}
+
+// Whether |V| may fall below the speed between the edges. Minima that are no events lie above half of |V| and V_1.
+static bool may_dip_inside(const FcDrive* drive, double start, double end, double speed) {
     const double V_1 = drive->vibration.V_1;
-    const double V_start = drive->V.value + drive->V.rate * stretch->start;
-    const double V_end = drive->V.value + drive->V.rate * stretch->end;
-    return fabs(drive->V.rate) < V_1 * drive->omega && reach > 0.5 * (fmin(fabs(V_start), fabs(V_end)) + V_1);
+    const double V_start = drive->V.value + drive->V.rate * start;
+    const double V_end = drive->V.value + drive->V.rate * end;
+    return fabs(drive->V.rate) < V_1 * drive->omega && speed > 0.5 * (fmin(fabs(V_start), fabs(V_end)) + V_1);
 }
 
-FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch) {
-    FcBells bells = {stretch->start, stretch->end};
-    const double excess = scene->friction->staticRatio - 1.0;
-    const double per_path = fc_scene_largest_stiffness(scene, stretch->interval) /
-                            fc_scene_smallest_limit(scene, stretch->interval); // 1/m
-    // The curve's rest moves the force by that part of it, and the force may be far beyond the limit.
-    const double beyond = BEYOND * stretch->tolerance / fmax(1.0, per_path * stretch->deflection);
-    if (excess <= beyond) {
-        return bells;
+FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const FcBellEdge* end,
+                 double deflection, double path_after) {
+    const FcDrive* drive = &interval->scene->drive;
+    const double V_S = interval->scene->friction->V_S;
+    const double path = fabs(fc_drive_displacement(drive, start->t, end->t));
+    const double per_path = interval->per_path;
+    const Stretch stretch = {
+        .force =
+            fc_most(per_path * deflection, fc_least(1.0 + interval->excess, per_path * (deflection + path))),
+        .forgets = fc_least((path + path_after) / interval->saturation, 1.0),
+    };
+    const double after = reach(interval, &stretch, start);
+    const double before = reach(interval, &stretch, end);
+    const double length = end->t - start->t;
+    const double widest = fc_most(after, before);
+    FcBells bells = {.after = start->t,
+                     .before = end->t,
+                     .reach = widest,
+                     .digits = log10(BEYOND) + 0.4343 * widest * widest};
+    FcBells all = bells;
+    all.after = end->t;
+    if (may_dip_inside(drive, start->t, end->t, bells.reach * V_S)) {
+        return all;
     }
-    const double reach = scene->friction->V_S * sqrt(log(excess / beyond));
-    const double length = stretch->end - stretch->start;
-    if (may_dip_inside(&scene->drive, stretch, reach)) {
-        return (FcBells){stretch->end, stretch->end};
+    if (after > 0.0 && !is_left_out(interval, &stretch, start, path)) {
+        bells.after += width(drive, start, 1.0, after * V_S, length);
     }
-    const double after = width(&scene->drive, stretch->start, 1.0, reach, length);
-    const double before = width(&scene->drive, stretch->end, -1.0, reach, length);
-    const double path = fabs(fc_drive_displacement(&scene->drive, stretch->start, stretch->end));
-    if (after > 0.0 && !is_left_out(scene, stretch, path, per_path, stretch->start, path)) {
-        bells.after = stretch->start + after;
+    if (before > 0.0 && !is_left_out(interval, &stretch, end, path_after)) {
+        bells.before -= width(drive, end, -1.0, before * V_S, length);
     }
-    if (before > 0.0 && !is_left_out(scene, stretch, path, per_path, stretch->end, stretch->path_after)) {
-        bells.before = stretch->end - before;
-    }
-    if (!(bells.after < bells.before)) {
-        bells = (FcBells){stretch->end, stretch->end};
-    }
-    return bells;
+    return bells.after < bells.before ? bells : all;
 }

@@ -23,22 +23,36 @@ typedef struct {
 } FcSceneBeyondBells;
 void fc_scene_beyond_bells(const FcScene* scene, FcSceneBeyondBells* beyond);
 
-// What is known of a stretch before it is crossed.
+// What of an interval matters to its bells.
 typedef struct {
-    double start, end; // s
-    double interval;   // s, that the mean is taken over
-    double tolerance;  // 1
-    double deflection; // m, at the start, at the most
-    double path_after; // m, from its end to the next event or the end of the interval
-} FcBellStretch;
+    const FcScene* scene; // with a Stribeck curve
+    double duration;      // s, that the mean is taken over
+    double tolerance;     // 1
+    double excess;        // 1, of static over Coulomb friction
+    double per_path;      // 1/m, largest sigma / g
+    double saturation;    // m, largest g / sigma: over this path errors fade by e at least
+    double path;          // m, at the most
+} FcBellInterval;
+FcBellInterval fc_bell_interval(const FcScene* scene, double duration, double tolerance);
 
-// Bells at the start and at the end: [start, after] and [before, end]. Without any, after = start and before = end; where
-// |V| stays within one, after = end.
+// One end of a stretch.
+typedef struct {
+    double t; // s
+    FcVelocity at;
+    double tau; // s, in which V moves by V_S
+} FcBellEdge;
+FcBellEdge fc_bell_edge(const FcScene* scene, double t);
+
+// Bells at the start and at the end of a stretch: [start, after] and [before, end]. Without any, after = start and
+// before = end; where |V| stays within one, after = end.
 typedef struct {
     double after, before; // s
+    double reach;         // 1, |V| at their edges, over the Stribeck velocity
+    double digits;        // 1, decades by which a bell stands above the tolerance
 } FcBells;
-// The scene has a Stribeck curve.
-FcBells fc_bells(const FcScene* scene, const FcBellStretch* stretch);
+// For a deflection [m] at the start of at most that, and the path [m] from the end to the next event or the interval's end.
+FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const FcBellEdge* end,
+                 double deflection, double path_after);
 
 static inline bool fc_in_bell(const FcBells* bells, double t) {
     return t < bells->after || t >= bells->before;

@@ -1,4 +1,4 @@
-"""Ten scenes whose cost tells whether the default method's step control works, and their costs.
+"""Twelve scenes whose cost tells whether the default method's step control works, and their costs.
 
     python tests/solver/step_control.py    measures them anew on the built FMU and writes step_control.csv
 
@@ -21,6 +21,13 @@ TABLE = Path(__file__).with_suffix(".csv")
 PERIOD = 1.0 / 20e3
 SLIDER: Mapping[str, Value] = {"V": 0.005, "vibration.V_1": 1.44}
 NORMAL: Mapping[str, Value] = {"vibration.a_d": 1.1e-6, "vibration.phase_d": 0.7}
+BELLS: Mapping[str, Value] = {
+    **SLIDER,
+    **NORMAL,
+    "friction.model": "LuGre",
+    "friction.staticRatio": 1.3,
+    "friction.V_S": 0.0144,
+}
 
 
 @dataclass(frozen=True)
@@ -61,6 +68,10 @@ SCENES = {
         },
         2.2 * PERIOD,
         2,
+    ),
+    "bells of the Stribeck curve, soft": Scene({**BELLS, "contact.stiffnessScale": 1e-8}, 0.93 * PERIOD, 10),
+    "bells of the Stribeck curve, in layers": Scene(
+        {**BELLS, "contact.stiffnessScale": 1e-4}, 0.93 * PERIOD, 10
     ),
 }
 

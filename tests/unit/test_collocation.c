@@ -140,11 +140,26 @@ static void scenes_that_were_missed(void) {
     evaluations_from(&scene, 4.05399419248311e-16, 78.2, 0.000131105147873922, 1e-4);
 }
 
+// A stiffness over many decades between two bells: panels that begin inside a stretch know nothing of the layer at its
+// start, which is far thinner or far wider.
+static void stiffness_over_many_decades(void) {
+    Slider slider;
+    for (double sigma = 6e4; sigma < 1e13; sigma *= 10.0) {
+        make(&slider, sigma, FC_LUGRE, 5e-3, 1.3e-5);
+        slider.friction.V_S = 0.05;
+        slider.scene.drive.vibration.a_d = 12e-6;
+        const FcCoefficients start = fc_scene_coefficients(&slider.scene, 0.0);
+        CHECK(evaluations_from(&slider.scene, 0.3 * start.limit / start.sigma, F_C, 1.07 * PERIOD, 1e-3) <
+              1000.0);
+    }
+}
+
 int main(void) {
     every_stiffness_and_tolerance();
     a_settled_stretch_is_one_panel();
     ends_around_a_reversal();
     a_constant_velocity_is_one_panel();
     scenes_that_were_missed();
+    stiffness_over_many_decades();
     return check_result();
 }

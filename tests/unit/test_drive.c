@@ -85,7 +85,8 @@ static void slopes_are_derivatives(void) {
     ((8.0 * (q(&drive, t + k) - q(&drive, t - k)) - (q(&drive, t + 2 * k) - q(&drive, t - 2 * k))) /         \
      (12.0 * k))
         CHECK_WITHIN(fc_drive_V_rate(&drive, t), SLOPE(fc_drive_V), 1e-10 * 0.7 * omega);
-        CHECK_WITHIN(fc_drive_V_curvature(&drive, t), SLOPE(fc_drive_V_rate), 1e-10 * 0.7 * omega * omega);
+        CHECK_WITHIN(fc_drive_velocity(&drive, t).curvature, SLOPE(fc_drive_V_rate),
+                     1e-10 * 0.7 * omega * omega);
         CHECK_WITHIN(fc_drive_d_rate(&drive, t), SLOPE(fc_drive_d), 1e-10 * 1.1e-6 * omega);
         const double moved =
             fc_drive_displacement(&drive, 0.0, t + k) - fc_drive_displacement(&drive, 0.0, t - k);
