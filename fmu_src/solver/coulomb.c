@@ -24,14 +24,19 @@ static LimitIntegrals integrals_over_panel(const FcScene* scene, double start, d
     return sum;
 }
 
+// Rate [1/s] of the phase and ln(g), E and load held.
+static double rate(const FcScene* scene) {
+    const FcDrive* drive = &scene->drive;
+    return drive->omega + scene->at_E.decay * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
+}
+
 // Time [s] from t on in which the phase and ln(g) move by about 2, over which the rule above is exact to rounding.
 static double panel_length(const FcScene* scene, double t) {
     const FcDrive* drive = &scene->drive;
-    const double swing = scene->at_E.decay * (fabs(drive->d.rate) + drive->vibration.a_d * drive->omega);
     // twice: they rise over the panel
     const double by_E = 2.0 * fc_drive_E_growth(drive, t);
     const double by_load = 2.0 * fc_drive_load_growth(drive, t);
-    return 2.0 / (drive->omega + swing + by_E + by_load);
+    return 2.0 / (rate(scene) + by_E + by_load);
 }
 
 static LimitIntegrals integrals_of_limit(const FcScene* scene, double start, double end,
@@ -42,6 +47,11 @@ static LimitIntegrals integrals_of_limit(const FcScene* scene, double start, dou
                                 scene->F_C * fc_drive_displacement(&scene->drive, start, end)};
     }
     LimitIntegrals sum = {0.0, 0.0};
+    const double least = FC_GAUSS_16.half_count * (end - start) * rate(scene); // evaluations, at 16 a panel
+    if (least > FC_MOST_EVALUATIONS) {
+        *evaluations += least; // is refused: not begun
+        return sum;
+    }
     for (double t = start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
         const double length = panel_length(scene, t);
         const double next = t + length < end && t + length > t ? t + length : end;
