@@ -43,12 +43,22 @@ static double ratio(const FcScene* scene, const FcContactAtModulus* at_E, double
     return D < FC_NO_BOUND ? D : FC_NO_BOUND;
 }
 
+// Beyond this decay d, e^(-decay d) is 0 in rounding: sigma and g are, or stand still.
+static const double GONE = 750.0;
+// Of the time until d may be back from there: the longest panel of the quadratures then ends before.
+static const double RETURN = 0.08;
+
+// The least time [s] that d takes to fall by a distance [m].
+static double time_to_fall(const FcScene* scene, double distance, double d_rate) {
+    const double speed = fabs(d_rate);
+    const double acceleration = scene->drive.vibration.a_d * scene->drive.omega * scene->drive.omega;
+    return 2.0 * distance / (speed + sqrt(speed * speed + 2.0 * acceleration * distance));
+}
+
 // The times [s] from now on to a zero of d, E or the load, at the least: 1/d^3 and ln E have poles there.
 static double time_to_pole(const FcScene* scene, double t, double d, double d_rate) {
     const FcDrive* drive = &scene->drive;
-    const double speed = fabs(d_rate);
-    const double acceleration = drive->vibration.a_d * drive->omega * drive->omega;
-    double time = 2.0 * d / (speed + sqrt(speed * speed + 2.0 * acceleration * d));
+    double time = time_to_fall(scene, d, d_rate);
     if (drive->E.rate != 0.0) {
         time = fmin(time, fc_drive_E(drive, t) / fabs(drive->E.rate));
     }
@@ -73,7 +83,13 @@ double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_r
     const double rate = drive->omega + by_d * fabs(d_rate);
     const double curvature = by_d * drive->vibration.a_d * drive->omega * drive->omega;
     // rate x + curvature x^2 / 2 = 1
-    return fmin(pole, 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)));
+    double time = 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature));
+    const double gone = GONE / scene->at_E.decay;
+    if (d > gone && !scene->floats) {
+        const double returning = RETURN * time_to_fall(scene, d - gone, d_rate);
+        time = fmax(time, drive->omega > 0.0 ? fmin(returning, 1.0 / drive->omega) : returning);
+    }
+    return fmin(pole, time);
 }
 
 double fc_bound_common_smooth_time(const FcScene* scene, double h) {
@@ -117,6 +133,25 @@ static void set_held(FcBoundMotion* at, const FcScene* scene) {
     at->D_rate = at->D * log_rate;
     at->D_curvature =
         at->D * (log_rate * log_rate + by_d * at->d_curvature + by_d_by_d * at->d_rate * at->d_rate);
+}
+
+double fc_bound_at_separation(const FcScene* scene, double d) {
+    FcBoundMotion at = {.d = d};
+    set_held(&at, scene);
+    return at.D;
+}
+
+double fc_bound_log_slope(const FcScene* scene, double d) {
+    const FcContactAtModulus* c = &scene->at_E;
+    const double of_limit = fc_limit_follows_load(scene->friction) ? c->decay : 0.0;
+    switch (c->model) {
+    case FC_CONTACT_ASPERITIES:
+        return 2.0 * c->decay + 3.0 / d - of_limit;
+    case FC_CONTACT_MINDLIN:
+        return c->decay - of_limit;
+    default:
+        return -of_limit;
+    }
 }
 
 static double log_rate_at(const FcScene* scene, double t) {

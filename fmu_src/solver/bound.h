@@ -51,6 +51,10 @@ double fc_bound_common_smooth_time(const FcScene* scene, double h);
 double fc_bound_reached(const FcBoundMotion* at, double delta);
 double fc_bound_loss(const FcBoundMotion* at, double delta);
 
+// With E held, at the separation d [m]: D [m], and the slope of ln D by d [1/m].
+double fc_bound_at_separation(const FcScene* scene, double d);
+double fc_bound_log_slope(const FcScene* scene, double d);
+
 // D alone [m].
 double fc_bound(const FcScene* scene, double t);
 

@@ -12,11 +12,16 @@ static double step_to_root(FcRootFunction at) {
     return -2.0 * at.value / (at.rate + slope);
 }
 
-// From a to the root of the cubic t(f) through both ends; to the parabola's where the slopes don't agree with the change.
+// Of a bracket: the parabola at a is good up to there.
+static const double NEAR = 0.25;
+
+// From a to the root of the parabola there, if it is near, else to that of the cubic t(f) through both ends, if the slopes
+// agree with the change.
 static double first_step(double duration, FcRootFunction at_a, FcRootFunction at_b) {
     const double change = at_b.value - at_a.value;
-    if (!(at_a.rate * change > 0.0 && at_b.rate * change > 0.0)) {
-        return fabs(step_to_root(at_a));
+    const double nearer = fabs(step_to_root(at_a));
+    if (nearer < NEAR * duration || !(at_a.rate * change > 0.0 && at_b.rate * change > 0.0)) {
+        return nearer;
     }
     const double s = -at_a.value / change;
     const double part = s * (1.0 - s);
@@ -24,7 +29,7 @@ static double first_step(double duration, FcRootFunction at_a, FcRootFunction at
 }
 
 double fc_bracketed_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
-                         FcRootFunction at_b, double last_step, double* evaluations) {
+                         FcRootFunction at_b, double last_step, double longest_way, double* evaluations) {
     const double start = a;
     const bool starts_negative = at_a.value < 0.0;
     FcRootFunction at = at_a;
@@ -39,7 +44,7 @@ double fc_bracketed_root(FcRootEvaluation f, void* context, double a, FcRootFunc
         }
         step = next - t;
         t = next;
-        if ((i > 0 && fabs(step) <= last_step * (t - start)) || t == a || t == b) {
+        if ((i > 0 && fabs(step) <= last_step * fmin(t - start, longest_way)) || t == a || t == b) {
             return t;
         }
         at = f(context, t);

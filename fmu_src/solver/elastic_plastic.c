@@ -39,6 +39,7 @@ static FreeStarts free_starts(const FcScene* scene, double tolerance, double per
     const FcPath path = fc_path_from(scene, 0.0);
     FcTurningPoints points;
     fc_turning_points_start(&points, scene, tolerance, period);
+    fc_turning_points_foresee(&points, -FC_NO_BOUND, FC_NO_BOUND);
     FreeStarts starts = {.lowest = -points.at->D, .highest = points.at->D};
     while (points.at->t < period && points.evaluations <= FC_MOST_EVALUATIONS) {
         FcPiece piece;

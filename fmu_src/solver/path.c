@@ -12,13 +12,27 @@ typedef struct {
     double second_cosine; // z^2/2 - (1 - cos z)
 } Remainders;
 
-// 1 - y/(4 5) (1 - y/(6 7) (1 - ...)) for first = 4, by Horner's scheme from the factor last (last + 1) on.
-static double series(double y, int first, int last) {
-    double sum = 1.0;
-    for (int k = last; k >= first; k -= 2) {
-        sum = 1.0 - y / (k * (k + 1)) * sum;
-    }
-    return sum;
+// 1 - y/(4 5) + y^2/(4 5 6 7) - ... and 1 - y/(5 6) + y^2/(5 6 7 8) - ..., eight terms, in pairs.
+static const double SINE[8] = {1.0,
+                               -1.0 / 20,
+                               1.0 / 840,
+                               -1.0 / 60480,
+                               1.0 / 6652800,
+                               -1.0 / 1037836800,
+                               1.0 / 217945728000.0,
+                               -1.0 / 59281238016000.0};
+static const double COSINE[8] = {1.0,
+                                 -1.0 / 30,
+                                 1.0 / 1680,
+                                 -1.0 / 151200,
+                                 1.0 / 19958400,
+                                 -1.0 / 3632428800,
+                                 1.0 / 871782912000.0,
+                                 -1.0 / 266765571072000.0};
+
+static double series(double y, const double c[8]) {
+    const double y_2 = y * y;
+    return c[0] + c[1] * y + y_2 * (c[2] + c[3] * y + y_2 * (c[4] + c[5] * y + y_2 * (c[6] + c[7] * y)));
 }
 
 static Remainders remainders(double z) {
@@ -28,8 +42,8 @@ static Remainders remainders(double z) {
         return (Remainders){.sine = z - sin(z), .cosine = cosine, .second_cosine = 0.5 * y - cosine};
     }
     // z^3/3! - z^5/5! + ... and z^4/4! - z^6/6! + ...
-    const double second_cosine = y * y / 24.0 * series(y, 5, 17);
-    return (Remainders){.sine = z * y / 6.0 * series(y, 4, 18),
+    const double second_cosine = y * y * (1.0 / 24) * series(y, COSINE);
+    return (Remainders){.sine = z * y * (1.0 / 6) * series(y, SINE),
                         .cosine = 0.5 * y - second_cosine,
                         .second_cosine = second_cosine};
 }

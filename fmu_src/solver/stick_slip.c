@@ -14,7 +14,7 @@ static const double CLEAR_OF_BOUND = 0.999;
 
 // What the bristle does since a moment.
 typedef struct {
-    const FcTurningPoints* points;
+    FcTurningPoints* points;
     FcIntegrator integrator;
     double side;         // +1, -1: slips along +D, -D; 0: sticks
     FcBoundMotion start; // while it slips
@@ -82,9 +82,10 @@ static bool meets(const Regime* regime, const FcPiece* piece, double side, doubl
         return false;
     }
     Beyond of = {regime, side, *piece->start};
-    const double t = fc_bracketed_root(
-        evaluate, &of, piece->start->t, beyond(piece->start, side, delta_start), piece->end->t,
-        beyond(piece->end, side, delta_end), regime->points->last_step, regime->evaluations);
+    const double t =
+        fc_bracketed_root(evaluate, &of, piece->start->t, beyond(piece->start, side, delta_start),
+                          piece->end->t, beyond(piece->end, side, delta_end), regime->points->last_step,
+                          regime->points->longest_way, regime->evaluations);
     *there = fc_bound_nearby(&of.last, t);
     return true;
 }
@@ -95,14 +96,31 @@ static double stuck_at(const Regime* regime, const FcPiece* piece) {
                                          : fc_path_at_phase(&regime->path, t, piece->end->sin_theta));
 }
 
+// The bound that recedes from a stuck bristle that lies on it at the start of the piece, and beyond at the end; -1 if none.
+static int comes_back_to(const FcPiece* piece, double delta_start, double delta_end) {
+    for (int which = 0; which < 2; which++) {
+        const double side = which == 0 ? 1.0 : -1.0;
+        if (!piece->nears[which] && side * delta_end > piece->end->D &&
+            side * delta_start >= piece->start->D * (1.0 - ON_BOUND)) {
+            return which;
+        }
+    }
+    return -1;
+}
+
 // Takes the bristle, deflected by delta at the start of the piece, to its end: the deflection there.
-static double cross(Regime* regime, const FcPiece* piece, double delta) {
+static double cross(Regime* regime, FcPiece* piece, double delta) {
     if (regime->side != 0.0 && !piece->nears[regime->side < 0.0]) {
         end_regime(regime, piece->start, delta);
         begin_stick(regime, piece->start->t, delta);
     }
     if (regime->side == 0.0) {
-        const double end = stuck_at(regime, piece);
+        double end = stuck_at(regime, piece);
+        const int which = comes_back_to(piece, delta, end);
+        if (which >= 0) {
+            fc_turning_points_shorten(regime->points, piece, which);
+            end = stuck_at(regime, piece);
+        }
         FcBoundMotion upper = *piece->start;
         FcBoundMotion lower = *piece->start;
         const bool meets_upper = meets(regime, piece, 1.0, delta, end, &upper);
@@ -143,6 +161,7 @@ FcStickSlip fc_stick_slip(const FcScene* scene, double tolerance, double h, doub
     if (sticks(scene, h, points.at->D, result.delta)) {
         result.delta += fc_path_at(&regime.path, h);
     } else {
+        fc_turning_points_foresee(&points, result.delta, result.delta);
         while (points.at->t < h && *evaluations + points.evaluations <= FC_MOST_EVALUATIONS) {
             FcPiece piece;
             fc_turning_points_next(&points, result.delta, result.delta, &piece);

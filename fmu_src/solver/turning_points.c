@@ -13,6 +13,8 @@ static const double ROUNDING = 1e-12;
 static const double LEAST_BOUND = 0.25;
 // A bristle within this of the bound, over D, may be on it.
 static const double NEAR_BOUND = 1e-6;
+// To a known turn.
+enum { MOST_STEPS = 100 };
 // A cell is halved at most this often: what two roots still closer enclose is below rounding.
 enum { MOST_HALVINGS = 12 };
 
@@ -42,6 +44,18 @@ void fc_turning_points_start(FcTurningPoints* points, const FcScene* scene, doub
     points->sample[0] = fc_bound_motion(scene, 0.0);
     points->smooth_time = fc_bound_common_smooth_time(scene, end);
     points->speed = fc_drive_largest_speed(&scene->drive, end);
+    points->known.known = false;
+    points->longest_way = INFINITY;
+}
+
+void fc_turning_points_foresee(FcTurningPoints* points, double lowest, double highest) {
+    if (!points->constant_bound && points->smooth_time > 0.0) {
+        points->known = fc_known_turns(points->scene, &points->sample[0], points->end, lowest, highest);
+        points->longest_way = points->known.known ? CELL * points->smooth_time : INFINITY;
+        points->next_known = 0.0;
+        points->turned = -1;
+        points->has_last = false;
+    }
 }
 
 FcBoundMotion fc_turning_points_motion(const FcTurningPoints* points, double t) {
@@ -63,6 +77,89 @@ static void next_with_constant_bound(FcTurningPoints* points, FcPiece* piece) {
     piece->nears[0] = V > 0.0;
     piece->nears[1] = V < 0.0;
     piece->turns = true;
+}
+
+// The one turn of a bound between a and b [s], the guess lying near it: Newton's method.
+static FcBoundMotion turn_near(FcTurningPoints* points, int which, double a, double b, double guess) {
+    const double last_step = points->last_step * points->smooth_time;
+    double t = fmax(a, fmin(b, guess));
+    for (int i = 0;; i++) {
+        const FcBoundMotion at = fc_bound_motion(points->scene, t);
+        points->evaluations += 1.0;
+        const double rate = approach(&at, which);
+        if (rate > 0.0) {
+            a = t;
+        } else {
+            b = t;
+        }
+        const double step = -rate / approach_rate(&at, which);
+        const bool inside = t + step >= a && t + step <= b;
+        if ((inside && fabs(step) <= last_step) || i == MOST_STEPS) {
+            return fc_bound_nearby(&at, inside ? t + step : t);
+        }
+        t = inside ? t + step : a + 0.5 * (b - a);
+    }
+}
+
+// The sample that ends the step, taken once.
+static const FcBoundMotion* last_sample(FcTurningPoints* points) {
+    FcBoundMotion* last = &points->sample[FC_CELLS_AT_ONCE];
+    if (!points->has_last) {
+        *last = fc_bound_motion(points->scene, points->end);
+        points->evaluations += 1.0;
+        points->has_last = true;
+    }
+    return last;
+}
+
+static void next_with_known_turns(FcTurningPoints* points, FcPiece* piece) {
+    const FcKnownTurns* known = &points->known;
+    const int n = fmod(points->next_known, 2.0) == 0.0 ? 0 : 1;
+    const double later = floor(0.5 * points->next_known) * known->cycle;
+    const double quarter = 0.25 / points->scene->drive.vibration.f;
+    const double from = known->middle[n] + later - quarter;
+    const double to = known->middle[n] + later + quarter;
+    points->sample[0] = *points->at;
+    piece->start = &points->sample[0];
+    piece->nears[0] = nears(piece->start, 0);
+    piece->nears[1] = nears(piece->start, 1);
+    if (points->turned >= 0) {
+        piece->nears[points->turned] = false;
+    }
+    piece->turns =
+        from < points->end && (to <= points->end || !(approach(last_sample(points), known->which[n]) > 0.0));
+    if (piece->turns) {
+        points->sample[1] = turn_near(points, known->which[n], fmax(0.0, from), fmin(to, points->end),
+                                      known->guess[n] + later);
+        points->next_known += 1.0;
+        points->turned = known->which[n];
+        points->at = &points->sample[1];
+    } else {
+        points->turned = -1;
+        points->at = last_sample(points);
+    }
+    piece->end = points->at;
+}
+
+void fc_turning_points_shorten(FcTurningPoints* points, FcPiece* piece, int which) {
+    if (!points->known.known) {
+        return; // cells end where a bound starts to come nearer
+    }
+    double t = piece->end->t;
+    FcBoundMotion at;
+    do {
+        t = piece->start->t + 0.5 * (t - piece->start->t);
+        at = fc_bound_motion(points->scene, t);
+        points->evaluations += 1.0;
+    } while (!(approach(&at, which) < 0.0) && t > piece->start->t);
+    if (!(t > piece->start->t)) {
+        return; // what it could meet is below rounding
+    }
+    points->next_known -= piece->turns ? 1.0 : 0.0;
+    points->turned = -1;
+    points->sample[1] = at;
+    piece->turns = false;
+    piece->end = points->at = &points->sample[1];
 }
 
 // Whether q may vanish twice or oftener between the samples: it dips towards zero and its tangents meet beyond, or it
@@ -103,8 +200,8 @@ static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBo
     Approach of = {points->scene, which, *a};
     const FcRootFunction at_a = {.value = approach(a, which), .rate = approach_rate(a, which)};
     const FcRootFunction at_b = {.value = approach(b, which), .rate = approach_rate(b, which)};
-    const double t =
-        fc_bracketed_root(evaluate, &of, a->t, at_a, b->t, at_b, points->last_step, &points->evaluations);
+    const double t = fc_bracketed_root(evaluate, &of, a->t, at_a, b->t, at_b, points->last_step, INFINITY,
+                                       &points->evaluations);
     return fc_bound_nearby(&of.last, t);
 }
 
@@ -232,6 +329,8 @@ void fc_turning_points_next(FcTurningPoints* points, double lowest, double highe
     assert(points->at->t < points->end);
     if (points->constant_bound) {
         next_with_constant_bound(points, piece);
+    } else if (points->known.known) {
+        next_with_known_turns(points, piece);
     } else {
         next_with_moving_bound(points, lowest, highest, piece);
     }

@@ -306,7 +306,30 @@ static void quadratures_break_off_at_the_most_evaluations(void) {
     CHECK(slip > FC_MOST_EVALUATIONS && slip < allowed);
 }
 
+// d leaves at once, or arrives from afar: sigma grows like e^(-+t / tau), and the stuck bristle gives
+// sigma V tau^2 or sigma V (h tau - tau^2) at a cost that the distance does not count in.
+static void what_is_far_apart_costs_nothing(void) {
+    const double sigma = 6e6;
+    const double V = 5e-3;
+    const double h = 1e-3;
+    for (double speed = 1e4; speed < 1e13; speed *= 10.0) {
+        FcScene scene = scene_of((Setup){.model = FC_CONTACT_MINDLIN,
+                                         .limit = FC_LIMIT_CONSTANT,
+                                         .sigma = sigma,
+                                         .V = V,
+                                         .d_rate = speed});
+        const double tau = 1.0 / (scene.at_E.decay * speed);
+        const FcStepResult left = step(&scene, h, 0.0);
+        CHECK_NEAR(left.impulse, sigma * V * tau * tau, 1e-9);
+        scene.drive.d = (FcLinearInput){D_MEAN + speed * h, -speed};
+        const FcStepResult arrived = step(&scene, h, 0.0);
+        CHECK_NEAR(arrived.impulse, sigma * V * tau * (h - tau), 1e-4 + 1e-15 * h / tau);
+        CHECK(left.evaluations < 1e4 && arrived.evaluations < 1e4);
+    }
+}
+
 int main(void) {
+    what_is_far_apart_costs_nothing();
     at_constant_speed_it_sticks_then_slips();
     closed_loops();
     slow_sliding_tends_to_the_limit_less_the_amplitude();

@@ -1,0 +1,102 @@
+// Turning points that are known but for small windows: all that there are, against dense samples.
+#include "solver/known_turns.h"
+
+#include "check.h"
+#include "model/constants.h"
+#include "table_1.h"
+
+static const double F = 20e3;           // Hz
+static const double D_MEAN = 14e-6;     // m
+static const double E = 58.55693617e9;  // Pa
+enum { SAMPLES = 4000, SCENES = 3000 }; // samples over two periods
+
+// A fixed sequence, so that every run checks the same scenes.
+static double random_01(void) {
+    static unsigned long long state = 88172645463325252ull;
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return (double)(state >> 11) / 9007199254740992.0;
+}
+
+static double random_log(double low, double high) { return low * pow(high / low, random_01()); }
+
+static FcContactParameters contact;
+static FcFriction friction;
+
+static FcScene random_scene(void) {
+    contact = table_1(1 + (int)(3.0 * random_01()), FC_CONTACT_SEPARATION);
+    friction = (FcFriction){.model = FC_ELASTIC_PLASTIC,
+                            .limit = 1 + (int)(2.0 * random_01()),
+                            .mu = 0.18,
+                            .staticRatio = 1.0,
+                            .V_S = 0.01};
+    const double V_1 = random_log(1e-2, 3.0);
+    const double V = (random_01() - 0.5) * 2.0 * V_1 * (random_01() < 0.5 ? 1.0 : random_log(1e-4, 1.0));
+    const FcVibration vibration = {F, V_1, random_log(1e-8, 6e-6), FC_TWO_PI * random_01()};
+    const FcContactAtModulus plain = fc_contact_at_modulus(&contact, E);
+    const double bound = V_1 / (FC_TWO_PI * F) * random_log(1e-4, 1e4);
+    contact.stiffnessScale *= 55.0 / bound / fc_contact_stiffness(&plain, D_MEAN);
+    contact.sigma = 55.0 / bound;
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, E);
+    const FcDrive drive =
+        fc_drive_make((FcLinearInput){V, 0.0}, (FcLinearInput){D_MEAN, 0.0}, (FcLinearInput){E, 0.0},
+                      (FcLinearInput){100.0, 0.0}, vibration, random_01() / F, 0.0);
+    return fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
+}
+
+static double approach(const FcBoundMotion* at, int which) {
+    return (which == 0 ? at->V : -at->V) - at->D_rate;
+}
+
+// Each sampled time at which a bound starts to recede must be the next known turn of it, none left out. Returns how
+// many were seen.
+static int all_are_known(const FcScene* scene, const FcKnownTurns* known, int first, int last) {
+    const double end = 2.0 / F;
+    int seen = 0;
+    for (int which = first; which <= last; which++) {
+        const bool alternate = known->which[0] != known->which[1];
+        int n = known->which[0] == which ? 0 : 1;
+        FcBoundMotion before = fc_bound_motion(scene, 0.0);
+        for (int i = 1; i <= SAMPLES; i++) {
+            const FcBoundMotion now = fc_bound_motion(scene, end * i / SAMPLES);
+            if (approach(&before, which) > 0.0 && !(approach(&now, which) > 0.0)) {
+                const double middle = known->middle[n % 2] + n / 2 * known->cycle;
+                CHECK(known->which[n % 2] == which);
+                CHECK(now.t >= middle - 0.25 / F && before.t <= middle + 0.25 / F);
+                n += alternate ? 2 : 1;
+                seen++;
+            }
+            before = now;
+        }
+        // and none is known that has not come by a quarter of a period before the end
+        CHECK(known->middle[n % 2] + n / 2 * known->cycle + 0.25 / F >= end * (1.0 - 1e-12));
+    }
+    return seen;
+}
+
+int main(void) {
+    int slow = 0, fast = 0;
+    for (int i = 0; i < SCENES; i++) {
+        const FcScene scene = random_scene();
+        const FcBoundMotion start = fc_bound_motion(&scene, 0.0);
+        const bool at_upper = random_01() < 0.5;
+        const double delta = at_upper ? start.D : -start.D;
+        const FcKnownTurns known = fc_known_turns(&scene, &start, 1.0 / F, delta, delta);
+        if (!known.known || fc_bound_is_constant(&scene)) {
+            continue;
+        }
+        if (known.which[0] != known.which[1]) {
+            slow += all_are_known(&scene, &known, 0, 1);
+        } else {
+            CHECK(known.which[0] == (at_upper ? 0 : 1));
+            fast += all_are_known(&scene, &known, known.which[0], known.which[0]);
+        }
+    }
+    CHECK(slow > 1000 && fast > 200);
+    FcScene moving = random_scene();
+    moving.drive.V.rate = 1.0; // what moves is not foreseen
+    const FcBoundMotion start = fc_bound_motion(&moving, 0.0);
+    CHECK(!fc_known_turns(&moving, &start, 1.0 / F, 0.0, 0.0).known);
+    return check_result();
+}
