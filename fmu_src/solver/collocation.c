@@ -26,6 +26,9 @@
 static const double OF_THE_MEAN = 10.0;
 static const double AT_THE_END = 0.2;
 static const double OF_GAUSS_PANELS = 10.0;
+// Of the mean over a panel that relaxes by more than this: its estimate may be but twice the error.
+static const double STEEP = 4.0;
+static const double OF_STEEP_PANELS = 0.2;
 // The same in bells of the Stribeck curve, where estimates are up to ten times too small.
 static const double OF_THE_MEAN_IN_BELLS = 1.0;
 static const double AT_THE_END_IN_BELLS = 0.05;
@@ -98,7 +101,7 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
         // count nodes resolve e^G where G grows by less than half of count; beyond that the estimates say little.
         if (panel.z < 0.5 * count &&
             panel.end_error <= allowed * fc_least(1.0, section->in_bell ? section->forgets : panel.z) &&
-            section->share * panel.mean_error <= allowed) {
+            section->share * panel.mean_error <= (panel.z < STEEP ? 1.0 : OF_STEEP_PANELS) * allowed) {
             *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
         } else if (count < FC_GAUSS_MOST_NODES) {
