@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from frictionlab import style
 from frictionlab.bench.grade import Point
@@ -78,15 +79,20 @@ def price(rows: Sequence[Mapping[str, object]], titles: Mapping[str, str], folde
 
 
 def work_against_tolerance(points: Sequence[Point], titles: Mapping[str, str], folder: Path) -> list[Path]:
-    """What the default does for a vibration period, against what is asked of it."""
-    figure, axes = style.subplots(1, 2, size=(10.4, 4.2))
-    good = [p for p in points if p.method == "collocation" and not p.failure]
-    own = [p for p in good if p.case.startswith("vibrating")]
-    for case in dict.fromkeys(p.case for p in own):
-        mine = [p for p in own if p.case == case]
-        tolerances = [p.setting for p in mine]
-        axes[0].loglog(tolerances, [p.evaluations for p in mine], ".-", label=titles[case])
-        axes[1].loglog(tolerances, [1e6 * p.cpu for p in mine], ".-", label=titles[case])
+    """What a release's default does for a vibration period, against what is asked of it.
+
+    Of the releases, which are the points' methods, the first has solid lines, the second dashed ones.
+    """
+    figure, axes = style.subplots(1, 2, size=(10.4, 4.4))
+    releases = list(dict.fromkeys(p.method for p in points))
+    for k, case in enumerate(dict.fromkeys(p.case for p in points)):
+        for release, line in zip(releases, (".-", ".--"), strict=False):
+            own = [p for p in points if p.case == case and p.method == release and not p.failure]
+            tolerances = [p.setting for p in own]
+            label = titles[case] if line == ".-" else None
+            of_line = {"color": f"C{k}", "alpha": 1.0 if line == ".-" else 0.6}
+            axes[0].loglog(tolerances, [p.evaluations for p in own], line, label=label, **of_line)
+            axes[1].loglog(tolerances, [1e6 * p.cpu for p in own], line, **of_line)
     for panel, label in zip(
         axes, ("evaluations per 50 µs simulated", "CPU time per 50 µs simulated [µs]"), strict=True
     ):
@@ -94,7 +100,10 @@ def work_against_tolerance(points: Sequence[Point], titles: Mapping[str, str], f
         panel.set_ylabel(label)
         panel.invert_xaxis()
     handles, names = axes[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=3)
+    for release, line in zip(releases, ("-", "--"), strict=False):
+        handles.append(Line2D([], [], color=style.BLACK, linestyle=line))
+        names.append(release)
+    figure.legend(handles, names, loc="outside lower center", ncols=4)
     return style.save_both(figure, folder, "work-tolerance")
 
 

@@ -6,11 +6,12 @@ import argparse
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from rich.table import Table
 
-from frictionlab.bench import figures
+from frictionlab.bench import figures, releases
 from frictionlab.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
 from frictionlab.bench.driver import (
     Bench,
@@ -254,8 +255,14 @@ def _cheapest(row: dict[str, object], names: Sequence[str]) -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    options = bench_options("work-precision", DESCRIPTION).parse_args(argv)
-    finish(run, options)
+    parser = bench_options("work-precision", DESCRIPTION)
+    parser.add_argument(
+        "--against",
+        type=Path,
+        metavar="FMU",
+        help="compare the default's work with that of this release of the FMU, both taking turns",
+    )
+    finish(run, parser.parse_args(argv))
 
 
 def run(options: argparse.Namespace) -> None:
@@ -268,7 +275,7 @@ def run(options: argparse.Namespace) -> None:
         open_bench(options.build_dir, progress) as bench,
         python_fmu() as python,
     ):
-        task = progress.add_task("Measuring", total=len(chosen) + 3)
+        task = progress.add_task("Measuring", total=len(chosen) + 4)
         points: list[Point] = []
         for case in chosen:
             progress.update(task, description=case.name)
@@ -279,12 +286,21 @@ def run(options: argparse.Namespace) -> None:
         periods = period_points(bench, quick)
         progress.advance(task)
         held = held_step(bench, quick)
+        progress.update(task, description="the default against the tolerance")
+        against_tolerance = releases.compare(
+            bench,
+            options.against,
+            [case for case in chosen if case.name.startswith("vibrating")],
+            effort.tolerances,
+            effort.budget,
+        )
     compared = ratios(points)
     prices = price(points)
     written = [
         write_csv([p.row() for p in points], output / "work-precision.csv"),
         write_csv(compared, output / "work-precision-ratios.csv"),
         write_csv(prices, output / "work-precision-price.csv"),
+        write_csv([p.row() for p in against_tolerance], output / "work-tolerance.csv"),
         write_csv(step_sizes, output / "step-size.csv"),
         write_csv(periods, output / "periods.csv"),
         write_machine(output / "machine.json"),
@@ -292,12 +308,14 @@ def run(options: argparse.Namespace) -> None:
     titles = {case.name: case.title for case in chosen}
     written += figures.work_precision(points, titles, output)
     written += figures.price(prices, titles, output)
-    written += figures.work_against_tolerance(points, titles, output)
+    written += figures.work_against_tolerance(against_tolerance, titles, output)
     written += figures.step_sizes(step_sizes, output)
     written += figures.periods(periods, output)
     if options.docs:
         written += renew_docs(written)
     wide_console().print(ratio_table(compared))
+    if options.against:
+        wide_console().print(releases.table(against_tolerance))
     one, many = (
         row["cpu_s_per_step"]
         for row in periods
