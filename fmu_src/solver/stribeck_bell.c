@@ -123,7 +123,7 @@ FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const 
     FcBells bells = {.after = start->t,
                      .before = end->t,
                      .reach = widest,
-                     .digits = log10(BEYOND) + 0.4343 * widest * widest};
+                     .digits = log10(10.0 * BEYOND) + 0.4343 * widest * widest};
     FcBells all = bells;
     all.after = end->t;
     if (may_dip_inside(drive, start->t, end->t, bells.reach * V_S)) {

@@ -48,7 +48,7 @@ FcBellEdge fc_bell_edge(const FcScene* scene, double t);
 typedef struct {
     double after, before; // s
     double reach;         // 1, |V| at their edges, over the Stribeck velocity
-    double digits;        // 1, decades by which a bell stands above the tolerance
+    double digits;        // 1, decades by which a bell stands above a tenth of the tolerance
 } FcBells;
 // For a deflection [m] at the start of at most that, and the path [m] from the end to the next event or the interval's end.
 FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const FcBellEdge* end,
