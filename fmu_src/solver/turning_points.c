@@ -145,16 +145,15 @@ void fc_turning_points_shorten(FcTurningPoints* points, FcPiece* piece, int whic
     if (!points->known.known) {
         return; // cells end where a bound starts to come nearer
     }
-    double t = piece->end->t;
-    FcBoundMotion at;
+    FcBoundMotion at = {.t = piece->end->t};
     do {
-        t = piece->start->t + 0.5 * (t - piece->start->t);
+        const double t = piece->start->t + 0.5 * (at.t - piece->start->t);
+        if (!(t > piece->start->t && t < at.t)) {
+            return; // what it could meet is below rounding
+        }
         at = fc_bound_motion(points->scene, t);
         points->evaluations += 1.0;
-    } while (!(approach(&at, which) < 0.0) && t > piece->start->t);
-    if (!(t > piece->start->t)) {
-        return; // what it could meet is below rounding
-    }
+    } while (!(approach(&at, which) < 0.0));
     points->next_known -= piece->turns ? 1.0 : 0.0;
     points->turned = -1;
     points->sample[1] = at;
