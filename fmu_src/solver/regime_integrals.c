@@ -17,6 +17,10 @@ static const double LONGEST[RULES][MOST_DIGITS + 1] = {
     {12, 10.9, 9.9, 9, 8.18, 7.43, 6.75, 6.13, 5.57, 5.06, 4.6, 4.18, 3.79, 3.45},
 };
 
+// Of the time to a zero of E or the load, where ln g has a pole, which the longest panels for few digits would reach.
+// This far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls like 3^(-2n).
+static const double WAY_TO_POLE = 0.75;
+
 FcIntegrator fc_integrator(const FcScene* scene, double smooth_time, double tolerance) {
     int digits = -1;
     for (double reached = 1.0; reached > tolerance && digits < MOST_DIGITS; reached *= 0.1) {
@@ -32,6 +36,11 @@ typedef struct {
     double end;           // s
 } Panel;
 
+// The longest panel from t on [s] that ends well before a zero of E or the load.
+static double longest_before_pole(const FcDrive* drive, double t) {
+    return WAY_TO_POLE / fmax(fc_drive_E_growth(drive, t), fc_drive_load_growth(drive, t));
+}
+
 static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
     const FcScene* scene = integrator->scene;
     const double smooth_time =
@@ -39,7 +48,8 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
             ? integrator->smooth_time
             : fc_bound_smooth_time(scene, t, fc_scene_d(scene, t), fc_scene_d_rate(scene, t));
     const double left = end - t;
-    const double longest = LONGEST[RULES - 1][integrator->digits] * smooth_time;
+    const double longest =
+        fmin(LONGEST[RULES - 1][integrator->digits] * smooth_time, longest_before_pole(&scene->drive, t));
     const double count = left > longest ? ceil(left / longest) : 1.0;
     Panel panel = {.start = t, .length = left / count, .end = end};
     while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time && panel.rule < RULES - 1) {

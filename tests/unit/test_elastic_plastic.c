@@ -328,6 +328,46 @@ static void what_is_far_apart_costs_nothing(void) {
     }
 }
 
+// E or the load falls to a fiftieth within the step, along the bound all the way: with V held, the work is V times the
+// integral of g, the heat less by that of g dD (trapezoidal sums), the drag V times what D moves.
+static void the_bound_is_followed_towards_a_zero_of_E_or_load(void) {
+    const double h = 1e-3;
+    const double V = 0.1;
+    for (int input = FC_CONTACT_SEPARATION; input <= FC_CONTACT_LOAD; input++) {
+        const bool loaded = input == FC_CONTACT_LOAD;
+        FcScene scene = scene_of((Setup){.model = loaded ? FC_CONTACT_ASPERITIES : FC_CONTACT_CONSTANT,
+                                         .limit = FC_LIMIT_LOAD,
+                                         .sigma = loaded ? 1e10 : 2e5,
+                                         .V = V,
+                                         .sigma_1 = 1.0});
+        contact.input = input;
+        FcDrive drive = scene.drive;
+        drive.load.value = F_C / friction.mu;
+        *(loaded ? &drive.load.rate : &drive.E.rate) = -0.98 * (loaded ? drive.load.value : E) / h;
+        scene = fc_scene_make(&contact, &scene.at_E, &friction, F_C, &drive);
+        enum { PARTS = 20000 };
+        double impulse = 0.0;
+        double receding = 0.0;
+        FcCoefficients a = fc_scene_coefficients(&scene, 0.0);
+        const double D_start = a.limit / a.sigma;
+        for (int i = 1; i <= PARTS; i++) {
+            const FcCoefficients b = fc_scene_coefficients(&scene, h * i / PARTS);
+            impulse += 0.5 * (a.limit + b.limit) * (h / PARTS);
+            receding += 0.5 * (a.limit + b.limit) * (b.limit / b.sigma - a.limit / a.sigma);
+            a = b;
+        }
+        const double drag = V * (a.limit / a.sigma - D_start);
+        for (double tolerance = COARSEST; tolerance > 1e-7; tolerance *= 0.1) {
+            const FcStepResult got = step_within(tolerance, &scene, h, D_start);
+            CHECK_WITHIN(got.delta, a.limit / a.sigma, 1e-12 * D_start);
+            CHECK_WITHIN(got.impulse, impulse, tolerance * F_C * h);
+            CHECK_WITHIN(got.work, V * impulse, tolerance * F_C * V * h);
+            CHECK_WITHIN(got.heat, V * impulse - receding, tolerance * F_C * V * h);
+            CHECK_WITHIN(got.drag, drag, tolerance * V * V * h);
+        }
+    }
+}
+
 int main(void) {
     what_is_far_apart_costs_nothing();
     at_constant_speed_it_sticks_then_slips();
@@ -340,5 +380,6 @@ int main(void) {
     without_stiffness_it_follows();
     too_many_changing_periods_are_refused();
     quadratures_break_off_at_the_most_evaluations();
+    the_bound_is_followed_towards_a_zero_of_E_or_load();
     return check_result();
 }
