@@ -98,7 +98,7 @@ def check_sanitize(extent: Extent) -> None:
     runtimes = _runtimes("libasan.so", "libubsan.so")
     environment = {
         "LD_PRELOAD": runtimes,
-        "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1",  # Python itself leaks
+        "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:allocator_may_return_null=1",  # Python itself leaks
         "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
     }
     short = ("-k", "not compute_without_end")  # 1e8 evaluations apiece, of code that runs in all others

@@ -7,14 +7,46 @@ from collections.abc import Callable
 import pytest
 from fmi_library import OK, Instance
 
-OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
-STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5}
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "Q_f", "F_n", "sigma", "A_r", "delta")
+STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5, "load": 3e-4}
+ELASTIC_PLASTIC, LUGRE = {"friction.model": 3}, {"friction.model": 4}
+LIMIT_BY_LOAD, PRESSED = {"friction.limit": 2}, {"friction.limit": 2, "contact.input": 2}
+SOFT = {"contact.stiffnessScale": 1e-6}
+DAMPED = {"friction.sigma_1": 20.0, "friction.sigma_2": 30.0}
+STRIBECK = {"friction.staticRatio": 1.4, "friction.V_S": 0.01}
 SCENES = {
     "asperities": ({}, {"contact.stiffnessScale": 1e-6}),
     "constant stiffness": ({"contact.model": 2}, {}),
     "Coulomb": ({"friction.model": 2}, {}),
     "weak material": ({}, {"contact.Y": 4e6, "contact.stiffnessScale": 1e-6, "contact.R": 1e-3}),
     "vibrating": ({}, {"contact.stiffnessScale": 1e-6, "vibration.V_1": 0.3, "vibration.a_d": 1e-6}),
+    "damped, the limit follows the load": (LIMIT_BY_LOAD, {**SOFT, **DAMPED}),
+    "damped, pressed by a load": (PRESSED, {**SOFT, **DAMPED}),
+    "Coulomb, pressed by a load": ({"friction.model": 2, **PRESSED}, {}),
+    "LuGre": (LUGRE, {**SOFT, **DAMPED, **STRIBECK}),
+    "LuGre, pressed by a load": ({**LUGRE, **PRESSED}, {**SOFT, **DAMPED, **STRIBECK}),
+    "LuGre, vibrating, Mindlin": (
+        {**LUGRE, **LIMIT_BY_LOAD, "contact.model": 3},
+        {**SOFT, **DAMPED, **STRIBECK, "vibration.V_1": 0.3, "vibration.a_d": 1e-6},
+    ),
+    "ElasticPlastic that sticks": (ELASTIC_PLASTIC, {**SOFT, **DAMPED}),
+    "ElasticPlastic that sticks, pressed by a load": ({**ELASTIC_PLASTIC, **PRESSED}, {**SOFT, **DAMPED}),
+}
+# A bristle that slips stays on the bound while the bound comes nearer: where an input moves this way.
+NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0}
+VIBRATING_SURFACES = {
+    "contact.stiffnessScale": 1e-5,
+    "friction.sigma_1": 200.0,
+    "vibration.a_d": 1e-6,
+    "vibration.phase_d": 0.7,
+}
+SLIPPING = {
+    "constant limit": ({}, {}),
+    "the limit follows the load": (LIMIT_BY_LOAD, {}),
+    "pressed by a load": (PRESSED, {}),
+    "Mindlin": ({"contact.model": 3}, {}),
+    "vibrating surfaces": (LIMIT_BY_LOAD, VIBRATING_SURFACES),
+    "vibrating surfaces, pressed by a load": (PRESSED, VIBRATING_SURFACES),
 }
 
 
@@ -53,6 +85,28 @@ def test_each_output_to_each_input(new_instance: Callable[..., Instance], scene:
             OUTPUTS, derivatives, expected, scales(instance, name), strict=True
         ):
             assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
+
+
+@pytest.mark.parametrize("scene", SLIPPING)
+def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], scene: str) -> None:
+    """By one-sided differences, whose error falls with the step: extrapolated from two."""
+    choices, values = SLIPPING[scene]
+    instance = new_instance()
+    assert instance.choose({**ELASTIC_PLASTIC, **choices}) == OK
+    assert instance.set({**DAMPED, **values, "V": 0.5}) == OK
+    instance.initialize()
+    assert instance.step(0.0, 1.23e-5) == OK
+    for name, side in NEARER.items():
+        status, (exact,) = instance.directional(["F_t"], {name: 1.0})
+        assert status == OK
+        start, F_t = instance.get(name, "F_t")
+        slopes = []
+        for step in (side * STEPS[name], 2.0 * side * STEPS[name]):
+            assert instance.set({name: start + step}) == OK
+            slopes.append((instance.get("F_t")[0] - F_t) / step)
+        assert instance.set({name: start}) == OK
+        difference = 2.0 * slopes[0] - slopes[1]
+        assert exact == pytest.approx(difference, rel=1e-5, abs=1e-6 * abs(F_t / start)), name
 
 
 def test_some_derivatives_are_not_zero(new_instance: Callable[..., Instance]) -> None:

@@ -1,4 +1,4 @@
-"""Twelve scenes whose cost tells whether the default method's step control works, and their costs.
+"""Thirteen scenes whose cost tells whether the default method's step control works, and their costs.
 
     python tests/solver/step_control.py    measures them anew on the built FMU and writes step_control.csv
 
@@ -68,6 +68,9 @@ SCENES = {
         },
         2.2 * PERIOD,
         2,
+    ),
+    "ElasticPlastic, limit and stiffness move": Scene(
+        {**SLIDER, **NORMAL, "friction.model": "ElasticPlastic", "friction.limit": "Load"}, 1.3 * PERIOD, 10
     ),
     "bells of the Stribeck curve, soft": Scene({**BELLS, "contact.stiffnessScale": 1e-8}, 0.93 * PERIOD, 10),
     "bells of the Stribeck curve, in layers": Scene(

@@ -79,6 +79,15 @@ static void every_stiffness_and_tolerance(void) {
     }
 }
 
+// The force that a bell acts on may come from the path alone.
+static void from_rest(void) {
+    Slider slider;
+    for (double sigma = 6e4; sigma < 1e13; sigma *= 100.0) {
+        make(&slider, sigma, FC_LUGRE, 5e-3, 1.3e-5);
+        evaluations_from(&slider.scene, 0.0, F_C, 1.07 * PERIOD, 1e-4);
+    }
+}
+
 // A panel a layer and one for the rest: the loosest tolerance in the stiffest contact costs next to nothing.
 static void a_settled_stretch_is_one_panel(void) {
     Slider slider;
@@ -168,6 +177,7 @@ static void stiffness_over_many_decades(void) {
 
 int main(void) {
     every_stiffness_and_tolerance();
+    from_rest();
     a_settled_stretch_is_one_panel();
     ends_around_a_reversal();
     a_constant_velocity_is_one_panel();
