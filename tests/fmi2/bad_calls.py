@@ -415,6 +415,15 @@ COMBINATIONS = [
         mend=lambda i: i.set({"delta_0": 0.0}),
     ),
     BadCall(
+        "leaving initialization mode while the settled deflection overflows",
+        "initialization",
+        lambda i: i.call("fmi2ExitInitializationMode"),
+        ("fmi2ExitInitializationMode: delta is beyond the largest number", "vibration.V_1 = 1.79769313e+308 m/s"),
+        setup=lambda i: i.choose({"friction.model": 3, "initialState": 2}),
+        prepare=lambda i: i.set({"vibration.V_1": 1.7976931348623157e308, "vibration.a_d": 1e-12}),
+        mend=lambda i: i.set({"vibration.V_1": 0.0}),
+    ),
+    BadCall(
         "reading F_t = sigma delta with contact.sigma raised until it overflows",
         "step complete",
         lambda i: i.call("fmi2GetReal", i.references(["F_t"]), 1, (c_double * 1)()),
