@@ -131,12 +131,12 @@ static bool is_to_be_checked(const FcScene* scene) {
 
 // The outputs at the beginning of the scene; false where one of them is beyond the largest number.
 static bool find_outputs(const FcScene* scene, double delta, FcOutputs* outputs, FcMessage* message) {
+    *outputs = fc_scene_outputs(scene, 0.0, delta);
     if (!isfinite(delta)) {
         return fc_message_set(
             message, "delta is beyond the largest number: V = %.9g m/s with vibration.V_1 = %.9g m/s",
             scene->drive.V.value, scene->drive.vibration.V_1);
     }
-    *outputs = fc_scene_outputs(scene, 0.0, delta);
     if (!isfinite(outputs->sigma) || !isfinite(outputs->A_r) || !isfinite(outputs->F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
