@@ -62,6 +62,24 @@ def test_error_is_small_where_it_should_be(fmu: FrictionFmu, method: str) -> Non
 
 
 @pytest.mark.parametrize("method", ORDERS)
+def test_work_of_the_damping(fmu: FrictionFmu, method: str) -> None:
+    """sigma_1 (integral of delta' V dt), by Gauss quadrature over the reference's deflections."""
+    h, sigma_1 = 3.7e-5, 2e4
+    scene = scene_of(SMOOTH)
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    work = float(reference.solve(scene, 0, MP.mpf(h), 0)[2])
+    for node, weight in zip(0.5 * h * (nodes + 1.0), 0.5 * h * weights, strict=True):
+        V = SMOOTH["V"] + SMOOTH["vibration.V_1"] * np.cos(2.0 * np.pi * 20e3 * node)
+        delta = reference.solve(scene, 0, MP.mpf(node), 0)[0]
+        force = float(reference.force(scene, node, delta))
+        work += sigma_1 * weight * V * (V - abs(V) * force / F_C)
+    start = SMOOTH | {"friction.sigma_1": sigma_1, "solver.method": method, "solver.stepSize": h / 4000}
+    with fmu.session(start) as session:
+        session.step(h)
+        assert session.get("W_f") == pytest.approx(work, rel={1: 2e-3, 2: 2e-6, 4: 1e-9}[ORDERS[method]])
+
+
+@pytest.mark.parametrize("method", ORDERS)
 def test_a_step_over_a_reversal_costs_high_orders(fmu: FrictionFmu, method: str) -> None:
     """|V| has a kink there, so no method of these keeps more than order 2; it still converges."""
     start = SMOOTH | {"V": 0.3}
