@@ -194,16 +194,13 @@ def test_a_step_that_would_compute_without_end_is_refused(instance: Instance) ->
     assert instance.fingerprint() == before
 
 
-@pytest.mark.slow
-def test_a_settled_start_that_would_compute_without_end_is_refused(instance: Instance) -> None:
-    """The elastic-plastic law would follow the separation from 1 m to 2 km and back."""
+def test_a_settled_start_does_not_follow_surfaces_that_are_apart(instance: Instance) -> None:
+    """The separation goes from 1 m to 2 km and back: there is no stiffness, and no force, anywhere on the way."""
     assert instance.choose({"friction.model": 3, "initialState": 2}) == OK
     assert instance.set({"d": 1e3, "vibration.a_d": 999.0, "vibration.V_1": 1.0}) == OK
     assert instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0) == OK
     assert instance.call("fmi2EnterInitializationMode") == OK
-    before = instance.fingerprint()
-    assert instance.call("fmi2ExitInitializationMode") == ERROR
-    assert "initialState = Settled needs more than 1e+08 evaluations" in instance.last_message.text
-    assert instance.fingerprint() == before
-    assert instance.set({"d": 14e-6, "vibration.a_d": 1e-6}) == OK
     assert instance.call("fmi2ExitInitializationMode") == OK
+    sigma, F_t, evaluations = instance.get("sigma", "F_t", "solver.evaluations")
+    assert (sigma, F_t) == (0.0, 0.0)
+    assert evaluations < 1e7
