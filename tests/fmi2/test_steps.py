@@ -195,7 +195,7 @@ def test_a_step_that_would_compute_without_end_is_refused(instance: Instance) ->
 
 
 def test_a_settled_start_does_not_follow_surfaces_that_are_apart(instance: Instance) -> None:
-    """The separation goes from 1 m to 2 km and back: there is no stiffness, and no force, anywhere on the way."""
+    """The separation goes from 1 m to 2 km and back: no stiffness and no force anywhere on the way."""
     assert instance.choose({"friction.model": 3, "initialState": 2}) == OK
     assert instance.set({"d": 1e3, "vibration.a_d": 999.0, "vibration.V_1": 1.0}) == OK
     assert instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0) == OK
