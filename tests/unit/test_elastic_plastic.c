@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "model/constants.h"
+#include "random.h"
 #include "solver/bound.h"
 #include "solver/regime_integrals.h"
 #include "solver/solver.h"
@@ -123,17 +124,6 @@ static void slow_sliding_tends_to_the_limit_less_the_amplitude(void) {
     const double settled = fc_elastic_plastic_settled(&scene, FINEST, 0.0, &evaluations);
     CHECK_WITHIN(step(&scene, 1.0 / F, settled).impulse * F, F_C - sigma * a, sigma * V / F);
 }
-
-// A fixed sequence, so that every run checks the same scenes.
-static double random_01(void) {
-    static unsigned long long state = 88172645463325252ull;
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) / 9007199254740992.0;
-}
-
-static double random_log(double low, double high) { return low * pow(high / low, random_01()); }
 
 static double random_sign(void) { return random_01() < 0.5 ? -1.0 : 1.0; }
 

@@ -3,23 +3,13 @@
 
 #include "check.h"
 #include "model/constants.h"
+#include "random.h"
 #include "table_1.h"
 
 static const double F = 20e3;           // Hz
 static const double D_MEAN = 14e-6;     // m
 static const double E = 58.55693617e9;  // Pa
 enum { SAMPLES = 4000, SCENES = 3000 }; // samples over two periods
-
-// A fixed sequence, so that every run checks the same scenes.
-static double random_01(void) {
-    static unsigned long long state = 88172645463325252ull;
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) / 9007199254740992.0;
-}
-
-static double random_log(double low, double high) { return low * pow(high / low, random_01()); }
 
 static FcContactParameters contact;
 static FcFriction friction;
