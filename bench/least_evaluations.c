@@ -16,6 +16,7 @@
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
 #include "solver/settled_panel.h"
+#include "table_1.h"
 
 static const double PERIOD = 5e-5; // s
 static const double F_C = 55.0;    // N
@@ -30,17 +31,8 @@ typedef struct {
 } Slider;
 
 static void make(Slider* slider, double sigma) {
-    slider->contact = (FcContactParameters){.model = FC_CONTACT_ASPERITIES,
-                                            .input = FC_CONTACT_SEPARATION,
-                                            .stiffnessScale = sigma / 5.743065402e12,
-                                            .R_q = 6e-6,
-                                            .R = 1.7e-6,
-                                            .eta = 47e9,
-                                            .A_n = 1e-4,
-                                            .nu = 0.33,
-                                            .Y = 410e6,
-                                            .c = 17.0,
-                                            .lambda = 3.0};
+    slider->contact = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
+    slider->contact.stiffnessScale = sigma / 5.743065402e12;
     slider->friction =
         (FcFriction){.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT, .staticRatio = 1.0, .V_S = 1e-3};
     const double E = 58.556936170e9;
