@@ -27,6 +27,11 @@ typedef struct {
     double sin_theta;   // of the vibration
 } FcBoundMotion;
 
+// The rate [m/s] at which the upper bound (0) or the lower one (1) comes nearer to a stuck bristle.
+static inline double fc_bound_approach(const FcBoundMotion* at, int which) {
+    return (which == 0 ? at->V : -at->V) - at->D_rate;
+}
+
 FcBoundMotion fc_bound_motion(const FcScene* scene, double t);
 
 // At t, t + step, ..., at half the price each: the angle's sine and cosine are rotated from one to the next.

@@ -52,15 +52,11 @@ static int reachable_bound(const FcDrive* drive, const Swing* D, double end, dou
     return fmin(lowest, least) - reach > -least ? 0 : fmax(highest, -least) + reach < least ? 1 : -1;
 }
 
-static double approach(const FcBoundMotion* at, int which) {
-    return (which == 0 ? at->V : -at->V) - at->D_rate;
-}
-
 static FcKnownTurns at_reversals(const FcDrive* drive, const FcBoundMotion* start) {
     const double now = drive->theta_0 - FC_TWO_PI * floor(drive->theta_0 / FC_TWO_PI);
     const double falls = acos(-drive->V.value / drive->vibration.V_1); // V falls through zero
     int half = now < FC_PI ? 0 : 1;
-    if (!(approach(start, half) > 0.0)) {
+    if (!(fc_bound_approach(start, half) > 0.0)) {
         half++;
     }
     FcKnownTurns turns = {.known = true, .cycle = FC_TWO_PI / drive->omega};
@@ -77,7 +73,7 @@ static FcKnownTurns at_least_bound(const FcDrive* drive, const Swing* D, const F
                                    int which) {
     const double phase = drive->theta_0 + drive->vibration.phase_d + (D->rises ? FC_PI : 0.0);
     const double now = remainder(phase, FC_TWO_PI); // 0: the least D
-    const bool past = now > 0.5 * FC_PI || (now >= -0.5 * FC_PI && !(approach(start, which) > 0.0));
+    const bool past = now > 0.5 * FC_PI || (now >= -0.5 * FC_PI && !(fc_bound_approach(start, which) > 0.0));
     FcKnownTurns turns = {.known = true, .cycle = 2.0 * FC_TWO_PI / drive->omega};
     for (int n = 0; n < 2; n++) {
         turns.which[n] = which;

@@ -18,18 +18,14 @@ enum { MOST_STEPS = 100 };
 // A cell is halved at most this often: what two roots still closer enclose is below rounding.
 enum { MOST_HALVINGS = 12 };
 
-// The rate at which a bound comes nearer, and its slope.
-static double approach(const FcBoundMotion* at, int which) {
-    return (which == 0 ? at->V : -at->V) - at->D_rate;
-}
-
+// The slope of the rate at which a bound comes nearer.
 static double approach_rate(const FcBoundMotion* at, int which) {
     return (which == 0 ? at->V_rate : -at->V_rate) - at->D_curvature;
 }
 
 // Where they stand still both views are right: the upper one is taken to come nearer.
 static bool nears(const FcBoundMotion* at, int which) {
-    return which == 0 ? !(approach(at, 0) < 0.0) : approach(at, 1) > 0.0;
+    return which == 0 ? !(fc_bound_approach(at, 0) < 0.0) : fc_bound_approach(at, 1) > 0.0;
 }
 
 void fc_turning_points_start(FcTurningPoints* points, const FcScene* scene, double tolerance, double end) {
@@ -86,7 +82,7 @@ static FcBoundMotion turn_near(FcTurningPoints* points, int which, double a, dou
     for (int i = 0;; i++) {
         const FcBoundMotion at = fc_bound_motion(points->scene, t);
         points->evaluations += 1.0;
-        const double rate = approach(&at, which);
+        const double rate = fc_bound_approach(&at, which);
         if (rate > 0.0) {
             a = t;
         } else {
@@ -126,8 +122,8 @@ static void next_with_known_turns(FcTurningPoints* points, FcPiece* piece) {
     if (points->turned >= 0) {
         piece->nears[points->turned] = false;
     }
-    piece->turns =
-        from < points->end && (to <= points->end || !(approach(last_sample(points), known->which[n]) > 0.0));
+    piece->turns = from < points->end &&
+                   (to <= points->end || !(fc_bound_approach(last_sample(points), known->which[n]) > 0.0));
     if (piece->turns) {
         points->sample[1] = turn_near(points, known->which[n], fmax(0.0, from), fmin(to, points->end),
                                       known->guess[n] + later);
@@ -153,7 +149,7 @@ void fc_turning_points_shorten(FcTurningPoints* points, FcPiece* piece, int whic
         }
         at = fc_bound_motion(points->scene, t);
         points->evaluations += 1.0;
-    } while (!(approach(&at, which) < 0.0));
+    } while (!(fc_bound_approach(&at, which) < 0.0));
     points->next_known -= piece->turns ? 1.0 : 0.0;
     points->turned = -1;
     points->sample[1] = at;
@@ -189,7 +185,7 @@ typedef struct {
 static FcRootFunction evaluate(void* context, double t) {
     Approach* of = context;
     of->last = fc_bound_motion(of->scene, t);
-    return (FcRootFunction){.value = approach(&of->last, of->which),
+    return (FcRootFunction){.value = fc_bound_approach(&of->last, of->which),
                             .rate = approach_rate(&of->last, of->which)};
 }
 
@@ -197,8 +193,8 @@ static FcRootFunction evaluate(void* context, double t) {
 static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBoundMotion* a,
                                   const FcBoundMotion* b) {
     Approach of = {points->scene, which, *a};
-    const FcRootFunction at_a = {.value = approach(a, which), .rate = approach_rate(a, which)};
-    const FcRootFunction at_b = {.value = approach(b, which), .rate = approach_rate(b, which)};
+    const FcRootFunction at_a = {.value = fc_bound_approach(a, which), .rate = approach_rate(a, which)};
+    const FcRootFunction at_b = {.value = fc_bound_approach(b, which), .rate = approach_rate(b, which)};
     const double t = fc_bracketed_root(evaluate, &of, a->t, at_a, b->t, at_b, points->last_step, INFINITY,
                                        &points->evaluations);
     return fc_bound_nearby(&of.last, t);
@@ -208,16 +204,17 @@ static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBo
 // one only for a bristle that may be on the bound by then.
 static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* a,
                      const FcBoundMotion* b) {
-    if ((approach(a, which) < 0.0) == (approach(b, which) < 0.0) ||
-        (approach(a, which) < 0.0 && !may_be_on_bound) || points->turn_count == FC_MOST_TURNS_IN_CELL) {
+    if ((fc_bound_approach(a, which) < 0.0) == (fc_bound_approach(b, which) < 0.0) ||
+        (fc_bound_approach(a, which) < 0.0 && !may_be_on_bound) ||
+        points->turn_count == FC_MOST_TURNS_IN_CELL) {
         return;
     }
     points->turn[points->turn_count++] =
-        (FcTurningPoint){turn_between(points, which, a, b), which, approach(a, which) < 0.0};
+        (FcTurningPoint){turn_between(points, which, a, b), which, fc_bound_approach(a, which) < 0.0};
 }
 
 static bool may_turn_between(const FcBoundMotion* a, const FcBoundMotion* b, int which) {
-    return may_turn_within(approach(a, which), approach(b, which), approach_rate(a, which),
+    return may_turn_within(fc_bound_approach(a, which), fc_bound_approach(b, which), approach_rate(a, which),
                            approach_rate(b, which), b->t - a->t);
 }
 
