@@ -11,7 +11,7 @@ from rich.table import Table
 
 from frictionlab.bench.cases import Case, expected
 from frictionlab.bench.driver import Bench, Outcome
-from frictionlab.bench.grade import Point, grade_point
+from frictionlab.bench.grade import Point, References, grade_point
 from frictionlab.fmu import FrictionFmu
 
 TURNS = 5
@@ -31,20 +31,24 @@ def compare(
             other = Bench(stack.enter_context(FrictionFmu(against)), bench.programs)
             name = _name(other)
             benches[name if name not in benches else f"{name} ({against.name})"] = other
-        return [
-            point
-            for case in cases
-            for tolerance in tolerances
-            for point in _in_turns(benches, case, tolerance, budget / TURNS)
-        ]
+        return [point for case in cases for point in _of_case(benches, case, tolerances, budget / TURNS)]
 
 
 def _name(bench: Bench) -> str:
     return f"version {bench.fmu.description.version}"
 
 
-def _in_turns(benches: dict[str, Bench], case: Case, tolerance: float, budget: float) -> Iterator[Point]:
+def _of_case(
+    benches: dict[str, Bench], case: Case, tolerances: Sequence[float], budget: float
+) -> Iterator[Point]:
     references = {start: expected(case, start) for start in case.starts}
+    for tolerance in tolerances:
+        yield from _in_turns(benches, case, references, tolerance, budget)
+
+
+def _in_turns(
+    benches: dict[str, Bench], case: Case, references: References, tolerance: float, budget: float
+) -> Iterator[Point]:
     best: dict[tuple[str, float], Outcome] = {}
     for _ in range(TURNS):
         for start in references:
