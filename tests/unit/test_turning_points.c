@@ -1,0 +1,124 @@
+// Turning points of both bounds, piece by piece, against dense samples of how the bounds approach.
+#include "solver/turning_points.h"
+
+#include "check.h"
+#include "random_bound.h"
+
+enum { SCENES = 1500, SAMPLES = 4000, MOST = 1000 };
+static const double TOLERANCE = 1e-12;
+static const double NEXT_TO = 1e-7; // of the time gone through; the roots are closer
+
+// Of one scene, gone through from end to end.
+typedef struct {
+    int count; // of turning points
+    double turn[MOST];
+} Turns;
+
+static bool turns_near(const Turns* turns, double from, double to) {
+    for (int i = 0; i < turns->count; i++) {
+        if (turns->turn[i] >= from && turns->turn[i] <= to) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// One bound starts or ceases to come nearer there, or only touches.
+static bool is_a_turn(const FcScene* scene, double t, double end) {
+    const FcBoundMotion at = fc_bound_motion(scene, t);
+    const FcBoundMotion before = fc_bound_motion(scene, t - NEXT_TO * end);
+    const FcBoundMotion after = fc_bound_motion(scene, t + NEXT_TO * end);
+    const double speed = fabs(scene->drive.V.value) + scene->drive.vibration.V_1 + fabs(at.D_rate);
+    for (int which = 0; which < 2; which++) {
+        if ((approach(&before, which) > 0.0) != (approach(&after, which) > 0.0) ||
+            fabs(approach(&at, which)) < 1e-9 * speed) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// What a piece says of its start is right shortly after it.
+static void says_what_nears(const FcScene* scene, const FcPiece* piece, double end) {
+    const FcBoundMotion after = fc_bound_motion(scene, piece->start->t + NEXT_TO * end);
+    for (int which = 0; which < 2; which++) {
+        const double rate = approach(&after, which);
+        if (fabs(rate) > 1e-5 * (scene->drive.vibration.V_1 + fabs(after.D_rate))) {
+            CHECK(piece->nears[which] == (rate > 0.0));
+        }
+    }
+}
+
+// A bristle that starts at any place: pieces follow each other, and end at turning points where they say so.
+static Turns go_through(const FcScene* scene, double end, bool foreseen) {
+    Turns turns = {0};
+    FcTurningPoints points;
+    fc_turning_points_start(&points, scene, TOLERANCE, end);
+    if (foreseen) {
+        fc_turning_points_foresee(&points, -FC_NO_BOUND, FC_NO_BOUND);
+    }
+    while (points.at->t < end && turns.count < MOST) {
+        const double reached = points.at->t;
+        FcPiece piece;
+        fc_turning_points_next(&points, -FC_NO_BOUND, FC_NO_BOUND, &piece);
+        CHECK(piece.start->t == reached && piece.end->t >= reached && piece.end->t <= end);
+        CHECK(points.at == piece.end);
+        if (!(piece.end->t >= reached)) {
+            break;
+        }
+        if (piece.end->t > reached + 2.0 * NEXT_TO * end) {
+            says_what_nears(scene, &piece, end);
+        }
+        if (piece.turns) {
+            CHECK(is_a_turn(scene, piece.end->t, end));
+            turns.turn[turns.count++] = piece.end->t;
+        }
+    }
+    CHECK(points.at->t == end);
+    return turns;
+}
+
+// Between two samples a bound ceases to come nearer, or also starts to: a turning point lies there. Returns how many do.
+static int none_is_missed(const FcScene* scene, const Turns* turns, double end, bool starts_too) {
+    int seen = 0;
+    for (int which = 0; which < 2; which++) {
+        FcBoundMotion before = fc_bound_motion(scene, 0.0);
+        for (int i = 1; i <= SAMPLES; i++) {
+            const FcBoundMotion now = fc_bound_motion(scene, end * i / SAMPLES);
+            const bool ceases = approach(&before, which) > 0.0 && !(approach(&now, which) > 0.0);
+            const bool starts = approach(&before, which) < 0.0 && !(approach(&now, which) < 0.0);
+            if (ceases || (starts && starts_too)) {
+                CHECK(turns_near(turns, before.t - NEXT_TO * end, now.t + NEXT_TO * end));
+                seen++;
+            }
+            before = now;
+        }
+    }
+    return seen;
+}
+
+static void make_inputs_move(FcScene* scene, double end) {
+    scene->drive.V.rate = (random_01() - 0.5) * 2.0 * scene->drive.vibration.V_1 / end;
+    scene->drive.d.rate = (random_01() - 0.5) * (D_MEAN - scene->drive.vibration.a_d) / end;
+    scene->drive.E.rate = random_01() < 0.2 ? (random_01() - 0.5) * E / end : 0.0;
+}
+
+int main(void) {
+    int seen = 0;
+    for (int i = 0; i < SCENES; i++) {
+        FcScene scene = random_scene();
+        const double end = random_log(0.05, 4.0) / F;
+        if (random_01() < 0.5) {
+            make_inputs_move(&scene, end);
+        }
+        if (fc_bound_is_constant(&scene)) {
+            continue;
+        }
+        const Turns all = go_through(&scene, end, false);
+        const Turns receding = go_through(&scene, end, true);
+        seen += none_is_missed(&scene, &all, end, true);
+        none_is_missed(&scene, &receding, end, false);
+    }
+    CHECK(seen > 1000);
+    return check_result();
+}
