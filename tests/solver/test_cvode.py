@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from data.sweep import SWEEP
 
@@ -55,6 +57,32 @@ def test_short_scenes_of_the_sweep(fmu: FrictionFmu) -> None:
         if not error <= 1e-8:
             missed.append(f"row {row.number}: {error:.2e}")
     assert not missed, "errors over F_C:\n" + "\n".join(missed)
+
+
+def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
+    """A settled bristle hardly feels a small one, which counts in the work all the same.
+
+    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. Eight
+    steps a period take five nodes of the quadrature each, and one to three evaluations more.
+    """
+    V, V_1, sigma, F_C, f = 1.0, 1e-3, 1e8, 55.0, 20e3
+    start = {
+        "V": V,
+        "vibration.V_1": V_1,
+        "contact.model": "Constant",
+        "contact.sigma": sigma,
+        "solver.method": "cvode",
+        "solver.tolerance": 1e-6,
+    }
+    periods = 200.25
+    with fmu.session(start) as session:
+        session.step(periods / f)
+        W_f, evaluations = session.read(("W_f", "solver.evaluations"))
+    x = V * periods / f + V_1 / (2.0 * math.pi * f)  # the sine is 1
+    D = F_C / sigma
+    assert W_f == pytest.approx(F_C * (x + D * math.expm1(-x / D)), rel=1e-6)
+    assert 8 * 6 <= evaluations / periods <= 8 * 8
+    assert evaluations == round(evaluations)
 
 
 @pytest.mark.parametrize("reversal", [1e-16, 1e-8, 0.4])

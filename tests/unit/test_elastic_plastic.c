@@ -89,6 +89,36 @@ static void at_constant_speed_it_sticks_then_slips(void) {
     CHECK(back.work == 0.0 && back.impulse == 0.0 && back.drag == 0.0);
 }
 
+// V rises from zero or falls to it over a way of four times the bound, in microseconds or in days.
+static void a_ramp_takes_any_time(void) {
+    const double sigma = 1e7;
+    const double D = F_C / sigma;
+    for (double h = 1e-6; h < 1e6; h *= 10.0) {
+        const double rate = 8.0 * D / (h * h);
+        const double sticking[] = {0.5 * h, h * (1.0 - sqrt(0.75))}; // s, to the way D
+        const double stuck[] = {D * h / 6.0,
+                                rate * (h / 2.0 - sticking[1] / 6.0) * sticking[1] * sticking[1]};
+        for (int i = 0; i < 4; i++) {
+            const bool falls = i % 2 == 1;
+            const double sign = i < 2 ? 1.0 : -1.0;
+            const FcScene scene = scene_of((Setup){.model = FC_CONTACT_CONSTANT,
+                                                   .limit = FC_LIMIT_CONSTANT,
+                                                   .sigma = sigma,
+                                                   .V = falls ? sign * rate * h : 0.0,
+                                                   .V_rate = falls ? -sign * rate : sign * rate});
+            const FcStepResult got = step(&scene, h, 0.0);
+            CHECK_NEAR(got.delta, sign * D, 1e-15);
+            CHECK_NEAR(got.work, 3.5 * F_C * D, 1e-13);
+            CHECK_NEAR(got.heat, 3.0 * F_C * D, 1e-13);
+            CHECK_NEAR(got.impulse, sign * (sigma * stuck[falls] + F_C * (h - sticking[falls])), 1e-13);
+            const FcStepResult within = step(&scene, 0.3 * h, 0.0);
+            const double x =
+                falls ? rate * h * 0.3 * h - 0.5 * rate * 0.09 * h * h : 0.5 * rate * 0.09 * h * h;
+            CHECK_NEAR(within.delta, sign * fmin(x, D), 1e-14);
+        }
+    }
+}
+
 // Under the path a sin(omega t) a closed loop costs 4 F_C (a - D), and nothing while a is within D (Prandtl): exact
 // whatever the tolerance.
 static void closed_loops(void) {
@@ -107,6 +137,24 @@ static void closed_loops(void) {
         CHECK_WITHIN(loop.heat, lost, 1e-13 * F_C * a);
         CHECK_WITHIN(loop.work, lost, 1e-13 * F_C * a);
         CHECK_WITHIN(loop.impulse, 0.0, 1e-13 * F_C / F);
+    }
+}
+
+// From a reversal on, half a vibration leads 2 a far. What can't meet a bound is found stuck at the first look.
+static void half_a_vibration_sticks_within_the_bound(void) {
+    const double a = 1e-6;
+    const double ratio[] = {0.01, 0.3, 0.496, 0.505, 0.7}; // a / D
+    for (int i = 0; i < 5; i++) {
+        const double D = a / ratio[i];
+        FcScene scene = scene_of((Setup){.model = FC_CONTACT_CONSTANT,
+                                         .limit = FC_LIMIT_CONSTANT,
+                                         .sigma = F_C / D,
+                                         .V_1 = a * FC_TWO_PI * F});
+        scene.drive.theta_0 = -0.5 * FC_PI;
+        const FcStepResult half = step(&scene, 0.5 / F, 0.0);
+        CHECK_NEAR(half.delta, fmin(2.0 * a, D), 1e-14);
+        CHECK_WITHIN(half.heat, F_C * fmax(0.0, 2.0 * a - D), 1e-13 * F_C * D);
+        CHECK(2.0 * a < D ? half.evaluations == 2.0 : half.evaluations > 2.0); // of the bound and of sigma
     }
 }
 
@@ -296,6 +344,51 @@ static void quadratures_break_off_at_the_most_evaluations(void) {
     CHECK(slip > FC_MOST_EVALUATIONS && slip < allowed);
 }
 
+// The error of n nodes falls with a panel's length to the power 2 n: to k digits they integrate n 10^(-k / 2n) smooth
+// times.
+static double longest_panel(int nodes, int digits) { return nodes * pow(10.0, -0.5 * digits / nodes); }
+
+static int fewest_nodes(double length, int digits) {
+    const int nodes[] = {4, 6, 8};
+    for (int i = 0; i < 3; i++) {
+        if (length <= longest_panel(nodes[i], digits)) {
+            return nodes[i];
+        }
+    }
+    return 12;
+}
+
+static void quadratures_take_the_fewest_nodes_that_do(void) {
+    const int nodes[] = {4, 6, 8, 12};
+    const double margin = 6e-3; // the longest panels are known to three digits
+    const double smooth_time = 1e-6;
+    const FcScene scene = scene_of((Setup){.model = FC_CONTACT_ASPERITIES,
+                                           .limit = FC_LIMIT_LOAD,
+                                           .sigma = 1e7,
+                                           .V = 0.5,
+                                           .a_d = 1e-6,
+                                           .sigma_1 = 1.0});
+    const FcBoundMotion start = fc_bound_motion(&scene, 0.0);
+    const FcPath path = fc_path_from(&scene, 0.0);
+    for (int digits = 0; digits <= 13; digits++) {
+        const FcIntegrator integrator = fc_integrator(&scene, smooth_time, 0.5 * pow(10.0, -digits));
+        for (int i = 0; i < 8; i++) {
+            const double length =
+                longest_panel(nodes[i / 2], digits) * (i % 2 == 0 ? 1.0 - margin : 1.0 + margin);
+            const double panels = length > longest_panel(12, digits) ? 2.0 : 1.0;
+            const double expected = panels * fewest_nodes(length / panels, digits);
+            const double h = length * smooth_time;
+            double stuck = 0.0;
+            fc_stick_totals(&integrator, &path, 0.0, h, 0.5 * h, &stuck);
+            CHECK(stuck == expected);
+            const FcBoundMotion end = fc_bound_motion(&scene, h);
+            double slipped = 0.0; // g, and the rate at which the bound recedes
+            fc_slip_totals(&integrator, 1.0, &start, &end, &slipped);
+            CHECK(slipped == 2.0 * expected);
+        }
+    }
+}
+
 // d leaves at once, or arrives from afar: sigma grows like e^(-+t / tau), and the stuck bristle gives
 // sigma V tau^2 or sigma V (h tau - tau^2) at a cost that the distance does not count in.
 static void what_is_far_apart_costs_nothing(void) {
@@ -361,7 +454,9 @@ static void the_bound_is_followed_towards_a_zero_of_E_or_load(void) {
 int main(void) {
     what_is_far_apart_costs_nothing();
     at_constant_speed_it_sticks_then_slips();
+    a_ramp_takes_any_time();
     closed_loops();
+    half_a_vibration_sticks_within_the_bound();
     slow_sliding_tends_to_the_limit_less_the_amplitude();
     brute_force_agrees();
     many_periods_are_one_after_the_other();
@@ -370,6 +465,7 @@ int main(void) {
     without_stiffness_it_follows();
     too_many_changing_periods_are_refused();
     quadratures_break_off_at_the_most_evaluations();
+    quadratures_take_the_fewest_nodes_that_do();
     the_bound_is_followed_towards_a_zero_of_E_or_load();
     return check_result();
 }
