@@ -10,9 +10,10 @@ from fmi_library import OK, Instance
 RATES = {"V": 2.0, "d": 1e-3, "E": 5e12}
 
 
-def soft_instance(new_instance: Callable[..., Instance]) -> Instance:
+def soft_instance(new_instance: Callable[..., Instance], law: int = 1) -> Instance:
     """Relaxes within 1 / (sigma V / F_C), about 2 ms, so that a step of 1e-8 s is short."""
     instance = new_instance()
+    assert instance.choose({"friction.model": law}) == OK
     assert instance.set({"contact.stiffnessScale": 1e-6}) == OK
     instance.initialize()
     assert instance.step(0.0, 1e-3) == OK
@@ -35,10 +36,11 @@ def slope_ahead(instance: Instance, t: float, h: float, rates: dict[str, float])
 @pytest.mark.parametrize(
     "moving", [[], ["V"], ["d"], ["E"], ["V", "d", "E"]], ids=lambda names: "+".join(names) or "held"
 )
+@pytest.mark.parametrize("law", [1, 3, 4], ids=["Dahl", "ElasticPlastic", "LuGre"])
 def test_slope_of_the_force_with_the_rates_of_the_next_step(
-    new_instance: Callable[..., Instance], moving: list[str]
+    new_instance: Callable[..., Instance], law: int, moving: list[str]
 ) -> None:
-    instance = soft_instance(new_instance)
+    instance = soft_instance(new_instance, law)
     rates = {name: RATES[name] for name in moving}
     expected = slope_ahead(instance, 1e-3, 1e-6, rates)
     assert abs(expected) > 1.0
