@@ -227,6 +227,19 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
 }
 
+static bool contact_moves(const FcScene* scene) {
+    const FcDrive* drive = &scene->drive;
+    return drive->vibration.a_d != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0 || scene->floats;
+}
+
+bool fc_scene_stiffness_is_constant(const FcScene* scene) {
+    return scene->at_E.model == FC_CONTACT_CONSTANT || !contact_moves(scene);
+}
+
+bool fc_scene_limit_is_constant(const FcScene* scene) {
+    return !fc_limit_follows_load(scene->friction) || !contact_moves(scene);
+}
+
 double fc_scene_force_scale(const FcScene* scene) {
     if (!fc_limit_follows_load(scene->friction)) {
         return scene->F_C;

@@ -86,6 +86,10 @@ double fc_scene_largest_stiffness(const FcScene* scene, double h);   // N/m
 double fc_scene_smallest_limit(const FcScene* scene, double h);      // N
 double fc_scene_smallest_saturation(const FcScene* scene, double h); // m, of g / sigma
 
+// Whether sigma, and g but for the Stribeck curve, stand still over the step.
+bool fc_scene_stiffness_is_constant(const FcScene* scene);
+bool fc_scene_limit_is_constant(const FcScene* scene);
+
 // What solver.tolerance is relative to [N]: F_C, or mu times the mean of F_n over a period at the start.
 double fc_scene_force_scale(const FcScene* scene);
 

@@ -49,60 +49,94 @@ void fc_map_apply(const FcMap* map, FcStepResult* result) {
     result->heat += (map->heat_square * delta_0 + map->heat_slope) * delta_0 + map->heat_offset;
 }
 
-// (z - 1 + e^-z) / z^2, which tends to 1/2.
-static double phi_2(double z) {
-    if (z > 0.5) {
-        return (z + expm1(-z)) / (z * z);
-    }
+// (1/2 - (z - 1 + e^-z) / z^2) / z, which tends to 1/6, for z in [0, 1]: 1/3! - z/4! + z^2/5! - ...
+static double phi_3(double z) {
+    static const double TERMS[] = {1.0 / 6,
+                                   1.0 / 24,
+                                   1.0 / 120,
+                                   1.0 / 720,
+                                   1.0 / 5040,
+                                   1.0 / 40320,
+                                   1.0 / 362880,
+                                   1.0 / 3628800,
+                                   1.0 / 39916800,
+                                   1.0 / 479001600,
+                                   1.0 / 6227020800.0,
+                                   1.0 / 87178291200.0,
+                                   1.0 / 1307674368e3,
+                                   1.0 / 20922789888e3,
+                                   1.0 / 355687428096e3};
     double sum = 0.0;
-    for (int k = 14; k >= 2; k--) { // Taylor series by Horner: 1/2! - z/3! + z^2/4! - ...
-        sum = (1.0 - z * sum) / k;
+    for (int k = (int)(sizeof TERMS / sizeof *TERMS) - 1; k >= 0; k--) {
+        sum = TERMS[k] - z * sum;
     }
     return sum;
 }
 
-// Integral of (1 - e^-x)^2 over [0, z], over z^3, for z up to 1: the sum over k >= 3 of
-// (-1)^(k+1) (2^(k-1) - 2) z^(k-3) / k!.
-static double phi_heat(double z) {
-    double sum = 0.0;
-    double power = 1.0; // (-z)^(k-3) 3! / k!
-    double two = 4.0;   // 2^(k-1)
-    for (int k = 3; k < 30; k++) {
-        sum += (two - 2.0) * power;
-        power *= -z / (k + 1);
-        two *= 2.0;
+// Where sigma and the limit g stand still and V keeps its sign, with z = sigma |displacement| / g: the force is in parts of
+// what it would be at the end without relaxation, sigma times the displacement, or of what it settles to, whichever is less.
+typedef struct {
+    double force;      // N, that unit
+    double stiffness;  // N/m, it over the displacement
+    double relaxation; // 1 - e^-z
+    double offset;     // m, deflection at the end of a bristle that starts relaxed
+    double end;        // its force then,
+    double mean;       // the mean of its force along the path, and
+    double heat;       // its heat over the displacement, in that unit
+} PathParts;
+
+static PathParts parts_of_path(double sigma, double limit, double displacement) {
+    const double z = sigma * fabs(displacement) / limit;
+    PathParts parts = {.relaxation = -expm1(-z)};
+    if (z > 1.0) {
+        parts.force = copysign(limit, displacement);
+        parts.stiffness = limit / fabs(displacement);
+        parts.end = parts.relaxation;
+        parts.offset = parts.force / sigma * parts.end;
+        parts.mean = 1.0 - parts.relaxation / z;
+        parts.heat = 1.0 - parts.relaxation * (1.0 + 0.5 * parts.relaxation) / z;
+    } else {
+        const double third = phi_3(z);
+        const double second = 0.5 - z * third; // (z - relaxation) / z^2
+        parts.force = sigma * displacement;
+        parts.stiffness = sigma;
+        parts.end = 1.0 - z * second;
+        parts.offset = displacement * parts.end;
+        parts.mean = second;
+        parts.heat = z * (second - third - 0.5 * z * second * second);
     }
-    return sum / 6.0;
+    return parts;
 }
 
-// With r = sigma |V| / g, s = sgn V and the settled deflection D = s g / sigma:
-//     delta = D + (delta_0 - D) e^-rt,   heat = integral of sigma r delta^2 dt,   drag = V (delta_1 - delta_0).
+// With the settled deflection D = s g / sigma, s = sgn V: delta = D + (delta_0 - D) e^-x/|D| along the path x. Work and heat
+// are the integrals of sigma delta and sigma delta |delta| / D over it.
+static FcMap map_of_path(const PathParts* parts, double sigma, double displacement) {
+    return (FcMap){
+        .relaxation = parts->relaxation,
+        .offset = parts->offset,
+        .work_slope = parts->force * parts->end,
+        .work_offset = parts->force * displacement * parts->mean,
+        // sigma (delta_0 e + D (1 - e))^2 / |D| integrated, e = e^-x/|D|
+        .heat_square = 0.5 * sigma * parts->relaxation * (2.0 - parts->relaxation),
+        .heat_slope = sigma * parts->offset * parts->relaxation,
+        .heat_offset = parts->force * displacement * parts->heat,
+    };
+}
+
+FcMap fc_map_of_path(double sigma, double limit, double displacement) {
+    const PathParts parts = parts_of_path(sigma, limit, displacement);
+    return map_of_path(&parts, sigma, displacement);
+}
+
+// drag = V (delta_1 - delta_0)
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h) {
     assert(!(at->sigma < 0.0) && at->limit > 0.0 && h >= 0.0); // a sigma that is no number goes through
     const double V = at->V;
-    const double sigma = at->sigma;
-    const double z = -fc_coefficients_rate(at) * h;
-    FcMap map;
-    map.relaxation = -expm1(-z);
-    if (z > 1.0) {
-        const double saturated = copysign(at->limit, V);
-        map.offset = saturated / sigma * map.relaxation;
-        map.impulse_slope = at->limit / fabs(V) * map.relaxation;
-        map.impulse_offset = saturated * (h - map.impulse_slope / sigma);
-        map.heat_offset = saturated * V * h * (1.0 - map.relaxation * (1.0 + 0.5 * map.relaxation) / z);
-    } else {
-        const double phi_1 = z > 0.0 ? map.relaxation / z : 1.0;
-        map.offset = V * h * phi_1;
-        map.impulse_slope = sigma * h * phi_1;
-        map.impulse_offset = sigma * V * h * h * phi_2(z);
-        map.heat_offset = sigma * V * h * V * h * z * phi_heat(z);
-    }
-    map.work_slope = V * map.impulse_slope;
-    map.work_offset = V * map.impulse_offset;
+    const PathParts parts = parts_of_path(at->sigma, at->limit, V * h);
+    FcMap map = map_of_path(&parts, at->sigma, V * h);
+    map.impulse_slope = parts.stiffness * h * parts.end;
+    map.impulse_offset = parts.force * h * parts.mean;
     map.drag_slope = -V * map.relaxation;
     map.drag_offset = V * map.offset;
-    // With e = e^-rt: sigma r (delta_0 e + D (1 - e))^2 integrated, and D sigma r = sigma V.
-    map.heat_square = 0.5 * sigma * map.relaxation * (2.0 - map.relaxation);
-    map.heat_slope = sigma * map.offset * map.relaxation;
     return map;
 }

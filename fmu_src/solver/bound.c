@@ -11,26 +11,13 @@ static const double SHORTEST_COMMON = 0.1;
 // Of the smooth time, for a central difference.
 static const double SMALL_PART = 1e-4;
 
-static bool contact_moves(const FcScene* scene) {
-    const FcDrive* drive = &scene->drive;
-    return drive->vibration.a_d != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0 || scene->floats;
-}
-
-bool fc_bound_stiffness_is_constant(const FcScene* scene) {
-    return scene->at_E.model == FC_CONTACT_CONSTANT || !contact_moves(scene);
-}
-
-bool fc_bound_limit_is_constant(const FcScene* scene) {
-    return !fc_limit_follows_load(scene->friction) || !contact_moves(scene);
-}
-
 // F_n and Mindlin's stiffness fall with d alike.
 static bool ratio_is_constant(const FcScene* scene) {
     return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
 }
 
 static bool nothing_moves(const FcScene* scene) {
-    return fc_bound_stiffness_is_constant(scene) && fc_bound_limit_is_constant(scene);
+    return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
 }
 
 bool fc_bound_is_constant(const FcScene* scene) {

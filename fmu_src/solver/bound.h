@@ -63,9 +63,7 @@ double fc_bound_log_slope(const FcScene* scene, double d);
 // D alone [m].
 double fc_bound(const FcScene* scene, double t);
 
-// Whether sigma, g and D stand still over the step.
-bool fc_bound_stiffness_is_constant(const FcScene* scene);
-bool fc_bound_limit_is_constant(const FcScene* scene);
+// Whether D stands still over the step.
 bool fc_bound_is_constant(const FcScene* scene);
 
 #endif

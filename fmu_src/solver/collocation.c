@@ -1,5 +1,6 @@
-// The default method. Inputs held and no vibration: the closed form. Otherwise the interval is split at the reversals of
-// V, where |V| has a kink, into stretches, and each stretch into panels (solver/panel.h):
+// The default method. Inputs held and no vibration: the closed form. A contact that stands still and relaxes little between
+// two reversals: the closed form of the path (solver/constant_contact.h). Otherwise the interval is split at the reversals
+// of V, where |V| has a kink, into stretches, and each stretch into panels (solver/panel.h):
 //
 //     little relaxes in the stretch     one or a few Gauss panels, without a linear system
 //     else, or where those miss         Radau panels of 3, 5 or 9 stages on the mesh of solver/mesh.h
@@ -14,7 +15,9 @@
 #include <float.h>
 #include <math.h>
 
+#include "solver/constant_contact.h"
 #include "solver/gauss_panel.h"
+#include "solver/gauss_rule.h"
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
 #include "solver/section.h"
@@ -356,6 +359,11 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations) {
     assert(duration >= 0.0 && options->tolerance > 0.0);
+    FcMap map;
+    if (fc_is_constant_contact(scene) && fc_constant_contact_interval(scene, options->tolerance, duration,
+                                                                      delta_0, scope, &map, evaluations)) {
+        return map;
+    }
     if (!fc_has_stribeck_curve(scene->friction)) {
         return map_of(scene, scene, options, duration, delta_0, scope, evaluations);
     }

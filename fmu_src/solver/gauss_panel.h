@@ -9,8 +9,6 @@
 
 #include "solver/panel.h"
 
-enum { FC_GAUSS_MOST_NODES = 12 };
-
 // The panel [t, t + h], h > 0, of 4, 6, 8 or 12 nodes.
 void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
                     FcPanel* panel);

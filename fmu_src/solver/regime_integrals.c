@@ -109,7 +109,7 @@ FcTotals fc_stick_totals(const FcIntegrator* integrator, const FcPath* path, dou
     if (scene->friction->sigma_1 != 0.0) {
         sum.drag = fc_drive_square(&scene->drive, path->start, end);
     }
-    if (fc_bound_stiffness_is_constant(scene)) {
+    if (fc_scene_stiffness_is_constant(scene)) {
         const double sigma = fc_scene_stiffness(scene, path->start);
         const double x_end = delta_end - delta;
         sum.impulse = sigma * (delta * (end - path->start) + fc_path_integral(path, end));
@@ -197,7 +197,7 @@ FcTotals fc_slip_totals(const FcIntegrator* integrator, double side, const FcBou
     const FcScene* scene = integrator->scene;
     const bool damps = scene->friction->sigma_1 != 0.0;
     const bool bound_moves = !fc_bound_is_constant(scene);
-    const bool limit_moves = !fc_bound_limit_is_constant(scene);
+    const bool limit_moves = !fc_scene_limit_is_constant(scene);
     const bool with_rates = bound_moves && (damps || (limit_moves && !bound_follows_d(scene)));
     SlipIntegrals sum = {0};
     if (limit_moves || with_rates) {

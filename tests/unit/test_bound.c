@@ -37,8 +37,8 @@ static void what_stands_still_is_known(const FcScene* scene) {
         limit_moves |= fabs(now.limit / first.limit - 1.0) > 1e-12;
         D_moves |= fabs(now.D / first.D - 1.0) > 1e-12;
     }
-    CHECK(fc_bound_stiffness_is_constant(scene) == !sigma_moves);
-    CHECK(fc_bound_limit_is_constant(scene) == !limit_moves);
+    CHECK(fc_scene_stiffness_is_constant(scene) == !sigma_moves);
+    CHECK(fc_scene_limit_is_constant(scene) == !limit_moves);
     CHECK(fc_bound_is_constant(scene) == !D_moves);
 }
 

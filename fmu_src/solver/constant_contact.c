@@ -1,0 +1,137 @@
+#include "solver/constant_contact.h"
+
+#include <math.h>
+
+#include "solver/gauss_rule.h"
+#include "solver/mesh.h"
+
+// What an estimated error of the mean may be, over the tolerance: the estimates are 10^3 and more times too large.
+static const double OF_THE_MEAN = 300.0;
+// Of panels in the interval that 12 nodes don't resolve.
+enum { MOST_HALVINGS = 8 };
+
+bool fc_is_constant_contact(const FcScene* scene) {
+    return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene) &&
+           !fc_has_stribeck_curve(scene->friction);
+}
+
+// The panel [t, t + h] over which V keeps its sign. Estimates its error of the mean force over it.
+FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, double t, double h,
+                        double displacement, const FcTrajectories* from, FcPanel* panel) {
+    FcNodeCoefficients at;
+    fc_node_coefficients(scene, t, h, rule->node, n, &at);
+    const double sigma = at.sigma[0];
+    const double limit = at.limit[0];
+    const double settled = copysign(limit / sigma, displacement); // D
+    double z[FC_GAUSS_MOST_NODES];
+    double G[FC_GAUSS_MOST_NODES];    // x / |D|
+    double gone[FC_GAUSS_MOST_NODES]; // 1 - e^-G
+    double f[FC_GAUSS_MOST_NODES];
+    for (int i = 0; i < n; i++) {
+        z[i] = h * at.V[i] / settled;
+    }
+    fc_gauss_integrate(rule, n, z, G);
+    panel->map = fc_map_of_path(sigma, limit, displacement);
+    panel->z = displacement / settled;
+    fc_exponentials_less_1(n, G, panel->z, gone);
+    double time_gone = 0.0; // s, integral of 1 - e^-G
+    double V_V_left = 0.0;  // m2/s, integral of V^2 e^-G
+    for (int i = 0; i < n; i++) {
+        const double V_V = at.V[i] * at.V[i];
+        const double left = 1.0 / (1.0 + gone[i]);
+        gone[i] *= left;
+        time_gone += rule->weight[i] * gone[i];
+        V_V_left += rule->weight[i] * V_V * left;
+        f[i] = gone[i] * (1.0 + V_V / (from->speed * from->speed));
+    }
+    time_gone *= h;
+    V_V_left *= h;
+    panel->map.impulse_slope = sigma * (h - time_gone);
+    panel->map.impulse_offset = copysign(limit, displacement) * time_gone;
+    panel->map.drag_slope = -V_V_left / settled;
+    panel->map.drag_offset = V_V_left;
+    panel->mean_error =
+        sigma * (fabs(from->delta_0 - settled) + fabs(from->scale)) * fc_gauss_error(rule, n, f);
+}
+
+static void panel_of_nodes(int count, const FcScene* scene, double t, double h, double displacement,
+                           const FcTrajectories* from, FcPanel* panel) {
+    switch (count) { // constants where panel_of is inlined
+    case 4:
+        panel_of(&FC_GAUSS_4, 4, scene, t, h, displacement, from, panel);
+        break;
+    case 6:
+        panel_of(&FC_GAUSS_6, 6, scene, t, h, displacement, from, panel);
+        break;
+    case 8:
+        panel_of(&FC_GAUSS_8, 8, scene, t, h, displacement, from, panel);
+        break;
+    default:
+        panel_of(&FC_GAUSS_12, 12, scene, t, h, displacement, from, panel);
+        break;
+    }
+}
+
+// How many nodes are about needed for a panel over which the bristle relaxes by z and the phase moves by that angle.
+static double nodes_for(double tolerance, double z, double angle) {
+    return 1.0 + 0.4 * fc_digits(tolerance) + 0.7 * (z + angle);
+}
+
+// count nodes resolve e^z where z is less than half of count; beyond that the estimate says little.
+static bool is_resolved(double z, int count) { return z < 0.5 * count; }
+
+// Of the fewest nodes that are accurate: their error of the impulse is at most allowed [N s]. Otherwise false.
+static bool accurate_panel(const FcScene* scene, double t, double h, double displacement, double nodes,
+                           const FcTrajectories* from, double allowed, FcPanel* panel, double* evaluations) {
+    int count = nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12;
+    for (; count <= FC_GAUSS_MOST_NODES; count += count < 8 ? 2 : 4) {
+        panel_of_nodes(count, scene, t, h, displacement, from, panel);
+        *evaluations += count;
+        if (is_resolved(panel->z, count) && h * panel->mean_error <= allowed) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool fc_constant_contact_interval(const FcScene* scene, double tolerance, double duration, double delta_0,
+                                  FcMapScope scope, FcMap* map, double* evaluations) {
+    const FcDrive* drive = &scene->drive;
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double settled = at.limit / at.sigma;
+    const double allowed = OF_THE_MEAN * tolerance * at.limit * duration;
+    FcTrajectories from = {
+        .delta_0 = delta_0,
+        .scale = scope == FC_MAP_ANY_START ? fmax(fabs(delta_0), settled) : 0.0,
+        .speed = fc_drive_largest_speed(drive, duration) + 1e-300,
+    };
+    int halvings = 0;
+    if (!isfinite(settled)) { // without stiffness
+        return false;
+    }
+    *map = fc_map_identity();
+    for (double t = 0.0; t < duration;) {
+        double end = fc_drive_next_event(drive, t, duration).time;
+        FcPanel panel;
+        for (;;) {
+            const double displacement = fc_drive_displacement(drive, t, end);
+            const double z = fabs(displacement) / settled;
+            if (!is_resolved(z, FC_GAUSS_MOST_NODES)) {
+                return false;
+            }
+            const double nodes = nodes_for(tolerance, z, drive->omega * (end - t));
+            if (accurate_panel(scene, t, end - t, displacement, nodes, &from, allowed, &panel, evaluations)) {
+                break;
+            }
+            end = t + 0.5 * (end - t);
+            if (++halvings > MOST_HALVINGS || !(end > t)) {
+                return false;
+            }
+        }
+        *map = fc_map_compose(map, &panel.map);
+        from.delta_0 = (1.0 - panel.map.relaxation) * from.delta_0 + panel.map.offset;
+        from.scale *= 1.0 - panel.map.relaxation;
+        t = end;
+    }
+    return true;
+}
