@@ -93,6 +93,26 @@ static void every_byte_of_a_number_counts(fmi2Component c) {
     check_counts(c, offsetof(FcSavedState, experiment), sizeof(FcExperiment));
 }
 
+// Each number beside the variables, infinite alone.
+static void infinite_numbers_are_refused(fmi2Component c) {
+    const size_t numbers[] = {offsetof(FcFrictionState, time),
+                              offsetof(FcFrictionState, time_rest),
+                              offsetof(FcFrictionState, W_f_rest),
+                              offsetof(FcFrictionState, Q_f_rest),
+                              offsetof(FcFrictionState, rate),
+                              offsetof(FcFrictionState, rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
+                              offsetof(FcFrictionState, next_rate),
+                              offsetof(FcFrictionState, next_rate) + (FC_INPUT_COUNT - 1) * sizeof(double)};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        FcSavedState saved = full_state();
+        const double infinite = INFINITY;
+        memcpy((char*)&saved.friction + numbers[i], &infinite, sizeof infinite);
+        const Bytes written = bytes_of(c, &saved);
+        fmi2FMUstate read = NULL;
+        CHECK(fmi2DeSerializeFMUstate(c, written.bytes, written.size, &read) == fmi2Error && read == NULL);
+    }
+}
+
 int main(void) {
     fmi2Component c =
         fmi2Instantiate("unit", fmi2CoSimulation, fc_guid, NULL, &callbacks, fmi2False, fmi2True);
@@ -100,6 +120,7 @@ int main(void) {
     if (c) {
         every_number_comes_back(c);
         every_byte_of_a_number_counts(c);
+        infinite_numbers_are_refused(c);
         fmi2FreeInstance(c);
     }
     return check_result();

@@ -32,6 +32,7 @@ static void forces_of_the_laws(void) {
         const FcScene sliding = moving_scene(&contact, &coulomb, 0.0);
         const double V = fc_drive_V(&sliding.drive, t);
         CHECK_NEAR(fc_scene_outputs(&sliding, t, delta).F_t, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-15);
+        CHECK(fc_scene_deflection_rate(&sliding, t, delta) == 0.0);
 
         const FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
         const FcScene sticking = moving_scene(&contact, &plastic, 0.0);
