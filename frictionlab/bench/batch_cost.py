@@ -15,8 +15,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -42,25 +44,42 @@ def scenarios(count: int) -> dict[str, np.ndarray]:
     return {name: random.uniform(*ends, count) for name, ends in RANGES.items()}
 
 
-def bare_loop(fmu: FrictionFmu, program: Path, count: int, samples: int) -> tuple[float, float]:
-    """Processor time [s] per scenario, and the mean force [N] over all."""
+def bare_input(fmu: FrictionFmu, count: int) -> str:
+    """What the bare loop reads: the variables' numbers, then a line a scenario."""
     reference = {name: variable.valueReference for name, variable in fmu.variables.items()}
     values = scenarios(count)
     numbers = [reference["vibration.f"]]
     for names in (tuple(values), SAMPLED, AROUND):
         numbers += [len(names), *(reference[name] for name in names)]
     rows = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(values.values())).tolist())
+    return " ".join(map(str, [*numbers, count])) + "\n" + rows
+
+
+def bare_loop(fmu: FrictionFmu, program: Path, text: str, count: int, samples: int) -> tuple[float, float]:
+    """Processor time [s] per scenario, and the mean force [N] over all."""
     description = fmu.description
     library = next((fmu.directory / "binaries").glob(f"*/{description.coSimulation.modelIdentifier}.so"))
     done = subprocess.run(
         [program, library, description.guid, repr(SETTLE), str(samples)],
-        input=" ".join(map(str, [*numbers, count])) + "\n" + rows,
+        input=text,
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     if done.returncode:
         raise UserError(f"{program}: {done.stderr.strip()}")
     seconds, force, *_ = map(float, done.stdout.split())
     return seconds / count, force
+
+
+def two_at_once(loop: Callable[[], object]) -> float:
+    """What the machine itself gives: the throughput of two loops side by side over that of one."""
+    began = time.perf_counter()
+    loop()
+    one = time.perf_counter() - began
+    with ThreadPoolExecutor(2) as pool:
+        began = time.perf_counter()
+        for running in [pool.submit(loop) for _ in range(2)]:
+            running.result()
+        return 2.0 * one / (time.perf_counter() - began)
 
 
 def one_batch(fmu: Path, count: int, samples: int) -> tuple[float, float]:
@@ -114,9 +133,17 @@ def sweep(fmu: Path, count: int, samples: int, workers: int) -> Sweep:
 BARE = "bare C loop"
 
 
-def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> tuple[dict[str, float], float]:
-    """Processor time [s] per scenario each way, and the throughput of two workers over that of one."""
-    bare, force = bare_loop(fmu, program, count, samples)
+@dataclass(frozen=True)
+class Turn:
+    costs: dict[str, float]  # s of processor time per scenario, each way
+    machine: float  # throughput of two bare loops at once over that of one
+    workers: float  # throughput of two workers of a sweep over that of one
+
+
+def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> Turn:
+    text = bare_input(fmu, count)
+    bare, force = bare_loop(fmu, program, text, count, samples)
+    machine = two_at_once(partial(bare_loop, fmu, program, text, count, samples))
     batch, batch_force = one_batch(fmu.path, count, samples)
     if not np.isclose(force, batch_force, rtol=1e-12):
         raise UserError(f"the bare loop gives {force!r} N, the batch {batch_force!r} N")
@@ -128,7 +155,8 @@ def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> tuple[dic
         "scripts/sweep, all processes": (many.processor - few.processor) / (3 * count),
         "one session each in Python": sessions(fmu, max(1, count // 100), samples),
     }
-    return costs, (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
+    workers = (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
+    return Turn(costs, machine, workers)
 
 
 def measure(fmu_path: Path, program: Path, count: int, turns: int, memory: bool) -> None:
@@ -136,12 +164,14 @@ def measure(fmu_path: Path, program: Path, count: int, turns: int, memory: bool)
     with FrictionFmu(fmu_path) as fmu:
         for samples in (64, 1):
             words, n = (f"{samples} samples", count) if samples > 1 else ("mean only", SHORT * count)
-            costs, speedups = zip(*(turn(fmu, program, n, samples) for _ in range(turns)), strict=True)
-            for name in costs[0]:
-                cost = statistics.median(one[name] for one in costs)
-                ratio = statistics.median(one[name] / one[BARE] for one in costs)
+            taken = [turn(fmu, program, n, samples) for _ in range(turns)]
+            for name in taken[0].costs:
+                cost = statistics.median(one.costs[name] for one in taken)
+                ratio = statistics.median(one.costs[name] / one.costs[BARE] for one in taken)
                 print(f"{words + ', ' + name:40}{1e6 * cost:9.1f}{ratio:8.2f}")
-            print(f"{words}, throughput of two workers over one: {statistics.median(speedups):.2f}")
+            workers = statistics.median(one.workers for one in taken)
+            machine = statistics.median(one.machine for one in taken)
+            print(f"{words}, throughput of two over one: {workers:.2f} workers, {machine:.2f} bare loops")
         if memory:
             largest = sweep(fmu_path, MEMORY_SCENARIOS, 1, 2).memory
             print(f"largest process of a sweep of {MEMORY_SCENARIOS} scenarios: {largest / 2**20:.0f} MiB")
