@@ -135,28 +135,29 @@ def test_interrupted_while_building(project: Path, tmp_path: Path) -> None:
     assert interrupted(start(project, CC=str(compiler)), reached) == "stopped\n"
 
 
-SLOW = "import time\nopen({reached!r}, 'w')\ntime.sleep(60)\n"
+# What they reach is a folder: a file has a destructor, in which Control-C would be lost.
+SLOW = "import os, time\nos.mkdir({reached!r})\ntime.sleep(60)\n"
 SLOW_DESTRUCTOR = """\
-import time
+import os, time
 class Slow:
     def __del__(self):
-        open({reached!r}, 'w')
+        os.mkdir({reached!r})
         time.sleep(60)
 Slow()
 time.sleep(60)
 """
 CHANGED = """\
-import time
+import os, time
 try:
-    open({reached!r}, 'w')
+    os.mkdir({reached!r})
     time.sleep(60)
 except KeyboardInterrupt:
     raise ImportError("numpy's own words for it") from None
 """
 CAUGHT = """\
-import importlib, sys, time
+import importlib, os, sys, time
 try:
-    open({reached!r}, 'w')
+    os.mkdir({reached!r})
     time.sleep(60)
 except KeyboardInterrupt:
     sys.path.remove({folder!r})
