@@ -70,11 +70,6 @@ static FcTrajectories trajectories(const Progress* progress) {
 // Number of nodes for a panel over which about this much changes, for so many digits.
 static double nodes_for(double digits, double change) { return 2.0 + 0.6 * digits + 0.5 * change; }
 
-// The next number of nodes that there is a panel of.
-static int panel_of_nodes(double nodes) {
-    return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12;
-}
-
 // What a bell adds to the change over a panel, beyond its width.
 static const double BELL_CHANGE = 2.0;
 
@@ -86,7 +81,7 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
     const double digits = section->in_bell ? bells->digits : progress->digits - fc_digits(section->share);
     const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(digits, 0.0));
     const double pieces = fc_most(1.0, ceil(0.5 * change / room));
-    int count = panel_of_nodes(nodes_for(digits, change / pieces));
+    int count = fc_gauss_count(nodes_for(digits, change / pieces));
     if (!section->in_bell && progress->nodes > count) { // the stretches of an interval are alike
         count = progress->nodes;
     }
@@ -108,7 +103,7 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
             *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
         } else if (count < FC_GAUSS_MOST_NODES) {
-            count = panel_of_nodes(count + 1.0);
+            count = fc_gauss_count(count + 1.0);
             if (!section->in_bell) {
                 progress->nodes = count;
             }

@@ -50,8 +50,7 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
     panel->map.impulse_offset = copysign(limit, displacement) * time_gone;
     panel->map.drag_slope = -V_V_left / settled;
     panel->map.drag_offset = V_V_left;
-    panel->mean_error =
-        sigma * (fabs(from->delta_0 - settled) + fabs(from->scale)) * fc_gauss_error(rule, n, f);
+    panel->mean_error = sigma * (fabs(from->delta_0 - settled) + from->scale) * fc_gauss_error(rule, n, f);
 }
 
 static void panel_of_nodes(int count, const FcScene* scene, double t, double h, double displacement,
@@ -83,15 +82,16 @@ static bool is_resolved(double z, int count) { return z < 0.5 * count; }
 // Of the fewest nodes that are accurate: their error of the impulse is at most allowed [N s]. Otherwise false.
 static bool accurate_panel(const FcScene* scene, double t, double h, double displacement, double nodes,
                            const FcTrajectories* from, double allowed, FcPanel* panel, double* evaluations) {
-    int count = nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : 12;
-    for (; count <= FC_GAUSS_MOST_NODES; count += count < 8 ? 2 : 4) {
+    for (int count = fc_gauss_count(nodes);; count = fc_gauss_count(count + 1.0)) {
         panel_of_nodes(count, scene, t, h, displacement, from, panel);
         *evaluations += count;
         if (is_resolved(panel->z, count) && h * panel->mean_error <= allowed) {
             return true;
         }
+        if (count == FC_GAUSS_MOST_NODES) {
+            return false;
+        }
     }
-    return false;
 }
 
 bool fc_constant_contact_interval(const FcScene* scene, double tolerance, double duration, double delta_0,

@@ -6,8 +6,14 @@
 
 #include "solver/gauss_tables.h"
 #include "solver/panel.h"
+#include "solver/series.h"
 
 enum { FC_GAUSS_MOST_NODES = 12 };
+
+// The next number of nodes that there is a rule of.
+static inline int fc_gauss_count(double nodes) {
+    return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : FC_GAUSS_MOST_NODES;
+}
 
 // Integrals of f over [0, 1] up to each node.
 FC_INLINE void fc_gauss_integrate(const FcGaussRule* rule, int n, const double* f, double* integral) {
@@ -29,24 +35,12 @@ FC_INLINE void fc_gauss_integrate(const FcGaussRule* rule, int n, const double* 
 FC_INLINE void fc_exponentials_less_1(int n, const double* x, double largest, double* e) {
     double part = 1.0;
     int halvings = 0;
-    while (largest * part > 0.25 && halvings < 10) {
+    while (largest * part > FC_SERIES_RANGE && halvings < 10) {
         part *= 0.5;
         halvings++;
     }
     for (int i = 0; i < n; i++) {
-        const double y = x[i] * part;
-        double sum = 1.0 / 479001600; // 1 / 12!
-        sum = 1.0 / 39916800 + y * sum;
-        sum = 1.0 / 3628800 + y * sum;
-        sum = 1.0 / 362880 + y * sum;
-        sum = 1.0 / 40320 + y * sum;
-        sum = 1.0 / 5040 + y * sum;
-        sum = 1.0 / 720 + y * sum;
-        sum = 1.0 / 120 + y * sum;
-        sum = 1.0 / 24 + y * sum;
-        sum = 1.0 / 6 + y * sum;
-        sum = 1.0 / 2 + y * sum;
-        e[i] = y * (1.0 + y * sum);
+        e[i] = fc_series_exp_less_1(x[i] * part);
     }
     for (int k = 0; k < halvings; k++) {
         for (int i = 0; i < n; i++) {

@@ -4,10 +4,9 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Largest argument of the series below: their remainders are then under 1e-17.
-static const double SERIES_RANGE = 0.25;
+#include "solver/series.h"
 
-// sin(x), cos(x) - 1 and e^x - 1 by Taylor series, Horner's scheme.
+// sin(x) and cos(x) - 1 by Taylor series, Horner's scheme.
 static inline double series_sin(double x) {
     const double y = x * x;
     return x * (1.0 + y * (-1.0 / 6 +
@@ -21,21 +20,6 @@ static inline double series_cos_less_1(double x) {
                      y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
 }
 
-static inline double series_exp_less_1(double x) {
-    double sum = 1.0 / 479001600; // 1 / 12!
-    sum = 1.0 / 39916800 + x * sum;
-    sum = 1.0 / 3628800 + x * sum;
-    sum = 1.0 / 362880 + x * sum;
-    sum = 1.0 / 40320 + x * sum;
-    sum = 1.0 / 5040 + x * sum;
-    sum = 1.0 / 720 + x * sum;
-    sum = 1.0 / 120 + x * sum;
-    sum = 1.0 / 24 + x * sum;
-    sum = 1.0 / 6 + x * sum;
-    sum = 1.0 / 2 + x * sum;
-    return x * (1.0 + x * sum);
-}
-
 // How often arguments of this size have to be halved for the series. More than MOST_HALVINGS lose digits.
 enum { MOST_HALVINGS = 4 };
 typedef struct {
@@ -45,7 +29,7 @@ typedef struct {
 
 static inline Halvings halvings(double size) {
     Halvings halved = {0, 1.0};
-    while (size * halved.factor > SERIES_RANGE && halved.count <= MOST_HALVINGS) {
+    while (size * halved.factor > FC_SERIES_RANGE && halved.count <= MOST_HALVINGS) {
         halved.factor *= 0.5;
         halved.count++;
     }
@@ -63,7 +47,7 @@ static inline __attribute__((always_inline)) void of_separation(const FcScene* s
     const FcContactAtModulus* c = &scene->at_E;
     double e[FC_MOST_NODES];
     for (int i = 0; i < count; i++) {
-        e[i] = series_exp_less_1(-c->decay * halved.factor * moved[i]);
+        e[i] = fc_series_exp_less_1(-c->decay * halved.factor * moved[i]);
     }
     for (int k = 0; k < halved.count; k++) {
         for (int i = 0; i < count; i++) {

@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -29,6 +30,8 @@ from frictionlab.command import finish
 from frictionlab.fmu import FrictionFmu
 from frictionlab.project import ROOT, UserError
 from frictionlab.sweep.scenario import OUTPUTS
+
+Result = TypeVar("Result")
 
 SETTLE = 1e6  # periods
 SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
@@ -70,16 +73,17 @@ def bare_loop(fmu: FrictionFmu, program: Path, text: str, count: int, samples: i
     return seconds / count, force
 
 
-def two_at_once(loop: Callable[[], object]) -> float:
-    """What the machine itself gives: the throughput of two loops side by side over that of one."""
+def elapsed(run: Callable[[], Result]) -> tuple[float, Result]:
+    """Wall time [s], and what was returned."""
     began = time.perf_counter()
-    loop()
-    one = time.perf_counter() - began
+    result = run()
+    return time.perf_counter() - began, result
+
+
+def two_at_once(loop: Callable[[], object]) -> None:
     with ThreadPoolExecutor(2) as pool:
-        began = time.perf_counter()
         for running in [pool.submit(loop) for _ in range(2)]:
             running.result()
-        return 2.0 * one / (time.perf_counter() - began)
 
 
 def one_batch(fmu: Path, count: int, samples: int) -> tuple[float, float]:
@@ -142,8 +146,9 @@ class Turn:
 
 def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> Turn:
     text = bare_input(fmu, count)
-    bare, force = bare_loop(fmu, program, text, count, samples)
-    machine = two_at_once(partial(bare_loop, fmu, program, text, count, samples))
+    loop = partial(bare_loop, fmu, program, text, count, samples)
+    one, (bare, force) = elapsed(loop)
+    two, _ = elapsed(partial(two_at_once, loop))
     batch, batch_force = one_batch(fmu.path, count, samples)
     if not np.isclose(force, batch_force, rtol=1e-12):
         raise UserError(f"the bare loop gives {force!r} N, the batch {batch_force!r} N")
@@ -156,7 +161,7 @@ def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> Turn:
         "one session each in Python": sessions(fmu, max(1, count // 100), samples),
     }
     workers = (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
-    return Turn(costs, machine, workers)
+    return Turn(costs, 2.0 * one / two, workers)
 
 
 def measure(fmu_path: Path, program: Path, count: int, turns: int, memory: bool) -> None:
