@@ -30,6 +30,7 @@ OF_CORE = (
     "tests/fmi2/test_steps.py",
     "tests/fmi2/test_time_derivatives.py",
     "tests/solver/test_fixed_step_methods.py",
+    "tests/solver/test_step_control.py",
     "tests/solver",
     "tests/physics",
     "tests/fmi2",
