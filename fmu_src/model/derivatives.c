@@ -5,11 +5,9 @@
 
 // Second time derivative of the bound g / sigma [m/s2], by a central difference of its rate, which is exact.
 static double bound_acceleration(const FcScene* scene) {
-    const FcDrive* drive = &scene->drive;
-    const double d = fc_scene_d(scene, 0.0);
-    const double rate = drive->omega + fabs(fc_scene_d_rate(scene, 0.0)) * (scene->at_E.decay + 1.0 / d) +
-                        fc_drive_E_growth(drive, 0.0) + fc_drive_load_growth(drive, 0.0);
-    if (!(rate > 0.0)) {
+    const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
+    const double rate = scene->drive.omega + fabs(rates.sigma) + fabs(rates.limit);
+    if (rate == 0.0) {
         return 0.0;
     }
     const double tau = 1e-4 / rate; // the error is some tau^2
@@ -22,8 +20,8 @@ static double elastic_plastic_force_rate(const FcScene* scene, double delta) {
     const double sigma_1 = scene->friction->sigma_1;
     const double side = fc_scene_slip_side(scene, 0.0, delta);
     if (side != 0.0) {
-        const double damping = sigma_1 != 0.0 ? sigma_1 * side * bound_acceleration(scene) : 0.0;
-        return side * at.limit * rates.limit + damping;
+        const double damping = sigma_1 != 0.0 ? sigma_1 * bound_acceleration(scene) : 0.0;
+        return side * (at.limit * rates.limit + damping);
     }
     const double damping = sigma_1 != 0.0 ? sigma_1 * fc_drive_V_rate(&scene->drive, 0.0) : 0.0;
     return at.sigma * (rates.sigma * delta + at.V) + damping;
@@ -39,7 +37,7 @@ static double affine_force_rate(const FcScene* scene, double delta) {
     if (scene->friction->sigma_1 != 0.0) {
         const double V_rate = fc_drive_V_rate(&scene->drive, 0.0);
         const double rate_rate =
-            rate * (rates.sigma - rates.limit) - at.sigma / at.limit * fc_sign(at.V) * V_rate;
+            rate * (rates.sigma - rates.limit) - fc_sign(at.V) * at.sigma / at.limit * V_rate;
         damping = scene->friction->sigma_1 * (V_rate + rate_rate * delta + rate * delta_rate);
     }
     return at.sigma * (rates.sigma * delta + delta_rate) + damping;
@@ -109,6 +107,15 @@ static double force_slope(const FcScene* scene, double delta, const FcContactLog
     return side != 0.0 ? side * at.limit * log_limit : at.sigma * delta * slope->sigma;
 }
 
+// The rate of the bound with one input changed.
+static double bound_rate_with(const FcScene* scene, size_t input, double value) {
+    FcDrive drive = scene->drive;
+    ((FcLinearInput*)(void*)((char*)&drive + input))->value = value;
+    const FcContactAtModulus at_E = fc_contact_at_modulus(scene->contact, drive.E.value);
+    const FcScene moved = fc_scene_make(scene->contact, &at_E, scene->friction, scene->F_C, &drive);
+    return fc_scene_bound_rate(&moved, 0.0);
+}
+
 // The damping of a bristle that slips is sigma_1 times the rate of the bound: by a central difference over an input.
 static double slip_damping_slope(const FcScene* scene, double side, size_t input) {
     const double sigma_1 = scene->friction->sigma_1;
@@ -117,15 +124,9 @@ static double slip_damping_slope(const FcScene* scene, double side, size_t input
     }
     const double value = ((const FcLinearInput*)(const void*)((const char*)&scene->drive + input))->value;
     const double change = 1e-5 * value;
-    double rate[2];
-    for (int i = 0; i < 2; i++) {
-        FcDrive drive = scene->drive;
-        ((FcLinearInput*)(void*)((char*)&drive + input))->value += i == 0 ? -change : change;
-        const FcContactAtModulus at_E = fc_contact_at_modulus(scene->contact, drive.E.value);
-        const FcScene moved = fc_scene_make(scene->contact, &at_E, scene->friction, scene->F_C, &drive);
-        rate[i] = fc_scene_bound_rate(&moved, 0.0);
-    }
-    return sigma_1 * side * (rate[1] - rate[0]) / (2.0 * change);
+    const double difference =
+        bound_rate_with(scene, input, value + change) - bound_rate_with(scene, input, value - change);
+    return side * sigma_1 * difference / (2.0 * change);
 }
 
 // Of the damping and viscous parts; the elastic part does not depend on V.
@@ -139,7 +140,7 @@ static double force_slope_by_V(const FcScene* scene, double delta) {
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     const double log_limit = fc_stribeck_slope(friction, at.V) / fc_stribeck(friction, at.V);
-    const double rate_slope = -at.sigma / at.limit * fc_sign(at.V) - fc_coefficients_rate(&at) * log_limit;
+    const double rate_slope = -fc_sign(at.V) * at.sigma / at.limit - fc_coefficients_rate(&at) * log_limit;
     return friction->sigma_2 + friction->sigma_1 * (1.0 + rate_slope * delta);
 }
 

@@ -136,6 +136,7 @@ static Events events_until(const FcDrive* drive, double end) {
         const FcDriveEvent next = fc_drive_next_event(drive, t, end);
         CHECK(next.time > t && next.time <= end);
         if (!(next.time < end)) {
+            CHECK(!next.reversal);
             break;
         }
         all.event[all.count++] = next;
@@ -296,7 +297,44 @@ static void integrals_of_V(void) {
     }
 }
 
+// From 0.1 to -0.4 m/s and back: the vibration's amplitude comes on top of the larger speed.
+static void the_largest_speed_is_at_an_end(void) {
+    for (double sign = -1.0; sign < 2.0; sign += 2.0) {
+        const FcDrive drive = drive_of((Case){.V = 0.1 * sign, .V_rate = -0.5 * sign, .V_1 = 0.7});
+        CHECK_NEAR(fc_drive_largest_speed(&drive, 1.0), 0.4 + 0.7, 1e-15);
+        CHECK_NEAR(fc_drive_largest_speed(&drive, 0.3), 0.1 + 0.7, 1e-15);
+    }
+}
+
+// |E'| / E and |load'| / load.
+static void growths_are_relative_rates(void) {
+    for (double sign = -1.0; sign < 2.0; sign += 2.0) {
+        FcDrive drive = drive_of((Case){.V = 0.1});
+        drive.E = (FcLinearInput){8e9, sign * 2e9};
+        drive.load = (FcLinearInput){40.0, sign * 4.0};
+        CHECK_NEAR(fc_drive_E_growth(&drive, 1.5), 2e9 / (8e9 + sign * 3e9), 1e-15);
+        CHECK_NEAR(fc_drive_load_growth(&drive, 1.5), 4.0 / (40.0 + sign * 6.0), 1e-15);
+    }
+}
+
+// |V'| x + |V''| x^2 / 2 is the change after that time.
+static void a_parabola_takes_this_long(void) {
+    for (int i = 0; i < 200; i++) {
+        const FcVelocity at = {.V = uniform(-1.0, 1.0),
+                               .rate = i % 5 ? uniform(-9.0, 9.0) : 0.0,
+                               .curvature = i % 7   ? uniform(-300.0, 300.0)
+                                            : i % 5 ? 0.0
+                                                    : 7.0};
+        const double change = uniform(1e-6, 10.0);
+        const double x = fc_velocity_time_of_change(&at, change);
+        CHECK_NEAR(fabs(at.rate) * x + 0.5 * fabs(at.curvature) * x * x, change, 1e-14);
+    }
+}
+
 int main(void) {
+    the_largest_speed_is_at_an_end();
+    growths_are_relative_rates();
+    a_parabola_takes_this_long();
     phase_is_exact_after_many_years();
     rest_of_the_time_counts();
     amplitudes_and_rates_decide_what_moves();

@@ -113,6 +113,167 @@ static void infinite_numbers_are_refused(fmi2Component c) {
     }
 }
 
+// The layout that the file's head describes, written apart from it.
+typedef struct {
+    unsigned char bytes[MOST_BYTES];
+    size_t size;
+} Layout;
+
+static void put(Layout* layout, unsigned long long value, int size) {
+    for (int i = 0; i < size; i++) {
+        layout->bytes[layout->size++] = (unsigned char)(value >> (8 * i) & 0xffu);
+    }
+}
+
+static void put_real(Layout* layout, double value) {
+    unsigned long long bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(layout, bits, 8);
+}
+
+static void put_hash(Layout* layout) {
+    unsigned long long hash = 0xcbf29ce484222325ull; // FNV-1a, 64 bits
+    for (size_t i = 0; i < layout->size; i++) {
+        hash ^= layout->bytes[i];
+        hash *= 0x100000001b3ull;
+    }
+    put(layout, hash, 8);
+}
+
+static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size) {
+    Layout layout = {.size = 0};
+    memcpy(layout.bytes, "FRICTION", 8);
+    layout.size = 8;
+    put(&layout, version, 4);
+    put(&layout, size, 4);
+    memcpy(layout.bytes + 16, fc_guid, 38);
+    layout.size = 54;
+    const FcFrictionState* friction = &saved->friction;
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double value = fc_variable_value(&friction->variables, info);
+        if (info->type == FC_TYPE_REAL) {
+            put_real(&layout, value);
+        } else {
+            put(&layout, (unsigned)(int)value, 4);
+        }
+    }
+    put_real(&layout, friction->time);
+    put_real(&layout, friction->time_rest);
+    put_real(&layout, friction->W_f_rest);
+    put_real(&layout, friction->Q_f_rest);
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        put_real(&layout, friction->rate[input]);
+    }
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        put_real(&layout, friction->next_rate[input]);
+    }
+    put(&layout, (unsigned)friction->next_rate_set, 4);
+    put(&layout, (unsigned)saved->experiment.mode, 4);
+    put(&layout, (unsigned)saved->experiment.outputs_stale, 4);
+    put(&layout, (unsigned)saved->experiment.tolerance_is_set, 4);
+    put(&layout, (unsigned)saved->experiment.has_stop_time, 4);
+    put_real(&layout, saved->experiment.start_time);
+    put_real(&layout, saved->experiment.stop_time);
+    put_hash(&layout);
+    return layout;
+}
+
+static bool is_read(fmi2Component c, const Layout* layout, size_t size) {
+    fmi2FMUstate read = NULL;
+    const bool is_taken = fmi2DeSerializeFMUstate(c, (const fmi2Byte*)layout->bytes, size, &read) == fmi2OK;
+    CHECK(is_taken == (read != NULL));
+    fmi2FreeFMUstate(c, &read);
+    return is_taken;
+}
+
+static void bytes_are_as_documented(fmi2Component c) {
+    FcSavedState saved = full_state();
+    const Bytes written = bytes_of(c, &saved);
+    const Layout layout = layout_of(&saved, 2, written.size);
+    CHECK(layout.size == written.size && memcmp(layout.bytes, written.bytes, written.size) == 0);
+    CHECK(is_read(c, &layout, layout.size));
+    char too_few[MOST_BYTES];
+    CHECK(fmi2SerializeFMUstate(c, &saved, too_few, written.size - 1) == fmi2Error);
+    CHECK(fmi2SerializeFMUstate(c, &saved, too_few, written.size) == fmi2OK);
+}
+
+// Other versions, other sizes, bytes cut off or too many, and each byte damaged with the hash put right or not.
+static void other_bytes_are_refused(fmi2Component c) {
+    const FcSavedState saved = full_state();
+    const size_t size = layout_of(&saved, 2, 0).size;
+    for (unsigned version = 0; version < 5; version++) {
+        const Layout layout = layout_of(&saved, version, size);
+        CHECK(is_read(c, &layout, size) == (version == 2));
+    }
+    const Layout good = layout_of(&saved, 2, size);
+    for (size_t given = 0; given < size + 20; given++) {
+        CHECK(is_read(c, &good, given) == (given == size));
+        const Layout layout = layout_of(&saved, 2, given);
+        CHECK(is_read(c, &layout, size) == (given == size));
+    }
+    for (size_t i = 0; i < size; i++) {
+        Layout damaged = good;
+        damaged.bytes[i] ^= 1u;
+        CHECK(!is_read(c, &damaged, size));
+        if (i < 54) {
+            damaged.size = size - 8;
+            put_hash(&damaged);
+            CHECK(!is_read(c, &damaged, size));
+        }
+    }
+}
+
+static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
+    const Layout layout = layout_of(saved, 2, layout_of(saved, 2, 0).size);
+    return is_read(c, &layout, layout.size);
+}
+
+// A flag is 0 or 1, a mode one of four; each alone.
+static void impossible_flags_are_refused(fmi2Component c) {
+    const size_t flags[] = {offsetof(FcSavedState, friction) + offsetof(FcFrictionState, next_rate_set),
+                            offsetof(FcSavedState, experiment) + offsetof(FcExperiment, outputs_stale),
+                            offsetof(FcSavedState, experiment) + offsetof(FcExperiment, tolerance_is_set),
+                            offsetof(FcSavedState, experiment) + offsetof(FcExperiment, has_stop_time)};
+    for (int value = -2; value < 4; value++) {
+        for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
+            FcSavedState saved = full_state();
+            memcpy((char*)&saved + flags[i], &value, sizeof value);
+            CHECK(is_read_with(c, &saved) == (value == 0 || value == 1));
+        }
+    }
+    for (int mode = -2; mode < 70; mode++) {
+        FcSavedState saved = full_state();
+        saved.experiment.mode = mode;
+        const bool is_known = mode == FC_INSTANTIATED || mode == FC_INITIALIZATION_MODE ||
+                              mode == FC_STEP_COMPLETE || mode == FC_TERMINATED;
+        CHECK(is_read_with(c, &saved) == is_known);
+    }
+    FcSavedState saved = full_state();
+    saved.experiment.start_time = INFINITY;
+    CHECK(!is_read_with(c, &saved));
+    saved = full_state();
+    saved.experiment.stop_time = NAN;
+    CHECK(!is_read_with(c, &saved));
+}
+
+// Each variable beyond its bounds, alone.
+static void impossible_values_are_refused(fmi2Component c) {
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        for (int side = 0; side < 2; side++) {
+            FcSavedState saved = full_state();
+            if (info->type == FC_TYPE_REAL) {
+                *fc_variable_real(&saved.friction.variables, info) = side == 0 ? -INFINITY : NAN;
+            } else {
+                *fc_variable_integer(&saved.friction.variables, info) =
+                    (int)(side == 0 ? info->min - 1 : info->max + 1);
+            }
+            CHECK(!is_read_with(c, &saved));
+        }
+    }
+}
+
 int main(void) {
     fmi2Component c =
         fmi2Instantiate("unit", fmi2CoSimulation, fc_guid, NULL, &callbacks, fmi2False, fmi2True);
@@ -121,6 +282,10 @@ int main(void) {
         every_number_comes_back(c);
         every_byte_of_a_number_counts(c);
         infinite_numbers_are_refused(c);
+        bytes_are_as_documented(c);
+        other_bytes_are_refused(c);
+        impossible_flags_are_refused(c);
+        impossible_values_are_refused(c);
         fmi2FreeInstance(c);
     }
     return check_result();

@@ -3,6 +3,7 @@
 
 #include "check.h"
 #include "moving_scene.h"
+#include "random.h"
 
 static void limits_of_the_laws(void) {
     const FcContactParameters contact = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
@@ -156,7 +157,203 @@ static void later_scenes_continue(void) {
     }
 }
 
+// A scene and what it is made of; which of its inputs move, and whether it vibrates, chance decides for each.
+typedef struct {
+    Kind made;
+    FcDrive given; // with both the separation and the load
+    FcScene scene; // points to made
+} Random;
+
+static double moves_or_not(double size) { return random_01() < 0.5 ? 0.0 : size * (2.0 * random_01() - 1.0); }
+
+// The modulus is one at which both the elastic and the plastic asperities count. Over a period inputs move by at most a
+// third, and the second in which they would vanish holds no whole number of periods.
+static void make_random(Random* one, int k) {
+    one->made = kind(k);
+    one->made.friction.model =
+        random_01() < 0.3 ? FC_ELASTIC_PLASTIC : one->made.friction.model; // no curve, and bounds
+    const double E = random_log(3e8, 30e9);
+    const double per = 0.3 / PERIOD;
+    const bool vibrates = random_01() < 0.6;
+    const FcVibration vibration = {.f = 19999.7,
+                                   .V_1 = vibrates ? 0.3 * random_01() : 0.0,
+                                   .a_d = vibrates && random_01() < 0.8 ? 1.1e-6 * random_01() : 0.0,
+                                   .phase_d = TWO_PI * random_01()};
+    one->given = fc_drive_make((FcLinearInput){random_01() - 0.5, moves_or_not(per)},
+                               (FcLinearInput){14e-6, moves_or_not(1e-6 * per)},
+                               (FcLinearInput){E, moves_or_not(E * per)},
+                               (FcLinearInput){1.0, moves_or_not(per)}, vibration, random_01(), 0.0);
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&one->made.contact, E);
+    one->scene = fc_scene_make(&one->made.contact, &at_E, &one->made.friction, 55.0, &one->given);
+}
+
+// ln of the mean of e^(x cos) over a period, by the trapezoidal rule.
+static double log_mean_of_exponential(double x) {
+    double sum = 0.0;
+    for (int k = 0; k < 64; k++) {
+        sum += exp(x * cos(TWO_PI * k / 64)) / 64;
+    }
+    return log(sum);
+}
+
+// E, the load, where the surfaces rest and where they are.
+typedef struct {
+    FcContactAtModulus at_E;
+    double load, rest, d;
+} Surfaces;
+
+static Surfaces surfaces(const Random* one, double t) {
+    const FcDrive* drive = &one->given;
+    const double a_d = drive->vibration.a_d;
+    Surfaces now = {.at_E = fc_contact_at_modulus(&one->made.contact, drive->E.value + drive->E.rate * t)};
+    now.load = drive->load.value + drive->load.rate * t;
+    now.rest = one->made.contact.input == FC_CONTACT_LOAD
+                   ? (log(now.at_E.load_0 / now.load) + log_mean_of_exponential(now.at_E.decay * a_d)) /
+                         now.at_E.decay
+                   : drive->d.value + drive->d.rate * t;
+    now.d = now.rest;
+    now.d += a_d * cos(drive->theta_0 + drive->omega * t + drive->vibration.phase_d);
+    return now;
+}
+
+static FcCoefficients coefficients(const Random* one, double t) {
+    const FcDrive* drive = &one->given;
+    const FcFriction* friction = &one->made.friction;
+    const Surfaces now = surfaces(one, t);
+    const FcContactResponse there = fc_contact_response(&now.at_E, now.d);
+    const double V =
+        drive->V.value + drive->V.rate * t + drive->vibration.V_1 * cos(drive->theta_0 + drive->omega * t);
+    const double ratio = V / friction->V_S;
+    const double bell = friction->model == FC_LUGRE ? 1.0 + 0.5 * exp(-ratio * ratio) : 1.0;
+    return (FcCoefficients){V, there.sigma,
+                            (friction->limit == FC_LIMIT_LOAD ? friction->mu * there.F_n : 55.0) * bell};
+}
+
+static void is_as_the_equations_say(const Random* one) {
+    const FcScene* scene = &one->scene;
+    for (double t = 0.0; t < 1.2 * PERIOD; t += 0.23 * PERIOD) {
+        const Surfaces now = surfaces(one, t);
+        const FcContactResponse there = fc_contact_response(&now.at_E, now.d);
+        const FcCoefficients expected = coefficients(one, t);
+        const FcCoefficients got = fc_scene_coefficients(scene, t);
+        CHECK_WITHIN(fc_scene_d(scene, t), now.d, 1e-13 * 14e-6);
+        CHECK_WITHIN(got.V, expected.V, 1e-13);
+        CHECK_NEAR(got.sigma, expected.sigma, 1e-11);
+        CHECK_NEAR(got.limit, expected.limit, 1e-11);
+        CHECK_NEAR(fc_scene_stiffness(scene, t), expected.sigma, 1e-11);
+        CHECK_NEAR(fc_scene_contact(scene, t).F_n, there.F_n, 1e-11);
+        const double delta = 0.1 * expected.limit / expected.sigma;
+        const FcOutputs outputs = fc_scene_outputs(scene, t, delta);
+        const double rate = one->made.friction.model == FC_ELASTIC_PLASTIC
+                                ? expected.V
+                                : expected.V - expected.sigma * fabs(expected.V) * delta / expected.limit;
+        CHECK_NEAR(outputs.F_n, there.F_n, 1e-11);
+        CHECK_NEAR(outputs.A_r, there.A_r, 1e-11);
+        CHECK_NEAR(outputs.sigma, there.sigma, 1e-11);
+        CHECK_WITHIN(outputs.F_t, 0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
+                     1e-10 * (expected.limit + 43.0 * fabs(expected.V)));
+        const FcScene later = fc_scene_later(scene, PERIOD);
+        CHECK_NEAR(later.drive.E.value, one->given.E.value + one->given.E.rate * PERIOD, 1e-14);
+        CHECK_NEAR(later.at_E.load_0, surfaces(one, PERIOD).at_E.load_0, 1e-13);
+    }
+    // The mean of the limit without its curve, over a period of the vibration.
+    const Surfaces now = surfaces(one, 0.0);
+    const double mean = fc_contact_response(&now.at_E, now.rest).F_n *
+                        exp(log_mean_of_exponential(now.at_E.decay * one->given.vibration.a_d));
+    CHECK_NEAR(fc_scene_force_scale(scene), scene->friction->limit == FC_LIMIT_LOAD ? 0.176 * mean : 55.0,
+               1e-11);
+}
+
+static double of_d(const FcScene* scene, double t) { return fc_scene_d(scene, t); }
+
+// Bounds are no more than a vibration's amplitude beyond what is reached while one input moves at the most, and reached
+// exactly where none vibrates.
+static void bounds_are_close(const Random* one) {
+    const FcScene* scene = &one->scene;
+    const double h = 0.9 * PERIOD;
+    double d = INFINITY, sigma = 0.0, limit = INFINITY, saturation = INFINITY;
+    bool sigma_moves = false, limit_moves = false;
+    const FcCoefficients start = coefficients(one, 0.0);
+    for (int i = 0; i <= 200; i++) {
+        const double t = h * i / 200;
+        FcCoefficients at = coefficients(one, t);
+        at.limit /= fc_stribeck(scene->friction, at.V);
+        d = fmin(d, surfaces(one, t).d);
+        sigma = fmax(sigma, at.sigma);
+        limit = fmin(limit, at.limit);
+        saturation = fmin(saturation, at.limit / at.sigma);
+        sigma_moves |= fabs(at.sigma / start.sigma - 1.0) > 1e-11;
+        limit_moves |= fabs(at.limit * fc_stribeck(scene->friction, start.V) / start.limit - 1.0) > 1e-11;
+    }
+    const double rounding = 1.0 + 1e-12;
+    CHECK(fc_scene_smallest_d(scene, h) <= d * rounding);
+    CHECK(fc_scene_largest_stiffness(scene, h) * rounding >= sigma);
+    CHECK(fc_scene_smallest_limit(scene, h) <= limit * rounding);
+    CHECK(fc_scene_smallest_saturation(scene, h) <= saturation * rounding);
+    CHECK(fc_scene_stiffness_is_constant(scene) == !sigma_moves);
+    const bool floats_on_a_load = scene->contact->input == FC_CONTACT_LOAD && one->given.E.rate != 0.0;
+    CHECK(fc_scene_limit_is_constant(scene) == !limit_moves || floats_on_a_load);
+    const int moving = (one->given.d.rate != 0.0 && scene->contact->input == FC_CONTACT_SEPARATION) +
+                       (one->given.E.rate != 0.0) +
+                       (one->given.load.rate != 0.0 && scene->contact->input == FC_CONTACT_LOAD);
+    if (moving < 2 && one->given.vibration.a_d == 0.0) {
+        CHECK_NEAR(fc_scene_smallest_d(scene, h), d, 1e-12);
+        if (!floats_on_a_load) {
+            CHECK_NEAR(fc_scene_largest_stiffness(scene, h), sigma, 1e-11);
+            CHECK_NEAR(fc_scene_smallest_limit(scene, h), limit, 1e-11);
+            CHECK(fc_scene_smallest_saturation(scene, h) >= 0.3 * saturation);
+        }
+    }
+}
+
+static void random_scenes(void) {
+    for (int k = 0; k < 40 * KINDS; k++) {
+        Random one;
+        make_random(&one, k);
+        is_as_the_equations_say(&one);
+        bounds_are_close(&one);
+        for (double t = 0.11 * PERIOD; t < 0.9 * PERIOD; t += 0.31 * PERIOD) {
+            CHECK_WITHIN(fc_scene_d_rate(&one.scene, t), slope(of_d, &one.scene, t),
+                         1e-9 * TWO_PI * F * 1e-6);
+        }
+    }
+}
+
+// On its bound it slips while V pushes outwards faster than the bound recedes: g follows the load, V is held.
+static void it_slips_where_V_outruns_the_bound(void) {
+    int slips = 0, sticks = 0;
+    for (int k = 0; k < 20 * KINDS; k++) {
+        Random one;
+        make_random(&one, k);
+        one.made.friction.model = FC_ELASTIC_PLASTIC;
+        one.made.friction.sigma_1 = 0.0;
+        one.made.friction.sigma_2 = 0.0;
+        const FcCoefficients at = fc_scene_coefficients(&one.scene, 0.0);
+        const double D = at.limit / at.sigma;
+        const double k_t = 1e-4 * PERIOD;
+        const double D_rate = (bound(&one.scene, k_t) - bound(&one.scene, -k_t)) / (2.0 * k_t);
+        for (double side = -1.0; side < 2.0; side += 2.0) {
+            const double outruns = side * at.V - D_rate;
+            if (fabs(outruns) < 1e-3 * (fabs(at.V) + fabs(D_rate))) {
+                continue;
+            }
+            const double expected = outruns > 0.0 ? side : 0.0;
+            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * D) == expected);
+            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * 1.1 * D) == expected);
+            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * (1.0 - 1e-10) * D) == 0.0);
+            CHECK_WITHIN(fc_scene_deflection_rate(&one.scene, 0.0, side * D),
+                         expected != 0.0 ? side * D_rate : at.V, 1e-4 * (fabs(at.V) + fabs(D_rate)));
+            CHECK_NEAR(fc_scene_outputs(&one.scene, 0.0, side * 2.0 * D).F_t, side * at.limit, 1e-13);
+            slips += expected != 0.0;
+            sticks += expected == 0.0;
+        }
+    }
+    CHECK(slips > 100 && sticks > 100);
+}
+
 int main(void) {
+    random_scenes();
+    it_slips_where_V_outruns_the_bound();
     limits_of_the_laws();
     forces_of_the_laws();
     an_elastic_plastic_bristle_slips();
