@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import sys
 from collections.abc import Callable
 from ctypes import c_double, c_int
 
@@ -96,6 +97,18 @@ def test_a_step_without_a_finite_end_is_refused(instance: Instance) -> None:
     instance.initialize(start=1.5e308)
     assert instance.step(1.5e308, 1.5e308) == ERROR
     assert "no finite end" in instance.last_message.text
+
+
+@pytest.mark.parametrize(("start", "h"), [(0.0, sys.float_info.max), (1e200, 1e200), (-1e308, 1e308)])
+def test_a_step_with_a_finite_end_is_taken_however_long_it_is(
+    instance: Instance, start: float, h: float
+) -> None:
+    """It slides steadily: the work is F_C V h."""
+    assert instance.set({"F_C": 1e-3}) == OK
+    instance.initialize(start=start)
+    assert instance.step(start, h) == OK, instance.messages
+    assert reached(instance) == start + h
+    assert instance.get("W_f") == [pytest.approx(1e-3 * 0.005 * h, rel=1e-12)]
 
 
 def test_linear_inputs_end_where_they_lead_and_stay_there(instance: Instance) -> None:

@@ -3,6 +3,7 @@
 
 #include "check.h"
 #include "moving_scene.h"
+#include "random.h"
 
 static double rate(const FcScene* scene, double t) { return fc_bound_motion(scene, t).D_rate; }
 
@@ -107,7 +108,57 @@ static void what_is_beyond_is_lost(void) {
     CHECK(fc_bound_reached(&at, -4.0) == -2.0 && fc_bound_loss(&at, -4.0) == 18.0);
 }
 
+// The time x in which the phase and the logarithms move by 1 at the most, omega x + slope (|d'| x + a_d omega^2 x^2 / 2) = 1,
+// or 0.12 of the time in which d, E or the load may fall to zero.
+static void the_smooth_time_is_a_root(void) {
+    int of_poles = 0, of_slopes = 0;
+    for (int k = 0; k < 100 * KINDS; k++) {
+        Kind one = kind(k);
+        one.friction.model = FC_ELASTIC_PLASTIC;
+        const double speed = random_01() < 0.3 ? 0.0 : 1.0;
+        const FcVibration vibration = {.f = random_log(1.0, 1e5),
+                                       .V_1 = 0.3,
+                                       .a_d = speed * random_log(1e-8, 13e-6),
+                                       .phase_d = TWO_PI * random_01()};
+        const double d_moves = random_01() < 0.5 ? 0.0 : random_log(1e-6, 1.0) * (random_01() - 0.5);
+        const double E_moves = random_01() < 0.5 ? 0.0 : random_log(1.0, 1e5) * 9e9 * (random_01() - 0.5);
+        const double load_moves =
+            random_01() < 0.5 ? 0.0 : random_log(1.0, 1e5) * 312.0 * (random_01() - 0.5);
+        const FcDrive drive = fc_drive_make((FcLinearInput){0.1, 0.0}, (FcLinearInput){14e-6, d_moves},
+                                            (FcLinearInput){9e9, E_moves}, (FcLinearInput){312.0, load_moves},
+                                            vibration, random_01(), 0.0);
+        const FcContactAtModulus at_E = fc_contact_at_modulus(&one.contact, 9e9);
+        const FcScene scene = fc_scene_make(&one.contact, &at_E, &one.friction, 55.0, &drive);
+        const double omega = drive.omega;
+        const double d = fc_scene_d(&scene, 0.0);
+        const double d_rate = fc_scene_d_rate(&scene, 0.0);
+        if (!(d > 0.0)) {
+            continue;
+        }
+        const double x = fc_bound_smooth_time(&scene, 0.0, d, d_rate);
+        if (fc_scene_stiffness_is_constant(&scene) && fc_scene_limit_is_constant(&scene)) {
+            CHECK(x == 1.0 / omega);
+            continue;
+        }
+        const double decay = at_E.decay;
+        const double slope = one.contact.model == FC_CONTACT_ASPERITIES ? 2.0 * decay + 3.0 / d : decay;
+        const double acceleration = vibration.a_d * omega * omega;
+        const double moved = omega * x + slope * (fabs(d_rate) * x + 0.5 * acceleration * x * x);
+        const double y = x / 0.12;
+        const double E_left = 1.0 - fabs(drive.E.rate) / 9e9 * y;
+        const double load_left = 1.0 - fabs(scene.drive.load.rate) / 312.0 * y;
+        const double left = fmin(1.0 - (fabs(d_rate) * y + 0.5 * acceleration * y * y) / d,
+                                 fmin(E_left, load_left)); // at the pole 0
+        CHECK(moved <= 1.0 + 1e-9 && left >= -1e-9);
+        CHECK(moved >= 1.0 - 1e-9 || left <= 1e-9);
+        of_slopes += moved >= 1.0 - 1e-9;
+        of_poles += left <= 1e-9;
+    }
+    CHECK(of_slopes > 300 && of_poles > 300);
+}
+
 int main(void) {
+    the_smooth_time_is_a_root();
     what_is_beyond_is_lost();
     for (int k = 0; k < KINDS; k++) {
         Kind one = kind(k);

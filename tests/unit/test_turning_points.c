@@ -10,6 +10,7 @@ static const double NEXT_TO = 1e-7; // of the time gone through; the roots are c
 
 // Of one scene, gone through from end to end.
 typedef struct {
+    double evaluations;
     int count; // of turning points
     double turn[MOST];
 } Turns;
@@ -38,10 +39,10 @@ static bool is_a_turn(const FcScene* scene, double t, double end) {
     return false;
 }
 
-// What a piece says of its start is right shortly after it.
-static void says_what_nears(const FcScene* scene, const FcPiece* piece, double end) {
+// What a piece says of its start is right shortly after it, of a bound that the bristle may be on.
+static void says_what_nears(const FcScene* scene, const FcPiece* piece, double end, int side) {
     const FcBoundMotion after = fc_bound_motion(scene, piece->start->t + NEXT_TO * end);
-    for (int which = 0; which < 2; which++) {
+    for (int which = side < 0 ? 1 : 0; which <= (side > 0 ? 0 : 1); which++) {
         const double rate = approach(&after, which);
         if (fabs(rate) > 1e-5 * (scene->drive.vibration.V_1 + fabs(after.D_rate))) {
             CHECK(piece->nears[which] == (rate > 0.0));
@@ -49,8 +50,19 @@ static void says_what_nears(const FcScene* scene, const FcPiece* piece, double e
     }
 }
 
-// A bristle that starts at any place: pieces follow each other, and end at turning points where they say so.
-static Turns go_through(const FcScene* scene, double end, bool foreseen) {
+// Where the bristle may be at a moment [m].
+typedef struct {
+    double lowest, highest;
+} Place;
+
+// Anywhere, or all but on the upper bound (1) or the lower one (-1).
+static Place place_of(const FcBoundMotion* at, int side) {
+    const double near = side * at->D * (1.0 - 1e-8);
+    return side == 0 ? (Place){-FC_NO_BOUND, FC_NO_BOUND} : (Place){near, near};
+}
+
+// Pieces follow each other, and end at turning points where they say so.
+static Turns go_through(const FcScene* scene, double end, int side, bool foreseen) {
     Turns turns = {0};
     FcTurningPoints points;
     fc_turning_points_start(&points, scene, TOLERANCE, end);
@@ -60,14 +72,15 @@ static Turns go_through(const FcScene* scene, double end, bool foreseen) {
     while (points.at->t < end && turns.count < MOST) {
         const double reached = points.at->t;
         FcPiece piece;
-        fc_turning_points_next(&points, -FC_NO_BOUND, FC_NO_BOUND, &piece);
+        const Place place = place_of(points.at, side);
+        fc_turning_points_next(&points, place.lowest, place.highest, &piece);
         CHECK(piece.start->t == reached && piece.end->t >= reached && piece.end->t <= end);
         CHECK(points.at == piece.end);
         if (!(piece.end->t >= reached)) {
             break;
         }
         if (piece.end->t > reached + 2.0 * NEXT_TO * end) {
-            says_what_nears(scene, &piece, end);
+            says_what_nears(scene, &piece, end, side);
         }
         if (piece.turns) {
             CHECK(is_a_turn(scene, piece.end->t, end));
@@ -75,13 +88,15 @@ static Turns go_through(const FcScene* scene, double end, bool foreseen) {
         }
     }
     CHECK(points.at->t == end);
+    turns.evaluations = points.evaluations;
     return turns;
 }
 
 // Between two samples a bound ceases to come nearer, or also starts to: a turning point lies there. Returns how many do.
-static int none_is_missed(const FcScene* scene, const Turns* turns, double end, bool starts_too) {
+static int none_is_missed(const FcScene* scene, const Turns* turns, double end, int first, int last,
+                          bool starts_too) {
     int seen = 0;
-    for (int which = 0; which < 2; which++) {
+    for (int which = first; which <= last; which++) {
         FcBoundMotion before = fc_bound_motion(scene, 0.0);
         for (int i = 1; i <= SAMPLES; i++) {
             const FcBoundMotion now = fc_bound_motion(scene, end * i / SAMPLES);
@@ -103,7 +118,51 @@ static void make_inputs_move(FcScene* scene, double end) {
     scene->drive.E.rate = random_01() < 0.2 ? (random_01() - 0.5) * E / end : 0.0;
 }
 
+// V put right so that a bound only touches the bristle: V - D' has a double root, which no halving parts. Its cell is
+// halved twelve times, and both halves of what is left may be.
+static void a_touch_costs_few_halvings(void) {
+    double dearest = 0.0;
+    for (int i = 0; i < 400; i++) {
+        FcScene scene = random_scene();
+        const double end = random_log(0.6, 2.0) / F;
+        scene.drive.d.rate = 1e-12 * D_MEAN / end; // moves, so that no turn is known beforehand
+        if (fc_bound_is_constant(&scene)) {
+            continue;
+        }
+        const double shift = 0.3 * random_01() * end;
+        const double step = 1e-4 * end;
+        double lowest = INFINITY, at_lowest = 0.0;
+        for (double t = shift; t < end; t += step) {
+            const FcBoundMotion at = fc_bound_motion(&scene, t);
+            if (approach(&at, 0) < lowest) {
+                lowest = approach(&at, 0);
+                at_lowest = t;
+            }
+        }
+        double a = at_lowest - step, b = at_lowest + step; // by golden section
+        for (int k = 0; k < 60; k++) {
+            const double left = b - 0.6180339887498949 * (b - a);
+            const double right = a + 0.6180339887498949 * (b - a);
+            const FcBoundMotion at_left = fc_bound_motion(&scene, left);
+            const FcBoundMotion at_right = fc_bound_motion(&scene, right);
+            if (approach(&at_left, 0) < approach(&at_right, 0)) {
+                b = right;
+            } else {
+                a = left;
+            }
+        }
+        const FcBoundMotion touched = fc_bound_motion(&scene, 0.5 * (a + b));
+        const double missed = random_01() < 0.5 ? 0.0 : 1e-13 * (2.0 * random_01() - 1.0);
+        scene.drive.V.value -= approach(&touched, 0) * (1.0 + missed);
+        const double cells = ceil(end / (1.5 * fc_bound_common_smooth_time(&scene, end)));
+        const Turns turns = go_through(&scene, end, 0, false);
+        dearest = fmax(dearest, turns.evaluations - cells);
+    }
+    CHECK(dearest > 20.0 && dearest < 80.0);
+}
+
 int main(void) {
+    a_touch_costs_few_halvings();
     int seen = 0;
     for (int i = 0; i < SCENES; i++) {
         FcScene scene = random_scene();
@@ -114,10 +173,15 @@ int main(void) {
         if (fc_bound_is_constant(&scene)) {
             continue;
         }
-        const Turns all = go_through(&scene, end, false);
-        const Turns receding = go_through(&scene, end, true);
-        seen += none_is_missed(&scene, &all, end, true);
-        none_is_missed(&scene, &receding, end, false);
+        const Turns all = go_through(&scene, end, 0, false);
+        const Turns receding = go_through(&scene, end, 0, true);
+        seen += none_is_missed(&scene, &all, end, 0, 1, true);
+        none_is_missed(&scene, &receding, end, 0, 1, false);
+        if (i % 4 == 0) {
+            const int side = i % 8 == 0 ? 1 : -1;
+            const Turns near = go_through(&scene, end, side, false);
+            none_is_missed(&scene, &near, end, side > 0 ? 0 : 1, side > 0 ? 0 : 1, true);
+        }
     }
     CHECK(seen > 1000);
     return check_result();

@@ -1,0 +1,122 @@
+// The bells of the Stribeck curve: beyond them the curve is not seen, and they are not wider than that asks for. Against
+// V at dense samples, in contacts so stiff that the force follows its limit.
+#include "solver/stribeck_bell.h"
+
+#include "check.h"
+#include "random.h"
+#include "table_1.h"
+
+static const double F = 20e3;        // Hz
+static const double NOT_SEEN = 0.01; // of the tolerance
+static const double GROWTH = 1.5;    // of a width that was estimated too short
+enum { SCENES = 4000, SAMPLES = 300 };
+
+static FcContactParameters contact;
+static FcFriction friction;
+
+static FcScene random_scene(double h) {
+    contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_SEPARATION);
+    contact.sigma = 1e16;
+    friction = (FcFriction){.model = FC_LUGRE,
+                            .limit = FC_LIMIT_CONSTANT,
+                            .mu = 0.2,
+                            .staticRatio = 1.0 + random_log(0.05, 2.0),
+                            .V_S = random_log(1e-3, 1.0)};
+    const double V_1 = random_01() < 0.2 ? 0.0 : random_log(0.01, 3.0);
+    const double kind = random_01();
+    const double V =
+        (kind < 0.5 ? V_1 * 3.0 * random_01() : random_log(1e-3, 3.0)) * (random_01() < 0.5 ? 1 : -1);
+    const double V_rate = random_01() < 0.4 ? 0.0 : (random_01() - 0.5) * 4.0 * (fabs(V) + V_1) / h;
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 58e9);
+    const FcDrive drive =
+        fc_drive_make((FcLinearInput){V, V_rate}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
+                      (FcLinearInput){1.0, 0.0}, (FcVibration){F, V_1, 0.0, 0.0}, random_01() / F, 0.0);
+    return fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
+}
+
+// What the curve adds to the limit, over it.
+static double curve(const FcScene* scene, double t) {
+    const double ratio = fc_drive_V(&scene->drive, t) / friction.V_S;
+    return (friction.staticRatio - 1.0) * exp(-ratio * ratio);
+}
+
+// The least |V| of the linear part of V in the stretch: dips that are no events lie above half of it and V_1.
+static double least_dip(const FcDrive* drive, double start, double end) {
+    const double V_start = drive->V.value + drive->V.rate * start;
+    const double V_end = drive->V.value + drive->V.rate * end;
+    return 0.5 * (fmin(fabs(V_start), fabs(V_end)) + drive->vibration.V_1);
+}
+
+typedef struct {
+    int bells, whole, none;
+} Seen;
+
+static void check_stretch(const FcBellInterval* interval, double start, double end, Seen* seen) {
+    const FcScene* scene = interval->scene;
+    const FcBellEdge a = fc_bell_edge(scene, start);
+    const FcBellEdge b = fc_bell_edge(scene, end);
+    const FcBells bells = fc_bells(interval, &a, &b, 55.0 / contact.sigma, 1.0);
+    const double seen_from = NOT_SEEN * interval->tolerance;
+    const double least = sqrt(log(interval->excess / seen_from)); // reach for a force of the limit
+    const double most = sqrt(log(interval->excess * pow(friction.staticRatio, 2.0) / seen_from));
+    CHECK(bells.reach >= least * (1.0 - 1e-12) && bells.reach <= most * (1.0 + 1e-12));
+    CHECK_NEAR(bells.digits, bells.reach * bells.reach / log(10.0) + log10(10.0 * NOT_SEEN), 1e-4);
+    CHECK(bells.after >= start && bells.before <= end);
+    if (bells.after == end) {
+        CHECK(bells.before == end);
+        for (int i = 0; i <= 2; i++) {
+            CHECK(fc_in_bell(&bells, start + 0.49 * i * (end - start)));
+        }
+    } else {
+        CHECK(bells.after < bells.before);
+        CHECK(!fc_in_bell(&bells, bells.after) && fc_in_bell(&bells, bells.before) == true);
+    }
+    double unseen = 0.0; // the largest outside the bells
+    double lowest = INFINITY;
+    for (int i = 1; i < SAMPLES; i++) {
+        const double t = bells.after + (bells.before - bells.after) * i / SAMPLES;
+        unseen = fmax(unseen, curve(scene, t));
+        lowest = fmin(lowest, fabs(fc_drive_V(&scene->drive, start + (end - start) * i / SAMPLES)));
+    }
+    CHECK(bells.after == end || unseen <= seen_from * (1.0 + 1e-9));
+    // not wider than by one growth
+    const double speed = bells.reach * friction.V_S;
+    const bool may_dip = fabs(scene->drive.V.rate) < scene->drive.vibration.V_1 * scene->drive.omega &&
+                         speed > least_dip(&scene->drive, start, end);
+    if (bells.after == end) {
+        CHECK(may_dip || fmin(fabs(a.at.V), fabs(b.at.V)) < speed); // two bells that meet, or one
+        seen->whole++;
+        return;
+    }
+    CHECK(!may_dip);
+    if (bells.after > start) {
+        CHECK(fabs(a.at.V) < speed);
+        CHECK(fabs(fc_drive_V(&scene->drive, start + (bells.after - start) / GROWTH * 0.999)) < speed ||
+              bells.after - start <= 1.001 * fc_velocity_time_of_change(&a.at, speed - fabs(a.at.V)));
+    }
+    if (bells.before < end) {
+        CHECK(fabs(b.at.V) < speed);
+        CHECK(fabs(fc_drive_V(&scene->drive, end - (end - bells.before) / GROWTH * 0.999)) < speed ||
+              end - bells.before <= 1.001 * fc_velocity_time_of_change(&b.at, speed - fabs(b.at.V)));
+    }
+    *(bells.after > start || bells.before < end ? &seen->bells : &seen->none) += 1;
+}
+
+int main(void) {
+    Seen seen = {0};
+    for (int i = 0; i < SCENES; i++) {
+        const double h = random_log(0.05, 2.0) / F;
+        const FcScene scene = random_scene(h);
+        const FcBellInterval interval = fc_bell_interval(&scene, h, random_log(1e-12, 1e-3));
+        CHECK_NEAR(interval.per_path, contact.sigma / 55.0, 1e-15);
+        CHECK_NEAR(interval.saturation, 55.0 / contact.sigma * friction.staticRatio, 1e-15);
+        double start = 0.0;
+        while (start < h) {
+            const FcDriveEvent next = fc_drive_next_event(&scene.drive, start, h);
+            check_stretch(&interval, start, next.time, &seen);
+            start = next.time;
+        }
+    }
+    CHECK(seen.bells > 1000 && seen.whole > 1000 && seen.none > 300);
+    return check_result();
+}
