@@ -270,9 +270,9 @@ static double damping_gain(const FcScene* scene, double h) {
                : 1.0 + sigma_1 * fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_limit(scene, h);
 }
 
-// Adds the damping of the bristle and the viscous friction to what the method gives.
+// Adds the damping of the bristle, which Coulomb's law has none of, and the viscous friction to what the method gives.
 static void add_damping(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
-    const double sigma_1 = scene->friction->model == FC_COULOMB ? 0.0 : scene->friction->sigma_1;
+    const double sigma_1 = scene->friction->sigma_1;
     const double sigma_2 = scene->friction->sigma_2;
     if (sigma_1 != 0.0) {
         result->impulse += sigma_1 * (result->delta - fc_method_start(scene, delta_0));

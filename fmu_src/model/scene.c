@@ -123,8 +123,7 @@ static const double ON_THE_BOUND = 1.0 - 1e-12;
 double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
     const FcCoefficients at = fc_scene_coefficients(scene, t);
     const double side = delta < 0.0 ? -1.0 : 1.0;
-    if (scene->friction->model != FC_ELASTIC_PLASTIC || at.sigma * fabs(delta) < ON_THE_BOUND * at.limit ||
-        !isfinite(at.limit / at.sigma)) {
+    if (scene->friction->model != FC_ELASTIC_PLASTIC || at.sigma * fabs(delta) < ON_THE_BOUND * at.limit) {
         return 0.0;
     }
     return side * at.V >= fc_scene_bound_rate(scene, t) ? side : 0.0;

@@ -105,6 +105,7 @@ FAMILIES: Mapping[str, Callable[[FrictionFmu], list[list[float]]]] = {
     "LuGre": _at_a_tolerance("LuGre", None),
     "LuGre at 1e-2": _at_a_tolerance("LuGre", 1e-2),
     "ElasticPlastic": _at_a_tolerance("ElasticPlastic", None),
+    "Coulomb": _at_a_tolerance("Coulomb", None),
     "Settled": _at_a_tolerance("Settled", None),
     "cvode": lambda fmu: _with_cvode(fmu),
 }
