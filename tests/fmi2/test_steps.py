@@ -59,6 +59,27 @@ def test_a_host_may_multiply_steps_instead_of_adding_them(instance: Instance, h:
         assert instance.step(start + step * h, h) == OK, instance.messages
 
 
+@pytest.mark.parametrize(
+    ("start", "h", "allowed", "refused"),
+    [
+        (0.0, 1e-3, 0.997e-9, 1.003e-9),
+        (1.0, 2.0, 1.994e-6, 2.006e-6),
+        (2.0**30, 1e-12, 16 * 2.0**-22, 17 * 2.0**-22),
+        (-(2.0**30), 1e-12, 16 * 2.0**-22, 17 * 2.0**-22),
+    ],
+)
+def test_how_far_the_time_of_a_host_may_be_off(
+    new_instance: Callable[..., Instance], start: float, h: float, allowed: float, refused: float
+) -> None:
+    """By a millionth of the step, and 16 roundings of the time."""
+    for side in (-1.0, 1.0):
+        instance = new_instance()
+        instance.initialize(start=start)
+        assert instance.step(start + side * refused, h) == ERROR
+        assert "but the instance is at" in instance.last_message.text
+        assert instance.step(start + side * allowed, h) == OK, instance.messages
+
+
 def test_a_step_of_no_length_changes_no_output(instance: Instance) -> None:
     instance.initialize()
     assert instance.step(0.0, 1e-4) == OK
