@@ -64,6 +64,13 @@ static bool V_is_constant(const FcDrive* drive) {
     return drive->V.rate == 0.0 && drive->vibration.V_1 == 0.0;
 }
 
+// What is left of the Stribeck curve at the start, over the Coulomb limit: in a bell too narrow to be seen, or at the edge of
+// one. It is no part of the force that stays.
+static double curve_at_start(const FcSettledStart* from) {
+    const double curve = fabs(from->limit - from->scene->F_C); // N
+    return curve > 0.0 ? curve / from->scene->F_C : 0.0;
+}
+
 // Cheap tests first: they fail on most panels.
 static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const FcMesh* mesh = from->mesh;
@@ -76,7 +83,8 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const double drift = mesh->smooth.rate - mesh->scene->drive.omega; // 1/s, |rho| at the most
     const double after = at->t - stretch->start + stretch->back;
     const double lag_lasts = 2.0 * drift * mesh->saturation;
-    const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (at->lag + ROUNDING); // 1/s
+    const double lag = at->lag + curve_at_start(from);
+    const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (lag + ROUNDING); // 1/s
     const bool known = V_is_constant(&mesh->scene->drive);
     if (mesh->smooth.rate + 1.0 / after > allowed_changes ||
         (!known && lag_lasts * LEAST_FADING * fmin(after, from->end - at->t) >
@@ -87,7 +95,7 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
         return false;
     }
     *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
-    return at->lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
+    return lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
            (known || lag_lasts * slowness(from) <= allowed * mesh->end) &&
            error_at_end(from, drift) <= allowed;
 }
@@ -108,7 +116,7 @@ bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
         return false;
     }
     const FcCoefficients end = fc_scene_coefficients(from->scene, from->end);
-    const double force = from->sign * from->limit;
+    const double force = from->sign * from->scene->F_C;
     const double D = force / from->sigma;
     const double V = from->sign * speed_at_start(from);
     const double relaxes = 1.0 / from->at->rate; // s

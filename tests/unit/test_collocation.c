@@ -95,6 +95,30 @@ static void a_settled_stretch_is_one_panel(void) {
     CHECK(evaluations_of(&slider, 1.07 * PERIOD, 1e-3) < 30.0);
 }
 
+// An interval that begins or ends inside a bell, and one that begins in a bell too narrow to be seen: beyond it the limit is
+// Coulomb's, whatever it was at the start.
+static void intervals_cut_bells(void) {
+    Slider slider;
+    make(&slider, 6e12, FC_LUGRE, 5e-3, 0.0);
+    const double reversal = fc_drive_next_event(&slider.scene.drive, 0.0, PERIOD).time;
+    const double V_rate = fabs(fc_drive_V_rate(&slider.scene.drive, reversal));
+    for (double V_S = 1e-4; V_S < 0.02; V_S *= 12.0) {
+        for (double u = -2.1; u < 2.5; u += 0.6) {
+            const double cut = reversal + u * V_S / V_rate;
+            make(&slider, 6e12, FC_LUGRE, 5e-3, cut);
+            slider.friction.V_S = V_S;
+            slider.friction.staticRatio = 1.02;
+            slider.scene.drive.vibration.a_d = 1e-8; // so that it follows at once
+            const FcCoefficients start = fc_scene_coefficients(&slider.scene, 0.0);
+            const double follows = copysign(start.limit / start.sigma, start.V);
+            evaluations_from(&slider.scene, follows, F_C, 0.3 * PERIOD, 1e-4);
+            make(&slider, 6e12, FC_LUGRE, 5e-3, 0.0);
+            slider.friction.V_S = V_S;
+            evaluations_from(&slider.scene, 0.0, F_C, cut, 1e-4);
+        }
+    }
+}
+
 // The transient of a start that is far from settled, and ends close before and after a reversal.
 static void ends_around_a_reversal(void) {
     Slider slider;
@@ -179,6 +203,7 @@ int main(void) {
     every_stiffness_and_tolerance();
     from_rest();
     a_settled_stretch_is_one_panel();
+    intervals_cut_bells();
     ends_around_a_reversal();
     a_constant_velocity_is_one_panel();
     scenes_that_were_missed();
