@@ -160,8 +160,14 @@ static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh, d
         }
         const FcCoefficients here = fc_scene_coefficients(scene, grid->t[i]);
         const FcPlace at = {.t = grid->t[i], .rate = -fc_coefficients_rate(&here)};
-        const FcSettledStart from = {scene,      mesh,       &grid->stretch, &at, grid->stretch.end,
-                                     grid->sign, here.sigma, here.limit};
+        const FcSettledStart from = {.scene = scene,
+                                     .mesh = mesh,
+                                     .stretch = &grid->stretch,
+                                     .at = &at,
+                                     .end = grid->stretch.end,
+                                     .sign = grid->sign,
+                                     .sigma = here.sigma,
+                                     .limit = here.limit};
         FcPanel rest;
         grid->settled[i] =
             fc_settled_panel(&from, &rest) ? error_of(grid, i, grid->count - 1, &rest.map, end) : INFINITY;

@@ -4,7 +4,7 @@
 //
 //     little relaxes in the stretch     one or a few Gauss panels, without a linear system
 //     else, or where those miss         Radau panels of 3, 5 or 9 stages on the mesh of solver/mesh.h
-//     once it follows its limit         the rest of the stretch in closed form (solver/settled_panel.h)
+//     once it follows its limit         the rest of the stretch in closed form (solver/settling.h)
 //
 // LuGre's limit depends on V in bells around the reversals and on nothing but the load beyond (solver/stribeck_bell.h).
 // Every panel's error is estimated and held against what an error may be there, so that F_t at the interval's end and
@@ -21,7 +21,7 @@
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
 #include "solver/section.h"
-#include "solver/settled_panel.h"
+#include "solver/settling.h"
 #include "solver/stribeck_bell.h"
 
 // What an estimated error may be, over the tolerance. Estimates are 10 to 10^5 times too large for most panels and rarely
@@ -126,7 +126,7 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
                                                          1.0 + 2.0 * plan->lives / plan->grows);
     const double lives = fc_least(plan->lives, progress->end - at->t);
     const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
-    *excess = of_mean / fc_most((plan->in_bell ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN) * whole, rounding);
+    *excess = of_mean / fc_most((plan->crosses_bell ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN) * whole, rounding);
     const double at_end =
         end_error / fc_most((plan->in_bell ? AT_THE_END_IN_BELLS : AT_THE_END) * whole, rounding);
     if (at_end > *excess) {
@@ -154,6 +154,8 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         .path = fabs(fc_stretch_displacement(stretch, &scene->drive, t, stretch->end)),
         .layer = t == stretch->start ? stretch->w_a : fc_mesh_relaxation_layer(scene, t, t),
     };
+    FcSettling settling;
+    fc_settling_init(&settling, scene, progress->beyond_bells, mesh, stretch, end);
     int caution = 0;
     double displacement = 0.0;
     progress->held = mesh->moving_limit ? 0.0 : sign * start.limit;
@@ -166,18 +168,11 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         }
         const bool in_bell = fc_in_bell(&stretch->bells, at.t);
         const FcScene* here = in_bell ? scene : progress->beyond_bells;
-        const FcSettledStart from_here = {.scene = here,
-                                          .mesh = mesh,
-                                          .stretch = stretch,
-                                          .at = &at,
-                                          .end = stretch->bells.before,
-                                          .sign = sign,
-                                          .sigma = panel.sigma,
-                                          .limit = panel.limit};
-        if (!in_bell && fc_settled_panel(&from_here, &panel)) {
+        double settled_to;
+        if (fc_settle(&settling, &at, &panel, &settled_to)) {
             progress->evaluations += 1.0;
             take(progress, &at, &panel);
-            at.t = from_here.end;
+            at.t = settled_to;
             displacement += panel.displacement;
             continue;
         }

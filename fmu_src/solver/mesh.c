@@ -34,21 +34,29 @@ static const double LAST[KINDS] = {5, 13, 41};
 static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) { return a > b ? a : b; }
 
-// Time [s] in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved.
-static double stribeck_time(const FcScene* scene, double t) {
+// What the Stribeck curve asks of a panel that begins in its bell.
+typedef struct {
+    double
+        lasts; // s, in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved
+    double tau;    // s, in which it moves by a Stribeck velocity
+    double height; // 1, by which g still moves, over g
+} Bell;
+
+static Bell bell_at(const FcScene* scene, const FcBells* bells, double t) {
+    const FcFriction* friction = scene->friction;
     const FcVelocity at = fc_drive_velocity(&scene->drive, t);
-    return fc_velocity_time_of_change(&at, scene->friction->V_S + 0.5 * fabs(at.V));
+    const bool falls = t < bells->after && bells->after < bells->before;
+    return (Bell){
+        .lasts = fc_velocity_time_of_change(&at, friction->V_S + 0.5 * fabs(at.V)),
+        .tau = fc_velocity_time_of_change(&at, friction->V_S),
+        .height = (falls ? fc_stribeck(friction, at.V) : friction->staticRatio) - 1.0,
+    };
 }
 
-// About the least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
 double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside) {
     const FcVelocity now = fc_drive_velocity(&scene->drive, t);
     const FcCoefficients at = fc_scene_coefficients(scene, inside);
-    const double per_speed = at.sigma / at.limit;
-    const double r = per_speed * fabs(now.V);
-    const double r_rate = per_speed * fabs(now.rate);
-    const double r_curvature = per_speed * fabs(now.curvature);
-    return fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
+    return fc_mesh_layer(&now, at.sigma / at.limit);
 }
 
 double fc_mesh_dip_layer(const FcScene* scene, double t, double inside) {
@@ -122,6 +130,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
         .allowed = tolerance,
         .moving_limit = fc_limit_follows_load(scene->friction) || fc_has_stribeck_curve(scene->friction),
         .saturation = saturation,
+        .beyond = saturation / fc_stribeck(scene->friction, 0.0),
         .forgotten = -2.0 * log(tolerance) * saturation,
         .speed = fc_drive_largest_speed(&scene->drive, end),
         .smooth = smoothness(scene, end),
@@ -132,6 +141,9 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
 static int decades(double allowed) {
     return !(allowed < 0.3) ? 0 : (int)least(FINEST, 0.15 + fc_digits(allowed)); // 0 for no number too
 }
+
+// Lengths of a panel in a bell of the Stribeck curve for what may be missed of the bell, of those that resolve it.
+static const double BELL[FINEST + 1] = {4, 3, 1.7, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 
 // Tolerances from which on fewer stages resolve the Stribeck curve.
 static const double BELL_OF_FEW_STAGES = 5e-5;
@@ -219,6 +231,18 @@ double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const F
     return exp(-path / mesh->saturation);
 }
 
+// Length [s] of a panel that begins in a bell. What it misses of the curve acts while V goes on by V_S, and lives on.
+static double length_in_bell(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at,
+                             const Bell* bell, double lives) {
+    const double near_rounding = mesh->allowed < 1e-7 ? 0.7 : 1.0;
+    double allowed = SHARE_OF_MEAN * mesh->allowed * mesh->end / (lives + bell->tau);
+    if (fc_mesh_left_at_end(mesh, stretch, at, at->t + bell->lasts) > mesh->allowed * mesh->allowed) {
+        allowed = least(allowed, SHARE_AT_END * mesh->allowed);
+    }
+    return allowed < bell->height ? BELL[decades(allowed / bell->height)] * near_rounding * bell->lasts
+                                  : INFINITY;
+}
+
 FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution) {
     const double tiny = 1e-300;
     const double base = SHARE_OF_MEAN * mesh->allowed;
@@ -229,11 +253,10 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     const double ahead = known ? stretch->event - at->t + stretch->w_b : INFINITY;
     const double smooth = smooth_time(mesh->scene, &mesh->smooth, at->t);
     // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
-    // finer where the tolerance comes near to rounding
     const bool in_bell = fc_in_bell(&stretch->bells, at->t);
-    const double bell =
-        in_bell ? (mesh->allowed < 1e-7 ? 0.7 : 1.0) * stribeck_time(mesh->scene, at->t) : INFINITY;
-    const double drift = most(0.0, 1.0 / smooth - mesh->scene->drive.omega) + 1.0 / bell;
+    const Bell bell = in_bell ? bell_at(mesh->scene, &stretch->bells, at->t) : (Bell){.lasts = INFINITY};
+    const double drift =
+        most(0.0, 1.0 / smooth - mesh->scene->drive.omega) + least(bell.height, 1.0) / bell.lasts;
 
     // How long an error lives, and times how long the lag's panel: the larger of here and at the event ahead, whose
     // part is bounded by what |V| is there and here.
@@ -261,8 +284,8 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .after = after,
         .ahead = ahead,
         .smooth = smooth,
-        .bell = bell,
-        .fine = mesh->allowed < BELL_OF_FEW_STAGES,
+        .bell = in_bell ? length_in_bell(mesh, stretch, at, &bell, lives) : INFINITY,
+        .fine = mesh->allowed < BELL_OF_FEW_STAGES * most(1.0, mesh->scene->friction->staticRatio - 1.0),
         .layer = at->layer,
         .layer_ahead = stretch->w_b,
         .starts = at->gone == 0.0 && transient > mesh->allowed,
@@ -284,10 +307,11 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
             least(base * mesh->end / (stretch->w_b * last_counts + tiny), at_end / (last_counts + tiny));
         plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
     }
-    if (!in_bell) {
+    if (at->t < stretch->bells.before) {
         plan.h = least(plan.h, stretch->bells.before - at->t);
     }
     plan.in_bell = in_bell;
+    plan.crosses_bell = in_bell && plan.h > bell.tau;
     plan.lives = lives;
     plan.grows = smooth;
     return plan;

@@ -38,6 +38,7 @@ typedef struct {
     double allowed;    // 1    error of F_t at the end and of its mean, over force
     bool moving_limit; // g is no constant
     double saturation; // m    largest g / sigma: over this path errors fade by e at least
+    double beyond;     // m    the same beyond the bells of the Stribeck curve
     double forgotten;  // m    over this path they fade below the square of what is allowed
     double speed;      // m/s  largest |V|
     FcSmoothness smooth;
@@ -73,17 +74,27 @@ typedef struct {
 } FcPlace;
 
 typedef struct {
-    double h;     // s
-    int stages;   // 3, 5 or 9
-    bool in_bell; // of the Stribeck curve
-    double lives; // s, K
-    double grows; // s, in which sigma may grow e-fold
+    double h;          // s
+    int stages;        // 3, 5 or 9
+    bool in_bell;      // of the Stribeck curve
+    bool crosses_bell; // by more than V_S
+    double lives;      // s, K
+    double grows;      // s, in which sigma may grow e-fold
 } FcPlan;
 
 FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance);
 
 // Largest g / sigma over [0, h] [m]: what happened fades by e over that path at least. Infinite where E or the surfaces move.
 double fc_mesh_largest_saturation(const FcScene* scene, double h);
+
+// Time [s] in which a bristle that relaxes by per_path [1/m], sigma / g, does so by 1 from where V is that on: about the
+// least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
+static inline double fc_mesh_layer(const FcVelocity* at, double per_path) {
+    const double r = per_path * fabs(at->V);
+    const double r_rate = per_path * fabs(at->rate);
+    const double r_curvature = per_path * fabs(at->curvature);
+    return fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
+}
 
 // Time [s] in which the bristle relaxes by 1 from t on, with sigma and g as they are at the time inside, which is t or
 // the interval's end before it: beyond it the inputs are not known.

@@ -6,6 +6,7 @@
 
 // Bounds are held this far below the tolerance.
 static const double SHARE = 0.3;
+static const double SHARE_OF_BELLS = 0.1;
 // Of the force: a transient of that much is there where the bristle is told to have settled.
 static const double ROUNDING = 4e-16;
 
@@ -53,6 +54,22 @@ static double error_at_end(const FcSettledStart* from, double drift) {
     return drift * relaxes * relaxes * changes;
 }
 
+static bool has_bells(const FcSettledStart* from) { return from->first || from->last; }
+
+static bool are_bells_accurate(const FcSettledStart* from) {
+    const double error = (from->first ? from->first->error : 0.0) + (from->last ? from->last->error : 0.0);
+    return error <= SHARE_OF_BELLS * from->mesh->allowed * from->mesh->end;
+}
+
+// What the interval's end or its mean see of the error at a bell, over the limit: at a reversal it fades.
+static double seen_of_bell(const FcSettledStart* from, double error) {
+    const FcStretch* stretch = from->stretch;
+    const FcMesh* mesh = from->mesh;
+    const bool fades = stretch->event <= from->end;
+    return (error + from->last->at_edge) *
+           (fades ? exp(-stretch->path_after / mesh->saturation) + stretch->w_b / mesh->end : 1.0);
+}
+
 static bool is_possible(const FcSettledStart* from) {
     const FcMesh* mesh = from->mesh;
     return !fc_limit_follows_load(mesh->scene->friction) && !mesh->smooth.follows_d_and_E &&
@@ -64,11 +81,12 @@ static bool V_is_constant(const FcDrive* drive) {
     return drive->V.rate == 0.0 && drive->vibration.V_1 == 0.0;
 }
 
-// What is left of the Stribeck curve at the start, over the Coulomb limit: in a bell too narrow to be seen, or at the edge of
-// one. It is no part of the force that stays.
-static double curve_at_start(const FcSettledStart* from) {
+// What the transient at the start may be beyond the lag there, which is behind the limit, over the Coulomb limit. Outside
+// of bells it is what is left of the curve.
+static double beyond_lag(const FcSettledStart* from) {
+    const FcSettledBell* bell = from->first;
     const double curve = fabs(from->limit - from->scene->F_C); // N
-    return curve > 0.0 ? curve / from->scene->F_C : 0.0;
+    return bell ? (1.0 + bell->curve) * bell->lag : curve > 0.0 ? curve / from->scene->F_C : 0.0;
 }
 
 // Cheap tests first: they fail on most panels.
@@ -76,14 +94,14 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const FcMesh* mesh = from->mesh;
     const FcStretch* stretch = from->stretch;
     const FcPlace* at = from->at;
-    if (!(at->rate > 0.0) || !is_possible(from)) {
+    if (!(at->rate > 0.0) || !is_possible(from) || (has_bells(from) && !are_bells_accurate(from))) {
         return false;
     }
     const double allowed = SHARE * mesh->allowed;
     const double drift = mesh->smooth.rate - mesh->scene->drive.omega; // 1/s, |rho| at the most
     const double after = at->t - stretch->start + stretch->back;
-    const double lag_lasts = 2.0 * drift * mesh->saturation;
-    const double lag = at->lag + curve_at_start(from);
+    const double lag_lasts = 2.0 * drift * mesh->beyond; // m, but for what is in the error of the bells
+    const double lag = at->lag + beyond_lag(from);
     const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (lag + ROUNDING); // 1/s
     const bool known = V_is_constant(&mesh->scene->drive);
     if (mesh->smooth.rate + 1.0 / after > allowed_changes ||
@@ -97,7 +115,8 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
     return lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
            (known || lag_lasts * slowness(from) <= allowed * mesh->end) &&
-           error_at_end(from, drift) <= allowed;
+           (from->last ? seen_of_bell(from, error_at_end(from, drift)) : error_at_end(from, drift)) <=
+               allowed;
 }
 
 // What the force lags behind the limit at the end, over the limit.
@@ -108,6 +127,33 @@ static double lag_at_end(const FcSettledStart* from, const FcCoefficients* end) 
         return rates.sigma * stretch->w_b * 0.5 * sqrt(FC_PI);
     }
     return rates.sigma / -fc_coefficients_rate(end);
+}
+
+// What a bell that the panel starts in adds: to the force that stays, and to what the transient starts from.
+static void add_first(const FcSettledStart* from, double force, FcPanel* panel) {
+    const FcSettledBell* bell = from->first;
+    FcMap* map = &panel->map;
+    const double stays = force * panel->displacement; // J
+    const double limit = from->sign * from->limit;
+    const double followed = limit * (1.0 + bell->lag); // N, by the transient
+    const double D = followed / from->sigma;
+    map->impulse_offset += from->sign * bell->impulse - (followed - force) / from->at->rate;
+    map->work_slope = limit;
+    map->work_offset = stays + bell->work - limit * D;
+    map->drag_offset = bell->drag - map->drag_slope * D;
+    map->heat_slope = 2.0 * limit - followed;
+    map->heat_offset = stays + bell->heat - (2.0 * limit - 0.5 * followed) * D;
+}
+
+static void add_last(const FcSettledStart* from, FcPanel* panel) {
+    const FcSettledBell* bell = from->last;
+    panel->map.offset *= (1.0 + bell->curve) * (1.0 + bell->lag);
+    panel->map.impulse_offset += from->sign * bell->impulse;
+    panel->map.work_offset += bell->work;
+    panel->map.drag_offset += bell->drag;
+    panel->map.heat_offset += bell->heat;
+    panel->limit *= 1.0 + bell->curve;
+    panel->rate /= 1.0 + bell->curve;
 }
 
 bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
@@ -148,6 +194,12 @@ bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
         panel->map.work_offset += of_lag;
         panel->map.heat_offset += 2.0 * of_lag;
         panel->map.drag_offset += V * (force / end.sigma - D);
+    }
+    if (from->first) {
+        add_first(from, force, panel);
+    }
+    if (from->last) {
+        add_last(from, panel);
     }
     return true;
 }

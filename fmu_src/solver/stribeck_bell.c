@@ -92,8 +92,8 @@ static bool is_left_out(const FcBellInterval* interval, const Stretch* stretch, 
     if (heat > allowed || (lasts > allowed && seen_at_end)) {
         return false;
     }
-    const double memory =
-        fmin(interval->duration, edge->tau + fc_mesh_relaxation_layer(interval->scene, edge->t, edge->t));
+    const double layer = fc_mesh_layer(&edge->at, 1.0 / interval->saturation);
+    const double memory = fmin(interval->duration, edge->tau + layer);
     return lasts * memory / interval->duration + heat <= allowed;
 }
 
@@ -122,6 +122,8 @@ FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const 
     const double widest = fc_most(after, before);
     FcBells bells = {.after = start->t,
                      .before = end->t,
+                     .at_start = start->at,
+                     .at_end = end->at,
                      .reach = widest,
                      .digits = log10(10.0 * BEYOND) + 0.4343 * widest * widest};
     FcBells all = bells;

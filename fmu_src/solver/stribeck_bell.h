@@ -46,9 +46,10 @@ FcBellEdge fc_bell_edge(const FcScene* scene, double t);
 // Bells at the start and at the end of a stretch: [start, after] and [before, end]. Without any, after = start and
 // before = end; where |V| stays within one, after = end.
 typedef struct {
-    double after, before; // s
-    double reach;         // 1, |V| at their edges, over the Stribeck velocity
-    double digits;        // 1, decades by which a bell stands above a tenth of the tolerance
+    double after, before;        // s
+    FcVelocity at_start, at_end; // of the stretch
+    double reach;                // 1, |V| at their edges, over the Stribeck velocity
+    double digits;               // 1, decades by which a bell stands above a tenth of the tolerance
 } FcBells;
 // For a deflection [m] at the start of at most that, and the path [m] from the end to the next event or the interval's end.
 FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const FcBellEdge* end,

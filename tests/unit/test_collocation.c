@@ -95,6 +95,17 @@ static void a_settled_stretch_is_one_panel(void) {
     CHECK(evaluations_of(&slider, 1.07 * PERIOD, 1e-3) < 30.0);
 }
 
+// Through the bells of the Stribeck curve too: they cost a few closed forms.
+static void a_settled_stretch_goes_through_its_bells(void) {
+    Slider slider;
+    for (double start = 1.3e-5; start < 5e-5; start += 0.7e-5) {
+        make(&slider, 6e12, FC_LUGRE, 5e-3, start);
+        for (double tolerance = 1e-2; tolerance > 5e-5; tolerance *= 0.1) {
+            CHECK(evaluations_of(&slider, 0.93 * PERIOD, tolerance) < 45.0);
+        }
+    }
+}
+
 // An interval that begins or ends inside a bell, and one that begins in a bell too narrow to be seen: beyond it the limit is
 // Coulomb's, whatever it was at the start.
 static void intervals_cut_bells(void) {
@@ -203,6 +214,7 @@ int main(void) {
     every_stiffness_and_tolerance();
     from_rest();
     a_settled_stretch_is_one_panel();
+    a_settled_stretch_goes_through_its_bells();
     intervals_cut_bells();
     ends_around_a_reversal();
     a_constant_velocity_is_one_panel();
