@@ -101,12 +101,14 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     const double drift = mesh->smooth.rate - mesh->scene->drive.omega; // 1/s, |rho| at the most
     const double after = at->t - stretch->start + stretch->back;
     const double lag_lasts = 2.0 * drift * mesh->beyond; // m, but for what is in the error of the bells
+    const bool known = V_is_constant(&mesh->scene->drive);
+    if (!known && lag_lasts * LEAST_FADING * fc_least(after, from->end - at->t) >
+                      allowed * mesh->end * speed_at_start(from)) {
+        return false;
+    }
     const double lag = at->lag + beyond_lag(from);
     const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (lag + ROUNDING); // 1/s
-    const bool known = V_is_constant(&mesh->scene->drive);
-    if (mesh->smooth.rate + 1.0 / after > allowed_changes ||
-        (!known && lag_lasts * LEAST_FADING * fmin(after, from->end - at->t) >
-                       allowed * mesh->end * speed_at_start(from))) {
+    if (mesh->smooth.rate + 1.0 / after > allowed_changes) {
         return false;
     }
     if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(mesh->scene, at->t) > allowed_changes) {

@@ -12,20 +12,17 @@
 
 typedef struct {
     const FcScene* scene;
-    const FcScene* beyond_bells; // the same where it has no Stribeck curve
-    const FcMesh* mesh;
-    const FcStretch* stretch;
-    double sign;                            // of V
+    FcSettledStart start;                   // but for where that is
     double end;                             // s, of what is crossed
     bool follows_in_first, follows_in_last; // bell; of the first one, whether it may
-    FcSettledBell last;                     // where it follows in it
+    FcSettledBell first, last;              // where it follows in them
 } FcSettling;
 
-// Keeps the pointers.
+// beyond_bells is the scene where it has no Stribeck curve. Keeps the pointers.
 void fc_settling_init(FcSettling* settling, const FcScene* scene, const FcScene* beyond_bells,
                       const FcMesh* mesh, const FcStretch* stretch, double end);
 
 // The settled panel from there, and the time [s] it ends at, if one is accurate. The panel holds what it was taken from.
-bool fc_settle(const FcSettling* settling, const FcPlace* at, FcPanel* panel, double* end);
+bool fc_settle(FcSettling* settling, const FcPlace* at, FcPanel* panel, double* end);
 
 #endif
