@@ -42,7 +42,7 @@ FcMap fc_map_power(const FcMap* one, double n) {
 
 void fc_map_apply(const FcMap* map, FcStepResult* result) {
     const double delta_0 = result->delta;
-    result->delta = (1.0 - map->relaxation) * delta_0 + map->offset;
+    result->delta = delta_0 - map->relaxation * delta_0 + map->offset; // digits of a small change
     result->impulse += map->impulse_slope * delta_0 + map->impulse_offset;
     result->work += map->work_slope * delta_0 + map->work_offset;
     result->drag += map->drag_slope * delta_0 + map->drag_offset;

@@ -15,6 +15,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "solver/bounded_panel.h"
 #include "solver/constant_contact.h"
 #include "solver/gauss_panel.h"
 #include "solver/gauss_rule.h"
@@ -58,6 +59,7 @@ typedef struct {
     double held;                 // N, s g in a stretch with a constant limit, else 0
     double evaluations;          // in the communication step so far
     int nodes;                   // that the last Gauss panel needed
+    FcMotion motion;
 } Progress;
 
 static FcTrajectories trajectories(const Progress* progress) {
@@ -114,6 +116,22 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
         }
     }
     return section->end;
+}
+
+// Goes through a section in one panel whose error is bounded beforehand, if it can.
+static bool cross_in_one(Progress* progress, const FcSection* section, const FcStretch* stretch) {
+    if (section->in_bell) {
+        return false;
+    }
+    const FcTrajectories from = trajectories(progress);
+    const double X = fc_stretch_displacement(stretch, &progress->scene->drive, section->start, section->end);
+    FcPanel panel;
+    if (!fc_bounded_panel(section->scene, &progress->motion, section->start, section->end - section->start, X,
+                          section->relaxes, &from, &panel, &progress->evaluations)) {
+        return false;
+    }
+    *progress->map = fc_map_compose(progress->map, &panel.map);
+    return true;
 }
 
 // Whether a panel's error is small enough; *excess is how many times it is too large.
@@ -256,6 +274,30 @@ static FcDriveEvent event_after(const FcScene* scene, double t, double duration)
     return fc_drive_next_event(&scene->drive, t, duration + (duration - t));
 }
 
+// An interval so short that V, which moves by no more than it is, has no event, in one panel, if it can.
+static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double duration, double delta_0,
+                            FcMapScope scope, FcMap* map, double* evaluations) {
+    const FcDrive* drive = &scene->drive;
+    const double moves = duration * (fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega);
+    if (!(fabs(fc_drive_V(drive, 0.0)) > moves)) {
+        return false;
+    }
+    const double saturation = motion->limit / motion->stiffness;
+    const double X = fc_drive_displacement(drive, 0.0, duration);
+    const FcTrajectories from = {
+        .delta_0 = delta_0,
+        .scale = scope == FC_MAP_ANY_START ? fmax(fabs(delta_0), saturation) : 0.0,
+        .speed = fc_drive_largest_speed(drive, duration),
+    };
+    FcPanel panel;
+    if (!fc_bounded_panel(scene, motion, 0.0, duration, X, fabs(X) / saturation, &from, &panel,
+                          evaluations)) {
+        return false;
+    }
+    *map = panel.map;
+    return true;
+}
+
 static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcSolverOptions* options,
                     double duration, double delta_0, FcMapScope scope, double* evaluations) {
     const double force = fc_scene_force_scale(scene);
@@ -264,6 +306,11 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         return slack_map(scene, duration);
     }
     const bool for_one_start = scope == FC_MAP_THIS_START;
+    const FcMotion motion = fc_motion(scene, duration, largest_stiffness, options->tolerance * force);
+    FcMap whole;
+    if (interval_in_one(scene, &motion, duration, delta_0, scope, &whole, evaluations)) {
+        return whole;
+    }
     const FcCoefficients middle = fc_scene_coefficients(scene, 0.5 * duration);
     FcMap map = fc_map_identity();
     Progress progress = {
@@ -278,6 +325,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .relative = options->tolerance,
         .digits = fc_digits(options->tolerance),
         .evaluations = *evaluations,
+        .motion = motion,
     };
     if (for_one_start) {
         map.relaxation = 1.0;
@@ -325,7 +373,9 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         for (int i = 0; i < sections.count; i++) {
             const FcSection* section = &sections.at[i];
             if (section->soft && t == section->start) {
-                t = cross_softly(&progress, section, &stretch.bells);
+                t = cross_in_one(&progress, section, &stretch)
+                        ? section->end
+                        : cross_softly(&progress, section, &stretch.bells);
             }
             if (t < section->end && (i + 1 == sections.count || sections.at[i + 1].soft)) {
                 if (!has_mesh) {

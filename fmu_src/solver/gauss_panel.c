@@ -6,7 +6,7 @@
 #include "solver/gauss_rule.h"
 
 FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, double t, double h,
-                        const FcTrajectories* from, FcPanel* panel) {
+                        const FcTrajectories* from, bool judged, FcPanel* panel) {
     FcNodeCoefficients at;
     fc_node_coefficients(scene, t, h, rule->node, n, &at);
     double z[FC_GAUSS_MOST_NODES];
@@ -39,6 +39,10 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
         (FcMap){.relaxation = relaxation, .offset = (1.0 - relaxation) * fc_dot(n, rule->weight, source)};
     fc_panel_integrals(n, rule->weight, P, Q, z, at.V, at.sigma, h, &panel->map);
     panel->z = whole;
+    panel->displacement = h * fc_dot(n, rule->weight, at.V);
+    if (!judged) {
+        return;
+    }
 
     const double sigma = fc_most(at.sigma[0], fc_most(at.sigma[n / 2], at.sigma[n - 1]));
     panel->end_error =
@@ -56,21 +60,31 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
     }
 }
 
-void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
-                    FcPanel* panel) {
+FC_INLINE void panel_of_nodes(int count, const FcScene* scene, double t, double h, const FcTrajectories* from,
+                              bool judged, FcPanel* panel) {
     assert(h > 0.0);
     switch (count) { // constants where panel_of is inlined
     case 4:
-        panel_of(&FC_GAUSS_4, 4, scene, t, h, from, panel);
+        panel_of(&FC_GAUSS_4, 4, scene, t, h, from, judged, panel);
         break;
     case 6:
-        panel_of(&FC_GAUSS_6, 6, scene, t, h, from, panel);
+        panel_of(&FC_GAUSS_6, 6, scene, t, h, from, judged, panel);
         break;
     case 8:
-        panel_of(&FC_GAUSS_8, 8, scene, t, h, from, panel);
+        panel_of(&FC_GAUSS_8, 8, scene, t, h, from, judged, panel);
         break;
     default:
-        panel_of(&FC_GAUSS_12, 12, scene, t, h, from, panel);
+        panel_of(&FC_GAUSS_12, 12, scene, t, h, from, judged, panel);
         break;
     }
+}
+
+void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
+                    FcPanel* panel) {
+    panel_of_nodes(count, scene, t, h, from, true, panel);
+}
+
+void fc_gauss_panel_unjudged(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
+                             FcPanel* panel) {
+    panel_of_nodes(count, scene, t, h, from, false, panel);
 }

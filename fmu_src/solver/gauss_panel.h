@@ -13,4 +13,8 @@
 void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
                     FcPanel* panel);
 
+// The same without an estimate of its errors.
+void fc_gauss_panel_unjudged(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
+                             FcPanel* panel);
+
 #endif
