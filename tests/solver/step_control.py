@@ -1,4 +1,4 @@
-"""Scenes whose cost tells whether the step control works, and their costs: thirteen, and those of the laws.
+"""Scenes whose cost tells whether the step control works, and their costs: fifteen, and those of the laws.
 
     python tests/solver/step_control.py    measures them anew on the built FMU and writes step_control*.csv
 
@@ -56,6 +56,10 @@ SCENES = {
         {"V": 1.4399999, "vibration.V_1": 1.44, "contact.stiffnessScale": 1e-2}, 1.3 * PERIOD, 10
     ),
     "a_d near d": Scene({**SLIDER, "vibration.a_d": 13.9e-6, "contact.stiffnessScale": 1e-6}, PERIOD),
+    "a_d two thirds of d": Scene({**SLIDER, "vibration.a_d": 10e-6, "contact.stiffnessScale": 1e-3}, PERIOD),
+    "a_d nine tenths of d": Scene(
+        {**SLIDER, "vibration.a_d": 12.5e-6, "contact.stiffnessScale": 1e-3}, PERIOD
+    ),
     "tolerance 1e-12": Scene({**SLIDER, **NORMAL, "solver.tolerance": 1e-12}, PERIOD),
     "tolerance 1e-3": Scene({**SLIDER, **NORMAL, "solver.tolerance": 1e-3}, 7.7 * PERIOD),
     "inputs that move": Scene(
