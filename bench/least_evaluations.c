@@ -233,9 +233,13 @@ static int make_grids(const FcScene* scene, double delta) {
         grid->stretch = (FcStretch){
             .start = start, .end = fmin(event.time, PERIOD), .event = event.time, .reversal = true};
         FcStretch* s = &grid->stretch;
-        s->w_a = fc_mesh_relaxation_layer(scene, s->start, s->start);
-        s->back = start > 0.0 ? s->w_a : fmax(s->w_a, fc_mesh_settled_back(scene, 0.0));
-        s->w_b = fc_mesh_relaxation_layer(scene, s->event, s->end);
+        const FcVelocity at_start = fc_drive_velocity(&scene->drive, s->start);
+        const FcVelocity at_event = fc_drive_velocity(&scene->drive, s->event);
+        s->at_start = fc_scene_coefficients(scene, s->start);
+        s->at_end = fc_scene_coefficients(scene, s->end);
+        s->w_a = fc_mesh_layer(&at_start, s->at_start.sigma / s->at_start.limit);
+        s->back = start > 0.0 ? s->w_a : fmax(s->w_a, fc_mesh_settled_back(&at_start));
+        s->w_b = fc_mesh_layer(&at_event, s->at_end.sigma / s->at_end.limit);
         grid->sign = fc_sign(fc_drive_displacement(&scene->drive, s->start, s->end));
         make_grid(grid);
         solve_finely(grid, scene, delta);

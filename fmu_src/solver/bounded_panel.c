@@ -60,7 +60,7 @@ double fc_panel_bound(const FcMotion* motion, int n, double h, double z) {
 
 bool fc_bounded_panel(const FcScene* scene, const FcMotion* motion, double t, double h, double X, double z,
                       const FcTrajectories* from, FcPanel* panel, double* evaluations) {
-    if (!motion->is_bounded) {
+    if (!motion->is_bounded || z > FC_MOST_BOUNDED) {
         return false;
     }
     // Of a bristle that settles at |X| / z

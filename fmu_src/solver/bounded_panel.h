@@ -9,6 +9,9 @@
 
 #include "solver/panel.h"
 
+// No panel that relaxes by more is bounded.
+static const double FC_MOST_BOUNDED = 7.0;
+
 // What moves in an interval.
 typedef struct {
     double phi_rate;  // 1/s, phi over the panel's length

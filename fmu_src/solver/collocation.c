@@ -51,14 +51,15 @@ typedef struct {
     double end;                  // s
     double tolerance;            // N, of the force
     double largest_stiffness;    // N/m
-    double per_deflection;       // 1/m, about sigma / g
-    double scale;                // m, size of the deflection at the start
-    double speed;                // m/s
-    double relative;             // 1, the tolerance
-    double digits;               // asked for
-    double held;                 // N, s g in a stretch with a constant limit, else 0
-    double evaluations;          // in the communication step so far
-    int nodes;                   // that the last Gauss panel needed
+    FcCoefficients start;
+    double per_deflection; // 1/m, about sigma / g
+    double scale;          // m, size of the deflection at the start
+    double speed;          // m/s
+    double relative;       // 1, the tolerance
+    double digits;         // asked for
+    double held;           // N, s g in a stretch with a constant limit, else 0
+    double evaluations;    // in the communication step so far
+    int nodes;             // that the last Gauss panel needed
     FcMotion motion;
 } Progress;
 
@@ -160,17 +161,29 @@ static void take(Progress* progress, FcPlace* at, const FcPanel* panel) {
     at->path -= fabs(panel->displacement);
 }
 
+// Width [s] of the layer around a reversal or dip at t, with sigma and g as they are at a time near it: beyond the interval
+// the inputs are not known.
+static double relaxation_layer(const FcScene* scene, double t, const FcCoefficients* near) {
+    const FcVelocity at = fc_drive_velocity(&scene->drive, t);
+    return fc_mesh_layer(&at, near->sigma / near->limit);
+}
+
+static double dip_layer(const FcScene* scene, double t, const FcCoefficients* near) {
+    const FcVelocity at = fc_drive_velocity(&scene->drive, t);
+    return fc_mesh_dip_layer(&at, near->sigma / near->limit);
+}
+
 // Goes through a stretch from t to the end of a section with Radau panels.
 static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stretch, double t, double end) {
     const FcScene* scene = progress->scene;
     const double sign = fc_sign(stretch->displacement);
-    const FcCoefficients start = fc_scene_coefficients(scene, t);
+    const FcCoefficients start = t == stretch->start ? stretch->at_start : fc_scene_coefficients(scene, t);
     FcPanel panel = {.rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};
     FcPlace at = {
         .t = t,
         .rate = panel.rate,
         .path = fabs(fc_stretch_displacement(stretch, &scene->drive, t, stretch->end)),
-        .layer = t == stretch->start ? stretch->w_a : fc_mesh_relaxation_layer(scene, t, t),
+        .layer = t == stretch->start ? stretch->w_a : relaxation_layer(scene, t, &start),
     };
     FcSettling settling;
     fc_settling_init(&settling, scene, progress->beyond_bells, mesh, stretch, end);
@@ -237,10 +250,20 @@ static FcMap slack_map(const FcScene* scene, double h) {
     return map;
 }
 
-// Width [s] of the layer around an event, with sigma and g as they are at the time inside.
-static double layer_at(const FcScene* scene, bool reversal, double event, double inside) {
-    return reversal ? fc_mesh_relaxation_layer(scene, event, inside)
-                    : fc_mesh_dip_layer(scene, event, inside);
+static double layer_at(const FcScene* scene, bool reversal, double event, const FcCoefficients* near) {
+    return reversal ? relaxation_layer(scene, event, near) : dip_layer(scene, event, near);
+}
+
+// |force - what it settles to| at the interval's start, over the mesh's force: the limit, but for the lag to first order in
+// the time it takes to relax.
+static double transient_at_start(const Progress* progress, const FcMesh* mesh) {
+    const FcCoefficients* now = &progress->start;
+    const FcLogRates rates = fc_scene_log_rates(progress->scene, 0.0);
+    const double lag = (rates.sigma - rates.limit) / -fc_coefficients_rate(now);
+    const FcTrajectories from = trajectories(progress);
+    return (fabs(now->sigma * from.delta_0 - copysign(now->limit, now->V) * (1.0 + lag)) +
+            now->sigma * fabs(from.scale)) /
+           mesh->force;
 }
 
 // Layers at both ends of a stretch that begins at the interval's start, or at the event of the stretch before.
@@ -248,24 +271,22 @@ static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStr
                        FcStretch* stretch) {
     const FcScene* scene = progress->scene;
     stretch->transient = INFINITY;
-    if (stretch->start > 0.0) {
-        stretch->w_a = before->w_b > 0.0 ? before->w_b
-                                         : layer_at(scene, before->reversal, stretch->start, stretch->start);
-        stretch->back = stretch->w_a;
+    if (stretch->start == 0.0) {
+        const FcVelocity now = fc_drive_velocity(&scene->drive, 0.0);
+        stretch->at_start = progress->start;
+        stretch->w_a = fc_mesh_layer(&now, progress->start.sigma / progress->start.limit);
+        stretch->back = fmax(stretch->w_a, fc_mesh_settled_back(&now));
+        stretch->transient = transient_at_start(progress, mesh);
+    } else if (before->w_b > 0.0) {
+        stretch->at_start = before->at_end;
+        stretch->w_a = stretch->back = before->w_b;
     } else {
-        stretch->w_a = fc_mesh_relaxation_layer(scene, 0.0, 0.0);
-        stretch->back = fmax(stretch->w_a, fc_mesh_settled_back(scene, 0.0));
-        // to first order in the time it takes to relax
-        const FcCoefficients now = fc_scene_coefficients(scene, 0.0);
-        const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
-        const double lag = (rates.sigma - rates.limit) / -fc_coefficients_rate(&now);
-        const FcTrajectories from = trajectories(progress);
-        stretch->transient = (fabs(now.sigma * from.delta_0 - copysign(now.limit, now.V) * (1.0 + lag)) +
-                              now.sigma * fabs(from.scale)) /
-                             mesh->force;
+        stretch->at_start = fc_scene_coefficients(scene, stretch->start);
+        stretch->w_a = stretch->back = layer_at(scene, before->reversal, stretch->start, &stretch->at_start);
     }
     if (isfinite(stretch->event)) {
-        stretch->w_b = layer_at(scene, stretch->reversal, stretch->event, stretch->end);
+        stretch->at_end = fc_scene_coefficients(scene, stretch->end);
+        stretch->w_b = layer_at(scene, stretch->reversal, stretch->event, &stretch->at_end);
     }
 }
 
@@ -279,10 +300,11 @@ static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double
                             FcMapScope scope, FcMap* map, double* evaluations) {
     const FcDrive* drive = &scene->drive;
     const double moves = duration * (fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega);
-    if (!(fabs(fc_drive_V(drive, 0.0)) > moves)) {
+    const double speed = fabs(fc_drive_V(drive, 0.0));
+    const double saturation = motion->limit / motion->stiffness;
+    if (!(speed > moves && (speed - moves) * duration <= FC_MOST_BOUNDED * saturation)) {
         return false;
     }
-    const double saturation = motion->limit / motion->stiffness;
     const double X = fc_drive_displacement(drive, 0.0, duration);
     const FcTrajectories from = {
         .delta_0 = delta_0,
@@ -311,7 +333,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
     if (interval_in_one(scene, &motion, duration, delta_0, scope, &whole, evaluations)) {
         return whole;
     }
-    const FcCoefficients middle = fc_scene_coefficients(scene, 0.5 * duration);
+    const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
     FcMap map = fc_map_identity();
     Progress progress = {
         .scene = scene,
@@ -320,7 +342,8 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .end = duration,
         .tolerance = options->tolerance * force,
         .largest_stiffness = largest_stiffness,
-        .per_deflection = middle.sigma / middle.limit,
+        .start = start,
+        .per_deflection = start.sigma / start.limit,
         .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
         .relative = options->tolerance,
         .digits = fc_digits(options->tolerance),
@@ -331,7 +354,6 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         map.relaxation = 1.0;
         map.offset = delta_0;
     } else {
-        const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
         progress.scale = fmax(fabs(delta_0), start.limit / start.sigma);
     }
     const bool has_bells = fc_has_stribeck_curve(scene->friction);
@@ -361,11 +383,11 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         }
         stretch.bells = (FcBells){.after = stretch.start, .before = stretch.end};
         if (has_bells) {
-            const FcBellEdge start = edge;
+            const FcBellEdge first = edge;
             edge = fc_bell_edge(scene, stretch.end);
             const FcTrajectories from = trajectories(&progress);
             const double deflection = fc_most(fabs(from.delta_0), fabs(from.scale));
-            stretch.bells = fc_bells(&bells, &start, &edge, deflection, stretch.path_after);
+            stretch.bells = fc_bells(&bells, &first, &edge, deflection, stretch.path_after);
         }
         const FcSections sections = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection);
         bool has_layers = false;

@@ -53,22 +53,13 @@ static Bell bell_at(const FcScene* scene, const FcBells* bells, double t) {
     };
 }
 
-double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside) {
-    const FcVelocity now = fc_drive_velocity(&scene->drive, t);
-    const FcCoefficients at = fc_scene_coefficients(scene, inside);
-    return fc_mesh_layer(&now, at.sigma / at.limit);
+double fc_mesh_dip_layer(const FcVelocity* at, double per_path) {
+    const double curvature = fabs(at->curvature);
+    return fmax(sqrt(2.0 * fabs(at->V) / curvature), cbrt(6.0 / (per_path * curvature)));
 }
 
-double fc_mesh_dip_layer(const FcScene* scene, double t, double inside) {
-    const FcVelocity now = fc_drive_velocity(&scene->drive, t);
-    const double curvature = fabs(now.curvature);
-    const FcCoefficients at = fc_scene_coefficients(scene, inside);
-    return fmax(sqrt(2.0 * fabs(now.V) / curvature), cbrt(6.0 * at.limit / (at.sigma * curvature)));
-}
-
-double fc_mesh_settled_back(const FcScene* scene, double t) {
-    const FcVelocity now = fc_drive_velocity(&scene->drive, t);
-    return fmin(fabs(now.V / now.rate), sqrt(2.0 * fabs(now.V / now.curvature)));
+double fc_mesh_settled_back(const FcVelocity* at) {
+    return fmin(fabs(at->V / at->rate), sqrt(2.0 * fabs(at->V / at->curvature)));
 }
 
 static bool depends_on_d(const FcScene* scene) {

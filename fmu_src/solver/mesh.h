@@ -54,9 +54,10 @@ typedef struct {
     double back;       // s, from the start back to what the panels are graded away from
     double
         transient; // 1, at the interval's start: |force - what it settles to| over the mesh's force; elsewhere infinite
-    FcBells bells;       // where the Stribeck curve matters
-    double displacement; // m
-    double path_after;   // m, path from the end to the next reversal or the interval's end
+    FcBells bells;                   // where the Stribeck curve matters
+    double displacement;             // m
+    double path_after;               // m, path from the end to the next reversal or the interval's end
+    FcCoefficients at_start, at_end; // with the layers; at the end where there is an event
 } FcStretch;
 
 // About -log10(x), down to the next power of two.
@@ -96,15 +97,11 @@ static inline double fc_mesh_layer(const FcVelocity* at, double per_path) {
     return fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
 }
 
-// Time [s] in which the bristle relaxes by 1 from t on, with sigma and g as they are at the time inside, which is t or
-// the interval's end before it: beyond it the inputs are not known.
-double fc_mesh_relaxation_layer(const FcScene* scene, double t, double inside);
+// Width [s] of a dip of |V| that does not reach zero: that of the parabola, or the time to relax by 1 in it.
+double fc_mesh_dip_layer(const FcVelocity* at, double per_path);
 
-// Width [s] of a dip of |V| at t that does not reach zero: that of the parabola, or the time to relax by 1 in it.
-double fc_mesh_dip_layer(const FcScene* scene, double t, double inside);
-
-// Distance [s] of what V last came from at t, a reversal or a dip, when the bristle has settled there.
-double fc_mesh_settled_back(const FcScene* scene, double t);
+// Distance [s] of what V last came from, a reversal or a dip, when the bristle has settled there.
+double fc_mesh_settled_back(const FcVelocity* at);
 
 // What is left at the interval's end of an error made at t [s], from here on in the stretch, at the most; 0 for less than
 // the square of what is allowed.

@@ -111,7 +111,8 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
     if (mesh->smooth.rate + 1.0 / after > allowed_changes) {
         return false;
     }
-    if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(mesh->scene, at->t) > allowed_changes) {
+    const FcVelocity here = fc_drive_velocity(&mesh->scene->drive, at->t);
+    if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(&here) > allowed_changes) {
         return false;
     }
     *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
@@ -158,12 +159,22 @@ static void add_last(const FcSettledStart* from, FcPanel* panel) {
     panel->rate /= 1.0 + bell->curve;
 }
 
+static FcCoefficients coefficients_at_end(const FcSettledStart* from) {
+    const FcStretch* stretch = from->stretch;
+    if (from->end < stretch->end || !isfinite(stretch->event)) {
+        return fc_scene_coefficients(from->scene, from->end);
+    }
+    FcCoefficients end = stretch->at_end;
+    end.limit = from->scene->F_C; // beyond the Stribeck curve
+    return end;
+}
+
 bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
     double X;
     if (!is_accurate(from, &X)) {
         return false;
     }
-    const FcCoefficients end = fc_scene_coefficients(from->scene, from->end);
+    const FcCoefficients end = coefficients_at_end(from);
     const double force = from->sign * from->scene->F_C;
     const double D = force / from->sigma;
     const double V = from->sign * speed_at_start(from);
