@@ -196,7 +196,7 @@ static double root_of_V(const FcDrive* drive, double t0, double t1) {
         if (!(next > t0 && next < t1)) {
             next = 0.5 * (t0 + t1);
         }
-        if (fabs(next - t) <= 1e-16 * fabs(t) || next == t0 || next == t1) {
+        if (fabs(next - t) <= 1e-16 * t || next == t0 || next == t1) {
             return next;
         }
         t = next;

@@ -50,7 +50,7 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
     const double left = end - t;
     const double longest =
         fmin(LONGEST[RULES - 1][integrator->digits] * smooth_time, longest_before_pole(&scene->drive, t));
-    const double count = left > longest ? ceil(left / longest) : 1.0;
+    const double count = fmax(1.0, ceil(left / longest));
     Panel panel = {.start = t, .length = left / count, .end = end};
     while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time && panel.rule < RULES - 1) {
         panel.rule++;
