@@ -295,14 +295,15 @@ static FcDriveEvent event_after(const FcScene* scene, double t, double duration)
     return fc_drive_next_event(&scene->drive, t, duration + (duration - t));
 }
 
-// An interval so short that V, which moves by no more than it is, has no event, in one panel, if it can.
-static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double duration, double delta_0,
-                            FcMapScope scope, FcMap* map, double* evaluations) {
+// An interval so short that V, which moves by no more than it is, has no event and meets no bell, in one panel, if it can.
+static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double tolerance, double duration,
+                            double delta_0, FcMapScope scope, FcMap* map, double* evaluations) {
     const FcDrive* drive = &scene->drive;
     const double moves = duration * (fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega);
     const double speed = fabs(fc_drive_V(drive, 0.0));
     const double saturation = motion->limit / motion->stiffness;
-    if (!(speed > moves && (speed - moves) * duration <= FC_MOST_BOUNDED * saturation)) {
+    if (!(speed > moves && (speed - moves) * duration <= FC_MOST_BOUNDED * saturation) ||
+        !fc_is_beyond_bells(scene->friction, speed - moves, fabs(delta_0) / saturation, tolerance)) {
         return false;
     }
     const double X = fc_drive_displacement(drive, 0.0, duration);
@@ -330,7 +331,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
     const bool for_one_start = scope == FC_MAP_THIS_START;
     const FcMotion motion = fc_motion(scene, duration, largest_stiffness, options->tolerance * force);
     FcMap whole;
-    if (interval_in_one(scene, &motion, duration, delta_0, scope, &whole, evaluations)) {
+    if (interval_in_one(scene, &motion, options->tolerance, duration, delta_0, scope, &whole, evaluations)) {
         return whole;
     }
     const FcCoefficients start = fc_scene_coefficients(scene, 0.0);

@@ -18,6 +18,16 @@ void fc_scene_beyond_bells(const FcScene* scene, FcSceneBeyondBells* beyond) {
     beyond->scene.friction = &beyond->friction;
 }
 
+bool fc_is_beyond_bells(const FcFriction* friction, double speed, double force, double tolerance) {
+    if (!fc_has_stribeck_curve(friction)) {
+        return true;
+    }
+    const double excess = friction->staticRatio - 1.0;
+    const double most = fc_most(1.0 + excess, force);
+    const double ratio = speed / friction->V_S;
+    return excess * most * most * exp(-ratio * ratio) <= BEYOND * tolerance;
+}
+
 FcBellInterval fc_bell_interval(const FcScene* scene, double duration, double tolerance) {
     const double excess = scene->friction->staticRatio - 1.0;
     return (FcBellInterval){

@@ -23,6 +23,9 @@ typedef struct {
 } FcSceneBeyondBells;
 void fc_scene_beyond_bells(const FcScene* scene, FcSceneBeyondBells* beyond);
 
+// Whether the curve is not seen by a force of up to `force` limits where |V| is at least the speed [m/s].
+bool fc_is_beyond_bells(const FcFriction* friction, double speed, double force, double tolerance);
+
 // What of an interval matters to its bells.
 typedef struct {
     const FcScene* scene; // with a Stribeck curve

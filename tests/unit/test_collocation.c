@@ -130,6 +130,21 @@ static void intervals_cut_bells(void) {
     }
 }
 
+// An interval so short that V can't turn in it, which ends in a bell.
+static void short_intervals_end_in_bells(void) {
+    Slider slider;
+    make(&slider, 6e6, FC_LUGRE, 5e-3, 0.0);
+    const double reversal = fc_drive_next_event(&slider.scene.drive, 0.0, PERIOD).time;
+    const double tau = slider.friction.V_S / fabs(fc_drive_V_rate(&slider.scene.drive, reversal));
+    for (double sigma = 6e6; sigma < 1e10; sigma *= 10.0) {
+        for (double from = 3.0; from < 30.0; from *= 2.0) {
+            make(&slider, sigma, FC_LUGRE, 5e-3, reversal - from * tau);
+            const FcCoefficients start = fc_scene_coefficients(&slider.scene, 0.0);
+            evaluations_from(&slider.scene, 0.5 * start.limit / start.sigma, F_C, (from - 0.7) * tau, 1e-7);
+        }
+    }
+}
+
 // The transient of a start that is far from settled, and ends close before and after a reversal.
 static void ends_around_a_reversal(void) {
     Slider slider;
@@ -216,6 +231,7 @@ int main(void) {
     a_settled_stretch_is_one_panel();
     a_settled_stretch_goes_through_its_bells();
     intervals_cut_bells();
+    short_intervals_end_in_bells();
     ends_around_a_reversal();
     a_constant_velocity_is_one_panel();
     scenes_that_were_missed();
