@@ -188,3 +188,36 @@ def test_every_method_ends_exactly_at_the_communication_point(fmu: FrictionFmu, 
             assert session.get("F_t") == pytest.approx(
                 float(reference.force(scene, h, delta)), rel=2e-3 if ORDERS.get(method) == 1 else 1e-5
             )
+
+
+@pytest.mark.parametrize("sigma_1", [0.0, 30.0])
+@pytest.mark.parametrize(
+    ("method", "within"),
+    [
+        ("explicitEuler", 1e-2),
+        ("backwardEuler", 1e-2),
+        ("trapezoid", 1e-4),
+        ("rk4", 1e-9),
+        ("cvode", 1e-5),
+        ("collocation", 1e-12),
+    ],
+)
+def test_work_and_heat_of_every_method(fmu: FrictionFmu, method: str, within: float, sigma_1: float) -> None:
+    """From rest at constant speed: what of the work is not stored in the bristle is heat."""
+    h = 2.0 / RATE
+    start = {
+        "V": V,
+        "contact.model": "Constant",
+        "contact.sigma": SIGMA,
+        "friction.sigma_1": sigma_1,
+        "solver.method": method,
+        "solver.stepSize": h / 1000,
+    }
+    D = F_C / SIGMA
+    delta = D * -np.expm1(-2.0)
+    damped = sigma_1 * V * delta
+    work = F_C * (V * h - delta) + damped
+    heat = work - SIGMA * delta**2 / 2
+    with fmu.session(start) as session:
+        session.step(h)
+        assert session.read(("W_f", "Q_f")) == pytest.approx([work, heat], rel=within)
