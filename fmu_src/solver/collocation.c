@@ -23,6 +23,7 @@
 #include "solver/radau_panel.h"
 #include "solver/section.h"
 #include "solver/settling.h"
+#include "solver/small_bell.h"
 #include "solver/stribeck_bell.h"
 
 // What an estimated error may be, over the tolerance. Estimates are 10 to 10^5 times too large for most panels and rarely
@@ -133,6 +134,16 @@ static bool cross_in_one(Progress* progress, const FcSection* section, const FcS
     }
     *progress->map = fc_map_compose(progress->map, &panel.map);
     return true;
+}
+
+// Puts back what a bell at t, that was left out of the stretch on its side after (1) or before (-1), does.
+static void put_back(Progress* progress, const FcBellInterval* bells, const FcStretch* stretch, double t,
+                     const FcVelocity* at, double side) {
+    const FcSmallBellPlace place = fc_small_bell_place(progress->scene, at, side, bells->fastest);
+    const FcMap map =
+        fc_small_bell(progress->scene, &bells->shape, &place, t, side, fc_sign(stretch->displacement));
+    *progress->map = fc_map_compose(progress->map, &map);
+    progress->evaluations += 2.0;
 }
 
 // Whether a panel's error is small enough; *excess is how many times it is too large.
@@ -388,11 +399,15 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
             edge = fc_bell_edge(scene, stretch.end);
             const FcTrajectories from = trajectories(&progress);
             const double deflection = fc_most(fabs(from.delta_0), fabs(from.scale));
-            stretch.bells = fc_bells(&bells, &first, &edge, deflection, stretch.path_after);
+            stretch.bells =
+                fc_bells(&bells, &first, &edge, deflection, stretch.displacement, stretch.path_after);
         }
         const FcSections sections = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection);
         bool has_layers = false;
         double t = stretch.start;
+        if (stretch.bells.small_at_start) {
+            put_back(&progress, &bells, &stretch, t, &stretch.bells.at_start, 1.0);
+        }
         for (int i = 0; i < sections.count; i++) {
             const FcSection* section = &sections.at[i];
             if (section->soft && t == section->start) {
@@ -412,6 +427,9 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
                 cross(&progress, &mesh, &stretch, t, section->end);
                 t = section->end;
             }
+        }
+        if (stretch.bells.small_at_end) {
+            put_back(&progress, &bells, &stretch, stretch.end, &stretch.bells.at_end, -1.0);
         }
         before = stretch;
     }

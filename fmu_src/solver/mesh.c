@@ -66,7 +66,7 @@ static bool depends_on_d(const FcScene* scene) {
     return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
 }
 
-static FcSmoothness smoothness(const FcScene* scene, double h) {
+FcSmoothness fc_mesh_smoothness(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     FcSmoothness smooth = {.rate = fc_drive_vibrates(drive) ? drive->omega : 0.0};
     if (!depends_on_d(scene)) {
@@ -124,7 +124,7 @@ FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance) {
         .beyond = saturation / fc_stribeck(scene->friction, 0.0),
         .forgotten = -2.0 * log(tolerance) * saturation,
         .speed = fc_drive_largest_speed(&scene->drive, end),
-        .smooth = smoothness(scene, end),
+        .smooth = fc_mesh_smoothness(scene, end),
     };
 }
 

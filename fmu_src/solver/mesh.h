@@ -83,6 +83,7 @@ typedef struct {
     double grows;      // s, in which sigma may grow e-fold
 } FcPlan;
 
+FcSmoothness fc_mesh_smoothness(const FcScene* scene, double h); // over [0, h]
 FcMesh fc_mesh_make(const FcScene* scene, double end, double tolerance);
 
 // Largest g / sigma over [0, h] [m]: what happened fades by e over that path at least. Infinite where E or the surfaces move.

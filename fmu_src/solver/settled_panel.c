@@ -127,7 +127,9 @@ static double lag_at_end(const FcSettledStart* from, const FcCoefficients* end) 
     const FcStretch* stretch = from->stretch;
     const FcLogRates rates = fc_scene_log_rates(from->scene, from->end);
     if (stretch->event <= from->end) {
-        return rates.sigma * stretch->w_b * 0.5 * sqrt(FC_PI);
+        // the layer is that of the static limit, which counts where the bristle follows the bell
+        const double limit = from->last ? 1.0 : fc_stribeck(from->mesh->scene->friction, 0.0);
+        return rates.sigma * stretch->w_b * 0.5 * sqrt(FC_PI / limit);
     }
     return rates.sigma / -fc_coefficients_rate(end);
 }

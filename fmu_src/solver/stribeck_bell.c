@@ -8,6 +8,11 @@
 // Of the tolerance: what the curve may leave beyond a bell, and what a bell may do that is left out.
 static const double BEYOND = 0.01;
 static const double LEFT_OUT = 0.01;
+// Of the tolerance: what may be missed of a bell that is put back in closed form.
+static const double SMALL = 0.1;
+// Of such a bell: by how much V' and sigma may change in it, and |V| over V_S where it begins.
+static const double MOST_CHANGE = 0.5;
+static const double AT_REVERSAL = 1e-6;
 // Of a width that was estimated too short.
 enum { MOST_GROWTHS = 32 };
 
@@ -30,6 +35,8 @@ bool fc_is_beyond_bells(const FcFriction* friction, double speed, double force, 
 
 FcBellInterval fc_bell_interval(const FcScene* scene, double duration, double tolerance) {
     const double excess = scene->friction->staticRatio - 1.0;
+    const FcSmoothness smooth = fc_mesh_smoothness(scene, duration);
+    const bool follows = smooth.follows_d_and_E || fc_limit_follows_load(scene->friction);
     return (FcBellInterval){
         .scene = scene,
         .duration = duration,
@@ -38,6 +45,8 @@ FcBellInterval fc_bell_interval(const FcScene* scene, double duration, double to
         .per_path = fc_scene_largest_stiffness(scene, duration) / fc_scene_smallest_limit(scene, duration),
         .saturation = fc_mesh_largest_saturation(scene, duration),
         .path = fc_drive_largest_speed(&scene->drive, duration) * duration,
+        .shape = fc_bell_shape(scene->friction->staticRatio),
+        .fastest = follows ? INFINITY : smooth.rate,
     };
 }
 
@@ -107,6 +116,27 @@ static bool is_left_out(const FcBellInterval* interval, const Stretch* stretch, 
     return lasts * memory / interval->duration + heat <= allowed;
 }
 
+// Whether a bell on the side (1 or -1) of an edge may be put back in closed form, all of it, in a stretch of that length [s].
+static bool is_small(const FcBellInterval* interval, const Stretch* stretch, const FcBellEdge* edge,
+                     double side, double sign, double length, double reach) {
+    const FcFriction* friction = interval->scene->friction;
+    const double V_S = friction->V_S;
+    if (!interval->shape.is_known || !(side * sign * edge->at.rate > 0.0) ||
+        fabs(edge->at.V) > AT_REVERSAL * V_S) {
+        return false;
+    }
+    const FcSmallBellPlace place = fc_small_bell_place(interval->scene, &edge->at, side, interval->fastest);
+    if (!(place.changes * reach <= MOST_CHANGE) || 3.0 * reach * place.tau > length) {
+        return false;
+    }
+    const double damping = friction->sigma_1 * V_S / interval->scene->F_C;
+    const FcSmallBellError error =
+        fc_small_bell_error(&place, &interval->shape, V_S, interval->per_path, stretch->force, damping);
+    const double allowed = SMALL * interval->tolerance;
+    return error.lasts <= allowed * stretch->forgets &&
+           error.impulse / interval->duration + error.work / interval->path <= allowed;
+}
+
 // Whether |V| may fall below the speed between the edges. Minima that are no events lie above half of |V| and V_1.
 static bool may_dip_inside(const FcDrive* drive, double start, double end, double speed) {
     const double V_1 = drive->vibration.V_1;
@@ -116,10 +146,11 @@ static bool may_dip_inside(const FcDrive* drive, double start, double end, doubl
 }
 
 FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const FcBellEdge* end,
-                 double deflection, double path_after) {
+                 double deflection, double displacement, double path_after) {
     const FcDrive* drive = &interval->scene->drive;
     const double V_S = interval->scene->friction->V_S;
-    const double path = fabs(fc_drive_displacement(drive, start->t, end->t));
+    const double path = fabs(displacement);
+    const double sign = fc_sign(displacement);
     const double per_path = interval->per_path;
     const Stretch stretch = {
         .force =
@@ -142,10 +173,16 @@ FcBells fc_bells(const FcBellInterval* interval, const FcBellEdge* start, const 
         return all;
     }
     if (after > 0.0 && !is_left_out(interval, &stretch, start, path)) {
-        bells.after += width(drive, start, 1.0, after * V_S, length);
+        bells.small_at_start = is_small(interval, &stretch, start, 1.0, sign, length, after);
+        if (!bells.small_at_start) {
+            bells.after += width(drive, start, 1.0, after * V_S, length);
+        }
     }
     if (before > 0.0 && !is_left_out(interval, &stretch, end, path_after)) {
-        bells.before -= width(drive, end, -1.0, before * V_S, length);
+        bells.small_at_end = is_small(interval, &stretch, end, -1.0, sign, length, before);
+        if (!bells.small_at_end) {
+            bells.before -= width(drive, end, -1.0, before * V_S, length);
+        }
     }
     return bells.after < bells.before ? bells : all;
 }

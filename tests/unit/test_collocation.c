@@ -106,6 +106,20 @@ static void a_settled_stretch_goes_through_its_bells(void) {
     }
 }
 
+// In soft contacts bells cost two evaluations each, of stiffnesses.
+static void soft_bells_are_put_back(void) {
+    Slider slider;
+    double evaluations[2];
+    const int models[] = {FC_DAHL, FC_LUGRE};
+    for (double tolerance = 1e-3; tolerance > 1e-7; tolerance *= 0.1) {
+        for (int law = 0; law < 2; law++) {
+            make(&slider, 6e4, models[law], 5e-3, 1.3e-5);
+            evaluations[law] = evaluations_of(&slider, 1.07 * PERIOD, tolerance);
+        }
+        CHECK(evaluations[1] <= evaluations[0] + 8.0);
+    }
+}
+
 // An interval that begins or ends inside a bell, and one that begins in a bell too narrow to be seen: beyond it the limit is
 // Coulomb's, whatever it was at the start.
 static void intervals_cut_bells(void) {
@@ -230,6 +244,7 @@ int main(void) {
     from_rest();
     a_settled_stretch_is_one_panel();
     a_settled_stretch_goes_through_its_bells();
+    soft_bells_are_put_back();
     intervals_cut_bells();
     short_intervals_end_in_bells();
     ends_around_a_reversal();

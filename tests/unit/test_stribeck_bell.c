@@ -55,7 +55,8 @@ static void check_stretch(const FcBellInterval* interval, double start, double e
     const FcScene* scene = interval->scene;
     const FcBellEdge a = fc_bell_edge(scene, start);
     const FcBellEdge b = fc_bell_edge(scene, end);
-    const FcBells bells = fc_bells(interval, &a, &b, 55.0 / contact.sigma, 1.0);
+    const double displacement = fc_drive_displacement(&scene->drive, start, end);
+    const FcBells bells = fc_bells(interval, &a, &b, 55.0 / contact.sigma, displacement, 1.0);
     const double seen_from = NOT_SEEN * interval->tolerance;
     const double least = sqrt(log(interval->excess / seen_from)); // reach for a force of the limit
     const double most = sqrt(log(interval->excess * pow(friction.staticRatio, 2.0) / seen_from));
