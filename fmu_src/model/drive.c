@@ -55,13 +55,24 @@ FcDrive fc_drive_later(const FcDrive* drive, double t) {
     return later;
 }
 
+// 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
+double fc_drive_small_V(const FcDrive* drive, double t, double angle, double cosine) {
+    const double V_1 = drive->vibration.V_1;
+    if (fabs(cosine) < 0.9) {
+        return linear(drive->V, t) + V_1 * cosine;
+    }
+    const double turn = copysign(V_1, cosine);
+    const double sine = sin(angle);
+    return (drive->V.value + turn) + (drive->V.rate * t - turn * (sine * sine / (1.0 + fabs(cosine))));
+}
+
 FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
     FcDriveValues now = {.V = linear(drive->V, t), .d = linear(drive->d, t)};
     if (drive->omega != 0.0) {
         const double angle = theta(drive, t);
         const double c = cos(angle);
         const double s = sin(angle);
-        now.V += drive->vibration.V_1 * c;
+        now.V = fc_drive_V_at_angle(drive, t, angle, c);
         if (drive->vibration.a_d != 0.0) {
             now.d += drive->vibration.a_d * (c * drive->cos_phase_d - s * drive->sin_phase_d);
         }
@@ -70,8 +81,11 @@ FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
 }
 
 double fc_drive_V(const FcDrive* drive, double t) {
-    const double V = linear(drive->V, t);
-    return drive->vibration.V_1 != 0.0 ? V + drive->vibration.V_1 * cos(theta(drive, t)) : V;
+    if (drive->vibration.V_1 == 0.0) {
+        return linear(drive->V, t);
+    }
+    const double angle = theta(drive, t);
+    return fc_drive_V_at_angle(drive, t, angle, cos(angle));
 }
 
 double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }
@@ -98,7 +112,7 @@ FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
         const double angle = theta(drive, t);
         const double V_1 = drive->vibration.V_1;
         const double c = cos(angle);
-        at.V += V_1 * c;
+        at.V = fc_drive_V_at_angle(drive, t, angle, c);
         at.rate -= V_1 * drive->omega * sin(angle);
         at.curvature = -V_1 * drive->omega * drive->omega * c;
     }
@@ -135,15 +149,27 @@ double fc_drive_largest_speed(const FcDrive* drive, double h) {
     return fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
 }
 
+// Half an angle below which the displacement is taken from a series, whose remainder is then under 1e-16.
+static const double SHORT = 0.5;
+
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
     const double duration = t1 - t0;
     const double middle = 0.5 * (t0 + t1);
-    double displacement = linear(drive->V, middle) * duration;
-    if (drive->vibration.V_1 != 0.0) {
-        displacement += 2.0 * drive->vibration.V_1 / drive->omega * sin(0.5 * drive->omega * duration) *
-                        cos(theta(drive, middle));
+    if (drive->vibration.V_1 == 0.0) {
+        return linear(drive->V, middle) * duration;
     }
-    return displacement;
+    const double half = 0.5 * drive->omega * duration;
+    const double angle = theta(drive, middle);
+    const double c = cos(angle);
+    if (half > SHORT) {
+        return linear(drive->V, middle) * duration +
+               2.0 * drive->vibration.V_1 / drive->omega * sin(half) * c;
+    }
+    // V in the middle as a whole, since it may nearly cancel V_1, less what the vibration bends: 1 - sin(half) / half.
+    const double y = half * half;
+    const double bent =
+        y / 6 * (1.0 - y / 20 * (1.0 - y / 42 * (1.0 - y / 72 * (1.0 - y / 110 * (1.0 - y / 156)))));
+    return (fc_drive_V_at_angle(drive, middle, angle, c) - drive->vibration.V_1 * c * bent) * duration;
 }
 
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
@@ -170,15 +196,18 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
     return fmax(0.0, square);
 }
 
-// The first angle after theta, by more than the rounding of a root, that equals target modulo 2 pi.
-static const double SAME_ANGLE = 1e-8;
+// What rounding may make of a root's angle, over 1 + the angle.
+static const double SAME_ANGLE = 1e-13;
 
+static double least_ahead(double angle) { return SAME_ANGLE * (1.0 + fabs(angle)); }
+
+// The first angle after now, by more than the rounding of a root, that equals target modulo 2 pi.
 static double next_angle(double now, double target) {
     double ahead = fmod(target - now, FC_TWO_PI);
     if (ahead < 0.0) {
         ahead += FC_TWO_PI;
     }
-    return ahead > SAME_ANGLE ? now + ahead : now + ahead + FC_TWO_PI;
+    return ahead > least_ahead(now) ? now + ahead : now + ahead + FC_TWO_PI;
 }
 
 // Root of V in the bracket [t0, t1], on which V is monotone: Newton, kept inside by bisection.
@@ -211,18 +240,22 @@ static bool is_dip(const FcDrive* drive, double t) {
            fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
+// acos(-V / V_1), which loses half of its digits next to 1 and -1.
+static double angle_of_reversal(double V, double V_1) {
+    return fabs(V) < 0.9 * fabs(V_1) ? acos(-V / V_1) : 2.0 * atan(sqrt((V_1 + V) / (V_1 - V)));
+}
+
 static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, double end) {
     const double V_1 = drive->vibration.V_1;
-    const double ratio = -drive->V.value / V_1;
+    const double V = drive->V.value;
     const double now = theta(drive, t);
+    const bool reversal = fabs(V) < fabs(V_1);
     double angle;
-    bool reversal;
-    if (fabs(ratio) < 1.0) {
-        angle = fmin(next_angle(now, acos(ratio)), next_angle(now, -acos(ratio)));
-        reversal = true;
+    if (reversal) {
+        const double root = angle_of_reversal(V, V_1);
+        angle = fmin(next_angle(now, root), next_angle(now, -root));
     } else {
-        angle = next_angle(now, ratio < 0.0 ? FC_PI : 0.0);
-        reversal = false;
+        angle = next_angle(now, V * V_1 > 0.0 ? FC_PI : 0.0);
     }
     const double time = t + (angle - now) / drive->omega;
     if (!(time < end) || (!reversal && !is_dip(drive, time))) {
@@ -234,8 +267,7 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
 static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, double end) {
     // V is monotone between the angles where sin(theta) = V' / (V_1 omega), if there are any.
     const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
-    const double skip = SAME_ANGLE / drive->omega;
-    double from = t + skip;
+    double from = t + least_ahead(theta(drive, t)) / drive->omega;
     while (from < end) {
         double to = end;
         if (fabs(slope) < 1.0) {

@@ -9,6 +9,7 @@
 #ifndef FC_MODEL_DRIVE_H
 #define FC_MODEL_DRIVE_H
 
+#include <math.h>
 #include <stdbool.h>
 
 typedef struct {
@@ -50,6 +51,14 @@ typedef struct {
     double d; // m
 } FcDriveValues;
 FcDriveValues fc_drive_values(const FcDrive* drive, double t); // both for the price of one angle
+
+// V [m/s] at the time t [s], where the vibration's angle and its cosine are these. Where V nearly cancels V_1 |V| may be
+// less than the rounding of either, by which the stiffest contacts would relax otherwise: fc_drive_small_V keeps its digits.
+double fc_drive_small_V(const FcDrive* drive, double t, double angle, double cosine);
+static inline double fc_drive_V_at_angle(const FcDrive* drive, double t, double angle, double cosine) {
+    const double V = drive->V.value + drive->V.rate * t + drive->vibration.V_1 * cosine;
+    return fabs(V) < 0.05 * drive->vibration.V_1 ? fc_drive_small_V(drive, t, angle, cosine) : V;
+}
 
 double fc_drive_V(const FcDrive* drive, double t);             // m/s
 double fc_drive_d(const FcDrive* drive, double t);             // m

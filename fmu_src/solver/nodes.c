@@ -103,7 +103,7 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
     }
     const double V_c = drive->vibration.V_1 * c;
     const double V_s = drive->vibration.V_1 * s;
-    const double V_middle = drive->V.value + drive->V.rate * middle + V_c;
+    const double V_middle = fc_drive_V_at_angle(drive, middle, angle, c);
     const double V_rate = drive->V.rate * h;
     for (int i = 0; i < count; i++) {
         at->V[i] = V_middle + V_rate * node[i] + (V_c * cos_later_less_1[i] - V_s * sin_later[i]);

@@ -57,7 +57,7 @@ FcPath fc_path_from(const FcScene* scene, double start) {
         path.V_1 = drive->vibration.V_1;
         path.cos_theta = cos(theta);
         path.sin_theta = sin(theta);
-        path.V += path.V_1 * path.cos_theta;
+        path.V = fc_drive_V_at_angle(drive, start, theta, path.cos_theta);
     }
     return path;
 }

@@ -174,6 +174,51 @@ static void grazing_reversals(void) {
     CHECK_WITHIN(0.5 * (all.event[1].time + all.event[0].time), 0.5 * PERIOD, 1e-15 * PERIOD);
 }
 
+// Next to the angle at which V = -(1 + gap) + cos touches zero, in long double: -gap - 2 sin^2(x / 2). The angle itself is
+// rounded, by 1e-15 at a full turn; V is small and keeps its digits all the same.
+static void V_keeps_its_digits_where_it_touches_zero(void) {
+    const double gaps[] = {0.0, 0x1p-20, -0x1p-20, 0x1p-45, -0x1p-45};
+    const long double pi = 3.141592653589793238462643L;
+    for (int i = 0; i < 5; i++) {
+        for (int turned = 0; turned < 2; turned++) { // V_1 cos, and its negative half a period later
+            const double V = (turned ? 1.0 : -1.0) * (1.0 + gaps[i]);
+            const FcDrive drive = drive_of((Case){.V = V, .V_1 = 1.0});
+            for (double x = 1e-8; x < 0.2; x *= 3.0) {
+                const double t = ((turned ? 0.5 : 1.0) + x / TWO_PI) * PERIOD;
+                const double turn = turned ? 1.0 : 2.0;
+                const long double angle = (long double)drive.omega * t - (long double)turn * pi;
+                const long double half = sinl(0.5L * angle);
+                const long double dips = gaps[i] + 2.0L * half * half;
+                const double expected = (double)(turned ? dips : -dips);
+                const double rounding = 2e-15 * x + 1e-15 * fabs(expected);
+                CHECK_WITHIN(fc_drive_V(&drive, t), expected, rounding);
+                CHECK_WITHIN(fc_drive_values(&drive, t).V, expected, rounding);
+                CHECK_WITHIN(fc_drive_velocity(&drive, t).V, expected, rounding);
+                // and the path over as much on either side: -2 (gap x + x - sin x)
+                const double h = x / drive.omega;
+                const double middle = turn * 0.5 * PERIOD;
+                const double y = x * x;
+                const double rest = y / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * (1.0 - y / 72.0)));
+                const double path = 2.0 * h * (gaps[i] + rest);
+                CHECK_WITHIN(fc_drive_displacement(&drive, middle - h, middle + h), turned ? path : -path,
+                             4e-15 * x * h + 1e-15 * PERIOD * (fabs(gaps[i]) + y));
+            }
+        }
+    }
+}
+
+// A reversal 1e-11 of an angle after the start, where an earlier one is not met again.
+static void reversals_just_after_the_start(void) {
+    for (double ahead = 1e-11; ahead < 1e-3; ahead *= 10.0) {
+        const double t = 0.25 * PERIOD - ahead / (TWO_PI * F);
+        const FcDrive drive = drive_of((Case){.V = 0.0, .V_1 = 1.0, .start = t});
+        const FcDrive moving =
+            drive_of((Case){.V = ahead * 1e3, .V_rate = -1e3 * TWO_PI * F, .V_1 = 1.0, .start = 0.0});
+        CHECK_WITHIN(fc_drive_next_event(&drive, 0.0, 0.1 * PERIOD).time * TWO_PI * F, ahead, 2e-15);
+        CHECK_WITHIN(fc_drive_next_event(&moving, 0.0, 0.1 * PERIOD).time * TWO_PI * F, ahead + 1e-3, 1e-8);
+    }
+}
+
 // V just touches zero, or stays above it: one dip a period, at half of it, while it is deep enough to matter.
 static void dips_are_no_reversals(void) {
     const double V[] = {1.0, -1.0, 1.0 + 1e-12, 1.5};
@@ -344,6 +389,8 @@ int main(void) {
     bounds_hold();
     reversals_of_held_vibration();
     grazing_reversals();
+    V_keeps_its_digits_where_it_touches_zero();
+    reversals_just_after_the_start();
     dips_are_no_reversals();
     a_ramp_reverses_once();
     reversals_of_linear_inputs();
