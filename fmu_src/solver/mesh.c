@@ -6,6 +6,9 @@
 static const double SHARE_OF_MEAN = 0.003;
 static const double SHARE_AT_END = 0.001;
 
+// What panels may miss of a stretch's path, which decides in the stiffest contacts.
+static const double MISSED_OF_PATH = 0.1;
+
 enum { KINDS = 3, FINEST = 15 };
 static const int STAGES[KINDS] = {3, 5, 9};
 
@@ -149,7 +152,7 @@ typedef struct {
     double layer, layer_ahead;
     bool
         starts; // with a transient: not stepped over, though it be allowed to be, since what is estimated then is far off
-    bool ends_at_event;
+    bool ends_at_event;  // or within its layer
     double allowed_last; // relative error of a panel that ends at the event
     int for_transient, for_lag, for_last, for_quadrature;
 } Limits;
@@ -212,7 +215,8 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
 }
 
 double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t) {
-    if (at->path - mesh->speed * (t - at->t) + stretch->path_after > mesh->forgotten) {
+    const double about = at->path - MISSED_OF_PATH * fabs(stretch->displacement);
+    if (about - mesh->speed * (t - at->t) + stretch->path_after > mesh->forgotten) {
         return 0.0;
     }
     double path = stretch->path_after;
@@ -282,15 +286,20 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .starts = at->gone == 0.0 && transient > mesh->allowed,
         // The impulse and the work of a constant force are exact, those of another as good as the quadrature.
         .for_quadrature = mesh->moving_limit ? decades(mesh->allowed) : 0,
-        .ends_at_event = known && stretch->event <= stretch->end,
+        .ends_at_event = known && stretch->event - stretch->end <= stretch->w_b,
         .allowed_last = base * mesh->end / (stretch->w_b * last_counts + tiny),
     };
     double for_transient = base * mesh->end / (transient * lives + tiny);
     double for_lag = base * mesh->end / (drift * lag_counts + tiny);
     FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
 
-    const double fades = fc_mesh_left_at_end(mesh, stretch, at, at->t + plan.h);
-    if (fades > mesh->allowed * mesh->allowed) {
+    // A panel that gets longer by being planned for the end is nearer to it, where less fades.
+    for (double judged = 0.0; plan.h > judged;) {
+        judged = plan.h;
+        const double fades = fc_mesh_left_at_end(mesh, stretch, at, at->t + plan.h);
+        if (!(fades > mesh->allowed * mesh->allowed)) {
+            break;
+        }
         const double at_end = SHARE_AT_END * mesh->allowed / fades;
         for_transient = least(for_transient, at_end / (transient + tiny));
         for_lag = least(for_lag, at_end / (drift * least(lives, smooth) + tiny));

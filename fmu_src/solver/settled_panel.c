@@ -23,31 +23,31 @@ static const double LEAST_FADING = 0.69;
 
 // Integral of 1 / |V| [s2/m] from the panel's start to its end, at the most but for a factor of 2: |V| grows about linearly
 // from what it came from and falls so towards the reversal, whose layer is w_b wide.
-static double slowness(const FcSettledStart* from) {
+static double slowness(const FcSettledStart* from, const FcVelocity* end) {
     const FcStretch* stretch = from->stretch;
-    const FcDrive* drive = &from->mesh->scene->drive;
     const double t = from->at->t;
     const double duration = from->end - t;
     const double after = t - stretch->start + stretch->back;
     double slow = fading(after, duration) / speed_at_start(from);
     if (stretch->event <= from->end) {
-        slow += (2.0 + log1p(duration / stretch->w_b)) / fabs(fc_drive_V_rate(drive, from->end));
+        slow += (2.0 + log1p(duration / stretch->w_b)) / fabs(end->rate);
     } else if (isfinite(stretch->event)) {
         const double ahead = stretch->event - from->end + stretch->w_b;
-        slow += fading(ahead, duration) / fabs(fc_drive_V(drive, from->end));
+        slow += fading(ahead, duration) / fabs(end->V);
     }
     return slow;
 }
 
 // Error of the force at the end, over the limit: of second order in the lag.
-static double error_at_end(const FcSettledStart* from, double drift) {
+static double error_at_end(const FcSettledStart* from, const FcVelocity* end, double drift) {
     const FcStretch* stretch = from->stretch;
     if (stretch->event <= from->end) {
+        // The lag there is that of a linear V: bent, it is another by about half of V'' w / V'.
         const double lag = drift * stretch->w_b;
-        return lag * (lag + from->mesh->smooth.rate * stretch->w_b);
+        const double bent = fabs(end->curvature / end->rate);
+        return lag * (lag + (from->mesh->smooth.rate + bent) * stretch->w_b);
     }
-    const double relaxes =
-        from->mesh->saturation / fabs(fc_drive_V(&from->mesh->scene->drive, from->end)); // s
+    const double relaxes = from->mesh->saturation / fabs(end->V); // s
     const double after = from->end - stretch->start + stretch->back;
     const double ahead = isfinite(stretch->event) ? stretch->event - from->end : INFINITY;
     const double changes = from->mesh->smooth.rate + 1.0 / fmin(fmin(after, ahead), from->end - from->at->t);
@@ -116,10 +116,15 @@ static bool is_accurate(const FcSettledStart* from, double* displacement) {
         return false;
     }
     *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
-    return lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed &&
-           (known || lag_lasts * slowness(from) <= allowed * mesh->end) &&
-           (from->last ? seen_of_bell(from, error_at_end(from, drift)) : error_at_end(from, drift)) <=
-               allowed;
+    if (!(lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed)) {
+        return false;
+    }
+    const FcVelocity end = fc_drive_velocity(&mesh->scene->drive, from->end);
+    if (!known && !(lag_lasts * slowness(from, &end) <= allowed * mesh->end)) {
+        return false;
+    }
+    const double error = error_at_end(from, &end, drift);
+    return (from->last ? seen_of_bell(from, error) : error) <= allowed;
 }
 
 // What the force lags behind the limit at the end, over the limit.

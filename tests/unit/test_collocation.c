@@ -168,6 +168,44 @@ static void ends_around_a_reversal(void) {
     }
 }
 
+// The deflection at the end alone, by brute force over the last layers, in which a stiff bristle forgets the rest.
+static double deflection_after(const FcScene* scene, double h, double layer) {
+    enum { PER_LAYER = 1000, LAYERS = 8 };
+    FcStepResult last = {.delta = 0.0};
+    for (int left = LAYERS * PER_LAYER; left > 0; left--) {
+        const double step = layer / PER_LAYER;
+        const FcCoefficients at = fc_scene_coefficients(scene, h - (left - 0.5) * step);
+        const FcMap part = fc_map_of_constant_scene(&at, step);
+        fc_map_apply(&part, &last);
+    }
+    return last.delta;
+}
+
+// V / V_1 from above 1 to below, with steps that end where |V| is least or just before: |V| grows like the square of
+// time, reversals are closer than their layers, and the path left is less than what panels miss of the whole.
+static void ends_where_V_touches_zero(void) {
+    Slider slider;
+    const double omega = 2.0 * 3.141592653589793 / PERIOD;
+    const double shorter[] = {0.0, 0.1, 2.0}; // layers
+    for (double kappa = 1e7; kappa < 2e12; kappa *= 10.0) {
+        const double layer = cbrt(6.0 / kappa) / omega; // s
+        for (int i = 0; i < 9 * 9; i++) {
+            const double gap = (i % 3 - 1) * pow(10.0, -13 + i / 9);
+            const double h = PERIOD - shorter[i / 3 % 3] * layer;
+            make(&slider, kappa * omega * F_C / V_1, FC_DAHL, -(1.0 + gap) * V_1, 0.0);
+            const double stiffness = fc_scene_stiffness(&slider.scene, h);
+            const double exact = deflection_after(&slider.scene, h, layer);
+            for (double tolerance = 1e-2; tolerance > 5e-8; tolerance *= 0.1) {
+                const FcSolverOptions options = {.tolerance = tolerance, .step_size = 1e-8};
+                double evaluations = 0.0;
+                const FcMap map =
+                    fc_collocation_interval(&slider.scene, &options, h, 0.0, FC_MAP_THIS_START, &evaluations);
+                CHECK_WITHIN(stiffness * map.offset, stiffness * exact, (tolerance + 5e-8) * F_C);
+            }
+        }
+    }
+}
+
 // Only the separation vibrates: the lag behind the limit is known too.
 static void a_constant_velocity_is_one_panel(void) {
     Slider slider;
@@ -248,6 +286,7 @@ int main(void) {
     intervals_cut_bells();
     short_intervals_end_in_bells();
     ends_around_a_reversal();
+    ends_where_V_touches_zero();
     a_constant_velocity_is_one_panel();
     scenes_that_were_missed();
     stiffness_over_many_decades();
