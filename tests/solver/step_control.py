@@ -1,6 +1,8 @@
 """Scenes whose cost tells whether the step control works, and their costs: fifteen, and those of the laws.
 
-    python tests/solver/step_control.py    measures them anew on the built FMU and writes step_control*.csv
+    PYTHONPATH=tests .venv/bin/python tests/solver/step_control.py
+
+measures them anew on the built FMU and writes step_control*.csv.
 
 To be done when a method has been changed deliberately: the accuracy tests say whether its results are
 right, these numbers only that it still takes the work it took. A spoilt step control often costs work and
