@@ -57,6 +57,7 @@ typedef struct {
     double to_mean[MOST_POINTS];                   // 1
     double error[MOST_POINTS][MOST_POINTS][KINDS]; // 1, of a panel, from one point to another
     double settled[MOST_POINTS];                   // 1, of the closed form, from a point to the stretch's end
+    double to_settle[MOST_POINTS];                 // evaluations that it takes
 } Grid;
 static Grid grids[STRETCHES];
 
@@ -160,6 +161,7 @@ static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh, d
         }
         const FcCoefficients here = fc_scene_coefficients(scene, grid->t[i]);
         const FcPlace at = {.t = grid->t[i], .rate = -fc_coefficients_rate(&here)};
+        double too_long = INFINITY;
         const FcSettledStart from = {.scene = scene,
                                      .mesh = mesh,
                                      .stretch = &grid->stretch,
@@ -167,10 +169,13 @@ static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh, d
                                      .end = grid->stretch.end,
                                      .sign = grid->sign,
                                      .sigma = here.sigma,
-                                     .limit = here.limit};
+                                     .limit = here.limit,
+                                     .too_long = &too_long};
         FcPanel rest;
-        grid->settled[i] =
-            fc_settled_panel(&from, &rest) ? error_of(grid, i, grid->count - 1, &rest.map, end) : INFINITY;
+        double taken = 0.0;
+        const bool settles = fc_settled_panel(&from, &rest, &taken);
+        grid->settled[i] = settles ? error_of(grid, i, grid->count - 1, &rest.map, end) : INFINITY;
+        grid->to_settle[i] = taken;
     }
 }
 
@@ -182,9 +187,9 @@ static double cheapest(const Grid* grid, double price, double* error) {
     const int last = grid->count - 1;
     cost[last] = errors[last] = nodes[last] = 0.0;
     for (int i = last - 1; i >= 0; i--) {
-        cost[i] = 1.0 + price * grid->settled[i];
+        cost[i] = grid->to_settle[i] + price * grid->settled[i];
         errors[i] = grid->settled[i];
-        nodes[i] = 1.0;
+        nodes[i] = grid->to_settle[i];
         for (int j = i + 1; j <= last; j++) {
             for (int kind = 0; kind < KINDS; kind++) {
                 const double of_panel = grid->error[i][j][kind];

@@ -4,8 +4,8 @@
 
 They are kept with the sources, so that a build needs no mpmath; tests/unit/test_panel_tables.c holds them to
 other formulas. All follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for
-Gauss and of P_n - P_(n-1) for Radau: the integrals of the polynomials through values at the nodes, their
-Legendre coefficients, their value at 0.
+Gauss and of P_n - P_(n-1) for Radau: the integrals and slopes of the polynomials through values at the
+nodes, their Legendre coefficients, their value at 0.
 """
 
 from __future__ import annotations
@@ -57,14 +57,17 @@ class Rule:
         self.nodes = nodes
         powers = mp.matrix(n, n)
         integrals = mp.matrix(n, n)
+        slopes = mp.matrix(n, n)
         legendres = mp.matrix(n, n)
         for i, c in enumerate(nodes):
             for j in range(n):
                 powers[i, j] = c**j
                 integrals[i, j] = c ** (j + 1) / (j + 1)
+                slopes[i, j] = j * c ** (j - 1) if j else mpf(0)
                 legendres[i, j] = mp.polyval(legendre(j)[::-1], c)
         from_values = powers**-1
         self.integral = integrals * from_values
+        self.slope = slopes * from_values
         self.weights = list(mp.matrix([[mpf(1) / (j + 1) for j in range(n)]]) * from_values)
         self.start = [from_values[0, j] for j in range(n)]  # the polynomial's value at 0
         of_degree = legendres**-1
@@ -91,6 +94,7 @@ GAUSS_STRUCT = """typedef struct {
     double weight[12];       // of the integral over the panel
     double integral[12][12]; // [j][i]: weight of node j in the integral up to node i
     double tail[4][12];      // rows: Legendre coefficients of the degrees n - 1 .. n - 4
+    double slope[12][12];    // [j][i]: weight of node j in the slope at node i
 } FcGaussRule;
 """
 
@@ -106,12 +110,15 @@ RADAU_STRUCT = """typedef struct {
 
 def gauss_table(n: int) -> str:
     rule = Rule(gauss_nodes(n))
-    columns = [[rule.integral[i, j] for i in range(n)] for j in range(n)]
+    columns, slopes = (
+        [[matrix[i, j] for i in range(n)] for j in range(n)] for matrix in (rule.integral, rule.slope)
+    )
     return f"""static const FcGaussRule FC_GAUSS_{n} = {{
     {row([c - mpf(1) / 2 for c in rule.nodes])},
     {row(rule.weights)},
     {rows(columns)},
     {rows(rule.tail)},
+    {rows(slopes)},
 }};
 """
 

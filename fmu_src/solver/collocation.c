@@ -211,8 +211,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         const bool in_bell = fc_in_bell(&stretch->bells, at.t);
         const FcScene* here = in_bell ? scene : progress->beyond_bells;
         double settled_to;
-        if (fc_settle(&settling, &at, &panel, &settled_to)) {
-            progress->evaluations += 1.0;
+        if (fc_settle(&settling, &at, &panel, &settled_to, &progress->evaluations)) {
             take(progress, &at, &panel);
             at.t = settled_to;
             displacement += panel.displacement;

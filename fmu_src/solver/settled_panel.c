@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "model/constants.h"
+#include "solver/settled_lag.h"
 
 // Bounds are held this far below the tolerance.
 static const double SHARE = 0.3;
@@ -61,13 +62,13 @@ static bool are_bells_accurate(const FcSettledStart* from) {
     return error <= SHARE_OF_BELLS * from->mesh->allowed * from->mesh->end;
 }
 
-// What the interval's end or its mean see of the error at a bell, over the limit: at a reversal it fades.
-static double seen_of_bell(const FcSettledStart* from, double error) {
+// What the interval's end or its mean see of the error at the end, over the limit: at a reversal it fades.
+static double seen_at_end(const FcSettledStart* from, const FcVelocity* end, double drift) {
     const FcStretch* stretch = from->stretch;
     const FcMesh* mesh = from->mesh;
     const bool fades = stretch->event <= from->end;
-    return (error + from->last->at_edge) *
-           (fades ? exp(-stretch->path_after / mesh->saturation) + stretch->w_b / mesh->end : 1.0);
+    const double error = error_at_end(from, end, drift) + (from->last ? from->last->at_edge : 0.0);
+    return error * (fades ? exp(-stretch->path_after / mesh->saturation) + stretch->w_b / mesh->end : 1.0);
 }
 
 static bool is_possible(const FcSettledStart* from) {
@@ -89,54 +90,76 @@ static double beyond_lag(const FcSettledStart* from) {
     return bell ? (1.0 + bell->curve) * bell->lag : curve > 0.0 ? curve / from->scene->F_C : 0.0;
 }
 
+typedef enum {
+    NOT_SETTLED,
+    LAG_UNSEEN, // or known: the mean is the limit's
+    LAG_SEEN,   // by the mean
+} Settled;
+
+// A layer at the end that is no longer than this of the span may be resolved by the poles of the lag.
+static const double LONGEST_LAYER = 0.02;
+
+// Whether it is not worth while to integrate the lag: at half of its largest the second order is too large.
+static bool is_lag_too_large(const FcSettledStart* from, double drift, double allowed) {
+    const FcMesh* mesh = from->mesh;
+    const FcStretch* stretch = from->stretch;
+    const double w_b = stretch->event <= from->end ? stretch->w_b : 0.0;
+    const double rate = from->at->rate;
+    const double span = from->end - from->at->t;
+    return has_bells(from) || span > 0.5 * *from->too_long || w_b > LONGEST_LAYER * span ||
+           0.5 * drift * (0.5 / (rate * rate) + w_b * w_b * w_b * mesh->smooth.rate) > allowed * mesh->end;
+}
+
 // Cheap tests first: they fail on most panels.
-static bool is_accurate(const FcSettledStart* from, double* displacement) {
+static Settled settled(const FcSettledStart* from, double* displacement) {
     const FcMesh* mesh = from->mesh;
     const FcStretch* stretch = from->stretch;
     const FcPlace* at = from->at;
     if (!(at->rate > 0.0) || !is_possible(from) || (has_bells(from) && !are_bells_accurate(from))) {
-        return false;
+        return NOT_SETTLED;
     }
     const double allowed = SHARE * mesh->allowed;
     const double drift = mesh->smooth.rate - mesh->scene->drive.omega; // 1/s, |rho| at the most
     const double after = at->t - stretch->start + stretch->back;
     const double lag_lasts = 2.0 * drift * mesh->beyond; // m, but for what is in the error of the bells
     const bool known = V_is_constant(&mesh->scene->drive);
-    if (!known && lag_lasts * LEAST_FADING * fc_least(after, from->end - at->t) >
-                      allowed * mesh->end * speed_at_start(from)) {
-        return false;
+    const bool seen = !known && lag_lasts * LEAST_FADING * fc_least(after, from->end - at->t) >
+                                    allowed * mesh->end * speed_at_start(from);
+    if (seen && is_lag_too_large(from, drift, allowed)) {
+        return NOT_SETTLED;
     }
     const double lag = at->lag + beyond_lag(from);
     const double allowed_changes = allowed * mesh->end * at->rate * at->rate / (lag + ROUNDING); // 1/s
     if (mesh->smooth.rate + 1.0 / after > allowed_changes) {
-        return false;
+        return NOT_SETTLED;
     }
     const FcVelocity here = fc_drive_velocity(&mesh->scene->drive, at->t);
     if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(&here) > allowed_changes) {
-        return false;
+        return NOT_SETTLED;
     }
     *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
     if (!(lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed)) {
-        return false;
+        return NOT_SETTLED;
     }
     const FcVelocity end = fc_drive_velocity(&mesh->scene->drive, from->end);
-    if (!known && !(lag_lasts * slowness(from, &end) <= allowed * mesh->end)) {
-        return false;
+    if (!(seen_at_end(from, &end, drift) <= allowed)) {
+        return NOT_SETTLED;
     }
-    const double error = error_at_end(from, &end, drift);
-    return (from->last ? seen_of_bell(from, error) : error) <= allowed;
+    if (known || (!seen && lag_lasts * slowness(from, &end) <= allowed * mesh->end)) {
+        return LAG_UNSEEN;
+    }
+    return is_lag_too_large(from, drift, allowed) ? NOT_SETTLED : LAG_SEEN;
 }
 
 // What the force lags behind the limit at the end, over the limit.
-static double lag_at_end(const FcSettledStart* from, const FcCoefficients* end) {
+static double lag_at_end(const FcSettledStart* from, const FcCoefficients* end, double rho) {
     const FcStretch* stretch = from->stretch;
-    const FcLogRates rates = fc_scene_log_rates(from->scene, from->end);
     if (stretch->event <= from->end) {
         // the layer is that of the static limit, which counts where the bristle follows the bell
         const double limit = from->last ? 1.0 : fc_stribeck(from->mesh->scene->friction, 0.0);
-        return rates.sigma * stretch->w_b * 0.5 * sqrt(FC_PI / limit);
+        return rho * stretch->w_b * 0.5 * sqrt(FC_PI / limit);
     }
-    return rates.sigma / -fc_coefficients_rate(end);
+    return rho / -fc_coefficients_rate(end);
 }
 
 // What a bell that the panel starts in adds: to the force that stays, and to what the transient starts from.
@@ -176,16 +199,37 @@ static FcCoefficients coefficients_at_end(const FcSettledStart* from) {
     return end;
 }
 
-bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
+bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel, double* evaluations) {
     double X;
-    if (!is_accurate(from, &X)) {
+    const Settled settled_so = settled(from, &X);
+    if (settled_so == NOT_SETTLED) {
         return false;
     }
     const FcCoefficients end = coefficients_at_end(from);
+    const double rho = fc_scene_log_rates(from->scene, from->end).sigma;
+    *evaluations += 1.0;
+    const FcDrive* drive = &from->scene->drive;
     const double force = from->sign * from->scene->F_C;
     const double D = force / from->sigma;
     const double V = from->sign * speed_at_start(from);
     const double relaxes = 1.0 / from->at->rate; // s
+    const double lags = D - force / end.sigma;   // m, what D goes back by: the integral of V times the lag
+    FcLag lag = {0.0, 0.0};
+    if (settled_so == LAG_SEEN) {
+        const FcLagSpan span = {.mesh = from->mesh,
+                                .stretch = from->stretch,
+                                .t = from->at->t,
+                                .end = from->end,
+                                .rate = from->at->rate,
+                                .at_end = end,
+                                .rho = rho,
+                                .allowed = SHARE * from->mesh->allowed * from->mesh->end};
+        if (!fc_settled_lag(&span, &lag, from->too_long, evaluations)) {
+            return false;
+        }
+    } else if (V_is_constant(drive)) {
+        lag = (FcLag){lags / V, V * (1.0 / end.sigma - 1.0 / from->sigma)};
+    }
     *panel = (FcPanel){
         .z = fabs(X) / from->mesh->saturation,
         .rate = -fc_coefficients_rate(&end),
@@ -196,25 +240,17 @@ bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel) {
     // The transient is (delta_0 - D) e^-rt, and sigma r D = sigma V.
     panel->map = (FcMap){
         .relaxation = 1.0,
-        .offset = force * (1.0 + lag_at_end(from, &end)) / end.sigma,
+        .offset = force * (1.0 + lag_at_end(from, &end, rho)) / end.sigma,
         .impulse_slope = from->sigma * relaxes,
-        .impulse_offset = force * (from->end - from->at->t - relaxes),
+        .impulse_offset = force * (from->end - from->at->t - relaxes + lag.time),
         .work_slope = force,
-        .work_offset = force * (X - D),
+        .work_offset = force * (X - D + lags),
         .drag_slope = -V,
-        .drag_offset = V * D,
+        .drag_offset = V * D + force * lag.drag,
         .heat_square = 0.5 * from->sigma,
         .heat_slope = force,
-        .heat_offset = force * (X - 1.5 * D),
+        .heat_offset = force * (X - 1.5 * D + 2.0 * lags),
     };
-    if (V_is_constant(&from->scene->drive)) {
-        // sigma' / (sigma r), integrated over the path
-        const double of_lag = force * (D - force / end.sigma);
-        panel->map.impulse_offset += of_lag / V;
-        panel->map.work_offset += of_lag;
-        panel->map.heat_offset += 2.0 * of_lag;
-        panel->map.drag_offset += V * (force / end.sigma - D);
-    }
     if (from->first) {
         add_first(from, force, panel);
     }

@@ -26,10 +26,12 @@ typedef struct {
     double sign;         // of V
     double sigma, limit; // N/m, N, at the start
     const FcSettledBell *first,
-        *last; // of the Stribeck curve, that the panel starts and ends in; NULL for none
+        *last;        // of the Stribeck curve, that the panel starts and ends in; NULL for none
+    double* too_long; // s, span in which the lag could not be told: half as long is tried next
 } FcSettledStart;
 
-// Whether the panel's error is small enough for what the interval is allowed; if so, the panel.
-bool fc_settled_panel(const FcSettledStart* start, FcPanel* panel);
+// Whether the panel's error is small enough for what the interval is allowed; if so, the panel. Adds to
+// *evaluations what it takes.
+bool fc_settled_panel(const FcSettledStart* start, FcPanel* panel, double* evaluations);
 
 #endif

@@ -19,6 +19,8 @@ void fc_settling_init(FcSettling* settling, const FcScene* scene, const FcScene*
     settling->scene = scene;
     settling->start = (FcSettledStart){.scene = beyond_bells, .mesh = mesh, .stretch = stretch, .sign = sign};
     settling->end = end;
+    settling->too_long = INFINITY;
+    settling->start.too_long = &settling->too_long;
     settling->follows_in_first = settling->follows_in_last = false;
     if (!has_bells_apart(mesh, bells, stretch->start, end)) {
         return;
@@ -44,7 +46,7 @@ static bool is_curve_seen(const FcSettling* settling, const FcPlace* at, double 
     return (limit / settling->scene->F_C - 1.0) * lasts > OF_THE_CURVE * mesh->allowed * mesh->end;
 }
 
-bool fc_settle(FcSettling* settling, const FcPlace* at, FcPanel* panel, double* end) {
+bool fc_settle(FcSettling* settling, const FcPlace* at, FcPanel* panel, double* end, double* evaluations) {
     FcSettledStart* start = &settling->start;
     const FcBells* bells = &start->stretch->bells;
     const bool in_first = at->t < bells->after && is_curve_seen(settling, at, panel->limit);
@@ -65,11 +67,11 @@ bool fc_settle(FcSettling* settling, const FcPlace* at, FcPanel* panel, double* 
     if (settling->follows_in_last) {
         start->last = &settling->last;
         start->end = *end = settling->end;
-        if (fc_settled_panel(start, panel)) {
+        if (fc_settled_panel(start, panel, evaluations)) {
             return true;
         }
         start->last = NULL;
     }
     start->end = *end = bells->before;
-    return fc_settled_panel(start, panel);
+    return fc_settled_panel(start, panel, evaluations);
 }

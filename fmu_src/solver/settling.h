@@ -16,6 +16,7 @@ typedef struct {
     double end;                             // s, of what is crossed
     bool follows_in_first, follows_in_last; // bell; of the first one, whether it may
     FcSettledBell first, last;              // where it follows in them
+    double too_long;                        // s
 } FcSettling;
 
 // beyond_bells is the scene where it has no Stribeck curve. Keeps the pointers.
@@ -23,6 +24,6 @@ void fc_settling_init(FcSettling* settling, const FcScene* scene, const FcScene*
                       const FcMesh* mesh, const FcStretch* stretch, double end);
 
 // The settled panel from there, and the time [s] it ends at, if one is accurate. The panel holds what it was taken from.
-bool fc_settle(FcSettling* settling, const FcPlace* at, FcPanel* panel, double* end);
+bool fc_settle(FcSettling* settling, const FcPlace* at, FcPanel* panel, double* end, double* evaluations);
 
 #endif
