@@ -312,7 +312,7 @@ static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double
     const double moves = duration * (fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega);
     const double speed = fabs(fc_drive_V(drive, 0.0));
     const double saturation = motion->limit / motion->stiffness;
-    if (!(speed > moves && (speed - moves) * duration <= FC_MOST_BOUNDED * saturation) ||
+    if (!(duration > 0.0 && speed > moves && (speed - moves) * duration <= FC_MOST_BOUNDED * saturation) ||
         !fc_is_beyond_bells(scene->friction, speed - moves, fabs(delta_0) / saturation, tolerance)) {
         return false;
     }

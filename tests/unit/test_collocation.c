@@ -65,6 +65,24 @@ static double evaluations_of(const Slider* slider, double h, double tolerance) {
     return evaluations_from(&slider->scene, 0.3 * start.limit / start.sigma, F_C, h, tolerance);
 }
 
+// A step of no length, and what is left after whole periods, leave a bristle as it is.
+static void intervals_of_no_length(void) {
+    const int models[] = {FC_DAHL, FC_LUGRE};
+    for (int law = 0; law < 2; law++) {
+        for (double sigma = 6e2; sigma < 1e13; sigma *= 1e3) {
+            Slider slider;
+            make(&slider, sigma, models[law], 0.5, 1.3e-5);
+            const FcSolverOptions options = {.tolerance = 1e-6};
+            double evaluations = 0.0;
+            const FcMap map =
+                fc_collocation_interval(&slider.scene, &options, 0.0, 1e-6, FC_MAP_THIS_START, &evaluations);
+            FcStepResult result = {.delta = 1e-6};
+            fc_map_apply(&map, &result);
+            CHECK(result.delta == 1e-6 && result.impulse == 0.0 && result.work == 0.0 && result.heat == 0.0);
+        }
+    }
+}
+
 // From contacts without to contacts with nothing but settled panels.
 static void every_stiffness_and_tolerance(void) {
     Slider slider;
@@ -278,6 +296,7 @@ static void stiffness_over_many_decades(void) {
 }
 
 int main(void) {
+    intervals_of_no_length();
     every_stiffness_and_tolerance();
     from_rest();
     a_settled_stretch_is_one_panel();
