@@ -2,13 +2,14 @@
 // two reversals: the closed form of the path (solver/constant_contact.h). Otherwise the interval is split at the reversals
 // of V, where |V| has a kink, into stretches, and each stretch into panels (solver/panel.h):
 //
-//     little relaxes in the stretch     one or a few Gauss panels, without a linear system
+//     little relaxes in the stretch     one Gauss panel whose error is bounded beforehand (solver/bounded_panel.h), or a
+//                                       few that are judged; without a linear system
 //     else, or where those miss         Radau panels of 3, 5 or 9 stages on the mesh of solver/mesh.h
 //     once it follows its limit         the rest of the stretch in closed form (solver/settling.h)
 //
 // LuGre's limit depends on V in bells around the reversals and on nothing but the load beyond (solver/stribeck_bell.h).
-// Every panel's error is estimated and held against what an error may be there, so that F_t at the interval's end and
-// its mean stay within the tolerance.
+// Every panel's error is bounded or estimated and held against what an error may be there, so that F_t at the interval's
+// end and its mean stay within the tolerance.
 #include "solver/collocation.h"
 
 #include <assert.h>
