@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
+from frictionlab.fmu import Session
 from frictionlab.reference.solution import Contact, Scene
 from frictionlab.reference.start_values import start_values_of
 
@@ -30,6 +31,14 @@ class LawStep:
         """Input derivatives that are not zero."""
         rates = {name: getattr(self.scene, f"{name}_rate") for name in ("V", "d", "E", "load")}
         return {name: rate for name, rate in rates.items() if rate != 0.0}
+
+    def take(self, session: Session) -> None:
+        """Sets the inputs of the step and takes it."""
+        for name in ("V", "d", "E", "load"):
+            session.set(name, getattr(self.scene, name))
+        if self.rates:
+            session.set_rates(**self.rates)
+        session.step(self.h)
 
 
 @dataclass(frozen=True)

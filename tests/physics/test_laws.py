@@ -40,11 +40,7 @@ def worst(fmu: FrictionFmu, scene: LawScene, tolerance: float) -> dict[str, floa
     start = scene.start_values | {"solver.tolerance": tolerance}
     with fmu.session(start, start=scene.steps[0].scene.start) as session:
         for step in scene.steps:
-            for name in ("V", "d", "E", "load"):
-                session.set(name, getattr(step.scene, name))
-            if step.rates:
-                session.set_rates(**step.rates)
-            session.step(step.h)
+            step.take(session)
             for name, error in deviations(session, step).items():
                 found[name] = max(found.get(name, 0.0), error)
     return found

@@ -123,11 +123,7 @@ def _of_law_scene(fmu: FrictionFmu, scene: LawScene, tolerance: float | None) ->
     with fmu.session(start, start=scene.steps[0].scene.start) as session:
         counts = [session.get("solver.evaluations")]
         for step in scene.steps:
-            for name in ("V", "d", "E", "load"):
-                session.set(name, getattr(step.scene, name))
-            if step.rates:
-                session.set_rates(**step.rates)
-            session.step(step.h)
+            step.take(session)
             counts.append(session.get("solver.evaluations"))
     return [counts[0], *(after - before for before, after in pairwise(counts))]
 
