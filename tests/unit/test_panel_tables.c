@@ -174,6 +174,25 @@ static void check_integral(const double integral[12][12]) {
     }
 }
 
+// d P_k(2 c - 1) / dc = 2 P_k', with (x^2 - 1) P_k' = k (x P_k - P_(k-1))
+static long double legendre_slope(int k, long double c) {
+    const long double x = 2.0L * c - 1.0L;
+    return k == 0 ? 0.0L : 2.0L * k * (x * legendre(k, x) - legendre(k - 1, x)) / (x * x - 1.0L);
+}
+
+static void check_slope(const double slope[12][12]) {
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            long double sum = 0.0L, size = 0.0L;
+            for (int k = 0; k < n; k++) {
+                sum += tail(k, j) * legendre_slope(k, node[i]);
+                size += fabsl(tail(k, j) * legendre_slope(k, node[i]));
+            }
+            check_nearest_to(slope[j][i], sum, size);
+        }
+    }
+}
+
 static void weights_integrate_polynomials(const double* entry) {
     for (int k = 0; k <= (is_radau ? 2 * n - 2 : 2 * n - 1); k++) {
         long double sum = 0.0L;
@@ -202,6 +221,7 @@ static void check_gauss(const FcGaussRule* rule, int nodes) {
     check_nodes(rule->node);
     check_weights(rule->weight);
     check_integral(rule->integral);
+    check_slope(rule->slope);
     check_tail(&rule->tail[0][0], 12);
     weights_integrate_polynomials(rule->weight);
 }
