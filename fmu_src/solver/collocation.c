@@ -52,12 +52,10 @@ typedef struct {
     FcMap* map;                  // of what is crossed
     double end;                  // s
     double tolerance;            // N, of the force
-    double largest_stiffness;    // N/m
     FcCoefficients start;
     double per_deflection; // 1/m, about sigma / g
     double scale;          // m, size of the deflection at the start
     double speed;          // m/s
-    double relative;       // 1, the tolerance
     double digits;         // asked for
     double held;           // N, s g in a stretch with a constant limit, else 0
     double evaluations;    // in the communication step so far
@@ -153,7 +151,7 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
     const double rounding = ROUNDING * panel->limit;
     const double whole = progress->tolerance * fc_least(1.0, panel->z);
     // sigma may grow while the error lives
-    const double end_error = panel->end_error * fc_least(progress->largest_stiffness / panel->sigma,
+    const double end_error = panel->end_error * fc_least(progress->motion.stiffness / panel->sigma,
                                                          1.0 + 2.0 * plan->lives / plan->grows);
     const double lives = fc_least(plan->lives, progress->end - at->t);
     const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
@@ -173,16 +171,12 @@ static void take(Progress* progress, FcPlace* at, const FcPanel* panel) {
     at->path -= fabs(panel->displacement);
 }
 
-// Width [s] of the layer around a reversal or dip at t, with sigma and g as they are at a time near it: beyond the interval
+// Width [s] of the layer around a reversal, or a dip, at t, with sigma and g as they are at a time near it: beyond the interval
 // the inputs are not known.
-static double relaxation_layer(const FcScene* scene, double t, const FcCoefficients* near) {
+static double layer_at(const FcScene* scene, bool reversal, double t, const FcCoefficients* near) {
     const FcVelocity at = fc_drive_velocity(&scene->drive, t);
-    return fc_mesh_layer(&at, near->sigma / near->limit);
-}
-
-static double dip_layer(const FcScene* scene, double t, const FcCoefficients* near) {
-    const FcVelocity at = fc_drive_velocity(&scene->drive, t);
-    return fc_mesh_dip_layer(&at, near->sigma / near->limit);
+    const double per_path = near->sigma / near->limit;
+    return reversal ? fc_mesh_layer(&at, per_path) : fc_mesh_dip_layer(&at, per_path);
 }
 
 // Goes through a stretch from t to the end of a section with Radau panels.
@@ -195,7 +189,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
         .t = t,
         .rate = panel.rate,
         .path = fabs(fc_stretch_displacement(stretch, &scene->drive, t, stretch->end)),
-        .layer = t == stretch->start ? stretch->w_a : relaxation_layer(scene, t, &start),
+        .layer = t == stretch->start ? stretch->w_a : layer_at(scene, true, t, &start),
     };
     FcSettling settling;
     fc_settling_init(&settling, scene, progress->beyond_bells, mesh, stretch, end);
@@ -259,10 +253,6 @@ static FcMap slack_map(const FcScene* scene, double h) {
     map.offset = fc_drive_displacement(&scene->drive, 0.0, h);
     map.drag_offset = fc_drive_square(&scene->drive, 0.0, h);
     return map;
-}
-
-static double layer_at(const FcScene* scene, bool reversal, double event, const FcCoefficients* near) {
-    return reversal ? relaxation_layer(scene, event, near) : dip_layer(scene, event, near);
 }
 
 // |force - what it settles to| at the interval's start, over the mesh's force: the limit, but for the lag to first order in
@@ -353,11 +343,9 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .map = &map,
         .end = duration,
         .tolerance = options->tolerance * force,
-        .largest_stiffness = largest_stiffness,
         .start = start,
         .per_deflection = start.sigma / start.limit,
         .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
-        .relative = options->tolerance,
         .digits = fc_digits(options->tolerance),
         .evaluations = *evaluations,
         .motion = motion,

@@ -22,6 +22,7 @@ typedef struct {
     const FcStretch* stretch;
     double t, end; // s
     double rate;   // 1/s, r at the start
+    FcVelocity V_at_t, V_at_end;
     FcCoefficients at_end;
     double rho;     // 1/s, at the end
     double allowed; // s, error of the integral

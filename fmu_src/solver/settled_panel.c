@@ -110,8 +110,14 @@ static bool is_lag_too_large(const FcSettledStart* from, double drift, double al
            0.5 * drift * (0.5 / (rate * rate) + w_b * w_b * w_b * mesh->smooth.rate) > allowed * mesh->end;
 }
 
+// What a panel that may be settled was found to go through.
+typedef struct {
+    double displacement;         // m
+    FcVelocity at_start, at_end; // V
+} Course;
+
 // Cheap tests first: they fail on most panels.
-static Settled settled(const FcSettledStart* from, double* displacement) {
+static Settled settled(const FcSettledStart* from, Course* course) {
     const FcMesh* mesh = from->mesh;
     const FcStretch* stretch = from->stretch;
     const FcPlace* at = from->at;
@@ -133,19 +139,19 @@ static Settled settled(const FcSettledStart* from, double* displacement) {
     if (mesh->smooth.rate + 1.0 / after > allowed_changes) {
         return NOT_SETTLED;
     }
-    const FcVelocity here = fc_drive_velocity(&mesh->scene->drive, at->t);
-    if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(&here) > allowed_changes) {
+    course->at_start = fc_drive_velocity(&mesh->scene->drive, at->t);
+    if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(&course->at_start) > allowed_changes) {
         return NOT_SETTLED;
     }
-    *displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
-    if (!(lag * exp(-fabs(*displacement) / mesh->saturation) <= allowed * allowed)) {
+    course->displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
+    if (!(lag * exp(-fabs(course->displacement) / mesh->saturation) <= allowed * allowed)) {
         return NOT_SETTLED;
     }
-    const FcVelocity end = fc_drive_velocity(&mesh->scene->drive, from->end);
-    if (!(seen_at_end(from, &end, drift) <= allowed)) {
+    course->at_end = fc_drive_velocity(&mesh->scene->drive, from->end);
+    if (!(seen_at_end(from, &course->at_end, drift) <= allowed)) {
         return NOT_SETTLED;
     }
-    if (known || (!seen && lag_lasts * slowness(from, &end) <= allowed * mesh->end)) {
+    if (known || (!seen && lag_lasts * slowness(from, &course->at_end) <= allowed * mesh->end)) {
         return LAG_UNSEEN;
     }
     return is_lag_too_large(from, drift, allowed) ? NOT_SETTLED : LAG_SEEN;
@@ -200,11 +206,12 @@ static FcCoefficients coefficients_at_end(const FcSettledStart* from) {
 }
 
 bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel, double* evaluations) {
-    double X;
-    const Settled settled_so = settled(from, &X);
-    if (settled_so == NOT_SETTLED) {
+    Course course;
+    const Settled as = settled(from, &course);
+    if (as == NOT_SETTLED) {
         return false;
     }
+    const double X = course.displacement;
     const FcCoefficients end = coefficients_at_end(from);
     const double rho = fc_scene_log_rates(from->scene, from->end).sigma;
     *evaluations += 1.0;
@@ -215,12 +222,14 @@ bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel, double* evalua
     const double relaxes = 1.0 / from->at->rate; // s
     const double lags = D - force / end.sigma;   // m, what D goes back by: the integral of V times the lag
     FcLag lag = {0.0, 0.0};
-    if (settled_so == LAG_SEEN) {
+    if (as == LAG_SEEN) {
         const FcLagSpan span = {.mesh = from->mesh,
                                 .stretch = from->stretch,
                                 .t = from->at->t,
                                 .end = from->end,
                                 .rate = from->at->rate,
+                                .V_at_t = course.at_start,
+                                .V_at_end = course.at_end,
                                 .at_end = end,
                                 .rho = rho,
                                 .allowed = SHARE * from->mesh->allowed * from->mesh->end};

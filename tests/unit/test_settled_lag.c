@@ -84,6 +84,8 @@ static void lag_is_that_of_the_equation(void) {
                           .t = t,
                           .end = end,
                           .rate = -fc_coefficients_rate(&at_t),
+                          .V_at_t = fc_drive_velocity(&slider.scene.drive, t),
+                          .V_at_end = fc_drive_velocity(&slider.scene.drive, end),
                           .at_end = fc_scene_coefficients(&slider.scene, end),
                           .rho = fc_scene_log_rates(&slider.scene, end).sigma,
                           .allowed = 1e-6};
