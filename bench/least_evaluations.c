@@ -1,12 +1,15 @@
-// The least evaluations with which the default's panels could do a vibration period, if their errors were known.
+// The least evaluations with which the default's panels could do a vibration period, if the size of their errors were known.
 //
 //     least_evaluations          a table: evaluations that the default takes, and the least, for each stiffness and tolerance
 //
 // For one scene, a dense grid in each stretch between two reversals, graded towards both; every panel between two grid
-// points, of every kind and number of nodes, and its true error against a fine solution: in the force at the interval's
-// end and in the mean, with what the bristle keeps of it. Then the cheapest sequence of panels whose errors sum up to no
-// more than the tolerance (dynamic programming; the price of an error is found by bisection). Real step control knows
-// estimates only, so it can't do as well: the table tells how much there is to be won by choosing panels better.
+// points, of every kind and number of nodes, and its true errors against a fine solution: in the force at the interval's
+// end, in the mean, in work and heat, with what the bristle keeps of them. Then the cheapest sequence of panels whose
+// errors sum up to no more than the tolerance (dynamic programming; the price of an error is found by bisection).
+//
+// An error changes its sign here and there, and a panel that ends next to such a place is right by luck. So a panel counts
+// with the worst of its neighbours, whose ends are the next points of the grid, and of nearby phases of the
+// separation; the last column is the least with luck. Real step control knows bounds or estimates, so it can't do as well.
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -21,7 +24,7 @@
 static const double PERIOD = 5e-5; // s
 static const double F_C = 55.0;    // N
 
-enum { MOST_POINTS = 160, KINDS = 7, STRETCHES = 3 };
+enum { MOST_POINTS = 160, KINDS = 7, STRETCHES = 3, RADAU_KINDS = 3 };
 static const int NODES[KINDS] = {3, 5, 9, 4, 6, 8, 12}; // Radau, then Gauss
 
 typedef struct {
@@ -30,60 +33,66 @@ typedef struct {
     FcScene scene;
 } Slider;
 
-static void make(Slider* slider, double sigma) {
+static void make(Slider* slider, double sigma, double phase_d) {
     slider->contact = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     slider->contact.stiffnessScale = sigma / 5.743065402e12;
     slider->friction =
         (FcFriction){.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT, .staticRatio = 1.0, .V_S = 1e-3};
     const double E = 58.556936170e9;
     const FcContactAtModulus at_E = fc_contact_at_modulus(&slider->contact, E);
-    const FcVibration vibration = {.f = 1.0 / PERIOD, .V_1 = 1.44, .a_d = 1.1e-6, .phase_d = 0.7};
+    const FcVibration vibration = {.f = 1.0 / PERIOD, .V_1 = 1.44, .a_d = 1.1e-6, .phase_d = phase_d};
     const FcDrive drive =
         fc_drive_make((FcLinearInput){5e-3, 0.0}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){E, 0.0},
                       (FcLinearInput){0.0, 0.0}, vibration, 0.0, 0.0);
     slider->scene = fc_scene_make(&slider->contact, &at_E, &slider->friction, F_C, &drive);
 }
 
-// One stretch: grid, fine solution, and what a unit of force at a grid point is worth at the interval's end and in the mean.
+// What is asked for: the force at the interval's end, the mean force, the work and the heat.
+enum { RESULTS = 4 };
+
+// One stretch: grid, fine solution, and what a unit of force at a grid point is worth in the results.
 typedef struct {
     FcStretch stretch;
     double sign;
     int count;
     double t[MOST_POINTS];                         // s
-    double delta[MOST_POINTS];                     // m
-    double impulse[MOST_POINTS];                   // N s, since the stretch's start
+    FcStepResult at[MOST_POINTS];                  // of the fine solution, since the stretch's start
     double sigma[MOST_POINTS];                     // N/m
-    double to_end[MOST_POINTS];                    // 1
-    double to_mean[MOST_POINTS];                   // 1
+    double worth[MOST_POINTS][RESULTS];            // 1
     double error[MOST_POINTS][MOST_POINTS][KINDS]; // 1, of a panel, from one point to another
     double settled[MOST_POINTS];                   // 1, of the closed form, from a point to the stretch's end
     double to_settle[MOST_POINTS];                 // evaluations that it takes
 } Grid;
 static Grid grids[STRETCHES];
 
-static FcPanel panel_of(const Grid* grid, const FcScene* scene, int kind, double t, double h, double delta) {
+// The displacement is known, which puts right what its quadrature misses: the path, and the work of a force at its limit.
+static FcMap panel_of(const Grid* grid, const FcScene* scene, int kind, double t, double h, double delta) {
     const FcTrajectories from = {.delta_0 = delta, .speed = 1.0};
     FcPanel panel;
-    if (kind < 3) {
+    if (kind < RADAU_KINDS) {
         fc_radau_panel(scene, NODES[kind], t, h, grid->sign, &from, &panel);
     } else {
         fc_gauss_panel(scene, t, h, NODES[kind], &from, &panel);
     }
-    return panel;
+    const double missed = fc_drive_displacement(&scene->drive, t, t + h) - panel.displacement;
+    FcMap map = panel.map;
+    if (kind < RADAU_KINDS) {
+        map.work_offset += grid->sign * F_C * missed;
+        map.heat_offset += grid->sign * F_C * missed;
+    } else {
+        map.offset += (1.0 - map.relaxation) * missed;
+    }
+    return map;
 }
 
 static double end_of(const FcMap* map, double delta) { return (1.0 - map->relaxation) * delta + map->offset; }
-
-static double impulse_of(const FcMap* map, double delta) {
-    return map->impulse_slope * delta + map->impulse_offset;
-}
 
 // Between two grid points: sixteen panels of nine stages.
 static FcMap fine(const Grid* grid, const FcScene* scene, double t, double h, double delta) {
     FcMap map = fc_map_identity();
     for (int i = 0; i < 16; i++) {
-        const FcPanel panel = panel_of(grid, scene, 2, t + i * h / 16, h / 16, end_of(&map, delta));
-        map = fc_map_compose(&map, &panel.map);
+        const FcMap part = panel_of(grid, scene, 2, t + i * h / 16, h / 16, end_of(&map, delta));
+        map = fc_map_compose(&map, &part);
     }
     return map;
 }
@@ -116,47 +125,62 @@ static void make_grid(Grid* grid) {
 }
 
 static void solve_finely(Grid* grid, const FcScene* scene, double delta) {
-    grid->delta[0] = delta;
-    grid->impulse[0] = 0.0;
+    grid->at[0] = (FcStepResult){.delta = delta};
     for (int i = 0; i < grid->count; i++) {
         grid->sigma[i] = fc_scene_stiffness(scene, grid->t[i]);
         if (i + 1 < grid->count) {
-            const FcMap map = fine(grid, scene, grid->t[i], grid->t[i + 1] - grid->t[i], grid->delta[i]);
-            grid->delta[i + 1] = end_of(&map, grid->delta[i]);
-            grid->impulse[i + 1] = grid->impulse[i] + impulse_of(&map, grid->delta[i]);
+            const double h = grid->t[i + 1] - grid->t[i];
+            const FcMap map = fine(grid, scene, grid->t[i], h, grid->at[i].delta);
+            grid->at[i + 1] = grid->at[i];
+            fc_map_apply(&map, &grid->at[i + 1]);
         }
     }
 }
 
-// Backwards: what is left of a deviation, and its part of the mean.
-static void worth(Grid* grid, const FcScene* scene, double end, double end_after, double mean_after) {
+// Backwards: what is left of a deviation of the force at the end, and its part of the mean, the work and the heat.
+static void find_worth(Grid* grid, const FcScene* scene, const double* after) {
     const int last = grid->count - 1;
-    grid->to_end[last] = end_after;
-    grid->to_mean[last] = mean_after;
+    const double path = fc_drive_largest_speed(&scene->drive, PERIOD) * PERIOD; // m, at the most
+    for (int k = 0; k < RESULTS; k++) {
+        grid->worth[last][k] = after[k];
+    }
     for (int i = last - 1; i >= 0; i--) {
-        const FcMap map = fine(grid, scene, grid->t[i], grid->t[i + 1] - grid->t[i], 0.0);
+        const double h = grid->t[i + 1] - grid->t[i];
+        const FcMap map = fine(grid, scene, grid->t[i], h, 0.0);
         const double kept = (1.0 - map.relaxation) * grid->sigma[i + 1] / grid->sigma[i];
-        grid->to_end[i] = kept * grid->to_end[i + 1];
-        grid->to_mean[i] = kept * grid->to_mean[i + 1] + map.impulse_slope / grid->sigma[i] / end;
+        const double of_heat = 2.0 * map.heat_square * grid->at[i].delta + map.heat_slope;
+        const double here[RESULTS] = {0.0, map.impulse_slope / PERIOD, map.work_slope / path, of_heat / path};
+        for (int k = 0; k < RESULTS; k++) {
+            grid->worth[i][k] = kept * grid->worth[i + 1][k] + here[k] / grid->sigma[i];
+        }
     }
 }
 
-static double error_of(const Grid* grid, int i, int j, const FcMap* map, double end) {
-    const double of_force = fabs(end_of(map, grid->delta[i]) - grid->delta[j]) * grid->sigma[j];
-    const double of_impulse = fabs(impulse_of(map, grid->delta[i]) - (grid->impulse[j] - grid->impulse[i]));
-    const double error =
-        (of_force * fmax(grid->to_end[j], 0.0) + of_force * fmax(grid->to_mean[j], 0.0) + of_impulse / end) /
-        F_C;
-    return isfinite(error) ? error : INFINITY;
+// The largest of the errors of the results from grid point i to j, over F_C.
+static double error_of(const Grid* grid, const FcScene* scene, int i, int j, const FcMap* map) {
+    const double path = fc_drive_largest_speed(&scene->drive, PERIOD) * PERIOD;
+    FcStepResult got = grid->at[i];
+    fc_map_apply(map, &got);
+    const FcStepResult* right = &grid->at[j];
+    const double force = fabs(got.delta - right->delta) * grid->sigma[j];
+    const double means[RESULTS] = {0.0, (got.impulse - right->impulse) / PERIOD,
+                                   (got.work - right->work) / path, (got.heat - right->heat) / path};
+    double error = 0.0;
+    for (int k = 0; k < RESULTS; k++) {
+        const double of_result = (force * fabs(grid->worth[j][k]) + fabs(means[k])) / F_C;
+        error = isfinite(of_result) ? fmax(error, of_result) : INFINITY;
+    }
+    return error;
 }
 
-static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh, double end) {
+static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh) {
     for (int i = 0; i < grid->count; i++) {
         for (int j = i + 1; j < grid->count; j++) {
             for (int kind = 0; kind < KINDS; kind++) {
-                const FcPanel panel =
-                    panel_of(grid, scene, kind, grid->t[i], grid->t[j] - grid->t[i], grid->delta[i]);
-                grid->error[i][j][kind] = error_of(grid, i, j, &panel.map, end);
+                const double h = grid->t[j] - grid->t[i];
+                const FcMap map = panel_of(grid, scene, kind, grid->t[i], h, grid->at[i].delta);
+                double* error = &grid->error[i][j][kind];
+                *error = fmax(*error, error_of(grid, scene, i, j, &map));
             }
         }
         const FcCoefficients here = fc_scene_coefficients(scene, grid->t[i]);
@@ -174,8 +198,28 @@ static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh, d
         FcPanel rest;
         double taken = 0.0;
         const bool settles = fc_settled_panel(&from, &rest, &taken);
-        grid->settled[i] = settles ? error_of(grid, i, grid->count - 1, &rest.map, end) : INFINITY;
-        grid->to_settle[i] = taken;
+        const double error = settles ? error_of(grid, scene, i, grid->count - 1, &rest.map) : INFINITY;
+        grid->settled[i] = fmax(grid->settled[i], error);
+        grid->to_settle[i] = fmax(grid->to_settle[i], taken);
+    }
+}
+
+// What is right by luck counts as its neighbours do.
+static void take_luck_away(Grid* grid) {
+    static Grid was;
+    was = *grid;
+    const int last = grid->count - 1;
+    for (int i = 0; i < last; i++) {
+        for (int j = i + 1; j <= last; j++) {
+            for (int k = (i > 0 ? i - 1 : i); k <= (i > 0 ? i + 1 : i); k++) {
+                for (int l = (j < last ? j - 1 : j); l <= (j < last ? j + 1 : j); l++) {
+                    for (int kind = 0; k < l && kind < KINDS; kind++) {
+                        grid->error[i][j][kind] = fmax(grid->error[i][j][kind], was.error[k][l][kind]);
+                    }
+                }
+            }
+        }
+        grid->settled[i] = fmax(grid->settled[i], was.settled[i + 1 < last ? i + 1 : i]);
     }
 }
 
@@ -227,14 +271,30 @@ static double least(double tolerance, int stretches) {
     return evaluations;
 }
 
-// The grids of one period from the settled deflection.
-static int make_grids(const FcScene* scene, double delta) {
+static double settled_deflection(const FcScene* scene) {
+    double delta = 0.0;
+    const FcSolverOptions tight = {.tolerance = 1e-13};
+    double evaluations = 0.0;
+    for (int period = 0; period < 200; period++) {
+        const FcMap map =
+            fc_collocation_interval(scene, &tight, PERIOD, delta, FC_MAP_THIS_START, &evaluations);
+        delta = end_of(&map, delta);
+    }
+    return delta;
+}
+
+// The grids of one period from the settled deflection. first: of several scenes that differ in the phase of d.
+static int judge(const FcScene* scene, bool first) {
     const FcMesh mesh = fc_mesh_make(scene, PERIOD, 1e200); // accepts every closed form
+    double delta = settled_deflection(scene);
     int count = 0;
     double start = 0.0;
     for (; start < PERIOD && count < STRETCHES; count++) {
         const FcDriveEvent event = fc_drive_next_event(&scene->drive, start, 2.0 * PERIOD);
         Grid* grid = &grids[count];
+        if (first) {
+            *grid = (Grid){.count = 0};
+        }
         grid->stretch = (FcStretch){
             .start = start, .end = fmin(event.time, PERIOD), .event = event.time, .reversal = true};
         FcStretch* s = &grid->stretch;
@@ -246,48 +306,59 @@ static int make_grids(const FcScene* scene, double delta) {
         s->back = start > 0.0 ? s->w_a : fmax(s->w_a, fc_mesh_settled_back(&at_start));
         s->w_b = fc_mesh_layer(&at_event, s->at_end.sigma / s->at_end.limit);
         grid->sign = fc_sign(fc_drive_displacement(&scene->drive, s->start, s->end));
-        make_grid(grid);
+        if (first) {
+            make_grid(grid);
+        }
         solve_finely(grid, scene, delta);
-        delta = grid->delta[grid->count - 1];
+        delta = grid->at[grid->count - 1].delta;
         start = s->end;
     }
-    double to_end = 1.0;
-    double to_mean = 0.0;
+    double after[RESULTS] = {1.0, 0.0, 0.0, 0.0};
     for (int i = count - 1; i >= 0; i--) {
-        worth(&grids[i], scene, PERIOD, to_end, to_mean);
-        to_end = grids[i].to_end[0];
-        to_mean = grids[i].to_mean[0];
-        judge_panels(&grids[i], scene, &mesh, PERIOD);
+        find_worth(&grids[i], scene, after);
+        for (int k = 0; k < RESULTS; k++) {
+            after[k] = grids[i].worth[0][k];
+        }
+        judge_panels(&grids[i], scene, &mesh);
     }
     return count;
 }
 
+static double evaluations_of_default(const FcScene* scene, double tolerance) {
+    const FcSolverOptions options = {.tolerance = tolerance};
+    double taken = 0.0;
+    fc_collocation_interval(scene, &options, PERIOD, settled_deflection(scene), FC_MAP_THIS_START, &taken);
+    return taken;
+}
+
 int main(void) {
-    const double tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-9};
+    static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-9};
+    static const double PHASES[] = {0.7, 0.4, 0.55, 0.85, 1.0}; // of d, the scene's own first
+    enum { TOLERANCE_COUNT = 5, PHASE_COUNT = 5 };
     printf("sigma [N/m]");
-    for (int k = 0; k < 5; k++) {
-        printf("        %.0e", tolerances[k]);
+    for (int k = 0; k < TOLERANCE_COUNT; k++) {
+        printf("              %.0e", TOLERANCES[k]);
     }
     printf("\n");
     for (double sigma = 6e4; sigma < 1e13; sigma *= 10.0) {
-        Slider slider;
-        make(&slider, sigma);
-        const FcScene* scene = &slider.scene;
-        double delta = 0.0;
-        const FcSolverOptions tight = {.tolerance = 1e-13};
-        double evaluations = 0.0;
-        for (int period = 0; period < 200; period++) {
-            const FcMap map =
-                fc_collocation_interval(scene, &tight, PERIOD, delta, FC_MAP_THIS_START, &evaluations);
-            delta = end_of(&map, delta);
+        double with_luck[TOLERANCE_COUNT];
+        double taken[TOLERANCE_COUNT];
+        int stretches = 0;
+        for (int phase = 0; phase < PHASE_COUNT; phase++) {
+            Slider slider;
+            make(&slider, sigma, PHASES[phase]);
+            stretches = judge(&slider.scene, phase == 0);
+            for (int k = 0; phase == 0 && k < TOLERANCE_COUNT; k++) {
+                with_luck[k] = least(TOLERANCES[k], stretches);
+                taken[k] = evaluations_of_default(&slider.scene, TOLERANCES[k]);
+            }
         }
-        const int stretches = make_grids(scene, delta);
+        for (int i = 0; i < stretches; i++) {
+            take_luck_away(&grids[i]);
+        }
         printf("%11.0e", sigma);
-        for (int k = 0; k < 5; k++) {
-            const FcSolverOptions options = {.tolerance = tolerances[k]};
-            double taken = 0.0;
-            fc_collocation_interval(scene, &options, PERIOD, delta, FC_MAP_THIS_START, &taken);
-            printf("  %4.0f of %4.0f", least(tolerances[k], stretches), taken);
+        for (int k = 0; k < TOLERANCE_COUNT; k++) {
+            printf("  %4.0f of %4.0f (%3.0f)", least(TOLERANCES[k], stretches), taken[k], with_luck[k]);
         }
         printf("\n");
     }
