@@ -56,10 +56,9 @@ typedef struct {
     double per_deflection; // 1/m, about sigma / g
     double scale;          // m, size of the deflection at the start
     double speed;          // m/s
-    double digits;         // asked for
+    double decades;        // of accuracy
     double held;           // N, s g in a stretch with a constant limit, else 0
     double evaluations;    // in the communication step so far
-    int nodes;             // that the last Gauss panel needed
     FcMotion motion;
 } Progress;
 
@@ -70,25 +69,15 @@ static FcTrajectories trajectories(const Progress* progress) {
                             .held = progress->held};
 }
 
-// Number of nodes for a panel over which about this much changes, for so many digits.
-static double nodes_for(double digits, double change) { return 2.0 + 0.6 * digits + 0.5 * change; }
-
-// What a bell adds to the change over a panel, beyond its width.
-static const double BELL_CHANGE = 2.0;
-
 // Goes through a section with Gauss panels as far as they are accurate. Returns the time they reach.
 static double cross_softly(Progress* progress, const FcSection* section, const FcBells* bells) {
-    const double length = section->end - section->start;
-    const double of_bell = section->in_bell ? BELL_CHANGE + bells->reach : 0.0;
-    const double change = 1.4 * section->moves + 2.0 * section->relaxes + of_bell;
-    const double digits = section->in_bell ? bells->digits : progress->digits - fc_digits(section->share);
-    const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(digits, 0.0));
-    const double pieces = fc_most(1.0, ceil(0.5 * change / room));
-    int count = fc_gauss_count(nodes_for(digits, change / pieces));
-    if (!section->in_bell && progress->nodes > count) { // the stretches of an interval are alike
-        count = progress->nodes;
+    const FcGaussPieces pieces = fc_section_pieces(section, bells, progress->decades);
+    if (pieces.count == 0) {
+        return section->start;
     }
-    double h = length / pieces;
+    const double planned = (section->end - section->start) / pieces.count;
+    int nodes = pieces.nodes;
+    double h = planned;
     double t = section->start;
     const double allowed =
         (section->in_bell ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
@@ -97,20 +86,20 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
         h = h < 0.9 * left && t + h > t ? h : left;
         const FcTrajectories from = trajectories(progress);
         FcPanel panel;
-        fc_gauss_panel(section->scene, t, h, count, &from, &panel);
-        progress->evaluations += count;
-        // count nodes resolve e^G where G grows by less than half of count; beyond that the estimates say little.
-        if (panel.z < 0.5 * count &&
+        fc_gauss_panel(section->scene, t, h, nodes, &from, &panel);
+        progress->evaluations += nodes;
+        // n nodes resolve e^G where G grows by less than half of n; beyond that the estimates say little.
+        if (panel.z < 0.5 * nodes &&
             panel.end_error <= allowed * fc_least(1.0, section->in_bell ? section->forgets : panel.z) &&
             section->share * panel.mean_error <= (panel.z < STEEP ? 1.0 : OF_STEEP_PANELS) * allowed) {
             *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
-        } else if (count < FC_GAUSS_MOST_NODES) {
-            count = fc_gauss_count(count + 1.0);
-            if (!section->in_bell) {
-                progress->nodes = count;
+            if (panel.z < 0.2 * nodes) {
+                h = fc_least(planned, 2.0 * h);
             }
-        } else if (h * pieces > 0.2 * length && t + 0.5 * h > t) {
+        } else if (nodes < FC_GAUSS_MOST_NODES) {
+            nodes = fc_gauss_count(nodes + 1.0);
+        } else if (h > 0.2 * planned && t + 0.5 * h > t) {
             h *= 0.5;
         } else {
             return t;
@@ -128,7 +117,7 @@ static bool cross_in_one(Progress* progress, const FcSection* section, const FcS
     const double X = fc_stretch_displacement(stretch, &progress->scene->drive, section->start, section->end);
     FcPanel panel;
     if (!fc_bounded_panel(section->scene, &progress->motion, section->start, section->end - section->start, X,
-                          section->relaxes, &from, &panel, &progress->evaluations)) {
+                          section->z.whole, &from, &panel, &progress->evaluations)) {
         return false;
     }
     *progress->map = fc_map_compose(progress->map, &panel.map);
@@ -346,7 +335,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .start = start,
         .per_deflection = start.sigma / start.limit,
         .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
-        .digits = fc_digits(options->tolerance),
+        .decades = fc_digits(options->tolerance),
         .evaluations = *evaluations,
         .motion = motion,
     };
@@ -390,7 +379,9 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
             stretch.bells =
                 fc_bells(&bells, &first, &edge, deflection, stretch.displacement, stretch.path_after);
         }
-        const FcSections sections = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection);
+        const FcSections sections = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection,
+                                                motion.stiffness / motion.limit);
+        progress.evaluations += sections.evaluations;
         bool has_layers = false;
         double t = stretch.start;
         if (stretch.bells.small_at_start) {

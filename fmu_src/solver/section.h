@@ -4,32 +4,37 @@
 //          |  '            '  |
 //          |bell| between |bell|
 //
-// Where little relaxes in a section Gauss panels cross it, elsewhere Radau panels, and those go on over the sections
-// until the next that is soft.
+// Gauss panels cross a section where they are cheaper, elsewhere Radau panels, and those go on over the sections until the
+// next that Gauss panels cross.
 #ifndef FC_SOLVER_SECTION_H
 #define FC_SOLVER_SECTION_H
 
+#include "solver/gauss_pieces.h"
 #include "solver/mesh.h"
 
 typedef struct {
     const FcScene* scene; // of the coefficients there
     double start, end;    // s
     bool in_bell;
-    bool soft;      // little relaxes in it
     double share;   // 1, of the stretch
-    double moves;   // 1, by about how much the phase and ln(sigma) do
-    double relaxes; // 1, by about how much the bristle does in it
+    FcRelaxation z; // 1, by how much the bristle relaxes in it
     double forgets; // 1, and in the stretch and the next
+    bool soft;      // Gauss panels may be cheaper
 } FcSection;
 
 typedef struct {
     FcSection at[3];
     int count;
+    double evaluations; // that it took to tell how much relaxes
 } FcSections;
 
-// Of a stretch in which the bristle relaxes by per_path [1/m]; beyond_bells is the scene without its Stribeck curve.
+// Of a stretch in which the bristle relaxes by about per_path [1/m] and by most_per_path at the most; beyond_bells is the scene
+// without its Stribeck curve.
 FcSections fc_sections(const FcScene* scene, const FcScene* beyond_bells, const FcStretch* stretch,
-                       double per_path);
+                       double per_path, double most_per_path);
+
+// The Gauss panels for a section; decades of accuracy asked for.
+FcGaussPieces fc_section_pieces(const FcSection* section, const FcBells* bells, double decades);
 
 // Displacement [m] of V from t to a time in the stretch.
 double fc_stretch_displacement(const FcStretch* stretch, const FcDrive* drive, double t, double end);
