@@ -5,9 +5,8 @@
 #include "model/constants.h"
 #include "solver/gauss_rule.h"
 
-// Decades of the estimate of a panel: about one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z), fit to 60 000 random panels of
-// vibrating scenes with a scatter of 1 (4 nodes) to 2 decades (12); tests/unit/test_gauss_pieces.c counts how many panels are
-// refused. time: of a panel, of 4 nodes 1.
+// Decades of the estimate of a panel: about one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z), as bench/gauss_estimates prints it
+// but for hundredths, with a scatter of half a decade (4 nodes) to one and a half (12). time: of a panel, of 4 nodes 1.
 enum { RULES = 4 };
 static const struct {
     int nodes;
