@@ -212,3 +212,27 @@ def test_a_saved_state_carries_the_place_in_the_call_order(instance: Instance) -
     assert instance.restore(between_steps) == OK
     assert instance.step(0.0, 1e-5) == OK
     assert instance.drop(between_steps) == OK
+
+
+CONTACT = ("stiffnessScale", "R_q", "R", "eta", "A_n", "nu", "Y", "c", "lambda")
+
+
+@pytest.mark.parametrize("name", CONTACT)
+def test_a_contact_parameter_set_after_a_reset_counts(
+    new_instance: Callable[..., Instance], name: str
+) -> None:
+    parameter = f"contact.{name}"
+    used, fresh, unchanged = new_instance(), new_instance(), new_instance()
+    used.initialize()
+    value = 0.9 * used.get(parameter)[0]
+    assert used.call("fmi2Reset") == OK
+    assert used.set({parameter: value}) == fresh.set({parameter: value}) == OK
+    for instance in (used, fresh, unchanged):
+        instance.initialize()
+    assert used.get("sigma", "A_r") == fresh.get("sigma", "A_r")
+    assert used.get("sigma", "A_r") != unchanged.get("sigma", "A_r")
+
+
+def test_an_experiment_may_have_no_length(library: Library) -> None:
+    with Instance(library) as instance:
+        assert instance.call("fmi2SetupExperiment", 0, 0.0, 2.0, 1, 2.0) == OK

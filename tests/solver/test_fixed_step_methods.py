@@ -55,6 +55,17 @@ def test_order_of_convergence(fmu: FrictionFmu, method: str) -> None:
     assert orders == pytest.approx(ORDERS[method], abs=0.1)
 
 
+@pytest.mark.parametrize(
+    ("method", "evaluations"), [("explicitEuler", 8), ("backwardEuler", 8), ("trapezoid", 9), ("rk4", 17)]
+)
+def test_evaluations_of_eight_steps(fmu: FrictionFmu, method: str, evaluations: int) -> None:
+    """The end of a step is the start of the next; RK4 has a middle too."""
+    h = 3.7e-5
+    with fmu.session(SMOOTH | {"solver.method": method, "solver.stepSize": h / 8}) as session:
+        session.step(h)
+        assert session.get("solver.evaluations") == evaluations
+
+
 @pytest.mark.parametrize("method", ORDERS)
 def test_error_is_small_where_it_should_be(fmu: FrictionFmu, method: str) -> None:
     errors = final_errors(fmu, SMOOTH, method, 4000, 3.7e-5)
