@@ -3,15 +3,22 @@
 #include <math.h>
 #include <stddef.h>
 
-// Second time derivative of the bound g / sigma [m/s2], by a central difference of its rate, which is exact.
+// Second time derivative of the bound g / sigma [m/s2], by differences of its rate, which is exact: central, or away from
+// surfaces that would touch.
 static double bound_acceleration(const FcScene* scene) {
     const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
     const double rate = scene->drive.omega + fabs(rates.sigma) + fabs(rates.limit);
-    if (rate == 0.0) {
+    double tau = 1e-4 / rate; // the error is some tau^2
+    if (!isfinite(tau)) {     // it stands still, but for less than the smallest number
         return 0.0;
     }
-    const double tau = 1e-4 / rate; // the error is some tau^2
-    return (fc_scene_bound_rate(scene, tau) - fc_scene_bound_rate(scene, -tau)) / (2.0 * tau);
+    tau = copysign(tau, fc_scene_d_rate(scene, 0.0));
+    const double later = fc_scene_bound_rate(scene, tau);
+    if (fc_scene_d(scene, -tau) > 0.0) {
+        return (later - fc_scene_bound_rate(scene, -tau)) / (2.0 * tau);
+    }
+    return (4.0 * later - 3.0 * fc_scene_bound_rate(scene, 0.0) - fc_scene_bound_rate(scene, 2.0 * tau)) /
+           (2.0 * tau);
 }
 
 static double elastic_plastic_force_rate(const FcScene* scene, double delta) {

@@ -194,9 +194,40 @@ static void far_apart(void) {
     }
 }
 
+// Mindlin's bound grows by e^(decay d), so that of a bristle that slips is known: its damping changes by
+// sigma_1 (decay d')^2 times the bound.
+static void slipping_while_the_surfaces_move(double d, double d_rate) {
+    const FcContactParameters contact = table_1(FC_CONTACT_MINDLIN, FC_CONTACT_SEPARATION);
+    const FcFriction friction = {.model = FC_ELASTIC_PLASTIC,
+                                 .limit = FC_LIMIT_CONSTANT,
+                                 .staticRatio = 1.0,
+                                 .V_S = 1.0,
+                                 .sigma_1 = 30.0};
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 58e9);
+    const FcLinearInput still = {0.0, 0.0};
+    const FcDrive drive = fc_drive_make((FcLinearInput){0.5, 0.0}, (FcLinearInput){d, d_rate},
+                                        (FcLinearInput){58e9, 0.0}, still, (FcVibration){.f = 2e4}, 0.0, 0.0);
+    const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
+    const double delta = bound(&scene, 0.0);
+    const double moves = at_E.decay * d_rate; // 1/s
+    const double expected = friction.sigma_1 * moves * moves * delta;
+    const double found = fc_force_rate(&scene, delta);
+    CHECK(fc_scene_slip_side(&scene, 0.0, delta) == 1.0);
+    CHECK(fabs(found - expected) <= 1e-6 * expected);
+}
+
+static void slipping_in_any_separation(void) {
+    slipping_while_the_surfaces_move(14e-6, 1e-2);
+    slipping_while_the_surfaces_move(14e-6, 0.0);
+    slipping_while_the_surfaces_move(14e-6, 4.9406564584124654e-324);
+    slipping_while_the_surfaces_move(1e-12, 1e-4); // closer than it takes to see a change
+    slipping_while_the_surfaces_move(1e-12, -1e-4);
+}
+
 int main(void) {
     at_a_reversal();
     far_apart();
+    slipping_in_any_separation();
     int slipped = 0;
     for (int k = 0; k < 200 * KINDS; k++) {
         Case one;
