@@ -10,13 +10,10 @@
 //     one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z)
 //
 // The time is that of one panel in a scene of middling stiffness, over that of one with 4 nodes.
-#define _POSIX_C_SOURCE 200809L
-
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
 
+#include "job.h"
 #include "random.h"
 #include "solver/gauss_panel.h"
 #include "table_1.h"
@@ -140,12 +137,6 @@ static double off(const Sample* sample, const double* found) {
     return sum;
 }
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static double time_of_panel(int nodes) {
     enum { TIMES = 200000, TURNS = 5 };
     Slider slider;
@@ -153,14 +144,14 @@ static double time_of_panel(int nodes) {
     double least = INFINITY;
     volatile double used = 0.0;
     for (int turn = 0; turn < TURNS; turn++) {
-        const double start = seconds();
+        const double start = cpu_seconds();
         for (int i = 0; i < TIMES; i++) {
             const FcTrajectories from = {.delta_0 = 1e-6 + 1e-12 * i, .speed = V_1};
             FcPanel panel;
             fc_gauss_panel(&slider.scene, 1e-6, 5e-6, nodes, &from, &panel);
             used += panel.map.offset;
         }
-        least = fmin(least, seconds() - start);
+        least = fmin(least, cpu_seconds() - start);
     }
     return least;
 }

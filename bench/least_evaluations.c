@@ -137,10 +137,15 @@ static void solve_finely(Grid* grid, const FcScene* scene, double delta) {
     }
 }
 
+// What work and heat are relative to, over F_C [m].
+static double longest_path(const FcScene* scene) {
+    return fc_drive_largest_speed(&scene->drive, PERIOD) * PERIOD;
+}
+
 // Backwards: what is left of a deviation of the force at the end, and its part of the mean, the work and the heat.
 static void find_worth(Grid* grid, const FcScene* scene, const double* after) {
     const int last = grid->count - 1;
-    const double path = fc_drive_largest_speed(&scene->drive, PERIOD) * PERIOD; // m, at the most
+    const double path = longest_path(scene);
     for (int k = 0; k < RESULTS; k++) {
         grid->worth[last][k] = after[k];
     }
@@ -158,7 +163,7 @@ static void find_worth(Grid* grid, const FcScene* scene, const double* after) {
 
 // The largest of the errors of the results from grid point i to j, over F_C.
 static double error_of(const Grid* grid, const FcScene* scene, int i, int j, const FcMap* map) {
-    const double path = fc_drive_largest_speed(&scene->drive, PERIOD) * PERIOD;
+    const double path = longest_path(scene);
     FcStepResult got = grid->at[i];
     fc_map_apply(map, &got);
     const FcStepResult* right = &grid->at[j];

@@ -13,11 +13,11 @@ static double bound_acceleration(const FcScene* scene) {
         return 0.0;
     }
     tau = copysign(tau, fc_scene_d_rate(scene, 0.0));
-    const double later = fc_scene_bound_rate(scene, tau);
+    const double apart = fc_scene_bound_rate(scene, tau);
     if (fc_scene_d(scene, -tau) > 0.0) {
-        return (later - fc_scene_bound_rate(scene, -tau)) / (2.0 * tau);
+        return (apart - fc_scene_bound_rate(scene, -tau)) / (2.0 * tau);
     }
-    return (4.0 * later - 3.0 * fc_scene_bound_rate(scene, 0.0) - fc_scene_bound_rate(scene, 2.0 * tau)) /
+    return (4.0 * apart - 3.0 * fc_scene_bound_rate(scene, 0.0) - fc_scene_bound_rate(scene, 2.0 * tau)) /
            (2.0 * tau);
 }
 

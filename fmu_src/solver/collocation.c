@@ -94,7 +94,7 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
             section->share * panel.mean_error <= (panel.z < STEEP ? 1.0 : OF_STEEP_PANELS) * allowed) {
             *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
-            if (panel.z < 0.2 * nodes) {
+            if (panel.z < 0.2 * nodes) { // twice as much would still be resolved
                 h = fc_least(planned, 2.0 * h);
             }
         } else if (nodes < FC_GAUSS_MOST_NODES) {

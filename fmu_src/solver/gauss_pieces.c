@@ -6,7 +6,8 @@
 #include "solver/gauss_rule.h"
 
 // Decades of the estimate of a panel: about one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z), as bench/gauss_estimates prints it
-// but for hundredths, with a scatter of half a decade (4 nodes) to one and a half (12). time: of a panel, of 4 nodes 1.
+// but for hundredths, with a scatter of half a decade (4 nodes) to one and a half (12). time: of a panel, of 4 nodes 1; the
+// program's own differ by up to a seventh with the build.
 enum { RULES = 4 };
 static const struct {
     int nodes;

@@ -161,34 +161,22 @@ static long double legendre_integral(int k, long double c) {
     return k == 0 ? c : (legendre(k + 1, x) - legendre(k - 1, x)) / (long double)(2 * (2 * k + 1));
 }
 
-static void check_integral(const double integral[12][12]) {
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            long double sum = 0.0L, size = 0.0L;
-            for (int k = 0; k < n; k++) {
-                sum += tail(k, j) * legendre_integral(k, node[i]);
-                size += fabsl(tail(k, j) * legendre_integral(k, node[i]));
-            }
-            check_nearest_to(integral[j][i], sum, size);
-        }
-    }
-}
-
 // d P_k(2 c - 1) / dc = 2 P_k', with (x^2 - 1) P_k' = k (x P_k - P_(k-1))
 static long double legendre_slope(int k, long double c) {
     const long double x = 2.0L * c - 1.0L;
     return k == 0 ? 0.0L : 2.0L * k * (x * legendre(k, x) - legendre(k - 1, x)) / (x * x - 1.0L);
 }
 
-static void check_slope(const double slope[12][12]) {
+// Of the polynomial through the values at the nodes, what this makes of P_k(2 c - 1) at each of them.
+static void check_matrix(const double matrix[12][12], long double (*of_legendre)(int k, long double c)) {
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
             long double sum = 0.0L, size = 0.0L;
             for (int k = 0; k < n; k++) {
-                sum += tail(k, j) * legendre_slope(k, node[i]);
-                size += fabsl(tail(k, j) * legendre_slope(k, node[i]));
+                sum += tail(k, j) * of_legendre(k, node[i]);
+                size += fabsl(tail(k, j) * of_legendre(k, node[i]));
             }
-            check_nearest_to(slope[j][i], sum, size);
+            check_nearest_to(matrix[j][i], sum, size);
         }
     }
 }
@@ -220,8 +208,8 @@ static void check_gauss(const FcGaussRule* rule, int nodes) {
     is_radau = false;
     check_nodes(rule->node);
     check_weights(rule->weight);
-    check_integral(rule->integral);
-    check_slope(rule->slope);
+    check_matrix(rule->integral, legendre_integral);
+    check_matrix(rule->slope, legendre_slope);
     check_tail(&rule->tail[0][0], 12);
     weights_integrate_polynomials(rule->weight);
 }
