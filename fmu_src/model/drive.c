@@ -55,37 +55,36 @@ FcDrive fc_drive_later(const FcDrive* drive, double t) {
     return later;
 }
 
+FcPhase fc_drive_phase(const FcDrive* drive, double t) {
+    const double angle = theta(drive, t);
+    return angle == 0.0 ? (FcPhase){1.0, 0.0} : (FcPhase){cos(angle), sin(angle)};
+}
+
 // 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
-double fc_drive_small_V(const FcDrive* drive, double t, double angle, double cosine) {
+double fc_drive_small_V(const FcDrive* drive, double t, FcPhase at_t) {
     const double V_1 = drive->vibration.V_1;
+    const double cosine = at_t.cosine;
     if (fabs(cosine) < 0.9) {
         return linear(drive->V, t) + V_1 * cosine;
     }
     const double turn = copysign(V_1, cosine);
-    const double sine = sin(angle);
-    return (drive->V.value + turn) + (drive->V.rate * t - turn * (sine * sine / (1.0 + fabs(cosine))));
+    return (drive->V.value + turn) +
+           (drive->V.rate * t - turn * (at_t.sine * at_t.sine / (1.0 + fabs(cosine))));
+}
+
+FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
+    const double by_cosine = at_t.cosine * drive->cos_phase_d - at_t.sine * drive->sin_phase_d;
+    return (FcDriveValues){.V = fc_drive_V_at_phase(drive, t, at_t),
+                           .d = linear(drive->d, t) + drive->vibration.a_d * by_cosine};
 }
 
 FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
-    FcDriveValues now = {.V = linear(drive->V, t), .d = linear(drive->d, t)};
-    if (drive->omega != 0.0) {
-        const double angle = theta(drive, t);
-        const double c = cos(angle);
-        const double s = sin(angle);
-        now.V = fc_drive_V_at_angle(drive, t, angle, c);
-        if (drive->vibration.a_d != 0.0) {
-            now.d += drive->vibration.a_d * (c * drive->cos_phase_d - s * drive->sin_phase_d);
-        }
-    }
-    return now;
+    return fc_drive_values_at_phase(drive, t, fc_drive_phase(drive, t));
 }
 
 double fc_drive_V(const FcDrive* drive, double t) {
-    if (drive->vibration.V_1 == 0.0) {
-        return linear(drive->V, t);
-    }
-    const double angle = theta(drive, t);
-    return fc_drive_V_at_angle(drive, t, angle, cos(angle));
+    return drive->vibration.V_1 == 0.0 ? linear(drive->V, t)
+                                       : fc_drive_V_at_phase(drive, t, fc_drive_phase(drive, t));
 }
 
 double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }
@@ -106,17 +105,17 @@ double fc_drive_V_rate(const FcDrive* drive, double t) {
     return drive->V.rate - drive->vibration.V_1 * drive->omega * sin(theta(drive, t));
 }
 
+FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
+    const double V_1 = drive->vibration.V_1;
+    const double omega = drive->omega;
+    return (FcVelocity){.V = fc_drive_V_at_phase(drive, t, at_t),
+                        .rate = drive->V.rate - V_1 * omega * at_t.sine,
+                        .curvature = -V_1 * omega * omega * at_t.cosine};
+}
+
 FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
-    FcVelocity at = {.V = linear(drive->V, t), .rate = drive->V.rate};
-    if (drive->vibration.V_1 != 0.0) {
-        const double angle = theta(drive, t);
-        const double V_1 = drive->vibration.V_1;
-        const double c = cos(angle);
-        at.V = fc_drive_V_at_angle(drive, t, angle, c);
-        at.rate -= V_1 * drive->omega * sin(angle);
-        at.curvature = -V_1 * drive->omega * drive->omega * c;
-    }
-    return at;
+    return drive->vibration.V_1 == 0.0 ? (FcVelocity){.V = linear(drive->V, t), .rate = drive->V.rate}
+                                       : fc_drive_velocity_at_phase(drive, t, fc_drive_phase(drive, t));
 }
 
 double fc_velocity_time_of_change(const FcVelocity* at, double change) {
@@ -124,9 +123,13 @@ double fc_velocity_time_of_change(const FcVelocity* at, double change) {
     return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * fabs(at->curvature) * change));
 }
 
+double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t) {
+    return drive->d.rate - drive->vibration.a_d * drive->omega *
+                               (at_t.sine * drive->cos_phase_d + at_t.cosine * drive->sin_phase_d);
+}
+
 double fc_drive_d_rate(const FcDrive* drive, double t) {
-    return drive->d.rate -
-           drive->vibration.a_d * drive->omega * sin(theta(drive, t) + drive->vibration.phase_d);
+    return fc_drive_d_rate_at_phase(drive, fc_drive_phase(drive, t));
 }
 
 double fc_drive_smallest_d(const FcDrive* drive, double h) {
@@ -159,17 +162,26 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
         return linear(drive->V, middle) * duration;
     }
     const double half = 0.5 * drive->omega * duration;
-    const double angle = theta(drive, middle);
-    const double c = cos(angle);
+    const FcPhase at_middle = fc_drive_phase(drive, middle);
+    const double V_c = drive->vibration.V_1 * at_middle.cosine;
     if (half > SHORT) {
-        return linear(drive->V, middle) * duration +
-               2.0 * drive->vibration.V_1 / drive->omega * sin(half) * c;
+        return linear(drive->V, middle) * duration + 2.0 * V_c / drive->omega * sin(half);
     }
     // V in the middle as a whole, since it may nearly cancel V_1, less what the vibration bends: 1 - sin(half) / half.
     const double y = half * half;
     const double bent =
         y / 6 * (1.0 - y / 20 * (1.0 - y / 42 * (1.0 - y / 72 * (1.0 - y / 110 * (1.0 - y / 156)))));
-    return (fc_drive_V_at_angle(drive, middle, angle, c) - drive->vibration.V_1 * c * bent) * duration;
+    return (fc_drive_V_at_phase(drive, middle, at_middle) - V_c * bent) * duration;
+}
+
+double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at_t0, double t1,
+                                     FcPhase at_t1) {
+    const double duration = t1 - t0;
+    if (!(0.5 * drive->omega * duration > SHORT)) {
+        return fc_drive_displacement(drive, t0, t1);
+    }
+    return linear(drive->V, 0.5 * (t0 + t1)) * duration +
+           drive->vibration.V_1 / drive->omega * (at_t1.sine - at_t0.sine);
 }
 
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
@@ -201,13 +213,13 @@ static const double SAME_ANGLE = 1e-13;
 
 static double least_ahead(double angle) { return SAME_ANGLE * (1.0 + fabs(angle)); }
 
-// The first angle after now, by more than the rounding of a root, that equals target modulo 2 pi.
-static double next_angle(double now, double target) {
+// How far ahead of now, by more than the rounding of a root, the next angle is that equals target modulo 2 pi.
+static double angle_ahead(double now, double target) {
     double ahead = fmod(target - now, FC_TWO_PI);
     if (ahead < 0.0) {
         ahead += FC_TWO_PI;
     }
-    return ahead > least_ahead(now) ? now + ahead : now + ahead + FC_TWO_PI;
+    return ahead > least_ahead(now) ? ahead : ahead + FC_TWO_PI;
 }
 
 // Root of V in the bracket [t0, t1], on which V is monotone: Newton, kept inside by bisection.
@@ -240,28 +252,48 @@ static bool is_dip(const FcDrive* drive, double t) {
            fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
+static const double AWAY_FROM_GRAZING = 0.9; // of V_1: |V| below
+
 // acos(-V / V_1), which loses half of its digits next to 1 and -1.
 static double angle_of_reversal(double V, double V_1) {
-    return fabs(V) < 0.9 * fabs(V_1) ? acos(-V / V_1) : 2.0 * atan(sqrt((V_1 + V) / (V_1 - V)));
+    return fabs(V) < AWAY_FROM_GRAZING * fabs(V_1) ? acos(-V / V_1) : 2.0 * atan(sqrt((V_1 + V) / (V_1 - V)));
+}
+
+// At angle_of_reversal (sign 1) or its negative (-1): there V_1 cos is -V.
+static FcDriveEvent reversal_of_held(const FcDrive* drive, double time, double root, double sign) {
+    const double V_1 = drive->vibration.V_1;
+    const double cosine = -drive->V.value / V_1;
+    FcDriveEvent event = {.time = time, .reversal = true};
+    if (fabs(cosine) < AWAY_FROM_GRAZING) {
+        event.phase = (FcPhase){cosine, sign * sqrt(1.0 - cosine * cosine)};
+        event.ahead = sign > 0.0 ? FC_TWO_PI - 2.0 * root : 2.0 * root;
+        event.then_ahead = FC_TWO_PI - event.ahead;
+    } else {
+        event.phase = fc_drive_phase(drive, time);
+    }
+    return event;
+}
+
+static FcDriveEvent none_before(double end) { return (FcDriveEvent){.time = end}; }
+
+static FcDriveEvent event_at(const FcDrive* drive, double time, bool reversal) {
+    return (FcDriveEvent){.time = time, .reversal = reversal, .phase = fc_drive_phase(drive, time)};
 }
 
 static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, double end) {
     const double V_1 = drive->vibration.V_1;
     const double V = drive->V.value;
     const double now = theta(drive, t);
-    const bool reversal = fabs(V) < fabs(V_1);
-    double angle;
-    if (reversal) {
+    if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
-        angle = fmin(next_angle(now, root), next_angle(now, -root));
-    } else {
-        angle = next_angle(now, V * V_1 > 0.0 ? FC_PI : 0.0);
+        const double to_root = angle_ahead(now, root);
+        const double to_other = angle_ahead(now, -root);
+        const double time = t + fmin(to_root, to_other) / drive->omega;
+        return time < end ? reversal_of_held(drive, time, root, to_root < to_other ? 1.0 : -1.0)
+                          : none_before(end);
     }
-    const double time = t + (angle - now) / drive->omega;
-    if (!(time < end) || (!reversal && !is_dip(drive, time))) {
-        return (FcDriveEvent){end, 0};
-    }
-    return (FcDriveEvent){time, reversal};
+    const double time = t + angle_ahead(now, V * V_1 > 0.0 ? FC_PI : 0.0) / drive->omega;
+    return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
 }
 
 static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, double end) {
@@ -272,30 +304,43 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
         double to = end;
         if (fabs(slope) < 1.0) {
             const double now = theta(drive, from);
-            const double angle = fmin(next_angle(now, asin(slope)), next_angle(now, FC_PI - asin(slope)));
-            to = from + (angle - now) / drive->omega;
+            const double angle = asin(slope);
+            to = from + fmin(angle_ahead(now, angle), angle_ahead(now, FC_PI - angle)) / drive->omega;
         }
         const bool stops_at_end = !(to < end);
         if (stops_at_end) {
             to = end;
         }
         if ((fc_drive_V(drive, from) < 0.0) != (fc_drive_V(drive, to) < 0.0)) {
-            return (FcDriveEvent){root_of_V(drive, from, to), 1};
+            return event_at(drive, root_of_V(drive, from, to), true);
         }
         if (!stops_at_end && is_dip(drive, to)) {
-            return (FcDriveEvent){to, 0};
+            return event_at(drive, to, false);
         }
         from = to;
     }
-    return (FcDriveEvent){end, 0};
+    return none_before(end);
 }
 
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     assert(t >= 0.0 && end >= t);
     if (drive->vibration.V_1 == 0.0) {
         const double root = -drive->V.value / drive->V.rate; // no root where V' = 0: infinite or NaN
-        return root > t && root < end ? (FcDriveEvent){root, 1} : (FcDriveEvent){end, 0};
+        return root > t && root < end ? event_at(drive, root, true) : none_before(end);
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
                                 : first_of_linear_vibration(drive, t, end);
+}
+
+FcDriveEvent fc_drive_event_after(const FcDrive* drive, const FcDriveEvent* event, double end) {
+    if (event->ahead == 0.0) {
+        return fc_drive_next_event(drive, event->time, end);
+    }
+    const double time = event->time + event->ahead / drive->omega;
+    return time < end ? (FcDriveEvent){.time = time,
+                                       .reversal = true,
+                                       .phase = {event->phase.cosine, -event->phase.sine},
+                                       .ahead = event->then_ahead,
+                                       .then_ahead = event->ahead}
+                      : none_before(end);
 }

@@ -46,28 +46,37 @@ bool fc_drive_vibrates(const FcDrive* drive);  // an amplitude is not zero
 bool fc_drive_is_linear(const FcDrive* drive); // a rate is not zero
 bool fc_drive_is_constant(const FcDrive* drive);
 
+// Of the vibration's angle 2 pi f t + theta_0.
+typedef struct {
+    double cosine;
+    double sine;
+} FcPhase;
+FcPhase fc_drive_phase(const FcDrive* drive, double t);
+
 typedef struct {
     double V; // m/s
     double d; // m
 } FcDriveValues;
-FcDriveValues fc_drive_values(const FcDrive* drive, double t); // both for the price of one angle
+FcDriveValues fc_drive_values(const FcDrive* drive, double t);
+FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
-// V [m/s] at the time t [s], where the vibration's angle and its cosine are these. Where V nearly cancels V_1 |V| may be
-// less than the rounding of either, by which the stiffest contacts would relax otherwise: fc_drive_small_V keeps its digits.
-double fc_drive_small_V(const FcDrive* drive, double t, double angle, double cosine);
-static inline double fc_drive_V_at_angle(const FcDrive* drive, double t, double angle, double cosine) {
-    const double V = drive->V.value + drive->V.rate * t + drive->vibration.V_1 * cosine;
-    return fabs(V) < 0.05 * drive->vibration.V_1 ? fc_drive_small_V(drive, t, angle, cosine) : V;
+// V [m/s] at the time t [s]. Where V nearly cancels V_1 |V| may be less than the rounding of either, by which the stiffest
+// contacts would relax otherwise: fc_drive_small_V keeps its digits.
+double fc_drive_small_V(const FcDrive* drive, double t, FcPhase at_t);
+static inline double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
+    const double V = drive->V.value + drive->V.rate * t + drive->vibration.V_1 * at_t.cosine;
+    return fabs(V) < 0.05 * drive->vibration.V_1 ? fc_drive_small_V(drive, t, at_t) : V;
 }
 
-double fc_drive_V(const FcDrive* drive, double t);             // m/s
-double fc_drive_d(const FcDrive* drive, double t);             // m
-double fc_drive_E(const FcDrive* drive, double t);             // Pa
-double fc_drive_load(const FcDrive* drive, double t);          // N
-double fc_drive_E_growth(const FcDrive* drive, double t);      // 1/s, |E'| / E
-double fc_drive_load_growth(const FcDrive* drive, double t);   // 1/s, |load'| / load
-double fc_drive_V_rate(const FcDrive* drive, double t);        // m/s2
-double fc_drive_d_rate(const FcDrive* drive, double t);        // m/s
+double fc_drive_V(const FcDrive* drive, double t);           // m/s
+double fc_drive_d(const FcDrive* drive, double t);           // m
+double fc_drive_E(const FcDrive* drive, double t);           // Pa
+double fc_drive_load(const FcDrive* drive, double t);        // N
+double fc_drive_E_growth(const FcDrive* drive, double t);    // 1/s, |E'| / E
+double fc_drive_load_growth(const FcDrive* drive, double t); // 1/s, |load'| / load
+double fc_drive_V_rate(const FcDrive* drive, double t);      // m/s2
+double fc_drive_d_rate(const FcDrive* drive, double t);      // m/s
+double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t);
 double fc_drive_smallest_d(const FcDrive* drive, double h);    // lower bound of d over [0, h]
 double fc_drive_largest_d(const FcDrive* drive, double h);     // upper bound of d over [0, h]
 double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of E over [0, h]
@@ -80,23 +89,33 @@ typedef struct {
     double rate;      // m/s2
     double curvature; // m/s3
 } FcVelocity;
-FcVelocity fc_drive_velocity(const FcDrive* drive, double t); // all for the price of one angle
+FcVelocity fc_drive_velocity(const FcDrive* drive, double t);
+FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
 // Time [s] in which V moves by change [m/s]: the root of |V'| x + |V''| x^2 / 2 = change.
 double fc_velocity_time_of_change(const FcVelocity* at, double change);
 
 // integral of V over [t0, t1] [m], exact.
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1);
+double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at_t0, double t1,
+                                     FcPhase at_t1);
 
 // integral of V^2 over [t0, t1] [m2/s], exact.
 double fc_drive_square(const FcDrive* drive, double t0, double t1);
 
-// The first time after t, before end, at which V changes sign (a reversal) or |V| dips close to zero without doing so;
-// end if there is none.
+// Where V changes sign (a reversal) or |V| dips close to zero without doing so.
 typedef struct {
     double time;   // s
     bool reversal; // V changes sign here
+    FcPhase phase; // there
+    double ahead,
+        then_ahead; // rad, to the next reversal and from there on, by turns; 0 where that is to be found first
 } FcDriveEvent;
+
+// The first one after t and before end; if there is none, the time end and no phase.
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
+
+// The same after an event.
+FcDriveEvent fc_drive_event_after(const FcDrive* drive, const FcDriveEvent* event, double end);
 
 #endif

@@ -42,8 +42,8 @@ static double separation(const FcScene* scene, const FcContactAtModulus* at_E, d
     return scene->floats ? driven + rest_separation(scene, at_E, t) : driven;
 }
 
-double fc_scene_d(const FcScene* scene, double t) {
-    const double driven = fc_drive_d(&scene->drive, t);
+static double d_at_phase(const FcScene* scene, double t, FcPhase at_t) {
+    const double driven = fc_drive_values_at_phase(&scene->drive, t, at_t).d;
     if (!scene->floats) {
         return driven;
     }
@@ -51,15 +51,23 @@ double fc_scene_d(const FcScene* scene, double t) {
     return separation(scene, &at_E, driven, t);
 }
 
-double fc_scene_d_rate(const FcScene* scene, double t) {
+double fc_scene_d(const FcScene* scene, double t) {
+    return d_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
+}
+
+static double d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDrive* drive = &scene->drive;
-    double rate = fc_drive_d_rate(drive, t);
+    double rate = fc_drive_d_rate_at_phase(drive, at_t);
     if (scene->floats) {
         const double by_E =
             drive->E.rate != 0.0 ? fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t)).F_n : 0.0;
         rate += (by_E * drive->E.rate - drive->load.rate / fc_drive_load(drive, t)) / scene->at_E.decay;
     }
     return rate;
+}
+
+double fc_scene_d_rate(const FcScene* scene, double t) {
+    return d_rate_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
 FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
@@ -74,8 +82,8 @@ static FcCoefficients coefficients(const FcScene* scene, const FcContactResponse
         .V = V, .sigma = response->sigma, .limit = limit * fc_stribeck(scene->friction, V)};
 }
 
-FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
-    const FcDriveValues now = fc_drive_values(&scene->drive, t);
+FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t) {
+    const FcDriveValues now = fc_drive_values_at_phase(&scene->drive, t, at_t);
     if (scene->at_E.model == FC_CONTACT_CONSTANT && !fc_limit_follows_load(scene->friction)) {
         return coefficients(scene, &(FcContactResponse){.sigma = scene->at_E.stiffness_0}, now.V);
     }
@@ -84,14 +92,18 @@ FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
     return coefficients(scene, &response, now.V);
 }
 
+FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
+    return fc_scene_coefficients_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
+}
+
 double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coefficients(scene, t).sigma; }
 
-FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
+FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDrive* drive = &scene->drive;
     FcLogRates rates = {0.0, 0.0};
     if (scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction)) {
-        const double d_rate = fc_scene_d_rate(scene, t);
-        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, t));
+        const double d_rate = d_rate_at_phase(scene, t, at_t);
+        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
         rates.sigma = by_d.sigma * d_rate;
         rates.limit = by_d.F_n * d_rate;
         if (drive->E.rate != 0.0) {
@@ -104,11 +116,15 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
         }
     }
     if (fc_has_stribeck_curve(scene->friction)) {
-        const FcVelocity at = fc_drive_velocity(drive, t);
+        const FcVelocity at = fc_drive_velocity_at_phase(drive, t, at_t);
         rates.limit +=
             fc_stribeck_slope(scene->friction, at.V) / fc_stribeck(scene->friction, at.V) * at.rate;
     }
     return rates;
+}
+
+FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
+    return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
 double fc_scene_bound_rate(const FcScene* scene, double t) {

@@ -47,6 +47,7 @@ typedef struct {
 } FcCoefficients;
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
+FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
 // -sigma |V| / g [1/s]: the equation is delta' = rate delta + V.
 static inline double fc_coefficients_rate(const FcCoefficients* at) {
@@ -59,6 +60,7 @@ typedef struct {
     double limit;
 } FcLogRates;
 FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
+FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
 // Rate [m/s] at which the bound g / sigma of the deflection moves.
 double fc_scene_bound_rate(const FcScene* scene, double t);

@@ -162,8 +162,9 @@ static void take(Progress* progress, FcPlace* at, const FcPanel* panel) {
 
 // Width [s] of the layer around a reversal, or a dip, at t, with sigma and g as they are at a time near it: beyond the interval
 // the inputs are not known.
-static double layer_at(const FcScene* scene, bool reversal, double t, const FcCoefficients* near) {
-    const FcVelocity at = fc_drive_velocity(&scene->drive, t);
+static double layer_at(const FcScene* scene, bool reversal, double t, FcPhase at_t,
+                       const FcCoefficients* near) {
+    const FcVelocity at = fc_drive_velocity_at_phase(&scene->drive, t, at_t);
     const double per_path = near->sigma / near->limit;
     return reversal ? fc_mesh_layer(&at, per_path) : fc_mesh_dip_layer(&at, per_path);
 }
@@ -172,13 +173,16 @@ static double layer_at(const FcScene* scene, bool reversal, double t, const FcCo
 static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stretch, double t, double end) {
     const FcScene* scene = progress->scene;
     const double sign = fc_sign(stretch->displacement);
-    const FcCoefficients start = t == stretch->start ? stretch->at_start : fc_scene_coefficients(scene, t);
+    const bool from_start = t == stretch->start;
+    const FcPhase phase = from_start ? stretch->start_phase : fc_drive_phase(&scene->drive, t);
+    const FcCoefficients start =
+        from_start ? stretch->at_start : fc_scene_coefficients_at_phase(scene, t, phase);
     FcPanel panel = {.rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};
     FcPlace at = {
         .t = t,
         .rate = panel.rate,
         .path = fabs(fc_stretch_displacement(stretch, &scene->drive, t, stretch->end)),
-        .layer = t == stretch->start ? stretch->w_a : layer_at(scene, true, t, &start),
+        .layer = from_start ? stretch->w_a : layer_at(scene, true, t, phase, &start),
     };
     FcSettling settling;
     fc_settling_init(&settling, scene, progress->beyond_bells, mesh, stretch, end);
@@ -246,9 +250,9 @@ static FcMap slack_map(const FcScene* scene, double h) {
 
 // |force - what it settles to| at the interval's start, over the mesh's force: the limit, but for the lag to first order in
 // the time it takes to relax.
-static double transient_at_start(const Progress* progress, const FcMesh* mesh) {
+static double transient_at_start(const Progress* progress, const FcMesh* mesh, FcPhase phase) {
     const FcCoefficients* now = &progress->start;
-    const FcLogRates rates = fc_scene_log_rates(progress->scene, 0.0);
+    const FcLogRates rates = fc_scene_log_rates_at_phase(progress->scene, 0.0, phase);
     const double lag = (rates.sigma - rates.limit) / -fc_coefficients_rate(now);
     const FcTrajectories from = trajectories(progress);
     return (fabs(now->sigma * from.delta_0 - copysign(now->limit, now->V) * (1.0 + lag)) +
@@ -262,35 +266,36 @@ static void add_layers(const Progress* progress, const FcMesh* mesh, const FcStr
     const FcScene* scene = progress->scene;
     stretch->transient = INFINITY;
     if (stretch->start == 0.0) {
-        const FcVelocity now = fc_drive_velocity(&scene->drive, 0.0);
+        const FcVelocity now = fc_drive_velocity_at_phase(&scene->drive, 0.0, stretch->start_phase);
         stretch->at_start = progress->start;
         stretch->w_a = fc_mesh_layer(&now, progress->start.sigma / progress->start.limit);
         stretch->back = fmax(stretch->w_a, fc_mesh_settled_back(&now));
-        stretch->transient = transient_at_start(progress, mesh);
+        stretch->transient = transient_at_start(progress, mesh, stretch->start_phase);
     } else if (before->w_b > 0.0) {
         stretch->at_start = before->at_end;
         stretch->w_a = stretch->back = before->w_b;
     } else {
-        stretch->at_start = fc_scene_coefficients(scene, stretch->start);
-        stretch->w_a = stretch->back = layer_at(scene, before->reversal, stretch->start, &stretch->at_start);
+        stretch->at_start = fc_scene_coefficients_at_phase(scene, stretch->start, stretch->start_phase);
+        stretch->w_a = stretch->back =
+            layer_at(scene, before->reversal, stretch->start, stretch->start_phase, &stretch->at_start);
     }
     if (isfinite(stretch->event)) {
-        stretch->at_end = fc_scene_coefficients(scene, stretch->end);
-        stretch->w_b = layer_at(scene, stretch->reversal, stretch->event, &stretch->at_end);
+        stretch->at_end = fc_scene_coefficients_at_phase(scene, stretch->end, stretch->end_phase);
+        stretch->w_b =
+            layer_at(scene, stretch->reversal, stretch->event, stretch->event_phase, &stretch->at_end);
     }
 }
 
-// The first event after t. One farther beyond the interval's end than the end is from t does not shape the panels.
-static FcDriveEvent event_after(const FcScene* scene, double t, double duration) {
-    return fc_drive_next_event(&scene->drive, t, duration + (duration - t));
-}
+// An event farther beyond the interval's end than the end is from t does not shape the panels that begin there.
+static double horizon(double t, double duration) { return duration + (duration - t); }
 
 // An interval so short that V, which moves by no more than it is, has no event and meets no bell, in one panel, if it can.
-static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double tolerance, double duration,
-                            double delta_0, FcMapScope scope, FcMap* map, double* evaluations) {
+static bool interval_in_one(const FcScene* scene, const FcMotion* motion, FcPhase phase, double tolerance,
+                            double duration, double delta_0, FcMapScope scope, FcMap* map,
+                            double* evaluations) {
     const FcDrive* drive = &scene->drive;
     const double moves = duration * (fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega);
-    const double speed = fabs(fc_drive_V(drive, 0.0));
+    const double speed = fabs(fc_drive_V_at_phase(drive, 0.0, phase));
     const double saturation = motion->limit / motion->stiffness;
     if (!(duration > 0.0 && speed > moves && (speed - moves) * duration <= FC_MOST_BOUNDED * saturation) ||
         !fc_is_beyond_bells(scene->friction, speed - moves, fabs(delta_0) / saturation, tolerance)) {
@@ -313,6 +318,7 @@ static bool interval_in_one(const FcScene* scene, const FcMotion* motion, double
 
 static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcSolverOptions* options,
                     double duration, double delta_0, FcMapScope scope, double* evaluations) {
+    const FcDrive* drive = &scene->drive;
     const double force = fc_scene_force_scale(scene);
     const double largest_stiffness = fc_scene_largest_stiffness(scene, duration);
     if (!isfinite(force / largest_stiffness)) {
@@ -320,11 +326,13 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
     }
     const bool for_one_start = scope == FC_MAP_THIS_START;
     const FcMotion motion = fc_motion(scene, duration, largest_stiffness, options->tolerance * force);
+    const FcPhase start_phase = fc_drive_phase(drive, 0.0);
     FcMap whole;
-    if (interval_in_one(scene, &motion, options->tolerance, duration, delta_0, scope, &whole, evaluations)) {
+    if (interval_in_one(scene, &motion, start_phase, options->tolerance, duration, delta_0, scope, &whole,
+                        evaluations)) {
         return whole;
     }
-    const FcCoefficients start = fc_scene_coefficients(scene, 0.0);
+    const FcCoefficients start = fc_scene_coefficients_at_phase(scene, 0.0, start_phase);
     FcMap map = fc_map_identity();
     Progress progress = {
         .scene = scene,
@@ -334,7 +342,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
         .tolerance = options->tolerance * force,
         .start = start,
         .per_deflection = start.sigma / start.limit,
-        .speed = fc_drive_largest_speed(&scene->drive, duration) + 1e-300,
+        .speed = fc_drive_largest_speed(drive, duration) + 1e-300,
         .decades = fc_digits(options->tolerance),
         .evaluations = *evaluations,
         .motion = motion,
@@ -354,20 +362,28 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
     }
     FcMesh mesh;
     bool has_mesh = false;
-    FcStretch before = {.reversal = true};
-    FcDriveEvent event = event_after(scene, 0.0, duration);
-    double displacement = fc_drive_displacement(&scene->drive, 0.0, fc_least(event.time, duration));
+    FcStretch before = {.reversal = true, .end_phase = start_phase};
+    FcDriveEvent event = fc_drive_next_event(drive, 0.0, horizon(0.0, duration));
+    const FcPhase last_phase = fc_drive_phase(drive, duration);
+    FcPhase end_phase = event.time < duration ? event.phase : last_phase;
+    double displacement =
+        fc_drive_displacement_between(drive, 0.0, start_phase, fc_least(event.time, duration), end_phase);
     while (before.end < duration && progress.evaluations <= FC_MOST_EVALUATIONS) {
         FcStretch stretch = {
             .start = before.end,
             .end = fc_least(event.time, duration),
             .event = event.time < duration + (duration - before.end) ? event.time : INFINITY,
             .reversal = event.reversal,
+            .start_phase = before.end_phase,
+            .end_phase = end_phase,
+            .event_phase = event.phase,
             .displacement = displacement,
         };
         if (stretch.end < duration) {
-            event = event_after(scene, stretch.end, duration);
-            displacement = fc_drive_displacement(&scene->drive, stretch.end, fc_least(event.time, duration));
+            event = fc_drive_event_after(drive, &event, horizon(stretch.end, duration));
+            end_phase = event.time < duration ? event.phase : last_phase;
+            displacement = fc_drive_displacement_between(drive, stretch.end, stretch.end_phase,
+                                                         fc_least(event.time, duration), end_phase);
             stretch.path_after = fabs(displacement);
         }
         stretch.bells = (FcBells){.after = stretch.start, .before = stretch.end};

@@ -94,44 +94,81 @@ static bool accurate_panel(const FcScene* scene, double t, double h, double disp
     }
 }
 
+typedef struct {
+    const FcScene* scene;
+    double tolerance; // 1
+    double settled;   // m, |D|
+    double allowed;   // N s, error of a panel's impulse
+    FcTrajectories from;
+    FcMap* map; // of what is crossed
+    int halvings;
+    double* evaluations;
+} Progress;
+
+// Goes from t to the end of a stretch over which V keeps its sign, of that displacement [m]. false where it can't.
+static bool cross(Progress* progress, double t, double end, double displacement) {
+    const FcDrive* drive = &progress->scene->drive;
+    FcTrajectories* from = &progress->from;
+    while (t < end) {
+        double part_end = end;
+        double X = displacement;
+        FcPanel panel;
+        for (;;) {
+            const double z = fabs(X) / progress->settled;
+            if (!is_resolved(z, FC_GAUSS_MOST_NODES)) {
+                return false;
+            }
+            const double nodes = nodes_for(progress->tolerance, z, drive->omega * (part_end - t));
+            if (accurate_panel(progress->scene, t, part_end - t, X, nodes, from, progress->allowed, &panel,
+                               progress->evaluations)) {
+                break;
+            }
+            part_end = t + 0.5 * (part_end - t);
+            if (++progress->halvings > MOST_HALVINGS || !(part_end > t)) {
+                return false;
+            }
+            X = fc_drive_displacement(drive, t, part_end);
+        }
+        *progress->map = fc_map_compose(progress->map, &panel.map);
+        from->delta_0 = (1.0 - panel.map.relaxation) * from->delta_0 + panel.map.offset;
+        from->scale *= 1.0 - panel.map.relaxation;
+        t = part_end;
+        displacement = t < end ? fc_drive_displacement(drive, t, end) : 0.0;
+    }
+    return true;
+}
+
 bool fc_constant_contact_interval(const FcScene* scene, double tolerance, double duration, double delta_0,
                                   FcMapScope scope, FcMap* map, double* evaluations) {
     const FcDrive* drive = &scene->drive;
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     const double settled = at.limit / at.sigma;
-    const double allowed = OF_THE_MEAN * tolerance * at.limit * duration;
-    FcTrajectories from = {
-        .delta_0 = delta_0,
-        .scale = scope == FC_MAP_ANY_START ? fmax(fabs(delta_0), settled) : 0.0,
-        .speed = fc_drive_largest_speed(drive, duration) + 1e-300,
+    Progress progress = {
+        .scene = scene,
+        .tolerance = tolerance,
+        .settled = settled,
+        .allowed = OF_THE_MEAN * tolerance * at.limit * duration,
+        .from = {.delta_0 = delta_0,
+                 .scale = scope == FC_MAP_ANY_START ? fmax(fabs(delta_0), settled) : 0.0,
+                 .speed = fc_drive_largest_speed(drive, duration) + 1e-300},
+        .map = map,
+        .evaluations = evaluations,
     };
-    int halvings = 0;
     if (!isfinite(settled)) { // without stiffness
         return false;
     }
     *map = fc_map_identity();
-    for (double t = 0.0; t < duration;) {
-        double end = fc_drive_next_event(drive, t, duration).time;
-        FcPanel panel;
-        for (;;) {
-            const double displacement = fc_drive_displacement(drive, t, end);
-            const double z = fabs(displacement) / settled;
-            if (!is_resolved(z, FC_GAUSS_MOST_NODES)) {
-                return false;
-            }
-            const double nodes = nodes_for(tolerance, z, drive->omega * (end - t));
-            if (accurate_panel(scene, t, end - t, displacement, nodes, &from, allowed, &panel, evaluations)) {
-                break;
-            }
-            end = t + 0.5 * (end - t);
-            if (++halvings > MOST_HALVINGS || !(end > t)) {
-                return false;
-            }
+    double t = 0.0;
+    FcPhase phase = fc_drive_phase(drive, 0.0);
+    for (FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration); t < duration;
+         event = fc_drive_event_after(drive, &event, duration)) {
+        const FcPhase next = event.time < duration ? event.phase : fc_drive_phase(drive, duration);
+        const double X = fc_drive_displacement_between(drive, t, phase, event.time, next);
+        if (!cross(&progress, t, event.time, X)) {
+            return false;
         }
-        *map = fc_map_compose(map, &panel.map);
-        from.delta_0 = (1.0 - panel.map.relaxation) * from.delta_0 + panel.map.offset;
-        from.scale *= 1.0 - panel.map.relaxation;
-        t = end;
+        t = event.time;
+        phase = next;
     }
     return true;
 }

@@ -47,11 +47,12 @@ typedef struct {
 // A stretch of time on which V keeps its sign, and the events on both sides that its panels are graded towards. The
 // event ahead may lie beyond the end.
 typedef struct {
-    double start, end; // s
-    double event;      // s, at or beyond the end; infinite if there is none
-    bool reversal;     // the event is one, and no dip
-    double w_a, w_b;   // s, layers at the start and at the event
-    double back;       // s, from the start back to what the panels are graded away from
+    double start, end;                           // s
+    double event;                                // s, at or beyond the end; infinite if there is none
+    bool reversal;                               // the event is one, and no dip
+    FcPhase start_phase, end_phase, event_phase; // of the vibration
+    double w_a, w_b;                             // s, layers at the start and at the event
+    double back; // s, from the start back to what the panels are graded away from
     double
         transient; // 1, at the interval's start: |force - what it settles to| over the mesh's force; elsewhere infinite
     FcBells bells;                   // where the Stribeck curve matters
@@ -95,7 +96,8 @@ static inline double fc_mesh_layer(const FcVelocity* at, double per_path) {
     const double r = per_path * fabs(at->V);
     const double r_rate = per_path * fabs(at->rate);
     const double r_curvature = per_path * fabs(at->curvature);
-    return fmin(2.0 / (r + sqrt(r * r + 2.0 * r_rate)), cbrt(6.0 / r_curvature));
+    const double root = 2.0 / (r + sqrt(r * r + 2.0 * r_rate));
+    return r_curvature * root * root * root <= 6.0 ? root : cbrt(6.0 / r_curvature);
 }
 
 // Width [s] of a dip of |V| that does not reach zero: that of the parabola, or the time to relax by 1 in it.

@@ -81,13 +81,9 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
                                                               FcNodeCoefficients* at) {
     const FcDrive* drive = &scene->drive;
     const double middle = t + 0.5 * h;
-    const double angle = drive->theta_0 + drive->omega * middle;
-    double c = 1.0;
-    double s = 0.0;
-    if (angle != 0.0) {
-        c = cos(angle);
-        s = sin(angle);
-    }
+    const FcPhase at_middle = fc_drive_phase(drive, middle);
+    const double c = at_middle.cosine;
+    const double s = at_middle.sine;
     double sin_later[FC_MOST_NODES];
     double cos_later_less_1[FC_MOST_NODES];
     const double angle_per_node = drive->omega * h * halved_angle.factor;
@@ -103,7 +99,7 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
     }
     const double V_c = drive->vibration.V_1 * c;
     const double V_s = drive->vibration.V_1 * s;
-    const double V_middle = fc_drive_V_at_angle(drive, middle, angle, c);
+    const double V_middle = fc_drive_V_at_phase(drive, middle, at_middle);
     const double V_rate = drive->V.rate * h;
     for (int i = 0; i < count; i++) {
         at->V[i] = V_middle + V_rate * node[i] + (V_c * cos_later_less_1[i] - V_s * sin_later[i]);

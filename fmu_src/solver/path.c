@@ -52,12 +52,12 @@ FcPath fc_path_from(const FcScene* scene, double start) {
     const FcDrive* drive = &scene->drive;
     FcPath path = {.start = start, .V = drive->V.value + drive->V.rate * start, .V_rate = drive->V.rate};
     if (drive->vibration.V_1 != 0.0) {
-        const double theta = drive->theta_0 + drive->omega * start;
+        const FcPhase phase = fc_drive_phase(drive, start);
         path.omega = drive->omega;
         path.V_1 = drive->vibration.V_1;
-        path.cos_theta = cos(theta);
-        path.sin_theta = sin(theta);
-        path.V = fc_drive_V_at_angle(drive, start, theta, path.cos_theta);
+        path.cos_theta = phase.cosine;
+        path.sin_theta = phase.sine;
+        path.V = fc_drive_V_at_phase(drive, start, phase);
     }
     return path;
 }

@@ -114,6 +114,7 @@ static bool is_lag_too_large(const FcSettledStart* from, double drift, double al
 typedef struct {
     double displacement;         // m
     FcVelocity at_start, at_end; // V
+    FcPhase end_phase;
 } Course;
 
 // Cheap tests first: they fail on most panels.
@@ -125,10 +126,11 @@ static Settled settled(const FcSettledStart* from, Course* course) {
         return NOT_SETTLED;
     }
     const double allowed = SHARE * mesh->allowed;
-    const double drift = mesh->smooth.rate - mesh->scene->drive.omega; // 1/s, |rho| at the most
+    const FcDrive* drive = &mesh->scene->drive;
+    const double drift = mesh->smooth.rate - drive->omega; // 1/s, |rho| at the most
     const double after = at->t - stretch->start + stretch->back;
     const double lag_lasts = 2.0 * drift * mesh->beyond; // m, but for what is in the error of the bells
-    const bool known = V_is_constant(&mesh->scene->drive);
+    const bool known = V_is_constant(drive);
     const bool seen = !known && lag_lasts * LEAST_FADING * fc_least(after, from->end - at->t) >
                                     allowed * mesh->end * speed_at_start(from);
     if (seen && is_lag_too_large(from, drift, allowed)) {
@@ -139,15 +141,18 @@ static Settled settled(const FcSettledStart* from, Course* course) {
     if (mesh->smooth.rate + 1.0 / after > allowed_changes) {
         return NOT_SETTLED;
     }
-    course->at_start = fc_drive_velocity(&mesh->scene->drive, at->t);
+    const FcPhase start_phase = at->t == stretch->start ? stretch->start_phase : fc_drive_phase(drive, at->t);
+    course->at_start = fc_drive_velocity_at_phase(drive, at->t, start_phase);
     if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(&course->at_start) > allowed_changes) {
         return NOT_SETTLED;
     }
-    course->displacement = fc_drive_displacement(&mesh->scene->drive, at->t, from->end);
+    course->end_phase = from->end == stretch->end ? stretch->end_phase : fc_drive_phase(drive, from->end);
+    course->displacement =
+        fc_drive_displacement_between(drive, at->t, start_phase, from->end, course->end_phase);
     if (!(lag * exp(-fabs(course->displacement) / mesh->saturation) <= allowed * allowed)) {
         return NOT_SETTLED;
     }
-    course->at_end = fc_drive_velocity(&mesh->scene->drive, from->end);
+    course->at_end = fc_drive_velocity_at_phase(drive, from->end, course->end_phase);
     if (!(seen_at_end(from, &course->at_end, drift) <= allowed)) {
         return NOT_SETTLED;
     }
@@ -195,10 +200,10 @@ static void add_last(const FcSettledStart* from, FcPanel* panel) {
     panel->rate /= 1.0 + bell->curve;
 }
 
-static FcCoefficients coefficients_at_end(const FcSettledStart* from) {
+static FcCoefficients coefficients_at_end(const FcSettledStart* from, FcPhase end_phase) {
     const FcStretch* stretch = from->stretch;
     if (from->end < stretch->end || !isfinite(stretch->event)) {
-        return fc_scene_coefficients(from->scene, from->end);
+        return fc_scene_coefficients_at_phase(from->scene, from->end, end_phase);
     }
     FcCoefficients end = stretch->at_end;
     end.limit = from->scene->F_C; // beyond the Stribeck curve
@@ -212,8 +217,8 @@ bool fc_settled_panel(const FcSettledStart* from, FcPanel* panel, double* evalua
         return false;
     }
     const double X = course.displacement;
-    const FcCoefficients end = coefficients_at_end(from);
-    const double rho = fc_scene_log_rates(from->scene, from->end).sigma;
+    const FcCoefficients end = coefficients_at_end(from, course.end_phase);
+    const double rho = fc_scene_log_rates_at_phase(from->scene, from->end, course.end_phase).sigma;
     *evaluations += 1.0;
     const FcDrive* drive = &from->scene->drive;
     const double force = from->sign * from->scene->F_C;

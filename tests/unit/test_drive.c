@@ -146,6 +146,46 @@ static Events events_until(const FcDrive* drive, double end) {
     return all;
 }
 
+// An event tells its phase, and from one to the next leads the same way as from anywhere: up to the rounding of the angles.
+static void events_tell_what_follows(void) {
+    const double means[] = {0.0, 0.3, -0.6, 0.69, 0.71, -0.75, 1.5};
+    for (int i = 0; i < 7; i++) {
+        for (int moves = 0; moves < 2; moves++) {
+            Case c = MOVING;
+            c.V = means[i];
+            c.V_rate = moves ? 900.0 : 0.0;
+            const FcDrive drive = drive_of(c);
+            const double end = 3.3 * PERIOD;
+            const Events all = events_until(&drive, end);
+            for (int k = 0; k < all.count; k++) {
+                const FcDriveEvent* event = &all.event[k];
+                const FcPhase phase = fc_drive_phase(&drive, event->time);
+                CHECK_WITHIN(event->phase.cosine, phase.cosine, 1e-14);
+                CHECK_WITHIN(event->phase.sine, phase.sine, 1e-14);
+                if (event->reversal && event->ahead > 0.0) {
+                    CHECK_WITHIN(fc_drive_V_at_phase(&drive, event->time, event->phase), 0.0, 1e-16);
+                }
+                const FcDriveEvent after = fc_drive_event_after(&drive, event, end);
+                const bool is_last = k + 1 == all.count;
+                CHECK(after.reversal == (!is_last && all.event[k + 1].reversal));
+                CHECK_NEAR(after.time, is_last ? end : all.event[k + 1].time, 1e-14);
+            }
+        }
+    }
+}
+
+// In closed form, but from the ends' phases instead of the middle's.
+static void displacements_between_phases(void) {
+    const FcDrive drive = drive_of(MOVING);
+    for (double t0 = 0.0; t0 < PERIOD; t0 += 0.13 * PERIOD) {
+        for (double h = 1e-3 * PERIOD; h < 2.0 * PERIOD; h *= 1.6) {
+            CHECK_WITHIN(fc_drive_displacement_between(&drive, t0, fc_drive_phase(&drive, t0), t0 + h,
+                                                       fc_drive_phase(&drive, t0 + h)),
+                         fc_drive_displacement(&drive, t0, t0 + h), 1e-14 * 0.7 * PERIOD);
+        }
+    }
+}
+
 // Where V = V_1 cos crosses -V, in closed form, on both sides of each half period's end.
 static void reversals_of_held_vibration(void) {
     const double V[] = {0.0, 0.005, -0.005, 0.5, -0.5, 1.4399};
@@ -388,6 +428,8 @@ int main(void) {
     integrals_of_V();
     bounds_hold();
     reversals_of_held_vibration();
+    events_tell_what_follows();
+    displacements_between_phases();
     grazing_reversals();
     V_keeps_its_digits_where_it_touches_zero();
     reversals_just_after_the_start();
