@@ -16,7 +16,7 @@ from pathlib import Path
 from mpmath import mp, mpf
 
 mp.dps = 60
-GAUSS, RADAU = (4, 6, 8, 12), (3, 5, 9)
+GAUSS, RADAU = (4, 6, 8, 12), (5, 9)
 FOLDER = Path(__file__).resolve().parents[1] / "fmu_src" / "solver"
 
 
@@ -103,7 +103,7 @@ RADAU_STRUCT = """typedef struct {
     double weight[9];     // of the integral over the panel
     double start[9];      // value at the start of the polynomial through the stages
     double inverse[9][9]; // of the Runge-Kutta matrix
-    double tail[4][9];    // rows: Legendre coefficients of the degrees n - 1 .. n - 4, of 3 stages down to 0
+    double tail[4][9];    // rows: Legendre coefficients of the degrees n - 1 .. n - 4
 } FcRadauRule;
 """
 

@@ -4,7 +4,7 @@
 //
 //     little relaxes in the stretch     one Gauss panel whose error is bounded beforehand (solver/bounded_panel.h), or a
 //                                       few that are judged; without a linear system
-//     else, or where those miss         Radau panels of 3, 5 or 9 stages on the mesh of solver/mesh.h
+//     else, or where those miss         Radau panels of 5 or 9 stages on the mesh of solver/mesh.h
 //     once it follows its limit         the rest of the stretch in closed form (solver/settling.h)
 //
 // LuGre's limit depends on V in bells around the reversals and on nothing but the load beyond (solver/stribeck_bell.h).
@@ -220,7 +220,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
                 break;
             }
             if (plan.stages < FC_RADAU_MOST_STAGES) {
-                plan.stages = plan.stages == 3 ? 5 : 9;
+                plan.stages = FC_RADAU_MOST_STAGES;
             } else {
                 plan.h *= fmax(0.4, 0.85 * pow(excess, -1.0 / 12.0)); // 0.4 where the error is no number
             }

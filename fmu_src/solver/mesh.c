@@ -5,34 +5,34 @@
 // The error that a panel is planned for, over what the mean and the end of the interval are allowed.
 static const double SHARE_OF_MEAN = 0.003;
 static const double SHARE_AT_END = 0.001;
+// Of the lag panels miss less than DISTANCES says, by about this.
+static const double OF_THE_LAG = 5.0;
 
 // What panels may miss of a stretch's path, which decides in the stiffest contacts.
 static const double MISSED_OF_PATH = 0.1;
 
-enum { KINDS = 3, FINEST = 15 };
-static const int STAGES[KINDS] = {3, 5, 9};
+enum { FIVE_STAGES, NINE_STAGES, KINDS };
+enum { FINEST = 15 };
+static const int STAGES[KINDS] = {5, 9};
 
 // Lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST. LAYERS: of a decaying transient, in layers.
 // DISTANCES: of the lag, in distances from its event. SMOOTH: in the time over which a logarithm of the coefficients
 // moves by 1.
 static const double LAYERS[KINDS][FINEST + 1] = {
-    {12, 3, 1.6, .9, .6, .4, .28, .19, .13, .09, .06, .04, .03, .02, .014, .01},
     {20, 7, 4.5, 2.8, 1.8, 1.3, 1.0, .75, .6, .47, .37, .3, .24, .19, .15, .12},
     {25, 14, 9, 6.5, 4.5, 3.5, 2.8, 2.3, 1.9, 1.65, 1.4, 1.2, 1.02, .9, .8, .7},
 };
 static const double DISTANCES[KINDS][FINEST + 1] = {
-    {40, 12, 4, 1.4, .7, .4, .28, .19, .13, .09, .06, .04, .03, .02, .014, .01},
     {40, 20, 10, 5, 2.6, 1.6, 1.1, .75, .5, .38, .3, .24, .19, .15, .12, .1},
     {40, 30, 20, 14, 10, 6.5, 4.2, 2.9, 2.1, 1.5, 1.1, .85, .65, .53, .43, .35},
 };
 static const double SMOOTH[KINDS][FINEST + 1] = {
-    {3.2, 2.58, 1.75, 1.2, .81, .56, .38, .26, .175, .12, .081, .056, .038, .026, .0175, .012},
-    {3.2, 3.2, 3.2, 3.16, 2.5, 2.0, 1.58, 1.26, 1.0, .79, .63, .5, .4, .316, .25, .2},
-    {3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66},
+    {8, 6, 3.2, 3.16, 2.5, 2.0, 1.58, 1.26, 1.0, .79, .63, .5, .4, .316, .25, .2},
+    {8, 8, 8, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66},
 };
 // A panel that ends on a reversal and steps over its layer leaves an error of LAST lags at its last node, whose weight
 // is 1 / stages^2: last diagonal entry of the inverse of the method's matrix.
-static const double LAST[KINDS] = {5, 13, 41};
+static const double LAST[KINDS] = {13, 41};
 
 static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) { return a > b ? a : b; }
@@ -194,19 +194,17 @@ static int more(int decades_needed, int caution) {
 static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int gone_decades, int caution) {
     const int transient = decades(for_transient) - gone_decades;
     // The curve's bell is no exponential: few stages show little of what they miss of it.
-    const int of_bell = !isfinite(limits->bell) ? 0 : limits->fine ? KINDS - 1 : 1;
-    const int first_in_bell = of_bell == 2 && limits->starts ? 1 : 0;
+    const bool fine_bell = isfinite(limits->bell) && limits->fine;
+    const int first_in_bell = fine_bell && limits->starts ? 1 : 0;
     limits->for_transient = more(transient > 0 ? transient : 0, transient > 0 ? caution + first_in_bell : 0);
     limits->for_lag = more(decades(for_lag), caution);
     limits->for_last = more(decades(limits->allowed_last), caution);
     limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
-    const int least_kind = of_bell > 0 ? of_bell : limits->starts ? 1 : 0;
-    const int finer = finest(limits);
-    int kind = of_bell == 2 || finer > 5 ? 2 : finer > 1 || least_kind == 1 ? 1 : 0;
+    int kind = fine_bell || finest(limits) > 5 ? NINE_STAGES : FIVE_STAGES;
     double h = length(limits, kind);
     if (h >= limits->left) {
-        while (kind > least_kind && length(limits, kind - 1) >= limits->left) {
-            kind--;
+        if (!fine_bell && length(limits, FIVE_STAGES) >= limits->left) {
+            kind = FIVE_STAGES;
         }
     } else if (h > 0.6 * limits->left && !limits->ends_at_event) {
         h = 0.6 * limits->left;
@@ -290,7 +288,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .allowed_last = base * mesh->end / (stretch->w_b * last_counts + tiny),
     };
     double for_transient = base * mesh->end / (transient * lives + tiny);
-    double for_lag = base * mesh->end / (drift * lag_counts + tiny);
+    double for_lag = OF_THE_LAG * base * mesh->end / (drift * lag_counts + tiny);
     FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
 
     // A panel that gets longer by being planned for the end is nearer to it, where less fades.
@@ -302,7 +300,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         }
         const double at_end = SHARE_AT_END * mesh->allowed / fades;
         for_transient = least(for_transient, at_end / (transient + tiny));
-        for_lag = least(for_lag, at_end / (drift * least(lives, smooth) + tiny));
+        for_lag = least(for_lag, OF_THE_LAG * at_end / (drift * least(lives, smooth) + tiny));
         limits.allowed_last =
             least(base * mesh->end / (stretch->w_b * last_counts + tiny), at_end / (last_counts + tiny));
         plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);

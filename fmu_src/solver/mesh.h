@@ -77,7 +77,7 @@ typedef struct {
 
 typedef struct {
     double h;          // s
-    int stages;        // 3, 5 or 9
+    int stages;        // 5 or 9
     bool in_bell;      // of the Stribeck curve
     bool crosses_bell; // by more than V_S
     double lives;      // s, K

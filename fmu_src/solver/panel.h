@@ -67,7 +67,7 @@ FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, 
     map->impulse_offset *= h;
 }
 
-// The highest Legendre coefficients of a function over the nodes (rows: the four highest degrees, or three of three)
+// The highest Legendre coefficients of a function over the nodes (rows: the four highest degrees)
 // and by how much they fall per degree.
 typedef struct {
     double top;
@@ -81,15 +81,8 @@ FC_INLINE FcTail fc_tail_of(int n, const double* row, int stride, const double* 
         row += stride;
     }
     const double tiny = 1e-300;
-    FcTail tail;
-    if (n == 3) {
-        tail = (FcTail){c[0], c[0] / (fc_most(c[1], c[2]) + tiny)};
-    } else {
-        tail.top = fc_most(c[0], c[1]);
-        tail.fall = sqrt(tail.top / (fc_most(c[2], c[3]) + tiny));
-    }
-    tail.fall = fc_least(tail.fall, 1.0);
-    return tail;
+    const double top = fc_most(c[0], c[1]);
+    return (FcTail){top, fc_least(1.0, sqrt(top / (fc_most(c[2], c[3]) + tiny)))};
 }
 
 FC_INLINE double fc_largest(int n, const double* f) {

@@ -50,7 +50,7 @@ FC_INLINE void solve(int n, StageSystem row) {
 // with a function whose Legendre coefficients fall by x. Three quarters of that degree, since x is an estimate.
 FC_INLINE double acting_part(int n, double x) {
     const double x_3 = x * x * x;
-    return n == 3 ? x * sqrt(x) : n == 5 ? x_3 : x_3 * x_3;
+    return n == 5 ? x_3 : x_3 * x_3;
 }
 
 // The part of the slope that the collocation leaves unresolved and that acts on the end. at_start is its defect at the
@@ -137,15 +137,9 @@ FC_INLINE void panel_of(const FcRadauRule* rule, int n, int even, const FcScene*
 void fc_radau_panel(const FcScene* scene, int stages, double t, double h, double sign,
                     const FcTrajectories* from, FcPanel* panel) {
     assert(h > 0.0);
-    switch (stages) { // constants where panel_of is inlined
-    case 3:
-        panel_of(&FC_RADAU_3, 3, 4, scene, t, h, sign, from, panel);
-        break;
-    case 5:
+    if (stages == 5) { // constants where panel_of is inlined
         panel_of(&FC_RADAU_5, 5, 6, scene, t, h, sign, from, panel);
-        break;
-    default:
+    } else {
         panel_of(&FC_RADAU_9, 9, 10, scene, t, h, sign, from, panel);
-        break;
     }
 }

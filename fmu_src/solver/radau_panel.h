@@ -1,4 +1,4 @@
-// A panel by Radau IIA collocation of 3, 5 or 9 stages: order 5, 9, 17; L-stable, stiffly accurate.
+// A panel by Radau IIA collocation of 5 or 9 stages: order 9, 17; L-stable, stiffly accurate.
 //
 // The equation is affine, so the stage values solve one linear system. With A the matrix of the method,
 //
