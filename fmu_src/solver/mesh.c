@@ -5,7 +5,7 @@
 // The error that a panel is planned for, over what the mean and the end of the interval are allowed.
 static const double SHARE_OF_MEAN = 0.003;
 static const double SHARE_AT_END = 0.001;
-// Of the lag panels miss less than DISTANCES says, by about this.
+// Of the lag behind a limit that stands still panels miss less than DISTANCES says, by about this.
 static const double OF_THE_LAG = 5.0;
 
 // What panels may miss of a stretch's path, which decides in the stiffest contacts.
@@ -287,8 +287,9 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .ends_at_event = known && stretch->event - stretch->end <= stretch->w_b,
         .allowed_last = base * mesh->end / (stretch->w_b * last_counts + tiny),
     };
+    const double of_lag = mesh->moving_limit ? 1.0 : OF_THE_LAG;
     double for_transient = base * mesh->end / (transient * lives + tiny);
-    double for_lag = OF_THE_LAG * base * mesh->end / (drift * lag_counts + tiny);
+    double for_lag = of_lag * base * mesh->end / (drift * lag_counts + tiny);
     FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
 
     // A panel that gets longer by being planned for the end is nearer to it, where less fades.
@@ -300,7 +301,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         }
         const double at_end = SHARE_AT_END * mesh->allowed / fades;
         for_transient = least(for_transient, at_end / (transient + tiny));
-        for_lag = least(for_lag, OF_THE_LAG * at_end / (drift * least(lives, smooth) + tiny));
+        for_lag = least(for_lag, of_lag * at_end / (drift * least(lives, smooth) + tiny));
         limits.allowed_last =
             least(base * mesh->end / (stretch->w_b * last_counts + tiny), at_end / (last_counts + tiny));
         plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
