@@ -58,26 +58,36 @@ double fc_panel_bound(const FcMotion* motion, int n, double h, double z) {
     return bound(motion, n == 4 ? 0 : n == 6 ? 1 : n == 8 ? 2 : 3, h, z);
 }
 
-bool fc_bounded_panel(const FcScene* scene, const FcMotion* motion, double t, double h, double X, double z,
-                      const FcTrajectories* from, FcPanel* panel, double* evaluations) {
-    if (!motion->is_bounded || z > FC_MOST_BOUNDED) {
-        return false;
-    }
-    // Of a bristle that settles at |X| / z
+// What the bound may be: force is that of the deflection in it, of a bristle that settles at |X| / z.
+static double allowed_bound(const FcMotion* motion, double X, double z, const FcTrajectories* from) {
     const double deflection = fabs(from->delta_0) + from->scale + fabs(X) / fc_most(1.0, z);
     const double force = motion->stiffness * deflection;
     // Heat goes with the square of a force beyond the limit.
-    const double allowed = motion->allowed / (force * fc_most(1.0, force / motion->limit) + motion->damping);
-    int rule = 0;
-    while (rule < RULES && !(bound(motion, rule, h, z) <= allowed)) {
-        rule++;
+    return motion->allowed / (force * fc_most(1.0, force / motion->limit) + motion->damping);
+}
+
+int fc_bounded_panel_nodes(const FcMotion* motion, double h, double X, double z, const FcTrajectories* from) {
+    if (!motion->is_bounded || z > FC_MOST_BOUNDED) {
+        return 0;
     }
-    if (rule == RULES) {
+    const double allowed = allowed_bound(motion, X, z, from);
+    for (int rule = 0; rule < RULES; rule++) {
+        if (bound(motion, rule, h, z) <= allowed) {
+            return RULE[rule].n;
+        }
+    }
+    return 0;
+}
+
+bool fc_bounded_panel(const FcScene* scene, const FcMotion* motion, double t, double h, double X, double z,
+                      const FcTrajectories* from, FcPanel* panel, double* evaluations) {
+    const int n = fc_bounded_panel_nodes(motion, h, X, z, from);
+    if (n == 0) {
         return false;
     }
-    fc_gauss_panel_unjudged(scene, t, h, RULE[rule].n, from, panel);
-    *evaluations += RULE[rule].n;
+    fc_gauss_panel_unjudged(scene, t, h, n, from, panel);
+    *evaluations += n;
     // The displacement is known; a bristle that forgets little would sum up what its quadrature misses.
     panel->map.offset += (1.0 - panel->map.relaxation) * (X - panel->displacement);
-    return panel->z <= z || bound(motion, rule, h, panel->z) <= allowed;
+    return panel->z <= z || fc_panel_bound(motion, n, h, panel->z) <= allowed_bound(motion, X, z, from);
 }

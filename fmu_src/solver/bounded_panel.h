@@ -29,6 +29,10 @@ FcMotion fc_motion(const FcScene* scene, double duration, double largest_stiffne
 // sigma times the deflection. n = 4, 6, 8 or 12; h [s].
 double fc_panel_bound(const FcMotion* motion, int n, double h, double z);
 
+// The fewest nodes of a panel of that length [s], displacement X [m] and relaxation z whose error is small enough; 0 if there
+// are none.
+int fc_bounded_panel_nodes(const FcMotion* motion, double h, double X, double z, const FcTrajectories* from);
+
 // The panel [t, t + h] over which V keeps its sign, of the displacement X [m] and the relaxation of about z, if its error is
 // small enough.
 bool fc_bounded_panel(const FcScene* scene, const FcMotion* motion, double t, double h, double X, double z,

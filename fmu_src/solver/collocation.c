@@ -20,6 +20,7 @@
 #include "solver/constant_contact.h"
 #include "solver/gauss_panel.h"
 #include "solver/gauss_rule.h"
+#include "solver/judge.h"
 #include "solver/mesh.h"
 #include "solver/radau_panel.h"
 #include "solver/section.h"
@@ -27,20 +28,6 @@
 #include "solver/small_bell.h"
 #include "solver/stribeck_bell.h"
 
-// What an estimated error may be, over the tolerance. Estimates are 10 to 10^5 times too large for most panels and rarely
-// too small. The end sees the last panels as they are; in the mean the few that are too small drown.
-static const double OF_THE_MEAN = 10.0;
-static const double AT_THE_END = 0.2;
-static const double OF_GAUSS_PANELS = 10.0;
-// Of the mean over a panel that relaxes by more than this: its estimate may be but twice the error.
-static const double STEEP = 4.0;
-static const double OF_STEEP_PANELS = 0.2;
-// The same in bells of the Stribeck curve, where estimates are up to ten times too small.
-static const double OF_THE_MEAN_IN_BELLS = 1.0;
-static const double AT_THE_END_IN_BELLS = 0.05;
-static const double OF_GAUSS_PANELS_IN_BELLS = 1.0;
-// Rounding in a panel, over the limit: asking for less would only shorten panels.
-static const double ROUNDING = 2e-13;
 // Panels that are refused in a row before one is taken as it is: rounding rules by then.
 enum { MOST_TRIES = 12, MOST_CAUTION = 6 };
 
@@ -79,8 +66,6 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
     int nodes = pieces.nodes;
     double h = planned;
     double t = section->start;
-    const double allowed =
-        (section->in_bell ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * progress->tolerance;
     while (t < section->end && progress->evaluations <= FC_MOST_EVALUATIONS) {
         const double left = section->end - t;
         h = h < 0.9 * left && t + h > t ? h : left;
@@ -88,10 +73,8 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
         FcPanel panel;
         fc_gauss_panel(section->scene, t, h, nodes, &from, &panel);
         progress->evaluations += nodes;
-        // n nodes resolve e^G where G grows by less than half of n; beyond that the estimates say little.
-        if (panel.z < 0.5 * nodes &&
-            panel.end_error <= allowed * fc_least(1.0, section->in_bell ? section->forgets : panel.z) &&
-            section->share * panel.mean_error <= (panel.z < STEEP ? 1.0 : OF_STEEP_PANELS) * allowed) {
+        if (fc_gauss_panel_is_accurate(&panel, nodes, section->share, section->in_bell, section->forgets,
+                                       progress->tolerance)) {
             *progress->map = fc_map_compose(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
             if (panel.z < 0.2 * nodes) { // twice as much would still be resolved
@@ -137,18 +120,18 @@ static void put_back(Progress* progress, const FcBellInterval* bells, const FcSt
 // Whether a panel's error is small enough; *excess is how many times it is too large.
 static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcStretch* stretch,
                         const FcPlan* plan, const FcPlace* at, const FcPanel* panel, double* excess) {
-    const double rounding = ROUNDING * panel->limit;
-    const double whole = progress->tolerance * fc_least(1.0, panel->z);
-    // sigma may grow while the error lives
-    const double end_error = panel->end_error * fc_least(progress->motion.stiffness / panel->sigma,
-                                                         1.0 + 2.0 * plan->lives / plan->grows);
-    const double lives = fc_least(plan->lives, progress->end - at->t);
-    const double of_mean = (end_error * lives + panel->mean_error * plan->h) / progress->end;
-    *excess = of_mean / fc_most((plan->crosses_bell ? OF_THE_MEAN_IN_BELLS : OF_THE_MEAN) * whole, rounding);
-    const double at_end =
-        end_error / fc_most((plan->in_bell ? AT_THE_END_IN_BELLS : AT_THE_END) * whole, rounding);
-    if (at_end > *excess) {
-        *excess = fc_most(*excess, fc_mesh_left_at_end(mesh, stretch, at, at->t + plan->h) * at_end);
+    const FcErrorLife life = {
+        .lives = fc_least(plan->lives, progress->end - at->t) / progress->end,
+        .lasts = plan->h / progress->end,
+        .grows = fc_least(progress->motion.stiffness / panel->sigma, 1.0 + 2.0 * plan->lives / plan->grows),
+        .in_bell = plan->in_bell,
+        .crosses_bell = plan->crosses_bell,
+    };
+    const FcExcess over = fc_radau_panel_excess(panel, &life, progress->tolerance);
+    *excess = over.mean;
+    if (over.end > *excess) {
+        *excess = fc_most(
+            *excess, fc_mesh_left_at_end(mesh, stretch, at, at->t + plan->h, at->gone + panel->z) * over.end);
     }
     return *excess <= 1.0;
 }
@@ -419,6 +402,7 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
                     add_layers(&progress, &mesh, &before, &stretch);
                     has_layers = true;
                 }
+                stretch.relaxes = section->is_measured && t == stretch.start ? section->z.whole : 0.0;
                 cross(&progress, &mesh, &stretch, t, section->end);
                 t = section->end;
             }

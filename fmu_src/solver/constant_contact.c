@@ -160,8 +160,8 @@ bool fc_constant_contact_interval(const FcScene* scene, double tolerance, double
     *map = fc_map_identity();
     double t = 0.0;
     FcPhase phase = fc_drive_phase(drive, 0.0);
-    for (FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration); t < duration;
-         event = fc_drive_event_after(drive, &event, duration)) {
+    FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration);
+    while (t < duration) {
         const FcPhase next = event.time < duration ? event.phase : fc_drive_phase(drive, duration);
         const double X = fc_drive_displacement_between(drive, t, phase, event.time, next);
         if (!cross(&progress, t, event.time, X)) {
@@ -169,6 +169,9 @@ bool fc_constant_contact_interval(const FcScene* scene, double tolerance, double
         }
         t = event.time;
         phase = next;
+        if (t < duration) {
+            event = fc_drive_event_after(drive, &event, duration);
+        }
     }
     return true;
 }

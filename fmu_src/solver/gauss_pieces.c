@@ -4,6 +4,7 @@
 
 #include "model/constants.h"
 #include "solver/gauss_rule.h"
+#include "solver/judge.h"
 
 // Decades of the estimate of a panel: about one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z), as bench/gauss_estimates prints it
 // but for hundredths, with a scatter of half a decade (4 nodes) to one and a half (12). time: of a panel, of 4 nodes 1; the
@@ -19,12 +20,10 @@ static const struct {
     {8, 1.33, -14.06, 6.49, 1.61, 2.98},
     {12, 1.87, -18.40, 6.29, 2.17, 3.53},
 };
-// Decades that an estimate may be above the tolerance.
-static const double ESTIMATES = 1.0;
 // n nodes resolve e^z where z is less than half of n.
 static const double RESOLVED = 0.47;
 // Time of the Radau panels between two reversals half a period apart, up to so many decades, and for each more; of one panel.
-static const double RADAU = 7.5;
+static const double RADAU = 6.0;
 static const double FEW_DECADES = 3.0;
 static const double RADAU_FOR_EACH = 2.0;
 static const double HALF_PERIOD = 0.5 * FC_PI;
@@ -53,7 +52,7 @@ static double time_of_radau_panels(double phi, double mu, double decades) {
 }
 
 FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades) {
-    const double asked = decades - ESTIMATES;
+    const double asked = decades - log10(FC_OF_GAUSS_PANELS);
     double least = time_of_radau_panels(phi, mu, decades);
     FcGaussPieces cheapest = {0, FC_GAUSS_MOST_NODES};
     for (int n = 1; n <= MOST_PIECES && n * RULE[0].time < least; n++) {

@@ -11,6 +11,14 @@ static const double OF_THE_LAG = 5.0;
 // What panels may miss of a stretch's path, which decides in the stiffest contacts.
 static const double MISSED_OF_PATH = 0.1;
 
+// Of what is told to relax in a stretch, and of what would be left of it, these parts are counted on.
+static const double SURE_OF_WHOLE = 0.9;
+static const double SURE_OF_REST = 0.5;
+
+// Five stages estimate more than nine would miss in a panel that ends at an event, if as much as this of an error there is
+// left at the interval's end.
+static const double SEEN = 0.1;
+
 enum { FIVE_STAGES, NINE_STAGES, KINDS };
 enum { FINEST = 15 };
 static const int STAGES[KINDS] = {5, 9};
@@ -153,6 +161,7 @@ typedef struct {
     bool
         starts; // with a transient: not stepped over, though it be allowed to be, since what is estimated then is far off
     bool ends_at_event;  // or within its layer
+    bool seen;           // errors are, at the interval's end
     double allowed_last; // relative error of a panel that ends at the event
     int for_transient, for_lag, for_last, for_quadrature;
 } Limits;
@@ -200,10 +209,11 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     limits->for_lag = more(decades(for_lag), caution);
     limits->for_last = more(decades(limits->allowed_last), caution);
     limits->allowed_last *= caution > 0 ? pow(10.0, -caution) : 1.0;
-    int kind = fine_bell || finest(limits) > 5 ? NINE_STAGES : FIVE_STAGES;
+    const bool nine = fine_bell || (limits->seen && limits->ends_at_event);
+    int kind = nine || finest(limits) > 5 ? NINE_STAGES : FIVE_STAGES;
     double h = length(limits, kind);
     if (h >= limits->left) {
-        if (!fine_bell && length(limits, FIVE_STAGES) >= limits->left) {
+        if (!nine && length(limits, FIVE_STAGES) >= limits->left) {
             kind = FIVE_STAGES;
         }
     } else if (h > 0.6 * limits->left && !limits->ends_at_event) {
@@ -212,16 +222,24 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
     return (FcPlan){.h = h, .stages = STAGES[kind]};
 }
 
-double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t) {
+double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t,
+                           double gone) {
     const double about = at->path - MISSED_OF_PATH * fabs(stretch->displacement);
     if (about - mesh->speed * (t - at->t) + stretch->path_after > mesh->forgotten) {
         return 0.0;
     }
-    double path = stretch->path_after;
+    double relaxes = stretch->path_after / mesh->saturation;
     if (t < stretch->end) {
-        path += fabs(fc_drive_displacement(&mesh->scene->drive, t, stretch->end));
+        const double at_least =
+            fabs(fc_drive_displacement(&mesh->scene->drive, t, stretch->end)) / mesh->saturation;
+        relaxes += most(at_least, SURE_OF_REST * (SURE_OF_WHOLE * stretch->relaxes - gone));
     }
-    return exp(-path / mesh->saturation);
+    return exp(-relaxes);
+}
+
+// What has relaxed since the stretch's start when a panel of that length has gone by, about.
+static double gone_after(const FcStretch* stretch, const FcPlace* at, double h) {
+    return at->gone + (stretch->relaxes - at->gone) * h / (stretch->end - at->t);
 }
 
 // Length [s] of a panel that begins in a bell. What it misses of the curve acts while V goes on by V_S, and lives on.
@@ -229,7 +247,9 @@ static double length_in_bell(const FcMesh* mesh, const FcStretch* stretch, const
                              const Bell* bell, double lives) {
     const double near_rounding = mesh->allowed < 1e-7 ? 0.7 : 1.0;
     double allowed = SHARE_OF_MEAN * mesh->allowed * mesh->end / (lives + bell->tau);
-    if (fc_mesh_left_at_end(mesh, stretch, at, at->t + bell->lasts) > mesh->allowed * mesh->allowed) {
+    const double end = at->t + bell->lasts;
+    const double gone = gone_after(stretch, at, bell->lasts);
+    if (fc_mesh_left_at_end(mesh, stretch, at, end, gone) > mesh->allowed * mesh->allowed) {
         allowed = least(allowed, SHARE_AT_END * mesh->allowed);
     }
     return allowed < bell->height ? BELL[decades(allowed / bell->height)] * near_rounding * bell->lasts
@@ -295,11 +315,13 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     // A panel that gets longer by being planned for the end is nearer to it, where less fades.
     for (double judged = 0.0; plan.h > judged;) {
         judged = plan.h;
-        const double fades = fc_mesh_left_at_end(mesh, stretch, at, at->t + plan.h);
+        const double fades =
+            fc_mesh_left_at_end(mesh, stretch, at, at->t + plan.h, gone_after(stretch, at, plan.h));
         if (!(fades > mesh->allowed * mesh->allowed)) {
             break;
         }
         const double at_end = SHARE_AT_END * mesh->allowed / fades;
+        limits.seen = fades > SEEN;
         for_transient = least(for_transient, at_end / (transient + tiny));
         for_lag = least(for_lag, of_lag * at_end / (drift * least(lives, smooth) + tiny));
         limits.allowed_last =

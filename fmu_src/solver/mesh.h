@@ -55,9 +55,10 @@ typedef struct {
     double back; // s, from the start back to what the panels are graded away from
     double
         transient; // 1, at the interval's start: |force - what it settles to| over the mesh's force; elsewhere infinite
-    FcBells bells;                   // where the Stribeck curve matters
-    double displacement;             // m
-    double path_after;               // m, path from the end to the next reversal or the interval's end
+    FcBells bells;       // where the Stribeck curve matters
+    double displacement; // m
+    double relaxes;      // 1, by how much the bristle does in it, about; 0 where that is not known
+    double path_after;   // m, path from the end to the next reversal or the interval's end
     FcCoefficients at_start, at_end; // with the layers; at the end where there is an event
 } FcStretch;
 
@@ -106,9 +107,10 @@ double fc_mesh_dip_layer(const FcVelocity* at, double per_path);
 // Distance [s] of what V last came from, a reversal or a dip, when the bristle has settled there.
 double fc_mesh_settled_back(const FcVelocity* at);
 
-// What is left at the interval's end of an error made at t [s], from here on in the stretch, at the most; 0 for less than
-// the square of what is allowed.
-double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t);
+// What is left at the interval's end of an error made at t [s], from here on in the stretch, by when the bristle has relaxed by
+// gone since the stretch's start, at the most; 0 for less than the square of what is allowed.
+double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t,
+                           double gone);
 
 // The panel from here. Each unit of caution asks for a tenth of the error.
 FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, int caution);

@@ -56,16 +56,13 @@ static FcRelaxation relaxation_of(const FcSection* section) {
     };
 }
 
-static FcRelaxation relaxation(const FcSection* section, const FcStretch* stretch, double per_path,
-                               double most_per_path, double* evaluations) {
+static void find_relaxation(FcSection* section, const FcStretch* stretch, double per_path,
+                            double most_per_path) {
     const FcDrive* drive = &section->scene->drive;
     const double X = fabs(fc_stretch_displacement(stretch, drive, section->start, section->end));
     const double z = per_path * X;
-    if (section->in_bell || !(most_per_path * X > MATTERS && z < STIFF)) {
-        return (FcRelaxation){z, z, z};
-    }
-    *evaluations += RELAXATION_NODES;
-    return relaxation_of(section);
+    section->is_measured = !section->in_bell && most_per_path * X > MATTERS && z < STIFF;
+    section->z = section->is_measured ? relaxation_of(section) : (FcRelaxation){z, z, z};
 }
 
 static bool is_soft(const FcSection* section) {
@@ -101,7 +98,8 @@ FcSections fc_sections(const FcScene* scene, const FcScene* beyond_bells, const 
         section->start = ends[i];
         section->end = ends[i + 1];
         section->share = duration / (stretch->end - stretch->start);
-        section->z = relaxation(section, stretch, per_path, most_per_path, &sections.evaluations);
+        find_relaxation(section, stretch, per_path, most_per_path);
+        sections.evaluations += section->is_measured ? RELAXATION_NODES : 0.0;
         section->forgets = per_path * (fabs(stretch->displacement) + stretch->path_after);
         section->soft = !narrow && is_soft(section);
     }

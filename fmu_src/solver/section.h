@@ -16,10 +16,11 @@ typedef struct {
     const FcScene* scene; // of the coefficients there
     double start, end;    // s
     bool in_bell;
-    double share;   // 1, of the stretch
-    FcRelaxation z; // 1, by how much the bristle relaxes in it
-    double forgets; // 1, and in the stretch and the next
-    bool soft;      // Gauss panels may be cheaper
+    double share;     // 1, of the stretch
+    FcRelaxation z;   // 1, by how much the bristle relaxes in it
+    bool is_measured; // which is by what sigma is in the whole section, not at the start alone
+    double forgets;   // 1, and in the stretch and the next
+    bool soft;        // Gauss panels may be cheaper
 } FcSection;
 
 typedef struct {
