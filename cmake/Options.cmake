@@ -8,7 +8,7 @@ target_compile_options(fc_numbers INTERFACE
 # gcc clears and copies structures of some hundred bytes by an instruction that takes 30 cycles to begin, up to a tenth of a
 # step in all. An option of the linker, where the code is made; clang-tidy would not know it.
 include(CheckLinkerFlag)
-set(block_strategy unrolled_loop:1024:noalign,libcall:-1:noalign)
+set(block_strategy vector_loop:1024:noalign,libcall:-1:noalign)
 set(block_options -mmemset-strategy=${block_strategy} -mmemcpy-strategy=${block_strategy})
 check_linker_flag(C "${block_options}" FC_HAS_BLOCK_STRATEGY)
 if(FC_HAS_BLOCK_STRATEGY)

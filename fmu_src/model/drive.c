@@ -57,7 +57,7 @@ FcDrive fc_drive_later(const FcDrive* drive, double t) {
 
 FcPhase fc_drive_phase(const FcDrive* drive, double t) {
     const double angle = theta(drive, t);
-    return angle == 0.0 ? (FcPhase){1.0, 0.0} : (FcPhase){cos(angle), sin(angle)};
+    return angle == 0.0 ? (FcPhase){0.0, 1.0} : (FcPhase){sin(angle), cos(angle)};
 }
 
 // 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
@@ -265,7 +265,7 @@ static FcDriveEvent reversal_of_held(const FcDrive* drive, double time, double r
     const double cosine = -drive->V.value / V_1;
     FcDriveEvent event = {.time = time, .reversal = true};
     if (fabs(cosine) < AWAY_FROM_GRAZING) {
-        event.phase = (FcPhase){cosine, sign * sqrt(1.0 - cosine * cosine)};
+        event.phase = (FcPhase){sign * sqrt(1.0 - cosine * cosine), cosine};
         event.ahead = sign > 0.0 ? FC_TWO_PI - 2.0 * root : 2.0 * root;
         event.then_ahead = FC_TWO_PI - event.ahead;
     } else {
@@ -339,7 +339,7 @@ FcDriveEvent fc_drive_event_after(const FcDrive* drive, const FcDriveEvent* even
     const double time = event->time + event->ahead / drive->omega;
     return time < end ? (FcDriveEvent){.time = time,
                                        .reversal = true,
-                                       .phase = {event->phase.cosine, -event->phase.sine},
+                                       .phase = {-event->phase.sine, event->phase.cosine},
                                        .ahead = event->then_ahead,
                                        .then_ahead = event->ahead}
                       : none_before(end);
