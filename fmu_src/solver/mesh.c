@@ -5,8 +5,10 @@
 // The error that a panel is planned for, over what the mean and the end of the interval are allowed.
 static const double SHARE_OF_MEAN = 0.003;
 static const double SHARE_AT_END = 0.001;
-// Of the lag behind a limit that stands still panels miss less than DISTANCES says, by about this.
+// Of the lag behind a limit that stands still panels miss less than DISTANCES says, by about this, for errors no smaller than
+// that.
 static const double OF_THE_LAG = 5.0;
+static const double COARSE = 1e-4;
 
 // What panels may miss of a stretch's path, which decides in the stiffest contacts.
 static const double MISSED_OF_PATH = 0.1;
@@ -307,7 +309,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
         .ends_at_event = known && stretch->event - stretch->end <= stretch->w_b,
         .allowed_last = base * mesh->end / (stretch->w_b * last_counts + tiny),
     };
-    const double of_lag = mesh->moving_limit ? 1.0 : OF_THE_LAG;
+    const double of_lag = mesh->moving_limit || mesh->allowed < COARSE ? 1.0 : OF_THE_LAG;
     double for_transient = base * mesh->end / (transient * lives + tiny);
     double for_lag = of_lag * base * mesh->end / (drift * lag_counts + tiny);
     FcPlan plan = cheapest(&limits, for_transient, for_lag, gone_decades, caution);
