@@ -290,7 +290,7 @@ FcPlan fc_mesh_plan(const FcMesh* mesh, const FcStretch* stretch, const FcPlace*
     lives = least(lives, rest);
     lag_counts = least(lag_counts, rest * least(rest, smooth));
 
-    const double transient = at->gone > 0.0 ? least(at->transient, 1e6) : at->lag;
+    const double transient = least(at->transient, 1e6);
     const double gone = 0.434 * at->gone; // negative, or no number, where the stiffness overflows
     const int gone_decades = gone > 0.0 ? (int)least(1e3, gone) : 0;
     const double last_counts = drift * least(stretch->w_b, smooth) + at->lag;
