@@ -234,7 +234,8 @@ double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const F
     if (t < stretch->end) {
         const double at_least =
             fabs(fc_drive_displacement(&mesh->scene->drive, t, stretch->end)) / mesh->saturation;
-        relaxes += most(at_least, SURE_OF_REST * (SURE_OF_WHOLE * stretch->relaxes - gone));
+        // at_least too where the others are no numbers
+        relaxes += most(SURE_OF_REST * (SURE_OF_WHOLE * stretch->relaxes - gone), at_least);
     }
     return exp(-relaxes);
 }
