@@ -116,8 +116,8 @@ WRONG_REFERENCE = [
     BadCall(
         "fmi2GetReal of an unknown value reference",
         "step complete",
-        lambda i: i.call("fmi2GetReal", _references(4711), 1, (c_double * 1)()),
-        ("fmi2GetReal: value reference 4711 is unknown",),
+        lambda i: i.call("fmi2GetReal", _references(42), 1, (c_double * 1)()),  # the one after the last
+        ("fmi2GetReal: value reference 42 is unknown",),
     ),
     BadCall(
         "fmi2SetReal of an unknown value reference",
