@@ -423,6 +423,7 @@ static double evaluations_of_default(const FcScene* scene, double tolerance) {
 
 // Evaluations of a period at each tolerance.
 typedef struct {
+    double sigma;                 // N/m
     double taken[TOLERANCES];     // by the default
     double with_luck[TOLERANCES]; // the least of the scene itself
     double least[TOLERANCES];     // without luck
@@ -432,7 +433,7 @@ typedef struct {
 static Row row_of(double sigma) {
     static const double PHASES[] = {0.7, 0.4, 0.55, 0.85, 1.0}; // of d, the scene's own first
     enum { PHASE_COUNT = 5 };
-    Row row = {.passing = {0.0}};
+    Row row = {.sigma = sigma};
     int stretches = 0;
     for (int phase = 0; phase < PHASE_COUNT; phase++) {
         Slider slider;
@@ -470,22 +471,21 @@ int main(void) {
     enum { ROWS = 9 };
     Row rows[ROWS];
     double sigma = 6e4;
-    for (int r = 0; r < ROWS; r++, sigma *= 10.0) {
+    for (int r = 0; r < ROWS; r++) {
         rows[r] = row_of(sigma);
+        sigma *= 10.0;
     }
     print_head("The least if errors were known, of what the default takes (with luck)");
-    sigma = 6e4;
-    for (int r = 0; r < ROWS; r++, sigma *= 10.0) {
-        printf("%11.0e", sigma);
+    for (int r = 0; r < ROWS; r++) {
+        printf("%11.0e", rows[r].sigma);
         for (int k = 0; k < TOLERANCES; k++) {
             printf("  %4.0f of %4.0f (%3.0f)", rows[r].least[k], rows[r].taken[k], rows[r].with_luck[k]);
         }
         printf("\n");
     }
     print_head("\nThe least of panels that pass, of what the default takes");
-    sigma = 6e4;
-    for (int r = 0; r < ROWS; r++, sigma *= 10.0) {
-        printf("%11.0e", sigma);
+    for (int r = 0; r < ROWS; r++) {
+        printf("%11.0e", rows[r].sigma);
         for (int k = 0; k < TOLERANCES; k++) {
             printf("        %4.0f of %4.0f", rows[r].passing[k], rows[r].taken[k]);
         }

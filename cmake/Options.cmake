@@ -5,8 +5,8 @@
 add_library(fc_numbers INTERFACE)
 target_compile_options(fc_numbers INTERFACE
     -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections $<$<CONFIG:Release>:-O3>)
-# gcc clears and copies structures of some hundred bytes by an instruction that takes 30 cycles to begin, up to a tenth of a
-# step in all. An option of the linker, where the code is made; clang-tidy would not know it.
+# gcc clears and copies structures of some hundred bytes by an instruction that is slow to begin, several times in a step. An
+# option of the linker, where the code is made; clang-tidy would not know it.
 include(CheckLinkerFlag)
 set(block_strategy vector_loop:1024:noalign,libcall:-1:noalign)
 set(block_options -mmemset-strategy=${block_strategy} -mmemcpy-strategy=${block_strategy})

@@ -46,8 +46,8 @@ bool fc_drive_vibrates(const FcDrive* drive);  // an amplitude is not zero
 bool fc_drive_is_linear(const FcDrive* drive); // a rate is not zero
 bool fc_drive_is_constant(const FcDrive* drive);
 
-// Of the vibration's angle 2 pi f t + theta_0. The other way round gcc would read both at once what sincos has written one by
-// one, for which the processor waits: 1.4 times the time of a fixed step.
+// Of the vibration's angle 2 pi f t + theta_0. The sine comes first: the other way round gcc reads both at once as soon as
+// sincos has written them one by one, and the processor waits.
 typedef struct {
     double sine;
     double cosine;

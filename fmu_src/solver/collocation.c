@@ -157,7 +157,7 @@ static void cross(Progress* progress, const FcMesh* mesh, const FcStretch* stret
     const FcScene* scene = progress->scene;
     const double sign = fc_sign(stretch->displacement);
     const bool from_start = t == stretch->start;
-    const FcPhase phase = from_start ? stretch->start_phase : fc_drive_phase(&scene->drive, t);
+    const FcPhase phase = fc_stretch_phase(stretch, &scene->drive, t);
     const FcCoefficients start =
         from_start ? stretch->at_start : fc_scene_coefficients_at_phase(scene, t, phase);
     FcPanel panel = {.rate = -fc_coefficients_rate(&start), .sigma = start.sigma, .limit = start.limit};

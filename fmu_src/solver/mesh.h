@@ -62,6 +62,13 @@ typedef struct {
     FcCoefficients at_start, at_end; // with the layers; at the end where there is an event
 } FcStretch;
 
+// Of the vibration at t [s] in the stretch.
+static inline FcPhase fc_stretch_phase(const FcStretch* stretch, const FcDrive* drive, double t) {
+    return t == stretch->start ? stretch->start_phase
+           : t == stretch->end ? stretch->end_phase
+                               : fc_drive_phase(drive, t);
+}
+
 // About -log10(x), down to the next power of two.
 static inline double fc_digits(double x) { return -0.30103 * ilogb(x); }
 

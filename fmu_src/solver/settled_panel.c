@@ -141,12 +141,12 @@ static Settled settled(const FcSettledStart* from, Course* course) {
     if (mesh->smooth.rate + 1.0 / after > allowed_changes) {
         return NOT_SETTLED;
     }
-    const FcPhase start_phase = at->t == stretch->start ? stretch->start_phase : fc_drive_phase(drive, at->t);
+    const FcPhase start_phase = fc_stretch_phase(stretch, drive, at->t);
     course->at_start = fc_drive_velocity_at_phase(drive, at->t, start_phase);
     if (mesh->smooth.rate + 1.0 / fc_mesh_settled_back(&course->at_start) > allowed_changes) {
         return NOT_SETTLED;
     }
-    course->end_phase = from->end == stretch->end ? stretch->end_phase : fc_drive_phase(drive, from->end);
+    course->end_phase = fc_stretch_phase(stretch, drive, from->end);
     course->displacement =
         fc_drive_displacement_between(drive, at->t, start_phase, from->end, course->end_phase);
     if (!(lag * exp(-fabs(course->displacement) / mesh->saturation) <= allowed * allowed)) {
