@@ -38,13 +38,16 @@ double fc_bracketed_root(FcRootEvaluation f, void* context, double a, FcRootFunc
     for (int i = 0; i < MOST_STEPS && at.value != 0.0; i++) {
         double next = t + step;
         double longest = 0.5 * fabs(step);
-        if (!(next >= a && next <= b)) {
+        const bool bisects = !(next >= a && next <= b);
+        if (bisects) {
             next = a + 0.5 * (b - a);
             longest = b - a;
         }
         step = next - t;
         t = next;
-        if ((i > 0 && fabs(step) <= last_step * fmin(t - start, longest_way)) || t == a || t == b) {
+        // A small step to the parabola's root is a smaller one from f's, a small bracket's middle may be as far from it.
+        const bool is_near = i > 0 && !bisects && fabs(step) <= last_step * fmin(t - start, longest_way);
+        if (is_near || t == a || t == b) {
             return t;
         }
         at = f(context, t);

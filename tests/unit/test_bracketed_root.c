@@ -19,6 +19,12 @@ static FcRootFunction steep(double t) {
 }
 // Goes down first: -1, least at 1/2, up to 2 at 2. Its root is 1 / 2 + sqrt(5) / 2.
 static FcRootFunction down_first(double t) { return (FcRootFunction){t * t - t - 1.0, 2.0 * t - 1.0, 2.0}; }
+// Goes down first, and has its root so near the end 1 that the tangents lead beyond it.
+static const double NEARLY_1 = 1.0 - 1e-6;
+static FcRootFunction late(double t) {
+    const double x = t - 0.45;
+    return (FcRootFunction){x * x - (NEARLY_1 - 0.45) * (NEARLY_1 - 0.45), 2.0 * x, 0.0};
+}
 
 // order: of the last step, that the error has.
 static void finds(Function f, double a, double b, double root, double order, double most_evaluations) {
@@ -38,6 +44,7 @@ int main(void) {
     finds(from_rest, 0.0, 1.0, sqrt(0.5), 3.0, 1.0);
     finds(down_first, 0.0, 2.0, 0.5 + 0.5 * sqrt(5.0), 3.0, 3.0);
     finds(steep, 0.0, 1.0, 1.0 / 3.0, 1.0, 15.0);
+    finds(late, 0.0, 1.0, NEARLY_1, 2.0, 15.0);
     double evaluations = 0.0;
     Function f = sine;
     CHECK(fc_bracketed_root(evaluate, &f, 0.0, f(0.0), 1.0, f(1.0), 1e-3, INFINITY, &evaluations) == 0.0);
