@@ -4,8 +4,8 @@
 //     gauss_estimates          a row for each number of nodes, and the scatter around it
 //
 // Random parts of random stretches between two reversals, for both models of the contact and both limits, with bristles
-// that have settled, are still behind, or start anywhere. The decades of the larger estimate, of the force at the end or of
-// the mean, the latter with the weight that solver/collocation.c gives it, are fit by least squares:
+// that have settled, are still behind, or start anywhere. The decades of the tolerance from which on a panel that lasts for a
+// whole stretch is accurate (solver/judge.h) are fit by least squares:
 //
 //     one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z)
 //
@@ -16,6 +16,7 @@
 #include "job.h"
 #include "random.h"
 #include "solver/gauss_panel.h"
+#include "solver/judge.h"
 #include "table_1.h"
 
 static const double OMEGA = 6.283185307179586 * 20e3;
@@ -120,9 +121,9 @@ static void measure(const Slider* slider, const Part* part) {
     for (int i = 0; i < RULES; i++) {
         FcPanel panel;
         fc_gauss_panel(scene, part->start, part->h, NODES[i], &from, &panel);
-        const double of_mean = panel.mean_error * (panel.z < 4.0 ? 1.0 : 50.0);
-        const double error = fmax(panel.end_error / fmin(1.0, panel.z), of_mean) / limit;
-        if (panel.z < 0.5 * NODES[i] && error > 3e-13 && error < 1.0) {
+        const FcExcess over = fc_gauss_panel_excess(&panel, 1.0, false, 0.0, limit);
+        const double error = fmax(over.mean, over.end);
+        if (fc_gauss_panel_is_resolved(&panel, NODES[i]) && error > 3e-13 && error < 1.0) {
             samples[i][counts[i]++] =
                 (Sample){{1.0, sqrt(0.5 * OMEGA * part->h), sqrt(mu), sqrt(panel.z)}, log10(error)};
         }

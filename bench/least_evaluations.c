@@ -104,7 +104,7 @@ static FcMap fine(const Grid* grid, const FcScene* scene, double t, double h, do
     for (int i = 0; i < 16; i++) {
         const FcMap part =
             panel_of(grid, scene, RADAU_KINDS - 1, t + i * h / 16, h / 16, end_of(&map, delta));
-        map = fc_map_compose(&map, &part);
+        fc_map_append(&map, &part);
     }
     return map;
 }
@@ -245,8 +245,9 @@ static bool passes(const Grid* grid, const FcScene* scene, const FcMotion* motio
         return fmax(over.mean, grid->worth[j][0] * over.end) <= 1.0;
     }
     fc_gauss_panel(scene, t, h, NODES[kind], &from, &panel);
-    const double share = h / (stretch->end - stretch->start);
-    if (fc_gauss_panel_is_accurate(&panel, NODES[kind], share, false, 0.0, tolerance * F_C)) {
+    const FcExcess over =
+        fc_gauss_panel_excess(&panel, h / (stretch->end - stretch->start), false, 0.0, tolerance * F_C);
+    if (fc_gauss_panel_is_resolved(&panel, NODES[kind]) && over.mean <= 1.0 && over.end <= 1.0) {
         return true;
     }
     const double X = fc_drive_displacement(&scene->drive, t, t + h);

@@ -71,7 +71,7 @@ class Rule:
         self.weights = list(mp.matrix([[mpf(1) / (j + 1) for j in range(n)]]) * from_values)
         self.start = [from_values[0, j] for j in range(n)]  # the polynomial's value at 0
         of_degree = legendres**-1
-        self.tail = [[of_degree[max(n - k, 0), j] for j in range(n)] for k in range(1, 5)]
+        self.tail = [[of_degree[max(n - k, 0), j] for k in range(1, 5)] for j in range(n)]
 
 
 def row(values: list[mpf]) -> str:
@@ -82,10 +82,15 @@ def rows(values: list[list[mpf]]) -> str:
     return "{" + ",\n     ".join(row(line) for line in values) + "}"
 
 
+PAIRS = '#include "solver/pair.h"'
+
+
 def header(guard: str, struct: str, body: list[str]) -> str:
     top = "// Made by cmake/generate_panel_tables.py, which says what the entries are.\n// clang-format off\n"
     return (
-        f"{top}#ifndef {guard}\n#define {guard}\n\n{struct}\n" + "\n".join(body) + f"\n#endif  // {guard}\n"
+        f"{top}#ifndef {guard}\n#define {guard}\n\n{PAIRS}\n\n{struct}\n"
+        + "\n".join(body)
+        + f"\n#endif  // {guard}\n"
     )
 
 
@@ -93,18 +98,19 @@ GAUSS_STRUCT = """typedef struct {
     double node[12];         // on [-1/2, 1/2]
     double weight[12];       // of the integral over the panel
     double integral[12][12]; // [j][i]: weight of node j in the integral up to node i
-    double tail[4][12];      // rows: Legendre coefficients of the degrees n - 1 .. n - 4
+    double tail[12][4];      // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
     double slope[12][12];    // [j][i]: weight of node j in the slope at node i
-} FcGaussRule;
+} FC_PAIRED FcGaussRule;
 """
 
-RADAU_STRUCT = """typedef struct {
-    double node[10];      // on [-1/2, 1/2]; after the stages, the start
-    double weight[9];     // of the integral over the panel
-    double start[9];      // value at the start of the polynomial through the stages
-    double inverse[9][9]; // of the Runge-Kutta matrix
-    double tail[4][9];    // rows: Legendre coefficients of the degrees n - 1 .. n - 4
-} FcRadauRule;
+RADAU_STRUCT = """// After the stages, the panel's start.
+typedef struct {
+    double node[10];      // on [-1/2, 1/2]
+    double weight[10];    // of the integral over the panel
+    double start[10];     // value at the start of the polynomial through the stages, less the value there
+    double inverse[9][10]; // of the Runge-Kutta matrix
+    double tail[10][4];   // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
+} FC_PAIRED FcRadauRule;
 """
 
 
@@ -128,10 +134,10 @@ def radau_table(n: int) -> str:
     inverse = rule.integral**-1
     return f"""static const FcRadauRule FC_RADAU_{n} = {{
     {row([*(c - mpf(1) / 2 for c in rule.nodes), -mpf(1) / 2])},
-    {row(rule.weights)},
-    {row(rule.start)},
+    {row([*rule.weights, mpf(0)])},
+    {row([*rule.start, -mpf(1)])},
     {rows([[inverse[i, j] for j in range(n)] for i in range(n)])},
-    {rows(rule.tail)},
+    {rows([*rule.tail, [mpf(0)] * 4])},
 }};
 """
 

@@ -6,23 +6,20 @@
 FcMap fc_map_identity(void) { return (FcMap){0}; }
 
 // relaxation is 1 - P: composing it, and not P, keeps its digits where hardly anything relaxes.
-FcMap fc_map_compose(const FcMap* first, const FcMap* second) {
-    const double kept = 1.0 - first->relaxation;
-    const double offset = first->offset;
-    return (FcMap){
-        .relaxation = first->relaxation + kept * second->relaxation,
-        .offset = offset - second->relaxation * offset + second->offset,
-        .impulse_slope = first->impulse_slope + second->impulse_slope * kept,
-        .impulse_offset = first->impulse_offset + second->impulse_slope * offset + second->impulse_offset,
-        .work_slope = first->work_slope + second->work_slope * kept,
-        .work_offset = first->work_offset + second->work_slope * offset + second->work_offset,
-        .drag_slope = first->drag_slope + second->drag_slope * kept,
-        .drag_offset = first->drag_offset + second->drag_slope * offset + second->drag_offset,
-        .heat_square = first->heat_square + second->heat_square * kept * kept,
-        .heat_slope = first->heat_slope + (2.0 * second->heat_square * offset + second->heat_slope) * kept,
-        .heat_offset = first->heat_offset + (second->heat_square * offset + second->heat_slope) * offset +
-                       second->heat_offset,
-    };
+void fc_map_append(FcMap* map, const FcMap* next) {
+    const double kept = 1.0 - map->relaxation;
+    const double offset = map->offset;
+    map->relaxation += kept * next->relaxation;
+    map->offset = offset - next->relaxation * offset + next->offset;
+    map->impulse_slope += next->impulse_slope * kept;
+    map->impulse_offset += next->impulse_slope * offset + next->impulse_offset;
+    map->work_slope += next->work_slope * kept;
+    map->work_offset += next->work_slope * offset + next->work_offset;
+    map->drag_slope += next->drag_slope * kept;
+    map->drag_offset += next->drag_slope * offset + next->drag_offset;
+    map->heat_offset += (next->heat_square * offset + next->heat_slope) * offset + next->heat_offset;
+    map->heat_slope += (2.0 * next->heat_square * offset + next->heat_slope) * kept;
+    map->heat_square += next->heat_square * kept * kept;
 }
 
 // By repeated squaring: composing adds no error that grows with n, so nothing special happens at P near 1.
@@ -32,9 +29,10 @@ FcMap fc_map_power(const FcMap* one, double n) {
     FcMap square = *one;
     while (n >= 1.0) {
         if (fmod(n, 2.0) == 1.0) {
-            power = fc_map_compose(&power, &square);
+            fc_map_append(&power, &square);
         }
-        square = fc_map_compose(&square, &square);
+        const FcMap half = square;
+        fc_map_append(&square, &half);
         n = floor(0.5 * n);
     }
     return power;

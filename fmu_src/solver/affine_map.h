@@ -23,8 +23,8 @@ typedef struct {
 } FcMap;
 
 FcMap fc_map_identity(void);
-FcMap fc_map_compose(const FcMap* first, const FcMap* second);
-FcMap fc_map_power(const FcMap* one, double n); // n a non-negative whole number
+void fc_map_append(FcMap* map, const FcMap* next); // the map, then the next one
+FcMap fc_map_power(const FcMap* one, double n);    // n a non-negative whole number
 
 // Takes result->delta over the interval and adds what the interval gives.
 void fc_map_apply(const FcMap* map, FcStepResult* result);

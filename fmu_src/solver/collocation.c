@@ -56,6 +56,15 @@ static FcTrajectories trajectories(const Progress* progress) {
                             .held = progress->held};
 }
 
+static bool is_accurate_softly(const Progress* progress, const FcSection* section, double h, int nodes,
+                               const FcPanel* panel) {
+    const double of_section = section->in_bell ? 1.0 : h / (section->end - section->start);
+    const double share = of_section * section->share;
+    const FcExcess over =
+        fc_gauss_panel_excess(panel, share, section->in_bell, section->forgets, progress->tolerance);
+    return fc_gauss_panel_is_resolved(panel, nodes) && over.mean <= 1.0 && over.end <= 1.0;
+}
+
 // Goes through a section with Gauss panels as far as they are accurate. Returns the time they reach.
 static double cross_softly(Progress* progress, const FcSection* section, const FcBells* bells) {
     const FcGaussPieces pieces = fc_section_pieces(section, bells, progress->decades);
@@ -73,9 +82,8 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
         FcPanel panel;
         fc_gauss_panel(section->scene, t, h, nodes, &from, &panel);
         progress->evaluations += nodes;
-        if (fc_gauss_panel_is_accurate(&panel, nodes, section->share, section->in_bell, section->forgets,
-                                       progress->tolerance)) {
-            *progress->map = fc_map_compose(progress->map, &panel.map);
+        if (is_accurate_softly(progress, section, h, nodes, &panel)) {
+            fc_map_append(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
             if (panel.z < 0.2 * nodes) { // twice as much would still be resolved
                 h = fc_least(planned, 2.0 * h);
@@ -103,7 +111,7 @@ static bool cross_in_one(Progress* progress, const FcSection* section, const FcS
                           section->z.whole, &from, &panel, &progress->evaluations)) {
         return false;
     }
-    *progress->map = fc_map_compose(progress->map, &panel.map);
+    fc_map_append(progress->map, &panel.map);
     return true;
 }
 
@@ -113,7 +121,7 @@ static void put_back(Progress* progress, const FcBellInterval* bells, const FcSt
     const FcSmallBellPlace place = fc_small_bell_place(progress->scene, at, side, bells->fastest);
     const FcMap map =
         fc_small_bell(progress->scene, &bells->shape, &place, t, side, fc_sign(stretch->displacement));
-    *progress->map = fc_map_compose(progress->map, &map);
+    fc_map_append(progress->map, &map);
     progress->evaluations += 2.0;
 }
 
@@ -137,7 +145,7 @@ static bool is_accurate(const Progress* progress, const FcMesh* mesh, const FcSt
 }
 
 static void take(Progress* progress, FcPlace* at, const FcPanel* panel) {
-    *progress->map = fc_map_compose(progress->map, &panel->map);
+    fc_map_append(progress->map, &panel->map);
     at->gone += panel->z;
     at->rate = panel->rate;
     at->path -= fabs(panel->displacement);
@@ -378,22 +386,22 @@ static FcMap map_of(const FcScene* scene, const FcScene* beyond_bells, const FcS
             stretch.bells =
                 fc_bells(&bells, &first, &edge, deflection, stretch.displacement, stretch.path_after);
         }
-        const FcSections sections = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection,
-                                                motion.stiffness / motion.limit);
-        progress.evaluations += sections.evaluations;
+        FcSection sections[FC_MOST_SECTIONS];
+        const int count = fc_sections(scene, beyond_bells, &stretch, progress.per_deflection,
+                                      motion.stiffness / motion.limit, sections, &progress.evaluations);
         bool has_layers = false;
         double t = stretch.start;
         if (stretch.bells.small_at_start) {
             put_back(&progress, &bells, &stretch, t, &stretch.bells.at_start, 1.0);
         }
-        for (int i = 0; i < sections.count; i++) {
-            const FcSection* section = &sections.at[i];
+        for (int i = 0; i < count; i++) {
+            const FcSection* section = &sections[i];
             if (section->soft && t == section->start) {
                 t = cross_in_one(&progress, section, &stretch)
                         ? section->end
                         : cross_softly(&progress, section, &stretch.bells);
             }
-            if (t < section->end && (i + 1 == sections.count || sections.at[i + 1].soft)) {
+            if (t < section->end && (i + 1 == count || sections[i + 1].soft)) {
                 if (!has_mesh) {
                     mesh = fc_mesh_make(scene, duration, options->tolerance);
                     has_mesh = true;

@@ -129,7 +129,7 @@ static bool cross(Progress* progress, double t, double end, double displacement)
             }
             X = fc_drive_displacement(drive, t, part_end);
         }
-        *progress->map = fc_map_compose(progress->map, &panel.map);
+        fc_map_append(progress->map, &panel.map);
         from->delta_0 = (1.0 - panel.map.relaxation) * from->delta_0 + panel.map.offset;
         from->scale *= 1.0 - panel.map.relaxation;
         t = part_end;

@@ -9,17 +9,19 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
                         const FcTrajectories* from, bool judged, FcPanel* panel) {
     FcNodeCoefficients at;
     fc_node_coefficients(scene, t, h, rule->node, n, &at);
-    double z[FC_GAUSS_MOST_NODES];
-    double G[FC_GAUSS_MOST_NODES];
-    double grown[FC_GAUSS_MOST_NODES]; // e^G
-    double source[FC_GAUSS_MOST_NODES];
-    double P[FC_GAUSS_MOST_NODES];
-    double Q[FC_GAUSS_MOST_NODES];
-    double u[FC_GAUSS_MOST_NODES];
-    double f[FC_GAUSS_MOST_NODES];
-    const double signed_h = copysign(h, at.V[n / 2]);
+    double side_per_limit[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double z[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double G[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double grown[FC_GAUSS_MOST_NODES] FC_PAIRED; // e^G
+    double source[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double P[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double Q[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double u[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    double f[FC_GAUSS_MOST_NODES] FC_PAIRED;
+    const double side = copysign(1.0, at.V[n / 2]);
     for (int i = 0; i < n; i++) {
-        z[i] = signed_h * at.V[i] * at.sigma[i] / at.limit[i];
+        side_per_limit[i] = side / at.limit[i];
+        z[i] = h * at.V[i] * at.sigma[i] * side_per_limit[i];
     }
     fc_gauss_integrate(rule, n, z, G);
     const double whole = fc_dot(n, rule->weight, z);
@@ -48,14 +50,13 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
     panel->end_error =
         sigma * (1.0 - relaxation) *
         (fc_gauss_error(rule, n, source) + (fabs(from->delta_0) + from->scale) * fc_gauss_error(rule, n, z));
-    const double side = copysign(1.0, signed_h);
-    fc_panel_force(n, &at, side, from->speed, 0.0, u, f);
+    fc_panel_force(n, &at, side_per_limit, side, from->speed, 0.0, u, f);
     panel->mean_error = fc_gauss_error(rule, n, f);
     if (from->scale != 0.0) {
         for (int i = 0; i < n; i++) {
             u[i] = from->scale * P[i];
         }
-        fc_panel_force(n, &at, side, from->speed, 0.0, u, f);
+        fc_panel_force(n, &at, side_per_limit, side, from->speed, 0.0, u, f);
         panel->mean_error += fc_gauss_error(rule, n, f);
     }
 }

@@ -4,32 +4,33 @@
 
 #include "model/constants.h"
 #include "solver/gauss_rule.h"
-#include "solver/judge.h"
 
-// Decades of the estimate of a panel: about one + phi sqrt(phi) + mu sqrt(mu) + z sqrt(z), as bench/gauss_estimates prints it
-// but for hundredths, with a scatter of half a decade (4 nodes) to one and a half (12). time: of a panel, of 4 nodes 1; the
-// program's own differ by up to a seventh with the build.
+// Decades of the tolerance from which on a panel is accurate that lasts for a whole stretch: about one + phi sqrt(phi) +
+// mu sqrt(mu) + z sqrt(z), as bench/gauss_estimates prints it but for hundredths, with a scatter of half a decade (4 nodes) to
+// one and a half (12). time: of a panel, of 4 nodes 1; the program's own differ by up to a seventh with the build.
 enum { RULES = 4 };
 static const struct {
     int nodes;
     double time;
     double one, phi, mu, z;
 } RULE[RULES] = {
-    {4, 1.00, -3.45, 2.13, 0.42, 0.67},
-    {6, 1.07, -9.17, 5.04, 0.98, 1.87},
-    {8, 1.33, -14.06, 6.49, 1.61, 2.98},
-    {12, 1.87, -18.40, 6.29, 2.17, 3.53},
+    {4, 1.00, -4.44, 2.14, 0.42, 0.65},
+    {6, 1.25, -10.16, 5.06, 0.99, 1.91},
+    {8, 1.40, -15.04, 6.49, 1.65, 3.05},
+    {12, 1.93, -19.12, 6.23, 2.21, 3.30},
 };
 // n nodes resolve e^z where z is less than half of n.
 static const double RESOLVED = 0.47;
 // Time of the Radau panels between two reversals half a period apart, up to so many decades, and for each more; of one panel.
-static const double RADAU = 6.0;
+static const double RADAU = 7.0;
 static const double FEW_DECADES = 3.0;
-static const double RADAU_FOR_EACH = 2.0;
+static const double RADAU_FOR_EACH = 2.3;
 static const double HALF_PERIOD = 0.5 * FC_PI;
-static const double RADAU_PANEL = 2.0;
+static const double RADAU_PANEL = 2.3;
 
 enum { MOST_PIECES = 12 };
+// The mean sees a piece by its share of the stretch: decades that each of so many is spared.
+static const double SPARED[MOST_PIECES + 1] = {0, 0, .3, .48, .6, .7, .78, .85, .9, .95, 1, 1.04, 1.08};
 
 // The first rule whose estimate will be small enough; RULES if there is none.
 static int rule_for(double phi, double mu, double z, double decades) {
@@ -52,12 +53,11 @@ static double time_of_radau_panels(double phi, double mu, double decades) {
 }
 
 FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades) {
-    const double asked = decades - log10(FC_OF_GAUSS_PANELS);
     double least = time_of_radau_panels(phi, mu, decades);
     FcGaussPieces cheapest = {0, FC_GAUSS_MOST_NODES};
     for (int n = 1; n <= MOST_PIECES && n * RULE[0].time < least; n++) {
         const double of_piece = n == 1 ? z->whole : n == 2 ? z->half : z->fastest / n;
-        const int i = rule_for(phi / n, mu / n, of_piece, asked);
+        const int i = rule_for(phi / n, mu / n, of_piece, decades - SPARED[n]);
         if (i < RULES && n * RULE[i].time < least) {
             least = n * RULE[i].time;
             cheapest = (FcGaussPieces){n, RULE[i].nodes};

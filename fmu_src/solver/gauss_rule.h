@@ -52,7 +52,7 @@ FC_INLINE void fc_exponentials_less_1(int n, const double* x, double largest, do
 // Of a quadrature that is exact up to the degree 2 n - 1: the tail, falling on for three quarters of the n degrees that it
 // would fall for if it fell evenly; as it falls there, or as it fell from the largest value on, whichever is less.
 FC_INLINE double fc_gauss_error(const FcGaussRule* rule, int n, const double* f) {
-    const FcTail tail = fc_tail_of(n, &rule->tail[0][0], FC_GAUSS_MOST_NODES, f);
+    const FcTail tail = fc_tail_of(n, rule->tail, f);
     const double largest = fc_largest(n, f);
     const double fall_3 = tail.fall * tail.fall * tail.fall;
     double falls = 1.0;

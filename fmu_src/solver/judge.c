@@ -1,5 +1,9 @@
 #include "solver/judge.h"
 
+#include <float.h>
+
+// What a Gauss panel's estimates may be, over the tolerance.
+static const double OF_GAUSS_PANELS = 10.0;
 static const double OF_GAUSS_PANELS_IN_BELLS = 1.0;
 // Of the mean over a Gauss panel that relaxes by more than STEEP: its estimate may be but twice the error.
 static const double STEEP = 4.0;
@@ -12,13 +16,16 @@ static const double AT_THE_END_IN_BELLS = 0.05;
 // Rounding in a panel, over the limit: asking for less would only shorten panels.
 static const double ROUNDING = 2e-13;
 
-bool fc_gauss_panel_is_accurate(const FcPanel* panel, int nodes, double share, bool in_bell, double forgets,
-                                double tolerance) {
-    const double allowed = (in_bell ? OF_GAUSS_PANELS_IN_BELLS : FC_OF_GAUSS_PANELS) * tolerance;
-    // n nodes resolve e^G where G grows by less than half of n; beyond that the estimates say little.
-    return panel->z < 0.5 * nodes &&
-           panel->end_error <= allowed * fc_least(1.0, in_bell ? forgets : panel->z) &&
-           share * panel->mean_error <= (panel->z < STEEP ? 1.0 : OF_STEEP_PANELS) * allowed;
+bool fc_gauss_panel_is_resolved(const FcPanel* panel, int nodes) {
+    return panel->z < 0.5 * nodes; // n nodes resolve e^G where G grows by less than half of n
+}
+
+FcExcess fc_gauss_panel_excess(const FcPanel* panel, double share, bool in_bell, double forgets,
+                               double tolerance) {
+    const double allowed = (in_bell ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * tolerance;
+    const double of_mean = panel->z < STEEP ? 1.0 : OF_STEEP_PANELS;
+    return (FcExcess){share * panel->mean_error / (of_mean * allowed),
+                      panel->end_error / (allowed * fc_least(1.0, in_bell ? forgets : panel->z) + DBL_MIN)};
 }
 
 FcExcess fc_radau_panel_excess(const FcPanel* panel, const FcErrorLife* life, double tolerance) {

@@ -10,13 +10,19 @@
 
 #include "solver/panel.h"
 
-// What a Gauss panel's estimates may be, over the tolerance.
-static const double FC_OF_GAUSS_PANELS = 10.0;
+// The estimated errors of a panel over what they may be for a tolerance [N]: what the mean sees, and what the
+// end would see if nothing of it faded.
+typedef struct {
+    double mean, end;
+} FcExcess;
 
-// Whether a Gauss panel of that many nodes, in a part of a stretch that is that share of it, is accurate for a tolerance [N].
-// forgets: how much relaxes in the part and the next stretch, which counts in a bell.
-bool fc_gauss_panel_is_accurate(const FcPanel* panel, int nodes, double share, bool in_bell, double forgets,
-                                double tolerance);
+// Of a Gauss panel that lasts for that share of its stretch, or in a bell that does. forgets: how much relaxes in the bell and
+// the next stretch, which counts there.
+FcExcess fc_gauss_panel_excess(const FcPanel* panel, double share, bool in_bell, double forgets,
+                               double tolerance);
+
+// Whether as many nodes resolve what relaxes in a Gauss panel.
+bool fc_gauss_panel_is_resolved(const FcPanel* panel, int nodes);
 
 // What becomes of an error of a Radau panel, and whether it is in a bell, or crosses it by more than V_S.
 typedef struct {
@@ -25,12 +31,6 @@ typedef struct {
     double grows; // 1, by which it may grow on its way with sigma
     bool in_bell, crosses_bell;
 } FcErrorLife;
-
-// The estimated errors of a Radau panel over what they may be for a tolerance [N]: what the mean sees, and what the end would
-// see if nothing of it faded.
-typedef struct {
-    double mean, end;
-} FcExcess;
 FcExcess fc_radau_panel_excess(const FcPanel* panel, const FcErrorLife* life, double tolerance);
 
 #endif

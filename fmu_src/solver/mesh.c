@@ -230,6 +230,9 @@ double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const F
     if (about - mesh->speed * (t - at->t) + stretch->path_after > mesh->forgotten) {
         return 0.0;
     }
+    if (stretch->path_after > mesh->forgotten) {
+        return 0.0;
+    }
     double relaxes = stretch->path_after / mesh->saturation;
     if (t < stretch->end) {
         const double at_least =

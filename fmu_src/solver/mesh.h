@@ -20,6 +20,8 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "model/scene.h"
 #include "solver/stribeck_bell.h"
@@ -70,7 +72,11 @@ static inline FcPhase fc_stretch_phase(const FcStretch* stretch, const FcDrive* 
 }
 
 // About -log10(x), down to the next power of two.
-static inline double fc_digits(double x) { return -0.30103 * ilogb(x); }
+static inline double fc_digits(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return -0.30103 * ((int)(bits >> 52 & 0x7ff) - 1023); // log10(2) times the exponent
+}
 
 // Where the panels have got to.
 typedef struct {

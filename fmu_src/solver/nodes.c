@@ -6,18 +6,21 @@
 
 #include "solver/series.h"
 
-// sin(x) and cos(x) - 1 by Taylor series, Horner's scheme.
+// sin(x) and cos(x) - 1 by Taylor series, terms in pairs as in series.h.
 static inline double series_sin(double x) {
     const double y = x * x;
-    return x * (1.0 + y * (-1.0 / 6 +
-                           y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 - y * (1.0 / 39916800))))));
+    const double y_2 = y * y;
+    const double low = -1.0 / 6 + y * (1.0 / 120);
+    const double high = (-1.0 / 5040 + y * (1.0 / 362880)) - y_2 * (1.0 / 39916800);
+    return x + x * y * (low + y_2 * high);
 }
 
 static inline double series_cos_less_1(double x) {
     const double y = x * x;
-    return y * (-1.0 / 2 +
-                y * (1.0 / 24 +
-                     y * (-1.0 / 720 + y * (1.0 / 40320 + y * (-1.0 / 3628800 + y * (1.0 / 479001600))))));
+    const double y_2 = y * y;
+    const double low = (-1.0 / 2 + y * (1.0 / 24)) + y_2 * (-1.0 / 720 + y * (1.0 / 40320));
+    const double high = -1.0 / 3628800 + y * (1.0 / 479001600);
+    return y * (low + y_2 * y_2 * high);
 }
 
 // How often arguments of this size have to be halved for the series. More than MOST_HALVINGS lose digits.
@@ -76,7 +79,7 @@ static inline __attribute__((always_inline)) void of_separation(const FcScene* s
 }
 
 static inline __attribute__((always_inline)) void with_series(const FcScene* scene, double t, double h,
-                                                              const double* node, int count,
+                                                              const double* node, int count, bool symmetric,
                                                               Halvings halved_angle, Halvings halved_exponent,
                                                               FcNodeCoefficients* at) {
     const FcDrive* drive = &scene->drive;
@@ -87,15 +90,20 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
     double sin_later[FC_MOST_NODES];
     double cos_later_less_1[FC_MOST_NODES];
     const double angle_per_node = drive->omega * h * halved_angle.factor;
-    for (int i = 0; i < count; i++) {
+    const int first = symmetric ? count / 2 : 0;
+    for (int i = first; i < count; i++) {
         sin_later[i] = series_sin(angle_per_node * node[i]);
         cos_later_less_1[i] = series_cos_less_1(angle_per_node * node[i]);
     }
     for (int k = 0; k < halved_angle.count; k++) {
-        for (int i = 0; i < count; i++) {
+        for (int i = first; i < count; i++) {
             sin_later[i] *= 2.0 * (1.0 + cos_later_less_1[i]);
             cos_later_less_1[i] *= 2.0 * (2.0 + cos_later_less_1[i]);
         }
+    }
+    for (int i = 0; i < first; i++) {
+        sin_later[i] = -sin_later[count - 1 - i];
+        cos_later_less_1[i] = cos_later_less_1[count - 1 - i];
     }
     const double V_c = drive->vibration.V_1 * c;
     const double V_s = drive->vibration.V_1 * s;
@@ -148,22 +156,29 @@ void fc_node_coefficients(const FcScene* scene, double t, double h, const double
         with_library(scene, t, h, node, count, at);
         return;
     }
+    const bool symmetric = node[0] == -node[count - 1];
     switch (count) { // constants where with_series is inlined
     case 4:
-        with_series(scene, t, h, node, 4, angle, exponent, at);
+        assert(symmetric);
+        with_series(scene, t, h, node, 4, true, angle, exponent, at);
         break;
     case 6:
-        with_series(scene, t, h, node, 6, angle, exponent, at);
+        if (symmetric) {
+            with_series(scene, t, h, node, 6, true, angle, exponent, at);
+        } else {
+            with_series(scene, t, h, node, 6, false, angle, exponent, at);
+        }
         break;
     case 8:
-        with_series(scene, t, h, node, 8, angle, exponent, at);
+        assert(symmetric);
+        with_series(scene, t, h, node, 8, true, angle, exponent, at);
         break;
     case 10:
-        with_series(scene, t, h, node, 10, angle, exponent, at);
+        with_series(scene, t, h, node, 10, false, angle, exponent, at);
         break;
     default:
-        assert(count == FC_MOST_NODES);
-        with_series(scene, t, h, node, FC_MOST_NODES, angle, exponent, at);
+        assert(count == FC_MOST_NODES && symmetric);
+        with_series(scene, t, h, node, FC_MOST_NODES, true, angle, exponent, at);
         break;
     }
 }

@@ -7,6 +7,7 @@
 #define FC_SOLVER_NODES_H
 
 #include "model/scene.h"
+#include "solver/pair.h"
 
 enum { FC_MOST_NODES = 12 };
 
@@ -14,9 +15,10 @@ typedef struct {
     double V[FC_MOST_NODES];     // m/s
     double sigma[FC_MOST_NODES]; // N/m
     double limit[FC_MOST_NODES]; // N
-} FcNodeCoefficients;
+} FC_PAIRED FcNodeCoefficients;
 
-// At the times t + (1/2 + node) h, node in [-1/2, 1/2]. count is even, so that the loops become vector instructions.
+// At the times t + (1/2 + node) h, node in [-1/2, 1/2]: those of a Gauss rule, symmetric about 0, or of a Radau panel, 6 or 10
+// of them. count is even, so that the loops become vector instructions.
 void fc_node_coefficients(const FcScene* scene, double t, double h, const double* node, int count,
                           FcNodeCoefficients* at);
 

@@ -35,36 +35,56 @@ typedef struct {
 FC_INLINE double fc_least(double a, double b) { return a < b ? a : b; }
 FC_INLINE double fc_most(double a, double b) { return a > b ? a : b; }
 
+// n is even here and below.
 FC_INLINE double fc_dot(int n, const double* a, const double* b) {
-    double sum = 0.0;
-    for (int i = 0; i < n; i++) {
-        sum += a[i] * b[i];
+    FcPair sum = {0.0, 0.0};
+    for (int i = 0; i < n; i += 2) {
+        sum += fc_pair(a + i) * fc_pair(b + i);
     }
-    return sum;
+    return fc_pair_sum(sum);
 }
 
 // Adds the integrals of F = sigma u, F V, u' V = (V - r u) V and F (V - u') = sigma r u^2 with u = P u_0 + Q.
 FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, const double* Q,
                                   const double* z, const double* V, const double* sigma, double h,
                                   FcMap* map) {
-    for (int i = 0; i < n; i++) {
-        const double F = weight[i] * sigma[i];
-        const double FP = F * P[i];
-        const double FQ = F * Q[i];
-        const double V_h = h * V[i];
-        map->impulse_slope += FP;
-        map->impulse_offset += FQ;
-        map->work_slope += FP * V_h;
-        map->work_offset += FQ * V_h;
-        const double w_V = weight[i] * V[i];
-        map->drag_slope -= w_V * z[i] * P[i];
-        map->drag_offset += w_V * (V_h - z[i] * Q[i]);
-        map->heat_square += FP * z[i] * P[i];
-        map->heat_slope += 2.0 * FP * z[i] * Q[i];
-        map->heat_offset += FQ * z[i] * Q[i];
+    FcPair impulse_slope = {0.0, 0.0};
+    FcPair impulse_offset = {0.0, 0.0};
+    FcPair work_slope = {0.0, 0.0};
+    FcPair work_offset = {0.0, 0.0};
+    FcPair drag_slope = {0.0, 0.0};
+    FcPair drag_offset = {0.0, 0.0};
+    FcPair heat_square = {0.0, 0.0};
+    FcPair heat_slope = {0.0, 0.0};
+    FcPair heat_offset = {0.0, 0.0};
+    for (int i = 0; i < n; i += 2) {
+        const FcPair w = fc_pair(weight + i);
+        const FcPair F = w * fc_pair(sigma + i);
+        const FcPair FP = F * fc_pair(P + i);
+        const FcPair FQ = F * fc_pair(Q + i);
+        const FcPair zP = fc_pair(z + i) * fc_pair(P + i);
+        const FcPair zQ = fc_pair(z + i) * fc_pair(Q + i);
+        const FcPair V_h = h * fc_pair(V + i);
+        const FcPair w_V = w * fc_pair(V + i);
+        impulse_slope += FP;
+        impulse_offset += FQ;
+        work_slope += FP * V_h;
+        work_offset += FQ * V_h;
+        drag_slope += w_V * zP;
+        drag_offset += w_V * (V_h - zQ);
+        heat_square += FP * zP;
+        heat_slope += FP * zQ;
+        heat_offset += FQ * zQ;
     }
-    map->impulse_slope *= h;
-    map->impulse_offset *= h;
+    map->impulse_slope = h * fc_pair_sum(impulse_slope);
+    map->impulse_offset = h * fc_pair_sum(impulse_offset);
+    map->work_slope = fc_pair_sum(work_slope);
+    map->work_offset = fc_pair_sum(work_offset);
+    map->drag_slope = -fc_pair_sum(drag_slope);
+    map->drag_offset = fc_pair_sum(drag_offset);
+    map->heat_square = fc_pair_sum(heat_square);
+    map->heat_slope = 2.0 * fc_pair_sum(heat_slope);
+    map->heat_offset = fc_pair_sum(heat_offset);
 }
 
 // The highest Legendre coefficients of a function over the nodes (rows: the four highest degrees)
@@ -74,15 +94,17 @@ typedef struct {
     double fall;
 } FcTail;
 
-FC_INLINE FcTail fc_tail_of(int n, const double* row, int stride, const double* f) {
-    double c[4];
-    for (int k = 0; k < 4; k++) {
-        c[k] = fabs(fc_dot(n, row, f));
-        row += stride;
+FC_INLINE FcTail fc_tail_of(int n, const double tail[][4], const double* f) {
+    FcPair first = {0.0, 0.0};
+    FcPair second = {0.0, 0.0};
+    for (int j = 0; j < n; j++) {
+        first += f[j] * fc_pair(tail[j]);
+        second += f[j] * fc_pair(tail[j] + 2);
     }
     const double tiny = 1e-300;
-    const double top = fc_most(c[0], c[1]);
-    return (FcTail){top, fc_least(1.0, sqrt(top / (fc_most(c[2], c[3]) + tiny)))};
+    const double top = fc_most(fabs(first[0]), fabs(first[1]));
+    const double before = fc_most(fabs(second[0]), fabs(second[1]));
+    return (FcTail){top, fc_least(1.0, sqrt(top / (before + tiny)))};
 }
 
 FC_INLINE double fc_largest(int n, const double* f) {
@@ -101,12 +123,13 @@ FC_INLINE double fc_beyond_rounding(double largest, double top) {
 // What the quadratures of F, of F V and of the heat F^2 |V| / g are estimated by: one function whose tail has all three.
 // Of the last two, only those of F - held: what the constant force held does is put right by the displacement, which is
 // known.
-FC_INLINE void fc_panel_force(int n, const FcNodeCoefficients* at, double sign, double speed, double held,
-                              const double* u, double* f) {
+// side_per_limit: the sign of V over g.
+FC_INLINE void fc_panel_force(int n, const FcNodeCoefficients* at, const double* side_per_limit, double side,
+                              double speed, double held, const double* u, double* f) {
+    const double side_per_speed = side / speed;
     for (int i = 0; i < n; i++) {
         const double F = at->sigma[i] * u[i];
-        const double V = sign * at->V[i];
-        f[i] = F + (F - held) * (V / speed) * (1.0 + (F + held) / (sign * at->limit[i]));
+        f[i] = F + (F - held) * (side_per_speed * at->V[i]) * (1.0 + (F + held) * side_per_limit[i]);
     }
 }
 

@@ -82,26 +82,26 @@ FcGaussPieces fc_section_pieces(const FcSection* section, const FcBells* bells, 
     return fc_gauss_pieces(0.5 * phase, 0.5 * stiffness, &section->z, decades - fc_digits(section->share));
 }
 
-FcSections fc_sections(const FcScene* scene, const FcScene* beyond_bells, const FcStretch* stretch,
-                       double per_path, double most_per_path) {
+int fc_sections(const FcScene* scene, const FcScene* beyond_bells, const FcStretch* stretch, double per_path,
+                double most_per_path, FcSection* sections, double* evaluations) {
     const double ends[] = {stretch->start, stretch->bells.after, stretch->bells.before, stretch->end};
     const bool narrow = is_narrow_somewhere(scene, stretch);
-    FcSections sections = {.count = 0};
+    int count = 0;
     for (int i = 0; i < 3; i++) {
         const double duration = ends[i + 1] - ends[i];
         if (!(duration > 0.0)) {
             continue;
         }
-        FcSection* section = &sections.at[sections.count++];
+        FcSection* section = &sections[count++];
         section->in_bell = i != 1;
         section->scene = section->in_bell ? scene : beyond_bells;
         section->start = ends[i];
         section->end = ends[i + 1];
         section->share = duration / (stretch->end - stretch->start);
         find_relaxation(section, stretch, per_path, most_per_path);
-        sections.evaluations += section->is_measured ? RELAXATION_NODES : 0.0;
+        *evaluations += section->is_measured ? RELAXATION_NODES : 0.0;
         section->forgets = per_path * (fabs(stretch->displacement) + stretch->path_after);
         section->soft = !narrow && is_soft(section);
     }
-    return sections;
+    return count;
 }

@@ -15,24 +15,20 @@
 typedef struct {
     const FcScene* scene; // of the coefficients there
     double start, end;    // s
+    double share;         // 1, of the stretch
+    FcRelaxation z;       // 1, by how much the bristle relaxes in it
+    double forgets;       // 1, and in the stretch and the next
     bool in_bell;
-    double share;     // 1, of the stretch
-    FcRelaxation z;   // 1, by how much the bristle relaxes in it
-    bool is_measured; // which is by what sigma is in the whole section, not at the start alone
-    double forgets;   // 1, and in the stretch and the next
+    bool is_measured; // z is by what sigma is in the whole section, not at the start alone
     bool soft;        // Gauss panels may be cheaper
 } FcSection;
 
-typedef struct {
-    FcSection at[3];
-    int count;
-    double evaluations; // that it took to tell how much relaxes
-} FcSections;
+enum { FC_MOST_SECTIONS = 3 };
 
-// Of a stretch in which the bristle relaxes by about per_path [1/m] and by most_per_path at the most; beyond_bells is the scene
-// without its Stribeck curve.
-FcSections fc_sections(const FcScene* scene, const FcScene* beyond_bells, const FcStretch* stretch,
-                       double per_path, double most_per_path);
+// How many sections a stretch has in which the bristle relaxes by about per_path [1/m] and by most_per_path at the most;
+// beyond_bells is the scene without its Stribeck curve.
+int fc_sections(const FcScene* scene, const FcScene* beyond_bells, const FcStretch* stretch, double per_path,
+                double most_per_path, FcSection* sections, double* evaluations);
 
 // The Gauss panels for a section; decades of accuracy asked for.
 FcGaussPieces fc_section_pieces(const FcSection* section, const FcBells* bells, double decades);

@@ -5,20 +5,14 @@
 // Largest argument of this series and of those of nodes.c: their remainders are then under 1e-17.
 static const double FC_SERIES_RANGE = 0.25;
 
-// By Taylor series, Horner's scheme.
+// By Taylor series. In pairs of terms, which a processor adds up side by side, where Horner's scheme waits for each sum.
 static inline double fc_series_exp_less_1(double x) {
-    double sum = 1.0 / 479001600; // 1 / 12!
-    sum = 1.0 / 39916800 + x * sum;
-    sum = 1.0 / 3628800 + x * sum;
-    sum = 1.0 / 362880 + x * sum;
-    sum = 1.0 / 40320 + x * sum;
-    sum = 1.0 / 5040 + x * sum;
-    sum = 1.0 / 720 + x * sum;
-    sum = 1.0 / 120 + x * sum;
-    sum = 1.0 / 24 + x * sum;
-    sum = 1.0 / 6 + x * sum;
-    sum = 1.0 / 2 + x * sum;
-    return x * (1.0 + x * sum);
+    const double x_2 = x * x;
+    const double x_4 = x_2 * x_2;
+    const double low = (1.0 / 2 + x * (1.0 / 6)) + x_2 * (1.0 / 24 + x * (1.0 / 120));
+    const double middle = (1.0 / 720 + x * (1.0 / 5040)) + x_2 * (1.0 / 40320 + x * (1.0 / 362880));
+    const double high = (1.0 / 3628800 + x * (1.0 / 39916800)) + x_2 * (1.0 / 479001600);
+    return x + x_2 * (low + x_4 * (middle + x_4 * high));
 }
 
 #endif

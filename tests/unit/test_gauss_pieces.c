@@ -6,6 +6,7 @@
 #include "check.h"
 #include "random.h"
 #include "solver/gauss_panel.h"
+#include "solver/judge.h"
 #include "table_1.h"
 
 static const double F_C = 55.0;
@@ -82,17 +83,17 @@ static void hardly_a_panel_is_refused(void) {
         const double decades = 2.0 + (k % 5);
         const double mu = at_E.decay * vibration.a_d * OMEGA * HALF_PERIOD;
         const FcGaussPieces pieces = fc_gauss_pieces(0.5 * OMEGA * HALF_PERIOD, mu, &relaxes, decades);
-        const double allowed = 10.0 * F_C * pow(10.0, -decades);
+        const double tolerance = F_C * pow(10.0, -decades);
         double delta = F_C / fc_scene_stiffness(&scene, 0.0); // V goes the other way
         for (int i = 0; i < pieces.count; i++) {
             const FcTrajectories from = {.delta_0 = delta, .speed = 1.44};
             const double h = HALF_PERIOD / pieces.count;
             FcPanel panel;
             fc_gauss_panel(&scene, i * h, h, pieces.nodes, &from, &panel);
-            const double of_mean = panel.z < 4.0 ? 1.0 : 50.0;
+            const FcExcess over = fc_gauss_panel_excess(&panel, 1.0 / pieces.count, false, 0.0, tolerance);
             taken++;
-            refused += !(panel.z < 0.5 * pieces.nodes && panel.end_error <= allowed * fmin(1.0, panel.z) &&
-                         of_mean * panel.mean_error <= allowed);
+            refused +=
+                !(fc_gauss_panel_is_resolved(&panel, pieces.nodes) && over.mean <= 1.0 && over.end <= 1.0);
             delta = (1.0 - panel.map.relaxation) * delta + panel.map.offset;
         }
     }

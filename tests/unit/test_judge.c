@@ -11,39 +11,45 @@ static FcPanel gauss(double z, double of_end, double of_mean) {
     return (FcPanel){.z = z, .end_error = of_end * TOLERANCE, .mean_error = of_mean * TOLERANCE};
 }
 
-static bool passes(FcPanel panel, int nodes, double share) {
-    return fc_gauss_panel_is_accurate(&panel, nodes, share, false, 0.0, TOLERANCE);
+static bool passes(FcPanel panel, double share) {
+    const FcExcess over = fc_gauss_panel_excess(&panel, share, false, 0.0, TOLERANCE);
+    return over.mean <= 1.0 && over.end <= 1.0;
 }
 
 static bool passes_in_bell(FcPanel panel, double forgets) {
-    return fc_gauss_panel_is_accurate(&panel, 8, 1.0, true, forgets, TOLERANCE);
+    const FcExcess over = fc_gauss_panel_excess(&panel, 1.0, true, forgets, TOLERANCE);
+    return over.mean <= 1.0 && over.end <= 1.0;
 }
 
 static void gauss_panels(void) {
-    CHECK(passes(gauss(1.0, 9.99, 9.99), 8, 1.0));
-    CHECK(!passes(gauss(1.0, 10.01, 0.0), 8, 1.0));
-    CHECK(!passes(gauss(1.0, 0.0, 10.01), 8, 1.0));
+    CHECK(passes(gauss(1.0, 9.99, 9.99), 1.0));
+    CHECK(!passes(gauss(1.0, 10.01, 0.0), 1.0));
+    CHECK(!passes(gauss(1.0, 0.0, 10.01), 1.0));
     // The mean sees a part of a stretch by its share.
-    CHECK(passes(gauss(1.0, 0.0, 39.9), 8, 0.25));
-    CHECK(!passes(gauss(1.0, 0.0, 40.1), 8, 0.25));
+    CHECK(passes(gauss(1.0, 0.0, 39.9), 0.25));
+    CHECK(!passes(gauss(1.0, 0.0, 40.1), 0.25));
     // A bristle that relaxes little sums up what panels miss.
-    CHECK(passes(gauss(0.01, 0.0999, 0.0), 8, 1.0));
-    CHECK(!passes(gauss(0.01, 0.1001, 0.0), 8, 1.0));
-    CHECK(passes(gauss(0.0, 0.0, 0.0), 4, 1.0));
+    CHECK(passes(gauss(0.01, 0.0999, 0.0), 1.0));
+    CHECK(!passes(gauss(0.01, 0.1001, 0.0), 1.0));
+    CHECK(passes(gauss(0.0, 0.0, 0.0), 1.0));
     // Steep ones, and those that n nodes don't resolve.
-    CHECK(passes(gauss(4.1, 9.99, 1.99), 12, 1.0));
-    CHECK(!passes(gauss(4.1, 0.0, 2.01), 12, 1.0));
-    CHECK(passes(gauss(3.99, 0.0, 9.99), 8, 1.0));
-    CHECK(!passes(gauss(4.01, 0.0, 0.0), 8, 1.0));
+    CHECK(passes(gauss(4.1, 9.99, 1.99), 1.0));
+    CHECK(!passes(gauss(4.1, 0.0, 2.01), 1.0));
+    CHECK(passes(gauss(3.99, 0.0, 9.99), 1.0));
+    const FcPanel resolved = gauss(3.99, 0.0, 0.0);
+    CHECK(fc_gauss_panel_is_resolved(&resolved, 8));
+    const FcPanel unresolved = gauss(4.01, 0.0, 0.0);
+    CHECK(!fc_gauss_panel_is_resolved(&unresolved, 8));
+    const FcPanel unknown = gauss(NAN, 0.0, 0.0);
+    CHECK(!fc_gauss_panel_is_resolved(&unknown, 8));
     // In bells of the Stribeck curve.
     CHECK(passes_in_bell(gauss(0.01, 0.999, 0.999), 3.0));
     CHECK(!passes_in_bell(gauss(0.01, 1.001, 0.0), 3.0));
     CHECK(!passes_in_bell(gauss(0.01, 0.0, 1.001), 3.0));
     CHECK(!passes_in_bell(gauss(0.01, 0.6, 0.0), 0.5));
     // No number is no accuracy.
-    CHECK(!passes(gauss(1.0, NAN, 0.0), 8, 1.0));
-    CHECK(!passes(gauss(1.0, 0.0, NAN), 8, 1.0));
-    CHECK(!passes(gauss(NAN, 0.0, 0.0), 8, 1.0));
+    CHECK(!passes(gauss(1.0, NAN, 0.0), 1.0));
+    CHECK(!passes(gauss(1.0, 0.0, NAN), 1.0));
 }
 
 // The mean sees an error of the end for as long as it lives and that of the panel while it lasts; a tenth of both counts,

@@ -125,7 +125,7 @@ static long double lagrange_slope(int j, int i) {
     return slope;
 }
 
-static void check_inverse(const double inverse[9][9]) {
+static void check_inverse(const double inverse[9][10]) {
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             check_nearest(inverse[i][j], lagrange_slope(j, i));
@@ -147,11 +147,11 @@ static long double tail(int degree, int j) {
     return (long double)(2 * degree + 1) * weight[j] * legendre(degree, 2.0L * node[j] - 1.0L);
 }
 
-static void check_tail(const double* entry, int stride) {
+static void check_tail(const double entry[][4]) {
     for (int k = 0; k < 4; k++) {
         const int degree = n - 1 - k > 0 ? n - 1 - k : 0;
         for (int j = 0; j < n; j++) {
-            check_nearest(entry[k * stride + j], tail(degree, j));
+            check_nearest(entry[j][k], tail(degree, j));
         }
     }
 }
@@ -199,7 +199,12 @@ static void check_radau(const FcRadauRule* rule, int stages) {
     check_weights(rule->weight);
     check_start(rule->start);
     check_inverse(rule->inverse);
-    check_tail(&rule->tail[0][0], 9);
+    check_tail(rule->tail);
+    // The panel's start is no stage.
+    CHECK(rule->weight[n] == 0.0 && rule->start[n] == -1.0);
+    for (int k = 0; k < 4; k++) {
+        CHECK(rule->tail[n][k] == 0.0);
+    }
     weights_integrate_polynomials(rule->weight);
 }
 
@@ -210,7 +215,10 @@ static void check_gauss(const FcGaussRule* rule, int nodes) {
     check_weights(rule->weight);
     check_matrix(rule->integral, legendre_integral);
     check_matrix(rule->slope, legendre_slope);
-    check_tail(&rule->tail[0][0], 12);
+    check_tail(rule->tail);
+    for (int j = 0; j < n; j++) {
+        CHECK(rule->node[j] == -rule->node[n - 1 - j]);
+    }
     weights_integrate_polynomials(rule->weight);
 }
 

@@ -43,7 +43,7 @@ static FcMap brute_force(const FcScene* scene, double start, double end) {
     for (int i = 0; i < STEPS; i++) {
         const FcCoefficients at = fc_scene_coefficients(scene, start + (i + 0.5) * step);
         const FcMap map = fc_map_of_constant_scene(&at, step);
-        sum = fc_map_compose(&sum, &map);
+        fc_map_append(&sum, &map);
     }
     return sum;
 }
@@ -72,7 +72,8 @@ static void check_bell(const FcScene* scene, double reversal, double side) {
     const FcMap without = brute_force(&beyond.scene, start, end);
     const FcBellShape shape = fc_bell_shape(friction.staticRatio);
     const FcMap bell = fc_small_bell(scene, &shape, &place, reversal, side, sign);
-    const FcMap got = side > 0.0 ? fc_map_compose(&bell, &without) : fc_map_compose(&without, &bell);
+    FcMap got = side > 0.0 ? bell : without;
+    fc_map_append(&got, side > 0.0 ? &without : &bell);
 
     const double per_path = largest_per_path(&beyond, start, end);
     const double J = -bell.relaxation;
