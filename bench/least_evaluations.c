@@ -1,6 +1,6 @@
 // The least evaluations with which the default's panels could do a vibration period, if the size of their errors were known.
 //
-//     least_evaluations          two tables: evaluations that the default takes, and the least, for each stiffness and tolerance
+//     least_evaluations          three tables, for each stiffness and tolerance: evaluations and time
 //
 // For one scene, a dense grid in each stretch between two reversals, graded towards both; every panel between two grid
 // points, of every kind and number of nodes, and its true errors against a fine solution: in the force at the interval's
@@ -13,10 +13,16 @@
 //
 // The second table is what the best plan could do with the bounds and estimates that the default has: the fewest evaluations
 // of panels that these let pass, and which are accurate without luck (some pass that aren't).
+//
+// A panel of few nodes is not much cheaper than one of more, one that is not judged cheaper than one that is. So the third
+// table has times: of the panels that the default takes, of the cheapest that pass, and of the cheapest if their errors were
+// known and none had to be judged; and the time of all that the default does. Each kind of panel is timed in one scene.
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "counted_panels.h"
+#include "job.h"
 #include "solver/bounded_panel.h"
 #include "solver/collocation.h"
 #include "solver/gauss_panel.h"
@@ -29,7 +35,7 @@
 static const double PERIOD = 5e-5; // s
 static const double F_C = 55.0;    // N
 
-enum { MOST_POINTS = 160, KINDS = 6, STRETCHES = 3, RADAU_KINDS = 2 };
+enum { MOST_POINTS = 160, KINDS = RADAU_RULES + GAUSS_RULES, STRETCHES = 3 };
 static const int NODES[KINDS] = {5, 9, 4, 6, 8, 12}; // Radau, then Gauss
 
 enum { TOLERANCES = 5 };
@@ -55,6 +61,16 @@ static void make(Slider* slider, double sigma, double phase_d) {
     slider->scene = fc_scene_make(&slider->contact, &at_E, &slider->friction, F_C, &drive);
 }
 
+typedef enum { REFUSED, JUDGED, BOUNDED } Passes;
+
+// What a panel of each kind costs, and a node of a closed form: 1 for each evaluation, or a time.
+typedef struct {
+    double judged[KINDS];
+    double bounded[KINDS]; // not judged; a Radau panel always is
+    double node;
+} Costs;
+static const Costs EVALUATIONS = {{5, 9, 4, 6, 8, 12}, {5, 9, 4, 6, 8, 12}, 1.0};
+
 // What is asked for: the force at the interval's end, the mean force, the work and the heat.
 enum { RESULTS = 4 };
 
@@ -70,8 +86,8 @@ typedef struct {
     double error[MOST_POINTS][MOST_POINTS][KINDS]; // 1, of a panel, from one point to another
     double settled[MOST_POINTS];                   // 1, of the closed form, from a point to the stretch's end
     double to_settle[MOST_POINTS];                 // evaluations that it takes
-    // Whether the default would take that panel, or the closed form, at each tolerance.
-    bool passes[TOLERANCES][MOST_POINTS][MOST_POINTS][KINDS];
+    // How the default would let that panel pass at each tolerance, and whether the closed form.
+    Passes passes[TOLERANCES][MOST_POINTS][MOST_POINTS][KINDS];
     bool settles[TOLERANCES][MOST_POINTS];
 } Grid;
 static Grid grids[STRETCHES];
@@ -80,14 +96,14 @@ static Grid grids[STRETCHES];
 static FcMap panel_of(const Grid* grid, const FcScene* scene, int kind, double t, double h, double delta) {
     const FcTrajectories from = {.delta_0 = delta, .speed = 1.0};
     FcPanel panel;
-    if (kind < RADAU_KINDS) {
+    if (kind < RADAU_RULES) {
         fc_radau_panel(scene, NODES[kind], t, h, grid->sign, &from, &panel);
     } else {
         fc_gauss_panel(scene, t, h, NODES[kind], &from, &panel);
     }
     const double missed = fc_drive_displacement(&scene->drive, t, t + h) - panel.displacement;
     FcMap map = panel.map;
-    if (kind < RADAU_KINDS) {
+    if (kind < RADAU_RULES) {
         map.work_offset += grid->sign * F_C * missed;
         map.heat_offset += grid->sign * F_C * missed;
     } else {
@@ -103,7 +119,7 @@ static FcMap fine(const Grid* grid, const FcScene* scene, double t, double h, do
     FcMap map = fc_map_identity();
     for (int i = 0; i < 16; i++) {
         const FcMap part =
-            panel_of(grid, scene, RADAU_KINDS - 1, t + i * h / 16, h / 16, end_of(&map, delta));
+            panel_of(grid, scene, RADAU_RULES - 1, t + i * h / 16, h / 16, end_of(&map, delta));
         fc_map_append(&map, &part);
     }
     return map;
@@ -228,31 +244,32 @@ static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh) {
     }
 }
 
-// Whether the default's estimates, or its bound, let that panel pass.
-static bool passes(const Grid* grid, const FcScene* scene, const FcMotion* motion, int i, int j, int kind,
+// How the default's bound, or its estimates, let that panel pass.
+static Passes passes(const Grid* grid, const FcScene* scene, const FcMotion* motion, int i, int j, int kind,
                    double tolerance) {
     const FcStretch* stretch = &grid->stretch;
     const double t = grid->t[i];
     const double h = grid->t[j] - t;
     const FcTrajectories from = {.delta_0 = grid->at[i].delta,
                                  .speed = fc_drive_largest_speed(&scene->drive, PERIOD),
-                                 .held = kind < RADAU_KINDS ? grid->sign * F_C : 0.0};
+                                 .held = kind < RADAU_RULES ? grid->sign * F_C : 0.0};
     FcPanel panel;
-    if (kind < RADAU_KINDS) {
+    if (kind < RADAU_RULES) {
         fc_radau_panel(scene, NODES[kind], t, h, grid->sign, &from, &panel);
         const FcErrorLife life = {.lives = grid->worth[j][1], .lasts = h / PERIOD, .grows = 1.0};
         const FcExcess over = fc_radau_panel_excess(&panel, &life, tolerance * F_C);
-        return fmax(over.mean, grid->worth[j][0] * over.end) <= 1.0;
+        return fmax(over.mean, grid->worth[j][0] * over.end) <= 1.0 ? JUDGED : REFUSED;
     }
     fc_gauss_panel(scene, t, h, NODES[kind], &from, &panel);
-    const FcExcess over =
-        fc_gauss_panel_excess(&panel, h / (stretch->end - stretch->start), false, 0.0, tolerance * F_C);
-    if (fc_gauss_panel_is_resolved(&panel, NODES[kind]) && over.mean <= 1.0 && over.end <= 1.0) {
-        return true;
-    }
     const double X = fc_drive_displacement(&scene->drive, t, t + h);
     const int needed = fc_bounded_panel_nodes(motion, h, X, panel.z, &from);
-    return needed > 0 && needed <= NODES[kind];
+    if (needed > 0 && needed <= NODES[kind]) {
+        return BOUNDED;
+    }
+    const FcExcess over =
+        fc_gauss_panel_excess(&panel, h / (stretch->end - stretch->start), false, 0.0, tolerance * F_C);
+    return fc_gauss_panel_is_resolved(&panel, NODES[kind]) && over.mean <= 1.0 && over.end <= 1.0 ? JUDGED
+                                                                                                  : REFUSED;
 }
 
 static void ask_for_passes(Grid* grid, const FcScene* scene, int k) {
@@ -274,22 +291,24 @@ static void ask_for_passes(Grid* grid, const FcScene* scene, int k) {
 // Of the tolerance that the error of a panel which passes may be.
 static const double SHARE = 0.2;
 
-// The fewest evaluations of panels that pass.
-static double fewest(const Grid* grid, int k) {
-    double nodes[MOST_POINTS];
+// What the cheapest panels that pass cost.
+static double cheapest_passing(const Grid* grid, int k, const Costs* costs) {
+    double cost[MOST_POINTS];
     const int last = grid->count - 1;
-    nodes[last] = 0.0;
+    cost[last] = 0.0;
     for (int i = last - 1; i >= 0; i--) {
-        nodes[i] = grid->settles[k][i] ? grid->to_settle[i] : INFINITY;
+        cost[i] = grid->settles[k][i] ? costs->node * grid->to_settle[i] : INFINITY;
         for (int j = i + 1; j <= last; j++) {
             for (int kind = 0; kind < KINDS; kind++) {
-                if (grid->passes[k][i][j][kind] && grid->error[i][j][kind] <= SHARE * TOLERANCE[k]) {
-                    nodes[i] = fmin(nodes[i], NODES[kind] + nodes[j]);
+                const Passes how = grid->passes[k][i][j][kind];
+                if (how != REFUSED && grid->error[i][j][kind] <= SHARE * TOLERANCE[k]) {
+                    const double of_panel = how == JUDGED ? costs->judged[kind] : costs->bounded[kind];
+                    cost[i] = fmin(cost[i], of_panel + cost[j]);
                 }
             }
         }
     }
-    return nodes[0];
+    return cost[0];
 }
 
 // What is right by luck counts as its neighbours do.
@@ -311,52 +330,52 @@ static void take_luck_away(Grid* grid) {
     }
 }
 
-// The cheapest sequence of panels where an error costs `price`: its evaluations and the sum of its errors.
-static double cheapest(const Grid* grid, double price, double* error) {
-    double cost[MOST_POINTS];
+// The cheapest sequence of panels where an error costs `price`: what it costs and the sum of its errors.
+static double cheapest(const Grid* grid, const Costs* costs, double price, double* error) {
+    double whole[MOST_POINTS]; // with the price of the errors
     double errors[MOST_POINTS];
-    double nodes[MOST_POINTS];
+    double cost[MOST_POINTS];
     const int last = grid->count - 1;
-    cost[last] = errors[last] = nodes[last] = 0.0;
+    whole[last] = errors[last] = cost[last] = 0.0;
     for (int i = last - 1; i >= 0; i--) {
-        cost[i] = grid->to_settle[i] + price * grid->settled[i];
         errors[i] = grid->settled[i];
-        nodes[i] = grid->to_settle[i];
+        cost[i] = costs->node * grid->to_settle[i];
+        whole[i] = cost[i] + price * errors[i];
         for (int j = i + 1; j <= last; j++) {
             for (int kind = 0; kind < KINDS; kind++) {
                 const double of_panel = grid->error[i][j][kind];
-                const double whole = NODES[kind] + price * of_panel + cost[j];
-                if (whole < cost[i]) {
-                    cost[i] = whole;
+                const double with_panel = costs->bounded[kind] + price * of_panel + whole[j];
+                if (with_panel < whole[i]) {
+                    whole[i] = with_panel;
                     errors[i] = of_panel + errors[j];
-                    nodes[i] = NODES[kind] + nodes[j];
+                    cost[i] = costs->bounded[kind] + cost[j];
                 }
             }
         }
     }
     *error += errors[0];
-    return nodes[0];
+    return cost[0];
 }
 
-static double least(double tolerance, int stretches) {
+static double least(double tolerance, int stretches, const Costs* costs) {
     double low = 0.0; // ln of the price
     double high = 60.0;
-    double evaluations = INFINITY;
+    double found = INFINITY;
     for (int k = 0; k < 60; k++) {
         const double middle = 0.5 * (low + high);
         double error = 0.0;
-        double nodes = 0.0;
+        double cost = 0.0;
         for (int i = 0; i < stretches; i++) {
-            nodes += cheapest(&grids[i], exp(middle), &error);
+            cost += cheapest(&grids[i], costs, exp(middle), &error);
         }
         if (error <= tolerance) {
-            evaluations = fmin(evaluations, nodes);
+            found = fmin(found, cost);
             high = middle;
         } else {
             low = middle;
         }
     }
-    return evaluations;
+    return found;
 }
 
 static double settled_deflection(const FcScene* scene) {
@@ -422,16 +441,89 @@ static double evaluations_of_default(const FcScene* scene, double tolerance) {
     return taken;
 }
 
-// Evaluations of a period at each tolerance.
+enum { TURNS = 7, TIMES = 20000 };
+static volatile double used; // so that what is timed is done
+
+// ns
+static double time_of_panel(int kind, bool judged) {
+    Slider slider;
+    make(&slider, 6e6, 0.7);
+    const FcScene* scene = &slider.scene;
+    const double start = fc_drive_next_event(&scene->drive, 0.0, PERIOD).time;
+    const double h = 0.2 * PERIOD;
+    const double sign = fc_sign(fc_drive_displacement(&scene->drive, start, start + h));
+    double least_time = INFINITY;
+    for (int turn = 0; turn < TURNS; turn++) {
+        const double before = cpu_seconds();
+        for (int i = 0; i < TIMES; i++) {
+            const FcTrajectories from = {.delta_0 = 1e-6 + 1e-12 * i, .speed = 1.44, .held = sign * F_C};
+            FcPanel panel;
+            if (kind < RADAU_RULES) {
+                fc_radau_panel(scene, NODES[kind], start, h, sign, &from, &panel);
+            } else if (judged) {
+                fc_gauss_panel(scene, start, h, NODES[kind], &from, &panel);
+            } else {
+                fc_gauss_panel_unjudged(scene, start, h, NODES[kind], &from, &panel);
+            }
+            used = panel.map.offset + panel.end_error;
+        }
+        least_time = fmin(least_time, cpu_seconds() - before);
+    }
+    return 1e9 * least_time / TIMES;
+}
+
+static Costs measured_times(void) {
+    Costs costs;
+    for (int kind = 0; kind < KINDS; kind++) {
+        costs.judged[kind] = time_of_panel(kind, true);
+        costs.bounded[kind] = time_of_panel(kind, false);
+    }
+    costs.node = costs.bounded[KINDS - 1] / NODES[KINDS - 1];
+    return costs;
+}
+
+static double time_of_default(const FcScene* scene, double tolerance) {
+    const FcSolverOptions options = {.tolerance = tolerance};
+    const double delta = settled_deflection(scene);
+    double least_time = INFINITY;
+    for (int turn = 0; turn < TURNS; turn++) {
+        const double before = cpu_seconds();
+        for (int i = 0; i < TIMES / 4; i++) {
+            double taken = 0.0;
+            used = fc_collocation_interval(scene, &options, PERIOD, delta, FC_MAP_THIS_START, &taken).offset;
+        }
+        least_time = fmin(least_time, cpu_seconds() - before);
+    }
+    return 1e9 * least_time / (TIMES / 4);
+}
+
+static double time_of_its_panels(const FcScene* scene, double tolerance, const Costs* times) {
+    const PanelCounts counts = count_panels(scene, tolerance, PERIOD, settled_deflection(scene));
+    double sum = counts.other_evaluations * times->node;
+    for (int i = 0; i < RADAU_RULES; i++) {
+        sum += counts.radau[i] * times->judged[i];
+    }
+    for (int i = 0; i < GAUSS_RULES; i++) {
+        sum += counts.judged[i] * times->judged[RADAU_RULES + i] +
+               counts.unjudged[i] * times->bounded[RADAU_RULES + i];
+    }
+    return sum;
+}
+
+// Of a period at each tolerance: evaluations and times [ns].
 typedef struct {
-    double sigma;                 // N/m
-    double taken[TOLERANCES];     // by the default
-    double with_luck[TOLERANCES]; // the least of the scene itself
-    double least[TOLERANCES];     // without luck
-    double passing[TOLERANCES];   // of panels that pass
+    double sigma;                     // N/m
+    double taken[TOLERANCES];         // by the default
+    double with_luck[TOLERANCES];     // the least of the scene itself
+    double least[TOLERANCES];         // without luck
+    double passing[TOLERANCES];       // of panels that pass
+    double time[TOLERANCES];          // of the default
+    double time_taken[TOLERANCES];    // by its panels
+    double time_of_least[TOLERANCES]; // of panels, if errors were known
+    double time_passing[TOLERANCES];
 } Row;
 
-static Row row_of(double sigma) {
+static Row row_of(double sigma, const Costs* times) {
     static const double PHASES[] = {0.7, 0.4, 0.55, 0.85, 1.0}; // of d, the scene's own first
     enum { PHASE_COUNT = 5 };
     Row row = {.sigma = sigma};
@@ -439,12 +531,15 @@ static Row row_of(double sigma) {
     for (int phase = 0; phase < PHASE_COUNT; phase++) {
         Slider slider;
         make(&slider, sigma, PHASES[phase]);
-        stretches = judge(&slider.scene, phase == 0);
+        const FcScene* scene = &slider.scene;
+        stretches = judge(scene, phase == 0);
         for (int k = 0; phase == 0 && k < TOLERANCES; k++) {
-            row.taken[k] = evaluations_of_default(&slider.scene, TOLERANCE[k]);
-            row.with_luck[k] = least(TOLERANCE[k], stretches);
+            row.taken[k] = evaluations_of_default(scene, TOLERANCE[k]);
+            row.time[k] = time_of_default(scene, TOLERANCE[k]);
+            row.time_taken[k] = time_of_its_panels(scene, TOLERANCE[k], times);
+            row.with_luck[k] = least(TOLERANCE[k], stretches, &EVALUATIONS);
             for (int i = 0; i < stretches; i++) {
-                ask_for_passes(&grids[i], &slider.scene, k);
+                ask_for_passes(&grids[i], scene, k);
             }
         }
     }
@@ -452,9 +547,11 @@ static Row row_of(double sigma) {
         take_luck_away(&grids[i]);
     }
     for (int k = 0; k < TOLERANCES; k++) {
-        row.least[k] = least(TOLERANCE[k], stretches);
+        row.least[k] = least(TOLERANCE[k], stretches, &EVALUATIONS);
+        row.time_of_least[k] = least(TOLERANCE[k], stretches, times);
         for (int i = 0; i < stretches; i++) {
-            row.passing[k] += fewest(&grids[i], k);
+            row.passing[k] += cheapest_passing(&grids[i], k, &EVALUATIONS);
+            row.time_passing[k] += cheapest_passing(&grids[i], k, times);
         }
     }
     return row;
@@ -471,9 +568,10 @@ static void print_head(const char* of) {
 int main(void) {
     enum { ROWS = 9 };
     Row rows[ROWS];
+    const Costs times = measured_times();
     double sigma = 6e4;
     for (int r = 0; r < ROWS; r++) {
-        rows[r] = row_of(sigma);
+        rows[r] = row_of(sigma, &times);
         sigma *= 10.0;
     }
     print_head("The least if errors were known, of what the default takes (with luck)");
@@ -489,6 +587,20 @@ int main(void) {
         printf("%11.0e", rows[r].sigma);
         for (int k = 0; k < TOLERANCES; k++) {
             printf("        %4.0f of %4.0f", rows[r].passing[k], rows[r].taken[k]);
+        }
+        printf("\n");
+    }
+    printf("\nTimes of panels [ns], judged and not:");
+    for (int kind = 0; kind < KINDS; kind++) {
+        printf("  %s %d %.0f, %.0f", kind < RADAU_RULES ? "Radau" : "Gauss", NODES[kind], times.judged[kind],
+               times.bounded[kind]);
+    }
+    print_head("\nTimes [ns]: the default's panels, the cheapest that pass, and if errors were known (all that the default does)");
+    for (int r = 0; r < ROWS; r++) {
+        printf("%11.0e", rows[r].sigma);
+        for (int k = 0; k < TOLERANCES; k++) {
+            printf("  %4.0f %4.0f %4.0f (%4.0f)", rows[r].time_taken[k], rows[r].time_passing[k],
+                   rows[r].time_of_least[k], rows[r].time[k]);
         }
         printf("\n");
     }
