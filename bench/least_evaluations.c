@@ -251,7 +251,7 @@ static void judge_panels(Grid* grid, const FcScene* scene, const FcMesh* mesh) {
 
 // How the default's bound, or its estimates, let that panel pass.
 static Passes passes(const Grid* grid, const FcScene* scene, const FcMotion* motion, int i, int j, int kind,
-                   double tolerance) {
+                     double tolerance) {
     const FcStretch* stretch = &grid->stretch;
     const double t = grid->t[i];
     const double h = grid->t[j] - t;
@@ -613,12 +613,14 @@ int main(void) {
         printf("  %s %d %.0f, %.0f", kind < RADAU_RULES ? "Radau" : "Gauss", NODES[kind], times.judged[kind],
                times.bounded[kind]);
     }
-    print_head("\nTimes [ns]: the default's panels, the cheapest that pass, and if errors were known (all that the default does)");
+    print_head("\nTimes [ns]: the default's panels, the cheapest that pass, and if errors were known (all "
+               "that the default does)");
     for (int r = 0; r < ROWS; r++) {
         printf("%11.0e", rows[r].sigma);
         for (int k = 0; k < TOLERANCES; k++) {
-            printf("  %4.0f %4.0f %4.0f (%4.0f)", rows[r].time_taken[k] / STARTS, rows[r].time_passing[k] / STARTS,
-                   rows[r].time_of_least[k] / STARTS, rows[r].time[k] / STARTS);
+            printf("  %4.0f %4.0f %4.0f (%4.0f)", rows[r].time_taken[k] / STARTS,
+                   rows[r].time_passing[k] / STARTS, rows[r].time_of_least[k] / STARTS,
+                   rows[r].time[k] / STARTS);
         }
         printf("\n");
     }
