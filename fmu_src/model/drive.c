@@ -296,10 +296,21 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
 }
 
+// What V may be at the double next to a root t.
+static double rounding_of_V(const FcDrive* drive, double t) {
+    return fabs(drive->vibration.V_1) * least_ahead(theta(drive, t)) +
+           1e-15 * (fabs(drive->V.value) + fabs(drive->V.rate) * t);
+}
+
 static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, double end) {
     // V is monotone between the angles where sin(theta) = V' / (V_1 omega), if there are any.
     const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
-    double from = t + least_ahead(theta(drive, t)) / drive->omega;
+    double from = t;
+    double V_from = fc_drive_V(drive, from);
+    if (fabs(V_from) <= rounding_of_V(drive, t)) { // t is a root
+        from += least_ahead(theta(drive, t)) / drive->omega;
+        V_from = fc_drive_V(drive, from);
+    }
     while (from < end) {
         double to = end;
         if (fabs(slope) < 1.0) {
@@ -311,13 +322,15 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
         if (stops_at_end) {
             to = end;
         }
-        if ((fc_drive_V(drive, from) < 0.0) != (fc_drive_V(drive, to) < 0.0)) {
+        const double V_to = fc_drive_V(drive, to);
+        if ((V_from < 0.0) != (V_to < 0.0)) {
             return event_at(drive, root_of_V(drive, from, to), true);
         }
         if (!stops_at_end && is_dip(drive, to)) {
             return event_at(drive, to, false);
         }
         from = to;
+        V_from = V_to;
     }
     return none_before(end);
 }

@@ -339,6 +339,19 @@ static void reversals_of_linear_inputs(void) {
     }
 }
 
+// V turns in a step over which a slow vibration goes on by less than its phase is known to.
+static void reversal_of_a_fast_input_over_a_slow_vibration(void) {
+    const FcLinearInput V = {0.0118295, -1.177e9};
+    const FcLinearInput held = {1.0, 0.0};
+    const FcDrive drive =
+        fc_drive_make(V, held, held, held, (FcVibration){1e-4, 1e-3, 0.0, 0.0}, 1000.0, 0.0);
+    const double end = 1.83e-11;
+    const FcDriveEvent event = fc_drive_next_event(&drive, 0.0, end);
+    CHECK(event.time < end && event.reversal);
+    CHECK_NEAR(event.time, fc_drive_V(&drive, 0.0) / 1.177e9, 1e-12);
+    CHECK(fc_drive_next_event(&drive, event.time, end).time == end);
+}
+
 // V rises from below -V_1: near its end the ramp lets V graze zero in a dip before it crosses for good.
 static void dips_of_linear_inputs(void) {
     const FcDrive above = drive_of((Case){.V = 1.2, .V_rate = 1.0, .V_1 = 1.0});
@@ -437,5 +450,6 @@ int main(void) {
     a_ramp_reverses_once();
     reversals_of_linear_inputs();
     dips_of_linear_inputs();
+    reversal_of_a_fast_input_over_a_slow_vibration();
     return check_result();
 }
