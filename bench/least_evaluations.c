@@ -470,7 +470,7 @@ static double time_of_panel(int kind, bool judged) {
             } else {
                 fc_gauss_panel_unjudged(scene, start, h, NODES[kind], &from, &panel);
             }
-            used = panel.map.offset + panel.end_error;
+            used = panel.map.offset;
         }
         least_time = fmin(least_time, cpu_seconds() - before);
     }

@@ -15,7 +15,7 @@ typedef struct {
 
 typedef FcRootFunction (*FcRootEvaluation)(void* context, double t);
 
-// f changes its sign from a to b [s], a < b, and is at_a and at_b there. Ends with a step of at most last_step times the
+// f changes its sign from a to b [s], a < b, and is at_a and at_b there. Ends with such a step of at most last_step times the
 // way from a, which counts no more than longest_way [s]: the error is then of the order of that step's square or, where
 // f'' is given, cube. Adds what it evaluates to *evaluations.
 double fc_bracketed_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,

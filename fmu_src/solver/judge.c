@@ -1,7 +1,5 @@
 #include "solver/judge.h"
 
-#include <float.h>
-
 // What a Gauss panel's estimates may be, over the tolerance.
 static const double OF_GAUSS_PANELS = 10.0;
 static const double OF_GAUSS_PANELS_IN_BELLS = 1.0;
@@ -17,15 +15,17 @@ static const double AT_THE_END_IN_BELLS = 0.05;
 static const double ROUNDING = 2e-13;
 
 bool fc_gauss_panel_is_resolved(const FcPanel* panel, int nodes) {
-    return panel->z < 0.5 * nodes; // n nodes resolve e^G where G grows by less than half of n
+    // n nodes resolve e^G where G grows by less than half of n. It shrinks only where V turns, which no panel is for.
+    return panel->z >= 0.0 && panel->z < 0.5 * nodes;
 }
 
 FcExcess fc_gauss_panel_excess(const FcPanel* panel, double share, bool in_bell, double forgets,
                                double tolerance) {
     const double allowed = (in_bell ? OF_GAUSS_PANELS_IN_BELLS : OF_GAUSS_PANELS) * tolerance;
     const double of_mean = panel->z < STEEP ? 1.0 : OF_STEEP_PANELS;
+    const double of_end = fc_least(1.0, in_bell ? forgets : panel->z); // which may be 0, as the error then is
     return (FcExcess){share * panel->mean_error / (of_mean * allowed),
-                      panel->end_error / (allowed * fc_least(1.0, in_bell ? forgets : panel->z) + DBL_MIN)};
+                      panel->end_error == 0.0 ? 0.0 : panel->end_error / (of_end * allowed)};
 }
 
 FcExcess fc_radau_panel_excess(const FcPanel* panel, const FcErrorLife* life, double tolerance) {

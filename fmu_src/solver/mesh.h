@@ -71,7 +71,7 @@ static inline FcPhase fc_stretch_phase(const FcStretch* stretch, const FcDrive* 
                                : fc_drive_phase(drive, t);
 }
 
-// About -log10(x), down to the next power of two.
+// About -log10(x), down to the next power of two; about 308 for 0 and the smallest numbers.
 static inline double fc_digits(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);

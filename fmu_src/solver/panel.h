@@ -35,7 +35,7 @@ typedef struct {
 FC_INLINE double fc_least(double a, double b) { return a < b ? a : b; }
 FC_INLINE double fc_most(double a, double b) { return a > b ? a : b; }
 
-// n is even here and below.
+// n is even here and where pairs are read below.
 FC_INLINE double fc_dot(int n, const double* a, const double* b) {
     FcPair sum = {0.0, 0.0};
     for (int i = 0; i < n; i += 2) {
@@ -44,7 +44,7 @@ FC_INLINE double fc_dot(int n, const double* a, const double* b) {
     return fc_pair_sum(sum);
 }
 
-// Adds the integrals of F = sigma u, F V, u' V = (V - r u) V and F (V - u') = sigma r u^2 with u = P u_0 + Q.
+// The integrals of F = sigma u, F V, u' V = (V - r u) V and F (V - u') = sigma r u^2 with u = P u_0 + Q.
 FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, const double* Q,
                                   const double* z, const double* V, const double* sigma, double h,
                                   FcMap* map) {
@@ -87,8 +87,7 @@ FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, 
     map->heat_offset = fc_pair_sum(heat_offset);
 }
 
-// The highest Legendre coefficients of a function over the nodes (rows: the four highest degrees)
-// and by how much they fall per degree.
+// The larger of the two highest Legendre coefficients of a function over the nodes, and by how much they fall per degree.
 typedef struct {
     double top;
     double fall;

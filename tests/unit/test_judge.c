@@ -32,6 +32,7 @@ static void gauss_panels(void) {
     CHECK(passes(gauss(0.01, 0.0999, 0.0), 1.0));
     CHECK(!passes(gauss(0.01, 0.1001, 0.0), 1.0));
     CHECK(passes(gauss(0.0, 0.0, 0.0), 1.0));
+    CHECK(!passes(gauss(0.0, 1e-300, 0.0), 1.0));
     // Steep ones, and those that n nodes don't resolve.
     CHECK(passes(gauss(4.1, 9.99, 1.99), 1.0));
     CHECK(!passes(gauss(4.1, 0.0, 2.01), 1.0));
@@ -40,6 +41,8 @@ static void gauss_panels(void) {
     CHECK(fc_gauss_panel_is_resolved(&resolved, 8));
     const FcPanel unresolved = gauss(4.01, 0.0, 0.0);
     CHECK(!fc_gauss_panel_is_resolved(&unresolved, 8));
+    const FcPanel backwards = gauss(-1e-3, 0.0, 0.0); // V turns in it
+    CHECK(!fc_gauss_panel_is_resolved(&backwards, 8));
     const FcPanel unknown = gauss(NAN, 0.0, 0.0);
     CHECK(!fc_gauss_panel_is_resolved(&unknown, 8));
     // In bells of the Stribeck curve.

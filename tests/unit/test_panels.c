@@ -56,7 +56,9 @@ static void nodes_are_the_scene(void) {
             scene_of(&contact, &friction, ULTRASOUND, (FcLinearInput){0.3, 1e3}, (FcLinearInput){14e-6, 1e-3},
                      (FcLinearInput){58e9, k % 7 == 0 ? 1e13 : 0.0});
         nodes_are_of_scene(&scene, h, SYMMETRIC, 12);
+        nodes_are_of_scene(&scene, h, SYMMETRIC + 2, 8);
         nodes_are_of_scene(&scene, h, SYMMETRIC + 3, 6);
+        nodes_are_of_scene(&scene, h, SYMMETRIC + 4, 4);
         nodes_are_of_scene(&scene, h, OTHERS, 6);
         nodes_are_of_scene(&scene, h, OTHERS, 10);
     }
