@@ -339,6 +339,13 @@ static void reversals_of_linear_inputs(void) {
     }
 }
 
+static void an_event_at_the_end_is_beyond_it(void) {
+    const FcDrive ramp = drive_of((Case){.V = -1.0, .V_rate = 2.0});
+    CHECK(!fc_drive_next_event(&ramp, 0.0, 0.5).reversal);
+    CHECK(fc_drive_next_event(&ramp, 0.0, 0.75).reversal &&
+          fc_drive_next_event(&ramp, 0.0, 0.75).time == 0.5);
+}
+
 // V turns in a step over which a slow vibration goes on by less than its phase is known to.
 static void reversal_of_a_fast_input_over_a_slow_vibration(void) {
     const FcLinearInput V = {0.0118295, -1.177e9};
@@ -451,5 +458,6 @@ int main(void) {
     reversals_of_linear_inputs();
     dips_of_linear_inputs();
     reversal_of_a_fast_input_over_a_slow_vibration();
+    an_event_at_the_end_is_beyond_it();
     return check_result();
 }
