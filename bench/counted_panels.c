@@ -6,29 +6,29 @@
 
 static PanelCounts counts;
 
-static int place_of(int nodes, const int* of_rules) {
-    int i = 0;
-    while (of_rules[i] != nodes) {
-        i++;
+static int kind_of(int nodes) {
+    int kind = 0;
+    while (NODES[kind] != nodes) {
+        kind++;
     }
-    return i;
+    return kind;
 }
 
 static void counted_radau_panel(const FcScene* scene, int stages, double t, double h, double sign,
                                 const FcTrajectories* from, FcPanel* panel) {
-    counts.radau[place_of(stages, RADAU_STAGES)]++;
+    counts.judged[kind_of(stages)]++;
     fc_radau_panel(scene, stages, t, h, sign, from, panel);
 }
 
 static void counted_gauss_panel(const FcScene* scene, double t, double h, int count,
                                 const FcTrajectories* from, FcPanel* panel) {
-    counts.judged[place_of(count, GAUSS_NODES)]++;
+    counts.judged[kind_of(count)]++;
     fc_gauss_panel(scene, t, h, count, from, panel);
 }
 
 static void counted_gauss_panel_unjudged(const FcScene* scene, double t, double h, int count,
                                          const FcTrajectories* from, FcPanel* panel) {
-    counts.unjudged[place_of(count, GAUSS_NODES)]++;
+    counts.bounded[kind_of(count)]++;
     fc_gauss_panel_unjudged(scene, t, h, count, from, panel);
 }
 
@@ -48,11 +48,8 @@ PanelCounts count_panels(const FcScene* scene, double tolerance, double duration
     const FcSolverOptions options = {.tolerance = tolerance};
     counts = (PanelCounts){.other_evaluations = 0.0};
     fc_collocation_interval(scene, &options, duration, delta_0, FC_MAP_THIS_START, &counts.other_evaluations);
-    for (int i = 0; i < RADAU_RULES; i++) {
-        counts.other_evaluations -= counts.radau[i] * RADAU_STAGES[i];
-    }
-    for (int i = 0; i < GAUSS_RULES; i++) {
-        counts.other_evaluations -= (counts.judged[i] + counts.unjudged[i]) * GAUSS_NODES[i];
+    for (int kind = 0; kind < KINDS; kind++) {
+        counts.other_evaluations -= (counts.judged[kind] + counts.bounded[kind]) * NODES[kind];
     }
     return counts;
 }

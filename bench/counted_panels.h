@@ -4,15 +4,13 @@
 
 #include "model/scene.h"
 
-enum { RADAU_RULES = 2, GAUSS_RULES = 4 };
-static const int RADAU_STAGES[RADAU_RULES] = {5, 9};
-static const int GAUSS_NODES[GAUSS_RULES] = {4, 6, 8, 12};
+enum { KINDS = 6, RADAU_KINDS = 2 };
+static const int NODES[KINDS] = {5, 9, 4, 6, 8, 12}; // Radau, then Gauss
 
 typedef struct {
-    double radau[RADAU_RULES];
-    double judged[GAUSS_RULES];   // Gauss panels, by their estimates
-    double unjudged[GAUSS_RULES]; // bounded beforehand
-    double other_evaluations;     // that tell what relaxes, and of closed forms
+    double judged[KINDS];     // by their estimates
+    double bounded[KINDS];    // beforehand, and not judged; none of Radau's
+    double other_evaluations; // that tell what relaxes, and of closed forms
 } PanelCounts;
 
 // Over [0, duration] from the deflection delta_0 [m].

@@ -56,15 +56,6 @@ static FcTrajectories trajectories(const Progress* progress) {
                             .held = progress->held};
 }
 
-static bool is_accurate_softly(const Progress* progress, const FcSection* section, double h, int nodes,
-                               const FcPanel* panel) {
-    const double of_section = section->in_bell ? 1.0 : h / (section->end - section->start);
-    const double share = of_section * section->share;
-    const FcExcess over =
-        fc_gauss_panel_excess(panel, share, section->in_bell, section->forgets, progress->tolerance);
-    return fc_gauss_panel_is_resolved(panel, nodes) && over.mean <= 1.0 && over.end <= 1.0;
-}
-
 // Goes through a section with Gauss panels as far as they are accurate. Returns the time they reach.
 static double cross_softly(Progress* progress, const FcSection* section, const FcBells* bells) {
     const FcGaussPieces pieces = fc_section_pieces(section, bells, progress->decades);
@@ -82,7 +73,9 @@ static double cross_softly(Progress* progress, const FcSection* section, const F
         FcPanel panel;
         fc_gauss_panel(section->scene, t, h, nodes, &from, &panel);
         progress->evaluations += nodes;
-        if (is_accurate_softly(progress, section, h, nodes, &panel)) {
+        const double of_section = section->in_bell ? 1.0 : h / (section->end - section->start);
+        if (fc_gauss_panel_is_accurate(&panel, nodes, of_section * section->share, section->in_bell,
+                                       section->forgets, progress->tolerance)) {
             fc_map_append(progress->map, &panel.map);
             t = h < left ? t + h : section->end;
             if (panel.z < 0.2 * nodes) { // twice as much would still be resolved

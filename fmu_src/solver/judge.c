@@ -28,6 +28,12 @@ FcExcess fc_gauss_panel_excess(const FcPanel* panel, double share, bool in_bell,
                       panel->end_error == 0.0 ? 0.0 : panel->end_error / (of_end * allowed)};
 }
 
+bool fc_gauss_panel_is_accurate(const FcPanel* panel, int nodes, double share, bool in_bell, double forgets,
+                                double tolerance) {
+    const FcExcess over = fc_gauss_panel_excess(panel, share, in_bell, forgets, tolerance);
+    return fc_gauss_panel_is_resolved(panel, nodes) && over.mean <= 1.0 && over.end <= 1.0;
+}
+
 FcExcess fc_radau_panel_excess(const FcPanel* panel, const FcErrorLife* life, double tolerance) {
     const double rounding = ROUNDING * panel->limit;
     const double whole = tolerance * fc_least(1.0, panel->z);

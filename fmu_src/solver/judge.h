@@ -21,8 +21,10 @@ typedef struct {
 FcExcess fc_gauss_panel_excess(const FcPanel* panel, double share, bool in_bell, double forgets,
                                double tolerance);
 
-// Whether as many nodes resolve what relaxes in a Gauss panel.
+// Whether as many nodes resolve what relaxes in a Gauss panel, and also both of its errors are small enough.
 bool fc_gauss_panel_is_resolved(const FcPanel* panel, int nodes);
+bool fc_gauss_panel_is_accurate(const FcPanel* panel, int nodes, double share, bool in_bell, double forgets,
+                                double tolerance);
 
 // What becomes of an error of a Radau panel, and whether it is in a bell, or crosses it by more than V_S.
 typedef struct {

@@ -227,10 +227,8 @@ static FcPlan cheapest(Limits* limits, double for_transient, double for_lag, int
 double fc_mesh_left_at_end(const FcMesh* mesh, const FcStretch* stretch, const FcPlace* at, double t,
                            double gone) {
     const double about = at->path - MISSED_OF_PATH * fabs(stretch->displacement);
-    if (about - mesh->speed * (t - at->t) + stretch->path_after > mesh->forgotten) {
-        return 0.0;
-    }
-    if (stretch->path_after > mesh->forgotten) {
+    const double at_least_here = most(about - mesh->speed * (t - at->t), 0.0);
+    if (at_least_here + stretch->path_after > mesh->forgotten) {
         return 0.0;
     }
     double relaxes = stretch->path_after / mesh->saturation;

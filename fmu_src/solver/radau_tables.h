@@ -7,11 +7,11 @@
 
 // After the stages, the panel's start.
 typedef struct {
-    double node[10];      // on [-1/2, 1/2]
-    double weight[10];    // of the integral over the panel
-    double start[10];     // value at the start of the polynomial through the stages, less the value there
+    double node[10];       // on [-1/2, 1/2]
+    double weight[10];     // of the integral over the panel
+    double start[10];      // value at the start of the polynomial through the stages, less the value there
     double inverse[9][10]; // of the Runge-Kutta matrix
-    double tail[10][4];   // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
+    double tail[10][4];    // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
 } FC_PAIRED FcRadauRule;
 
 static const FcRadauRule FC_RADAU_5 = {

@@ -90,10 +90,9 @@ static void hardly_a_panel_is_refused(void) {
             const double h = HALF_PERIOD / pieces.count;
             FcPanel panel;
             fc_gauss_panel(&scene, i * h, h, pieces.nodes, &from, &panel);
-            const FcExcess over = fc_gauss_panel_excess(&panel, 1.0 / pieces.count, false, 0.0, tolerance);
             taken++;
             refused +=
-                !(fc_gauss_panel_is_resolved(&panel, pieces.nodes) && over.mean <= 1.0 && over.end <= 1.0);
+                !fc_gauss_panel_is_accurate(&panel, pieces.nodes, 1.0 / pieces.count, false, 0.0, tolerance);
             delta = (1.0 - panel.map.relaxation) * delta + panel.map.offset;
         }
     }

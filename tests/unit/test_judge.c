@@ -12,13 +12,11 @@ static FcPanel gauss(double z, double of_end, double of_mean) {
 }
 
 static bool passes(FcPanel panel, double share) {
-    const FcExcess over = fc_gauss_panel_excess(&panel, share, false, 0.0, TOLERANCE);
-    return over.mean <= 1.0 && over.end <= 1.0;
+    return fc_gauss_panel_is_accurate(&panel, 12, share, false, 0.0, TOLERANCE);
 }
 
 static bool passes_in_bell(FcPanel panel, double forgets) {
-    const FcExcess over = fc_gauss_panel_excess(&panel, 1.0, true, forgets, TOLERANCE);
-    return over.mean <= 1.0 && over.end <= 1.0;
+    return fc_gauss_panel_is_accurate(&panel, 8, 1.0, true, forgets, TOLERANCE);
 }
 
 static void gauss_panels(void) {
@@ -41,6 +39,7 @@ static void gauss_panels(void) {
     CHECK(fc_gauss_panel_is_resolved(&resolved, 8));
     const FcPanel unresolved = gauss(4.01, 0.0, 0.0);
     CHECK(!fc_gauss_panel_is_resolved(&unresolved, 8));
+    CHECK(!fc_gauss_panel_is_accurate(&unresolved, 8, 1.0, false, 0.0, TOLERANCE));
     const FcPanel backwards = gauss(-1e-3, 0.0, 0.0); // V turns in it
     CHECK(!fc_gauss_panel_is_resolved(&backwards, 8));
     const FcPanel unknown = gauss(NAN, 0.0, 0.0);
@@ -53,6 +52,7 @@ static void gauss_panels(void) {
     // No number is no accuracy.
     CHECK(!passes(gauss(1.0, NAN, 0.0), 1.0));
     CHECK(!passes(gauss(1.0, 0.0, NAN), 1.0));
+    CHECK(!passes(gauss(NAN, 0.0, 0.0), 1.0));
 }
 
 // The mean sees an error of the end for as long as it lives and that of the panel while it lasts; a tenth of both counts,
