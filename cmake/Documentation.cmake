@@ -1,12 +1,12 @@
 # What stands beside the model in the FMU: index.html, fmi-ls-ref.html, the licences, the icon, and the folder of related files.
-# Gives documentation_arguments for frictionlab.packing.archive, and documentation_files that they depend on.
+# Gives documentation_arguments for workshop.packing.archive, and documentation_files that they depend on.
 
 set(documentation_page "${CMAKE_BINARY_DIR}/generated/index.html")
 file(GLOB documentation_parts CONFIGURE_DEPENDS docs/fmu/*.html docs/fmu/*.svg)
 add_custom_command(
     OUTPUT "${documentation_page}"
-    COMMAND Python3::Interpreter -B -m frictionlab.fmu_docs.page "${documentation_page}"
-    DEPENDS "${model_description}" ${documentation_parts} frictionlab/fmu_docs/page.py frictionlab/project.py
+    COMMAND Python3::Interpreter -B -m workshop.fmu_docs.page "${documentation_page}"
+    DEPENDS "${model_description}" ${documentation_parts} workshop/fmu_docs/page.py workshop/description.py
     WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}"
     COMMENT "Writing the documentation"
     VERBATIM)
@@ -15,13 +15,13 @@ add_custom_command(
 set(related_folder "${CMAKE_BINARY_DIR}/generated/org.fmi-standard.fmi-ls-ref")
 set(related_manifest "${related_folder}/fmi-ls-manifest.xml")
 set(related_page "${CMAKE_BINARY_DIR}/generated/fmi-ls-ref.html")
-file(GLOB related_parts CONFIGURE_DEPENDS frictionlab/related/*.py data/related/*.csv)
+file(GLOB related_parts CONFIGURE_DEPENDS workshop/related/*.py data/related/*.csv)
 add_custom_command(
     OUTPUT "${related_manifest}" "${related_page}"
-    COMMAND Python3::Interpreter -B -m frictionlab.related.files "${related_folder}"
-    COMMAND Python3::Interpreter -B -m frictionlab.related.page "${related_page}"
-    DEPENDS "${model_description}" ${related_parts} frictionlab/presets.py frictionlab/parameters.py
-            frictionlab/description.py
+    COMMAND Python3::Interpreter -B -m workshop.related.files "${related_folder}"
+    COMMAND Python3::Interpreter -B -m workshop.related.page "${related_page}"
+    DEPENDS "${model_description}" ${related_parts} workshop/presets.py frictioncontact/parameters.py
+            workshop/description.py
     WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}"
     COMMENT "Writing the related files"
     VERBATIM)

@@ -7,7 +7,7 @@ if(FC_FUZZ AND NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "FC_FUZZ needs clang, which libFuzzer is part of (Debian: clang libclang-rt-14-dev); "
                         "name it with CC=clang")
 endif()
-foreach(name call_sequence state_bytes)
+foreach(name call_sequence model_exchange state_bytes)
     foreach(kind replay fuzz)
         set(program ${kind}_${name})
         add_executable(${program} EXCLUDE_FROM_ALL tests/fuzz/${name}.c host/fmi2_linked.c ${fmi_sources}

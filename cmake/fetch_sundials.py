@@ -1,4 +1,4 @@
-"""Fetches the source of SUNDIALS, the part of it that `cvode` needs, from the distribution's source package.
+"""Fetches the part of SUNDIALS' source that `cvode` and bench/ need, from the distribution's source package.
 
 usage: fetch_sundials.py FOLDER
 
@@ -19,6 +19,7 @@ import tempfile
 from pathlib import Path
 
 FOLDERS = (
+    "src/arkode",
     "src/cvode",
     "src/sundials",
     "src/nvector/serial",
@@ -86,7 +87,7 @@ def _write_source_entries(folder: Path) -> None:
 
 
 def _unpack(archive: Path, folder: Path) -> Path:
-    """The folders that CVODE needs, with the checksum of the archive."""
+    """The folders that are needed, with the checksum of the archive."""
     with tarfile.open(archive) as packed:
         for member in packed:
             name = member.name.partition("/")[2]

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "solver/method.h"
+#include "solver/methods/method.h"
 
 // Below this the limit mu F_n is no longer a normal number, and the surfaces are metres of R_q apart.
 static const double SMALLEST_LIMIT = 1e-300; // N
@@ -14,6 +14,9 @@ static const double SMALLEST_LIMIT = 1e-300; // N
 // Vibration periods since time 0 beyond which its phase is refused: neighbouring numbers of time are then more than
 // 1/64 of a period apart.
 static const double MOST_CYCLES = 0x1p46;
+
+// Speed that is still computed: from about 1e33 F_C vibration.f / sigma on the numbers of a step overflow.
+static const double MOST_SPEED = 1e15; // m/s
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
     return fc_message_set(
@@ -96,7 +99,21 @@ static bool check_limit(const FcScene* scene, double h, FcMessage* message) {
                           scene->friction->mu, limit, SMALLEST_LIMIT);
 }
 
-// Separation, modulus, load and limit must stay positive and the stiffness a number over the step [0, h].
+static bool fail_speed(const FcDrive* drive, double h, FcMessage* message) {
+    const double V_1 = drive->vibration.V_1;
+    if (drive->V.rate == 0.0) {
+        return fc_message_set(
+            message, "V = %.9g m/s with vibration.V_1 = %.9g m/s: the speed must stay at most %.9g m/s",
+            drive->V.value, V_1, MOST_SPEED);
+    }
+    return fc_message_set(message,
+                          "V moves from %.9g m/s to %.9g m/s in the step with vibration.V_1 = %.9g m/s: the "
+                          "speed must stay at most %.9g m/s",
+                          drive->V.value, drive->V.value + drive->V.rate * h, V_1, MOST_SPEED);
+}
+
+// Separation, modulus, load and limit must stay positive, the speed below its bound and the stiffness a number over
+// the step [0, h].
 static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     const FcDrive* drive = &scene->drive;
     if (!(fc_drive_smallest_E(drive, h) > 0.0)) {
@@ -115,10 +132,8 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         !isfinite(scene->at_E.load_0)) {
         return fail_stiffness(message, d, fc_drive_largest_E(drive, h));
     }
-    if (!isfinite(fc_drive_largest_speed(drive, h))) {
-        return fc_message_set(message,
-                              "V moves from %.9g m/s to %.9g m/s in the step: it must stay a finite number",
-                              drive->V.value, drive->V.value + drive->V.rate * h);
+    if (!(fc_drive_largest_speed(drive, h) <= MOST_SPEED)) {
+        return fail_speed(drive, h, message);
     }
     return check_limit(scene, h, message);
 }
@@ -170,15 +185,14 @@ static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
         t, f, MOST_CYCLES / f);
 }
 
-// The scene at the present time with held inputs.
-static FcScene held_scene(FcFrictionContact* contact) {
-    return scene_from(contact, contact->state.time, contact->state.time_rest, HELD, 0.0);
+FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]) {
+    return scene_from(contact, contact->state.time, contact->state.time_rest, rate ? rate : HELD, 0.0);
 }
 
 // Single bounds do not see all: the separation must stay positive under vibration, the stiffness and the limit be
 // finite numbers above 0, the time tell the phase.
-static bool check_present(FcFrictionContact* contact, FcMessage* message) {
-    const FcScene scene = held_scene(contact);
+bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     return check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
 }
 
@@ -194,7 +208,28 @@ static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
 }
 
 bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message) {
-    return check_present(contact, message) && update_outputs(contact, message);
+    return fc_friction_contact_check(contact, message) && update_outputs(contact, message);
+}
+
+bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message) {
+    FcVariables* v = &contact->state.variables;
+    const FcScene scene = fc_friction_contact_scene(contact);
+    double delta = v->delta;
+    FcRegime regime = FC_FREE;
+    if (fc_is_bounded(scene.friction)) {
+        const double D = fc_regime_bound(&scene);
+        delta = fmax(-D, fmin(D, delta));
+        regime = (FcRegime)fc_scene_slip_side(&scene, 0.0, delta);
+    }
+    const FcStateRates rates = fc_motion(&scene, regime, delta).rates;
+    if (!isfinite(rates.delta) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
+        return fc_message_set(message,
+                              "the rate of delta, W_f or Q_f is beyond the largest number: V = %.9g m/s with "
+                              "vibration.V_1 = %.9g m/s, F_t = %.9g N",
+                              v->V, v->vibration.V_1, v->F_t);
+    }
+    v->der = rates;
+    return true;
 }
 
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message) {
@@ -204,8 +239,22 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-static FcSolverOptions solver_options(const FcVariables* v) {
-    return (FcSolverOptions){.tolerance = v->solver.tolerance, .step_size = v->solver.stepSize};
+// Asking for less than this is asking for more digits than there are.
+static const double SMALLEST_TOLERANCE = 1e-12;
+
+// How much more an error of the deflection does to F_t through the damping sigma_1 delta' than through sigma delta, at
+// the most: delta' = V - sigma |V| delta / g passes it on times sigma |V| / g.
+static double damping_gain(const FcScene* scene, double h) {
+    const double sigma_1 = scene->friction->sigma_1;
+    return sigma_1 == 0.0
+               ? 1.0
+               : 1.0 + sigma_1 * fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_limit(scene, h);
+}
+
+static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h) {
+    return (FcSolverOptions){.tolerance =
+                                 fmax(SMALLEST_TOLERANCE, v->solver.tolerance / damping_gain(scene, h)),
+                             .step_size = v->solver.stepSize};
 }
 
 // The deflection at the start [m].
@@ -217,8 +266,9 @@ static double first_deflection(FcFrictionContact* contact) {
     if (v->initialState == FC_STATE_GIVEN) {
         return v->delta_0;
     }
-    const FcScene scene = held_scene(contact);
-    const FcSolverOptions options = solver_options(v);
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
+    const FcSolverOptions options = solver_options(v, &scene, period);
     return fc_method_settled(&scene, &options, v->delta_0, &v->solver.evaluations);
 }
 
@@ -230,7 +280,8 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     state->W_f_rest = 0.0;
     state->Q_f_rest = 0.0;
     memcpy(state->rate, HELD, sizeof state->rate);
-    if (!check_present(&fresh, message)) {
+    state->hybrid = (FcHybrid){0};
+    if (!fc_friction_contact_check(&fresh, message)) {
         return false;
     }
     FcVariables* v = &state->variables;
@@ -256,18 +307,6 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
 void fc_friction_contact_free(FcFrictionContact* contact) {
     fc_cvode_free(contact->cvode);
     contact->cvode = NULL;
-}
-
-// Asking for less than this is asking for more digits than there are.
-static const double SMALLEST_TOLERANCE = 1e-12;
-
-// How much more an error of the deflection does to F_t through the damping sigma_1 delta' than through sigma delta, at
-// the most: delta' = V - sigma |V| delta / g passes it on times sigma |V| / g.
-static double damping_gain(const FcScene* scene, double h) {
-    const double sigma_1 = scene->friction->sigma_1;
-    return sigma_1 == 0.0
-               ? 1.0
-               : 1.0 + sigma_1 * fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_limit(scene, h);
 }
 
 // Adds the damping of the bristle, which Coulomb's law has none of, and the viscous friction to what the method gives.
@@ -334,8 +373,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     const FcVariables* v = &before->variables;
-    FcSolverOptions options = solver_options(v);
-    options.tolerance = fmax(SMALLEST_TOLERANCE, options.tolerance / damping_gain(&scene, h));
+    const FcSolverOptions options = solver_options(v, &scene, h);
     FcStepResult result;
     if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, v->delta, &result,
                         message)) {

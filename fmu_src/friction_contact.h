@@ -9,6 +9,7 @@
 #include <stdbool.h>
 
 #include "message.h"
+#include "model/regime.h"
 #include "model/scene.h"
 
 typedef enum { FC_STATE_GIVEN = 1, FC_STATE_SETTLED = 2 } FcInitialState;
@@ -26,6 +27,7 @@ typedef struct {
     double sigma;     // N/m  output
     double A_r;       // m2   output
     double delta;     // m    output, the state
+    FcStateRates der; //      of delta, W_f and Q_f
     double delta_0;   // m
     double F_C;       // N
     int initialState; // FcInitialState
@@ -38,9 +40,21 @@ typedef struct {
         double stepSize;    // s
         double evaluations; // 1, evaluations of the coefficients of the bristle's equation since the start
     } solver;
+    double F_t_settled; // N  output, computed when asked for and kept nowhere: 0 here (settled_force.h)
 } FcVariables;
 
 typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_COUNT } FcInput;
+
+// What model exchange keeps beside the variables (hybrid.h).
+typedef struct {
+    int regime;                   // FcRegime
+    int changed;                  // a state was changed since the event began
+    double seen_time;             // s, when the inputs were seen last
+    double seen[FC_INPUT_COUNT];  // they themselves
+    double speed[FC_INPUT_COUNT]; // 1/s times their units: how fast they move
+    double nominal_delta;         // m
+    double nominal_energy;        // J
+} FcHybrid;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
@@ -52,6 +66,7 @@ typedef struct {
     double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
+    FcHybrid hybrid;
 } FcFrictionState;
 
 typedef struct {
@@ -83,6 +98,15 @@ bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message)
 // The scene that begins at the present time, with the inputs moving at the rates of the last step or, where new ones
 // have been set, of the next. It points into the contact.
 FcScene fc_friction_contact_scene(FcFrictionContact* contact);
+
+// The scene at the present time with the inputs moving at these rates [1/s times their units], or held where they are NULL.
+FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]);
+
+// Whether the present inputs and parameters go together.
+bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
+
+// Recomputes the rates of the states, der, for the outputs as they are; the law of friction may be any.
+bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message);
 
 // The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);

@@ -1,8 +1,12 @@
-// Which FMI function may be called in which state of an instance: the table of section 4.2.4 of FMI 2.0.
+// Which FMI function may be called in which state of an instance: the tables of sections 3.2.3 and 4.2.4 of FMI 2.0.
 //
-//     fmi2Instantiate -> INSTANTIATED -> FC_INITIALIZATION_MODE -> FC_STEP_COMPLETE -> TERMINATED
-//                             ^                                   |      ^
-//                             '---------- fmi2Reset --------------'      '-- fmi2DoStep
+//                                                  .-> FC_STEP_COMPLETE <-> fmi2DoStep ----------------.
+//     fmi2Instantiate -> INSTANTIATED -> INITIALIZATION_MODE                                   -> TERMINATED
+//                             ^                    '-> FC_EVENT_MODE <-> FC_CONTINUOUS_TIME_MODE --'
+//                             '---- fmi2Reset
+//
+// The upper way is that of an instance for co-simulation, the lower one for model exchange. A function of the other
+// interface is allowed in no state.
 //
 // A call that the table does not allow returns fmi2Error and changes nothing: the instance stays in its state
 // and remains usable. The same holds for bad arguments, and for a step that can't be computed: the instance
@@ -10,8 +14,6 @@
 // synchronous and never discarded, so the states from FC_STEP_IN_PROGRESS to FC_STEP_CANCELED, FAILED (the
 // standard's "error") and FATAL are columns of the table that no instance enters; that makes fmi2CancelStep
 // an error always.
-//
-// The functions of model exchange are exported, since hosts look them up, and allowed in no state.
 #ifndef FC_FMI2_CALL_TABLE_H
 #define FC_FMI2_CALL_TABLE_H
 
@@ -27,8 +29,13 @@ typedef enum {
     FC_STEP_CANCELED = 1 << 6,
     FC_TERMINATED = 1 << 7,
     FC_FAILED = 1 << 8,
-    FC_FATAL = 1 << 9
+    FC_FATAL = 1 << 9,
+    FC_EVENT_MODE = 1 << 10,
+    FC_CONTINUOUS_TIME_MODE = 1 << 11
 } FcMode;
+
+// Which interface an instance was made for.
+typedef enum { FC_MODEL_EXCHANGE = 1 << 0, FC_CO_SIMULATION = 1 << 1 } FcInterface;
 
 typedef enum {
     FC_CALL_GET_TYPES_PLATFORM,
@@ -80,12 +87,17 @@ typedef enum {
 
 typedef struct {
     const char* function; // name in the FMI headers
-    unsigned allowed;     // sum of FcMode; 0 for model exchange
+    unsigned interfaces;  // sum of FcInterface
+    unsigned allowed;     // sum of FcMode
 } FcCallRule;
 
 extern const FcCallRule fc_call_table[FC_CALL_COUNT];
 
 const char* fc_mode_name(FcMode state);
+const char* fc_interface_name(FcInterface of);
+
+// The states of the sum that an instance of the interface can be in.
+unsigned fc_modes_of(unsigned states, FcInterface of);
 
 // Writes the names of the states in the sum, separated by ", ", into text. Truncates when size is short.
 void fc_mode_names(unsigned states, char* text, size_t size);

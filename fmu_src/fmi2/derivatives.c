@@ -1,10 +1,12 @@
-// Derivatives in time (of inputs, given; of F_t, exact) and of outputs with respect to inputs (analytic).
+// Derivatives in time (of inputs, given; of F_t, exact) and of outputs and rates with respect to inputs and states
+// (analytic).
 #include <math.h>
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
-#include "fmi2/values.h"
+#include "fmi2/variables.h"
 #include "model/derivatives.h"
+#include "settled_force.h"
 
 // The variable of the reference if it has the causality; NULL after logging why not.
 static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
@@ -92,9 +94,31 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
+// A direction of the knowns, and what they are.
+typedef struct {
+    double input[FC_INPUT_COUNT];
+    FcStateRates state; // of the states themselves
+} Direction;
+
+static double* state_of(FcStateRates* states, const FcVariableInfo* info) {
+    switch (info->offset) {
+    case offsetof(FcVariables, delta):
+    case offsetof(FcVariables, der.delta):
+        return &states->delta;
+    case offsetof(FcVariables, W_f):
+    case offsetof(FcVariables, der.W_f):
+        return &states->W_f;
+    case offsetof(FcVariables, Q_f):
+    case offsetof(FcVariables, der.Q_f):
+        return &states->Q_f;
+    default:
+        return NULL;
+    }
+}
+
 // The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs. Before the
 // first step F_t_mean is F_t.
-static double slope_of(const FcSlopes* slopes, const FcVariableInfo* output, bool initializing) {
+static double slope_of(const FcSlopes* slopes, const FcVariableInfo* output, bool mean_is_force) {
     switch (output->offset) {
     case offsetof(FcVariables, F_t):
         return slopes->F_t;
@@ -105,27 +129,109 @@ static double slope_of(const FcSlopes* slopes, const FcVariableInfo* output, boo
     case offsetof(FcVariables, A_r):
         return slopes->A_r;
     case offsetof(FcVariables, F_t_mean):
-        return initializing ? slopes->F_t : 0.0;
+        return mean_is_force ? slopes->F_t : 0.0;
     default:
         return 0.0;
     }
 }
 
-// Derivative of the output along the direction of the inputs.
-static double along(const FcGradient* gradient, const FcVariableInfo* output, bool initializing,
-                    const double direction[FC_INPUT_COUNT]) {
-    const FcSlopes* slopes[FC_INPUT_COUNT] = {
-        [FC_INPUT_V] = &gradient->by_V,
-        [FC_INPUT_D] = &gradient->by_d,
-        [FC_INPUT_E] = &gradient->by_E,
-        [FC_INPUT_LOAD] = &gradient->by_load,
-    };
-    double derivative = 0.0;
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        const double slope = slope_of(slopes[input], output, initializing);
-        derivative += slope != 0.0 ? slope * direction[input] : 0.0;
+// All derivatives along a direction.
+typedef struct {
+    FcSlopes outputs;
+    FcStateRates states;
+    FcStateRates rates;
+    double F_t_settled;
+    bool mean_is_force; // F_t_mean is F_t
+} Tangent;
+
+static double scaled(double slope, double change) {
+    return slope != 0.0 && change != 0.0 ? slope * change : 0.0;
+}
+
+static void add_slopes(FcSlopes* sum, const FcSlopes* slopes, double change) {
+    sum->F_t += scaled(slopes->F_t, change);
+    sum->F_n += scaled(slopes->F_n, change);
+    sum->sigma += scaled(slopes->sigma, change);
+    sum->A_r += scaled(slopes->A_r, change);
+}
+
+static Tangent tangent(FcInstance* instance, const Direction* along) {
+    FcFrictionContact* contact = &instance->contact;
+    const double delta = contact->state.variables.delta;
+    const bool hybrid = fc_instance_is_hybrid(instance);
+    const FcScene scene =
+        hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
+    const FcGradient gradient = fc_gradient(&scene, delta);
+    Tangent sum = {.states = along->state,
+                   .mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE};
+    add_slopes(&sum.outputs, &gradient.by_V, along->input[FC_INPUT_V]);
+    add_slopes(&sum.outputs, &gradient.by_d, along->input[FC_INPUT_D]);
+    add_slopes(&sum.outputs, &gradient.by_E, along->input[FC_INPUT_E]);
+    add_slopes(&sum.outputs, &gradient.by_load, along->input[FC_INPUT_LOAD]);
+    const FcDirection direction = {.V = along->input[FC_INPUT_V],
+                                   .d = along->input[FC_INPUT_D],
+                                   .E = along->input[FC_INPUT_E],
+                                   .load = along->input[FC_INPUT_LOAD],
+                                   .delta = along->state.delta};
+    const FcRegime regime =
+        hybrid ? (FcRegime)contact->state.hybrid.regime : (FcRegime)fc_scene_slip_side(&scene, 0.0, delta);
+    const FcMotion motion = fc_motion_along(&scene, regime, delta, &direction);
+    sum.rates = motion.rates;
+    if (hybrid) {
+        sum.outputs.F_t = motion.F_t;
     }
-    return derivative;
+    return sum;
+}
+
+static bool is_settled_force(const FcVariableInfo* output) {
+    return output->offset == offsetof(FcVariables, F_t_settled);
+}
+
+// The derivative of F_t_settled along the direction, which costs many periods of the vibration.
+static bool settled_force_along(const FcFrictionContact* contact, const Direction* along, double* derivative,
+                                FcMessage* message) {
+    *derivative = 0.0;
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        double slope = 0.0;
+        if (along->input[input] != 0.0 && !fc_settled_force_slope(contact, (FcInput)input, &slope, message)) {
+            return false;
+        }
+        *derivative += scaled(slope, along->input[input]);
+    }
+    return true;
+}
+
+static double derivative_of(Tangent* tangent, const FcVariableInfo* unknown) {
+    if (is_settled_force(unknown)) {
+        return tangent->F_t_settled;
+    }
+    double* state = state_of(fc_variable_is_rate(unknown) ? &tangent->rates : &tangent->states, unknown);
+    return state ? *state : slope_of(&tangent->outputs, unknown, tangent->mean_is_force);
+}
+
+// Reads the direction; false after logging what is wrong with it.
+static bool read_direction(FcInstance* instance, const fmi2ValueReference vr[], size_t n,
+                           const fmi2Real change[], Direction* direction) {
+    const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
+    for (size_t k = 0; k < n; k++) {
+        const bool is_known = vr[k] < fc_variables_count;
+        double* state =
+            is_known && fc_instance_is_hybrid(instance) && !fc_variable_is_rate(&fc_variables[vr[k]])
+                ? state_of(&direction->state, &fc_variables[vr[k]])
+                : NULL;
+        const FcVariableInfo* info =
+            state ? &fc_variables[vr[k]] : expect(instance, call, vr[k], FC_CAUSALITY_INPUT);
+        if (!info) {
+            return false;
+        }
+        if (!isfinite(change[k])) {
+            fc_refuse(instance, call, "direction of %s = %s is not a finite number", info->name,
+                      fc_quantity_text(change[k], info->unit).text);
+            return false;
+        }
+        *(state ? state : &direction->input[fc_variable_input(info)]) += change[k];
+    }
+    return true;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
@@ -139,39 +245,35 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if ((nUnknown > 0 && (!vUnknown_ref || !dvUnknown)) || (nKnown > 0 && (!vKnown_ref || !dvKnown))) {
         return fc_refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
     }
-    double direction[FC_INPUT_COUNT] = {0.0};
-    for (size_t k = 0; k < nKnown; k++) {
-        const FcVariableInfo* info = expect(instance, call, vKnown_ref[k], FC_CAUSALITY_INPUT);
-        if (!info) {
-            return fmi2Error;
-        }
-        if (!isfinite(dvKnown[k])) {
-            return fc_refuse(instance, call, "direction of %s = %s is not a finite number", info->name,
-                             fc_quantity_text(dvKnown[k], info->unit).text);
-        }
-        direction[fc_variable_input(info)] += dvKnown[k];
+    Direction direction = {{0.0}, {0.0, 0.0, 0.0}};
+    if (!read_direction(instance, vKnown_ref, nKnown, dvKnown, &direction)) {
+        return fmi2Error;
     }
+    bool asks_settled = false;
     for (size_t u = 0; u < nUnknown; u++) {
-        if (!expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
+        const bool is_rate =
+            vUnknown_ref[u] < fc_variables_count && fc_variable_is_rate(&fc_variables[vUnknown_ref[u]]);
+        if (!is_rate && !expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
             return fmi2Error;
         }
+        asks_settled |= is_settled_force(&fc_variables[vUnknown_ref[u]]);
     }
     FcMessage message;
-    if (!fc_instance_refresh_outputs(instance, &message)) {
+    double F_t_settled = 0.0;
+    if (!fc_instance_refresh_outputs(instance, &message) ||
+        (asks_settled && !settled_force_along(&instance->contact, &direction, &F_t_settled, &message))) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    const FcScene scene = fc_friction_contact_scene(&instance->contact);
-    const FcGradient gradient = fc_gradient(&scene, instance->contact.state.variables.delta);
-    const bool initializing = instance->experiment.mode == FC_INITIALIZATION_MODE;
+    Tangent along = tangent(instance, &direction);
+    along.F_t_settled = F_t_settled;
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
-        if (!isfinite(along(&gradient, info, initializing, direction))) {
+        if (!isfinite(derivative_of(&along, info))) {
             return fc_refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
         }
     }
     for (size_t u = 0; u < nUnknown; u++) {
-        const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
-        dvUnknown[u] = along(&gradient, info, initializing, direction);
+        dvUnknown[u] = derivative_of(&along, &fc_variables[vUnknown_ref[u]]);
     }
     return fmi2OK;
 }

@@ -5,15 +5,18 @@
 #include <string.h>
 
 #include "fmi2/log.h"
-#include "fmi2/values.h"
+#include "fmi2/variables.h"
 
 static void refuse_call(const FcInstance* instance, FcCall call) {
-    if (fc_call_table[call].allowed == 0) {
-        fc_refuse(instance, call, "belongs to model exchange; this is a co-simulation FMU");
+    const FcInterface of = (FcInterface)instance->experiment.interface;
+    if (!(fc_call_table[call].interfaces & of)) {
+        const FcInterface other = of == FC_MODEL_EXCHANGE ? FC_CO_SIMULATION : FC_MODEL_EXCHANGE;
+        fc_refuse(instance, call, "belongs to %s; this instance is for %s", fc_interface_name(other),
+                  fc_interface_name(of));
         return;
     }
     char allowed[160];
-    fc_mode_names(fc_call_table[call].allowed, allowed, sizeof allowed);
+    fc_mode_names(fc_modes_of(fc_call_table[call].allowed, of), allowed, sizeof allowed);
     fc_refuse(instance, call, "not allowed in state '%s', only in: %s",
               fc_mode_name((FcMode)instance->experiment.mode), allowed);
 }
@@ -23,7 +26,9 @@ FcInstance* fc_instance_enter(fmi2Component c, FcCall call) {
     if (!instance) {
         return NULL;
     }
-    if (!(fc_call_table[call].allowed & (unsigned)instance->experiment.mode)) {
+    const FcCallRule* rule = &fc_call_table[call];
+    if (!(rule->interfaces & (unsigned)instance->experiment.interface) ||
+        !(rule->allowed & (unsigned)instance->experiment.mode)) {
         refuse_call(instance, call);
         return NULL;
     }
@@ -32,9 +37,8 @@ FcInstance* fc_instance_enter(fmi2Component c, FcCall call) {
 
 void fc_instance_set_start_values(FcInstance* instance) {
     memset(&instance->contact.state, 0, sizeof instance->contact.state);
-    memset(&instance->experiment, 0, sizeof instance->experiment);
-    instance->experiment.mode = FC_INSTANTIATED;
-    instance->experiment.outputs_stale = 1;
+    instance->experiment = (FcExperiment){
+        .interface = instance->experiment.interface, .mode = FC_INSTANTIATED, .outputs_stale = 1};
     instance->undersampling_told = false;
     FcVariables* variables = &instance->contact.state.variables;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
@@ -45,6 +49,12 @@ void fc_instance_set_start_values(FcInstance* instance) {
             *fc_variable_integer(variables, info) = (int)info->start;
         }
     }
+}
+
+bool fc_instance_is_hybrid(const FcInstance* instance) {
+    const FcExperiment* experiment = &instance->experiment;
+    return experiment->interface == FC_MODEL_EXCHANGE && experiment->mode != FC_INSTANTIATED &&
+           experiment->mode != FC_INITIALIZATION_MODE;
 }
 
 bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
@@ -59,9 +69,16 @@ bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message) {
         }
         contact->state = trial.state;
         fc_friction_contact_free(&trial);
-    } else if (!fc_friction_contact_refresh(contact, message)) {
+    } else if (!(fc_instance_is_hybrid(instance) ? fc_hybrid_refresh(contact, message)
+                                                 : fc_friction_contact_refresh(contact, message))) {
         return false;
     }
     instance->experiment.outputs_stale = 0;
     return true;
+}
+
+bool fc_instance_refresh_rates(FcInstance* instance, FcMessage* message) {
+    return fc_instance_refresh_outputs(instance, message) &&
+           (fc_instance_is_hybrid(instance) ||
+            fc_friction_contact_refresh_rates(&instance->contact, message));
 }

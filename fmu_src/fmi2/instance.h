@@ -7,9 +7,11 @@
 #include "fmi2/call_table.h"
 #include "fmi2Functions.h"
 #include "friction_contact.h"
+#include "hybrid.h"
 
 // What FMI knows of a run beside the contact; plain data, part of a saved state.
 typedef struct {
+    int interface;        // one FcInterface
     int mode;             // one FcMode
     int outputs_stale;    // a value was set since the outputs were computed
     int tolerance_is_set; // by the user, so the tolerance of the experiment does not apply
@@ -35,9 +37,15 @@ FcInstance* fc_instance_enter(fmi2Component c, FcCall call);
 // As freshly instantiated: start values of modelDescription.xml, time 0, no stop time.
 void fc_instance_set_start_values(FcInstance* instance);
 
+// Model exchange, and initialized: the contact is the differential equation of hybrid.h.
+bool fc_instance_is_hybrid(const FcInstance* instance);
+
 // Makes F_t, sigma and A_r agree with the present inputs and parameters; in initialization mode all outputs,
 // from the start values set so far. Returns 1, or 0 with *message filled when those values do not go
 // together.
 bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message);
+
+// The same, and the rates of the states.
+bool fc_instance_refresh_rates(FcInstance* instance, FcMessage* message);
 
 #endif

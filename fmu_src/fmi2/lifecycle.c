@@ -5,7 +5,7 @@
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
-#include "fmi2/values.h"
+#include "fmi2/variables.h"
 
 const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 
@@ -23,10 +23,10 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
         fc_log_refused_instance(functions, NULL, "the instance name is missing");
         return NULL;
     }
-    if (fmuType != fmi2CoSimulation) {
+    if (fmuType != fmi2CoSimulation && fmuType != fmi2ModelExchange) {
         fc_log_refused_instance(functions, instanceName,
-                                "fmuType = %d: only fmi2CoSimulation (%d) is supported", (int)fmuType,
-                                (int)fmi2CoSimulation);
+                                "fmuType = %d is neither fmi2ModelExchange (%d) nor fmi2CoSimulation (%d)",
+                                (int)fmuType, (int)fmi2ModelExchange, (int)fmi2CoSimulation);
         return NULL;
     }
     if (!fmuGUID || strcmp(fmuGUID, fc_guid) != 0) {
@@ -43,6 +43,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     memcpy(instance->name, instanceName, name_size);
     instance->callbacks = *functions;
     instance->log_mask = loggingOn ? fc_log_mask_all() : fc_log_mask_quiet();
+    instance->experiment.interface = fmuType == fmi2ModelExchange ? FC_MODEL_EXCHANGE : FC_CO_SIMULATION;
     fc_instance_set_start_values(instance);
     fc_log(instance, FC_CALL_INSTANTIATE, fmi2OK, FC_LOG_EVENTS, "instantiated");
     return instance;
@@ -151,12 +152,17 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
         return fmi2Error;
     }
     FcMessage message;
+    const bool hybrid = instance->experiment.interface == FC_MODEL_EXCHANGE;
     fc_friction_contact_free(&instance->contact);
-    if (!fc_friction_contact_initialize(&instance->contact, instance->experiment.start_time, &message)) {
+    if ((hybrid && !fc_hybrid_allows(&instance->contact, &message)) ||
+        !fc_friction_contact_initialize(&instance->contact, instance->experiment.start_time, &message)) {
         return fc_refuse(instance, FC_CALL_EXIT_INITIALIZATION_MODE, "%s", message.text);
     }
-    instance->experiment.mode = FC_STEP_COMPLETE;
-    instance->experiment.outputs_stale = 0;
+    if (hybrid) {
+        fc_hybrid_start(&instance->contact);
+    }
+    instance->experiment.mode = hybrid ? FC_EVENT_MODE : FC_STEP_COMPLETE;
+    instance->experiment.outputs_stale = hybrid;
     fc_log(instance, FC_CALL_EXIT_INITIALIZATION_MODE, fmi2OK, FC_LOG_EVENTS, "initialized at %s",
            fc_quantity_text(instance->experiment.start_time, "s").text);
     return fmi2OK;

@@ -1,61 +1,214 @@
-// The functions of FMI for Model Exchange: exported, since hosts look them up, and refused in every state.
-#include "fmi2/instance.h"
+// The functions of FMI for Model Exchange: time, states, rates, events. What they mean is in hybrid.h.
+#include <float.h>
+#include <math.h>
 
-static fmi2Status refuse_model_exchange(fmi2Component c, FcCall call) {
-    fc_instance_enter(c, call); // no state allows it
-    return fmi2Error;
+#include "fmi2/instance.h"
+#include "fmi2/log.h"
+
+// Whether the array is there and has a place for each; logs why not.
+static bool array_fits(const FcInstance* instance, FcCall call, const void* array, size_t given,
+                       unsigned needed, const char* what) {
+    if (!array) {
+        fc_refuse(instance, call, "the array of %s is NULL", what);
+        return false;
+    }
+    if (given != needed) {
+        fc_refuse(instance, call, "%u %s are asked for; there are %u", (unsigned)given, what, needed);
+        return false;
+    }
+    return true;
 }
 
-fmi2Status fmi2EnterEventMode(fmi2Component c) { return refuse_model_exchange(c, FC_CALL_ENTER_EVENT_MODE); }
+// An integrator may look beyond the stop time and come back, but not end a step there. Hosts add or multiply their steps.
+static bool is_before_stop(const FcInstance* instance, FcCall call) {
+    const FcExperiment* experiment = &instance->experiment;
+    const double time = instance->contact.state.time;
+    const double stop = experiment->stop_time;
+    const double rounding = 1e-9 * (stop - experiment->start_time) + 16.0 * DBL_EPSILON * fabs(stop);
+    if (!experiment->has_stop_time || time <= stop + rounding) {
+        return true;
+    }
+    fc_refuse(instance, call, "time = %s is after the stop time %s", fc_quantity_text(time, "s").text,
+              fc_quantity_text(stop, "s").text);
+    return false;
+}
+
+fmi2Status fmi2EnterEventMode(fmi2Component c) {
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_ENTER_EVENT_MODE);
+    if (!instance || !is_before_stop(instance, FC_CALL_ENTER_EVENT_MODE)) {
+        return fmi2Error;
+    }
+    if (instance->experiment.mode == FC_CONTINUOUS_TIME_MODE) {
+        fc_hybrid_event_begins(&instance->contact);
+        instance->experiment.mode = FC_EVENT_MODE;
+        instance->experiment.outputs_stale = 1;
+    }
+    return fmi2OK;
+}
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* fmi2eventInfo) {
-    (void)fmi2eventInfo;
-    return refuse_model_exchange(c, FC_CALL_NEW_DISCRETE_STATES);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_NEW_DISCRETE_STATES);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (!fmi2eventInfo) {
+        return fc_refuse(instance, FC_CALL_NEW_DISCRETE_STATES, "eventInfo is NULL");
+    }
+    FcMessage message;
+    bool changed, nominals_changed;
+    if (!fc_hybrid_update(&instance->contact, &changed, &nominals_changed, &message)) {
+        return fc_refuse(instance, FC_CALL_NEW_DISCRETE_STATES, "%s", message.text);
+    }
+    instance->experiment.outputs_stale = 1;
+    *fmi2eventInfo = (fmi2EventInfo){
+        .newDiscreteStatesNeeded = fmi2False,
+        .terminateSimulation = fmi2False,
+        .nominalsOfContinuousStatesChanged = nominals_changed ? fmi2True : fmi2False,
+        .valuesOfContinuousStatesChanged = changed ? fmi2True : fmi2False,
+        .nextEventTimeDefined = fmi2False,
+        .nextEventTime = 0.0,
+    };
+    return fmi2OK;
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-    return refuse_model_exchange(c, FC_CALL_ENTER_CONTINUOUS_TIME_MODE);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_ENTER_CONTINUOUS_TIME_MODE);
+    if (!instance) {
+        return fmi2Error;
+    }
+    fc_hybrid_event_ends(&instance->contact);
+    instance->experiment.mode = FC_CONTINUOUS_TIME_MODE;
+    return fmi2OK;
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
                                        fmi2Boolean* enterEventMode, fmi2Boolean* terminateSimulation) {
-    (void)noSetFMUStatePriorToCurrentPoint;
-    (void)enterEventMode;
-    (void)terminateSimulation;
-    return refuse_model_exchange(c, FC_CALL_COMPLETED_INTEGRATOR_STEP);
+    (void)noSetFMUStatePriorToCurrentPoint; // a saved state is a copy: nothing is kept for going back
+    const FcCall call = FC_CALL_COMPLETED_INTEGRATOR_STEP;
+    FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (!enterEventMode || !terminateSimulation) {
+        return fc_refuse(instance, call, "enterEventMode or terminateSimulation is NULL");
+    }
+    if (!is_before_stop(instance, call)) {
+        return fmi2Error;
+    }
+    *enterEventMode = fc_hybrid_step_completed(&instance->contact) ? fmi2True : fmi2False;
+    *terminateSimulation = fmi2False;
+    return fmi2OK;
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
-    (void)time;
-    return refuse_model_exchange(c, FC_CALL_SET_TIME);
+    FcInstance* instance = fc_instance_enter(c, FC_CALL_SET_TIME);
+    if (!instance) {
+        return fmi2Error;
+    }
+    if (!isfinite(time)) {
+        return fc_refuse(instance, FC_CALL_SET_TIME, "time = %s is not a finite number",
+                         fc_quantity_text(time, "s").text);
+    }
+    fc_hybrid_set_time(&instance->contact, time);
+    instance->experiment.outputs_stale = 1;
+    return fmi2OK;
+}
+
+// The states in the order of ModelStructure/Derivatives.
+static double* state(FcInstance* instance, int index) {
+    FcVariables* v = &instance->contact.state.variables;
+    double* const states[FC_STATE_COUNT] = {&v->delta, &v->W_f, &v->Q_f};
+    return states[index];
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx) {
-    (void)x;
-    (void)nx;
-    return refuse_model_exchange(c, FC_CALL_SET_CONTINUOUS_STATES);
+    static const char* const names[FC_STATE_COUNT] = {"delta", "W_f", "Q_f"};
+    static const char* const units[FC_STATE_COUNT] = {"m", "J", "J"};
+    const FcCall call = FC_CALL_SET_CONTINUOUS_STATES;
+    FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance || !array_fits(instance, call, x, nx, FC_STATE_COUNT, "continuous states")) {
+        return fmi2Error;
+    }
+    for (int i = 0; i < FC_STATE_COUNT; i++) {
+        if (!isfinite(x[i])) {
+            return fc_refuse(instance, call, "%s = %s is not a finite number", names[i],
+                             fc_quantity_text(x[i], units[i]).text);
+        }
+    }
+    for (int i = 0; i < FC_STATE_COUNT; i++) {
+        *state(instance, i) = x[i];
+    }
+    instance->experiment.outputs_stale = 1;
+    return fmi2OK;
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx) {
-    (void)derivatives;
-    (void)nx;
-    return refuse_model_exchange(c, FC_CALL_GET_DERIVATIVES);
+    const FcCall call = FC_CALL_GET_DERIVATIVES;
+    FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance || !array_fits(instance, call, derivatives, nx, FC_STATE_COUNT, "derivatives")) {
+        return fmi2Error;
+    }
+    FcMessage message;
+    if (!fc_instance_refresh_outputs(instance, &message)) {
+        return fc_refuse(instance, call, "%s", message.text);
+    }
+    FcVariables* v = &instance->contact.state.variables;
+    v->solver.evaluations += 1.0;
+    derivatives[0] = v->der.delta;
+    derivatives[1] = v->der.W_f;
+    derivatives[2] = v->der.Q_f;
+    return fmi2OK;
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], size_t ni) {
-    (void)eventIndicators;
-    (void)ni;
-    return refuse_model_exchange(c, FC_CALL_GET_EVENT_INDICATORS);
+    const FcCall call = FC_CALL_GET_EVENT_INDICATORS;
+    FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance ||
+        !array_fits(instance, call, eventIndicators, ni, FC_EVENT_INDICATOR_COUNT, "event indicators")) {
+        return fmi2Error;
+    }
+    FcMessage message;
+    FcEventIndicators indicators;
+    if (!fc_instance_refresh_outputs(instance, &message) ||
+        !fc_hybrid_indicators(&instance->contact, &indicators, &message)) {
+        return fc_refuse(instance, call, "%s", message.text);
+    }
+    for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
+        eventIndicators[i] = indicators.of[i];
+    }
+    return fmi2OK;
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx) {
-    (void)x;
-    (void)nx;
-    return refuse_model_exchange(c, FC_CALL_GET_CONTINUOUS_STATES);
+    const FcCall call = FC_CALL_GET_CONTINUOUS_STATES;
+    FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance || !array_fits(instance, call, x, nx, FC_STATE_COUNT, "continuous states")) {
+        return fmi2Error;
+    }
+    FcMessage message;
+    if (instance->experiment.mode == FC_INITIALIZATION_MODE &&
+        !fc_instance_refresh_outputs(instance, &message)) {
+        return fc_refuse(instance, call, "%s", message.text);
+    }
+    for (int i = 0; i < FC_STATE_COUNT; i++) {
+        x[i] = *state(instance, i);
+    }
+    return fmi2OK;
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x_nominal[], size_t nx) {
-    (void)x_nominal;
-    (void)nx;
-    return refuse_model_exchange(c, FC_CALL_GET_NOMINALS_OF_CONTINUOUS_STATES);
+    const FcCall call = FC_CALL_GET_NOMINALS_OF_CONTINUOUS_STATES;
+    FcInstance* instance = fc_instance_enter(c, call);
+    if (!instance || !array_fits(instance, call, x_nominal, nx, FC_STATE_COUNT, "nominal values")) {
+        return fmi2Error;
+    }
+    FcMessage message;
+    FcStates nominals;
+    if (!fc_hybrid_nominals(&instance->contact, &nominals, &message)) {
+        return fc_refuse(instance, call, "%s", message.text);
+    }
+    for (int i = 0; i < FC_STATE_COUNT; i++) {
+        x_nominal[i] = nominals.of[i];
+    }
+    return fmi2OK;
 }

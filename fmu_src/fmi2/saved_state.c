@@ -37,12 +37,15 @@ FcSavedState* fc_saved_state_to_fill(const FcInstance* instance, FcCall call, fm
 }
 
 // Numbers that do not belong to the present values; zero makes equal states equal.
-static void drop_stale_outputs(FcSavedState* saved) {
+static void drop_stale_outputs(const FcInstance* instance, FcSavedState* saved) {
     FcVariables* variables = &saved->friction.variables;
     variables->F_t = 0.0;
     variables->sigma = 0.0;
     variables->A_r = 0.0;
     variables->F_n = 0.0;
+    if (fc_instance_is_hybrid(instance)) {
+        variables->F_t_mean = 0.0;
+    }
     if (saved->experiment.mode == FC_INITIALIZATION_MODE) {
         variables->delta = 0.0;
         variables->F_t_mean = 0.0;
@@ -64,7 +67,10 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
     saved->friction = instance->contact.state;
     saved->experiment = instance->experiment;
     if (!settled) {
-        drop_stale_outputs(saved);
+        drop_stale_outputs(instance, saved);
+    }
+    if (!settled || !fc_instance_is_hybrid(instance)) { // rates are computed when they are asked for
+        saved->friction.variables.der = (FcStateRates){0.0, 0.0, 0.0};
     }
     return fmi2OK;
 }
@@ -75,6 +81,12 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate) {
         instance ? fc_saved_state_of(instance, FC_CALL_SET_FMU_STATE, FMUstate) : NULL;
     if (!saved) {
         return fmi2Error;
+    }
+    const FcInterface of = (FcInterface)saved->experiment.interface;
+    if (saved->experiment.interface != instance->experiment.interface) {
+        return fc_refuse(instance, FC_CALL_SET_FMU_STATE, "FMUstate is one of %s; this instance is for %s",
+                         fc_interface_name(of),
+                         fc_interface_name((FcInterface)instance->experiment.interface));
     }
     FcMessage message;
     if (saved->experiment.mode == FC_STEP_COMPLETE &&

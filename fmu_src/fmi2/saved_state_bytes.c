@@ -8,7 +8,9 @@
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
 //                   time and its rounding, roundings of W_f and Q_f, rates of the last step, rates of the next step:
 //                   8 bytes each; whether the latter were set: 4
-//                   state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
+//                   of model exchange: regime, whether a state was changed: 4 bytes each; when the inputs were seen
+//                   last, they and their speeds, two nominal values: 8 bytes each
+//                   interface, state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
 //                   8
 //     end - 8 8     FNV-1a hash of all the bytes before it
 //
@@ -21,10 +23,10 @@
 
 #include "fmi2/log.h"
 #include "fmi2/saved_state.h"
-#include "fmi2/values.h"
+#include "fmi2/variables.h"
 
 enum {
-    LAYOUT_VERSION = 2,
+    LAYOUT_VERSION = 3,
     MAGIC_SIZE = 8,
     GUID_SIZE = 38,
     HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE,
@@ -33,7 +35,10 @@ enum {
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (5 + 2 * FC_INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FcHybrid) == (4 + 2 * FC_INPUT_COUNT) * sizeof(double),
+               "a new member of FcHybrid must be added to transfer_hybrid");
+_Static_assert(sizeof(FcFrictionState) ==
+                   sizeof(FcVariables) + (5 + 2 * FC_INPUT_COUNT) * sizeof(double) + sizeof(FcHybrid),
                "a new member of FrictionState must be added to transfer_state");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
@@ -84,6 +89,20 @@ static void transfer_real(Cursor* cursor, double* value) {
     memcpy(value, &bits, sizeof bits);
 }
 
+static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
+    transfer_integer(cursor, &hybrid->regime);
+    transfer_integer(cursor, &hybrid->changed);
+    transfer_real(cursor, &hybrid->seen_time);
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        transfer_real(cursor, &hybrid->seen[input]);
+    }
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        transfer_real(cursor, &hybrid->speed[input]);
+    }
+    transfer_real(cursor, &hybrid->nominal_delta);
+    transfer_real(cursor, &hybrid->nominal_energy);
+}
+
 static void transfer_state(Cursor* cursor, FcSavedState* saved) {
     FcFrictionState* friction = &saved->friction;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
@@ -105,7 +124,9 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
         transfer_real(cursor, &friction->next_rate[input]);
     }
     transfer_integer(cursor, &friction->next_rate_set);
+    transfer_hybrid(cursor, &friction->hybrid);
     FcExperiment* experiment = &saved->experiment;
+    transfer_integer(cursor, &experiment->interface);
     transfer_integer(cursor, &experiment->mode);
     transfer_integer(cursor, &experiment->outputs_stale);
     transfer_integer(cursor, &experiment->tolerance_is_set);
@@ -209,12 +230,36 @@ static bool all_finite(const double* values, size_t count) {
 
 static bool is_flag(int value) { return value == 0 || value == 1; }
 
+static bool mode_is_sound(const FcExperiment* experiment) {
+    switch (experiment->mode) {
+    case FC_INSTANTIATED:
+    case FC_INITIALIZATION_MODE:
+    case FC_TERMINATED:
+        return experiment->interface == FC_MODEL_EXCHANGE || experiment->interface == FC_CO_SIMULATION;
+    case FC_STEP_COMPLETE:
+        return experiment->interface == FC_CO_SIMULATION;
+    case FC_EVENT_MODE:
+    case FC_CONTINUOUS_TIME_MODE:
+        return experiment->interface == FC_MODEL_EXCHANGE;
+    default:
+        return false;
+    }
+}
+
 static bool experiment_is_sound(const FcExperiment* experiment) {
-    const bool known = experiment->mode == FC_INSTANTIATED || experiment->mode == FC_INITIALIZATION_MODE ||
-                       experiment->mode == FC_STEP_COMPLETE || experiment->mode == FC_TERMINATED;
-    return known && is_flag(experiment->outputs_stale) && is_flag(experiment->tolerance_is_set) &&
-           is_flag(experiment->has_stop_time) && isfinite(experiment->start_time) &&
-           isfinite(experiment->stop_time);
+    return mode_is_sound(experiment) && is_flag(experiment->outputs_stale) &&
+           is_flag(experiment->tolerance_is_set) && is_flag(experiment->has_stop_time) &&
+           isfinite(experiment->start_time) && isfinite(experiment->stop_time);
+}
+
+// Only a bounded bristle slips.
+static bool hybrid_is_sound(const FcFrictionState* state) {
+    const FcHybrid* hybrid = &state->hybrid;
+    const bool slips = hybrid->regime == FC_SLIPS_FORWARD || hybrid->regime == FC_SLIPS_BACK;
+    const bool regime = hybrid->regime == FC_FREE || (slips && fc_is_bounded(&state->variables.friction));
+    return regime && is_flag(hybrid->changed) && isfinite(hybrid->seen_time) &&
+           all_finite(hybrid->seen, FC_INPUT_COUNT) && all_finite(hybrid->speed, FC_INPUT_COUNT) &&
+           isfinite(hybrid->nominal_delta) && isfinite(hybrid->nominal_energy);
 }
 
 // The name of the first part of the state with a value that it can't have; NULL if there is none.
@@ -231,6 +276,9 @@ static const char* unsound_part(FcSavedState* saved) {
         !isfinite(friction->Q_f_rest) || !all_finite(friction->rate, FC_INPUT_COUNT) ||
         !all_finite(friction->next_rate, FC_INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
+    }
+    if (!hybrid_is_sound(friction)) {
+        return "what model exchange keeps";
     }
     return experiment_is_sound(&saved->experiment) ? NULL : "the state of the instance";
 }

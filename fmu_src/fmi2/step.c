@@ -5,7 +5,7 @@
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
-#include "fmi2/values.h"
+#include "fmi2/variables.h"
 
 // Hosts keep time in their own way, adding steps or multiplying them; what is a rounding of time to them must
 // not stop a run. There is no absolute allowance: steps of 1e-12 s are as good as steps of 1e9 s.

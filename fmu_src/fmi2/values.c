@@ -1,5 +1,5 @@
 // fmi2GetXXX and fmi2SetXXX. Each call takes all of its values or none.
-#include "fmi2/values.h"
+#include "fmi2/variables.h"
 
 #include <float.h>
 #include <math.h>
@@ -7,6 +7,7 @@
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
+#include "settled_force.h"
 
 static const char* type_name(FcVariableType type) {
     switch (type) {
@@ -71,17 +72,24 @@ static fmi2Status refuse_literal(const FcInstance* instance, const FcVariableInf
                      literals);
 }
 
-// Inputs and tunable parameters can be set in every state in which setting is legal at all, fixed parameters
-// until initialization ends, outputs and local variables never.
+// Inputs can be set in every state in which setting is legal at all, tunable parameters but while an integrator runs,
+// fixed parameters until initialization ends, outputs and local variables never; but some hosts of model exchange set the
+// states so while they integrate (CasADi).
 static bool is_settable(const FcInstance* instance, const FcVariableInfo* info) {
-    if (info->causality == FC_CAUSALITY_INPUT) {
-        return true;
+    const int mode = instance->experiment.mode;
+    if (info->causality != FC_CAUSALITY_PARAMETER) {
+        return info->causality == FC_CAUSALITY_INPUT ||
+               (mode == FC_CONTINUOUS_TIME_MODE && fc_variable_is_state(info));
     }
-    return info->causality == FC_CAUSALITY_PARAMETER &&
-           (info->variability == FC_VARIABILITY_TUNABLE || instance->experiment.mode != FC_STEP_COMPLETE);
+    return mode == FC_INSTANTIATED || mode == FC_INITIALIZATION_MODE ||
+           (info->variability == FC_VARIABILITY_TUNABLE && mode != FC_CONTINUOUS_TIME_MODE);
 }
 
 static fmi2Status refuse_setting(const FcInstance* instance, FcCall call, const FcVariableInfo* info) {
+    if (info->causality == FC_CAUSALITY_PARAMETER && info->variability == FC_VARIABILITY_TUNABLE) {
+        return fc_refuse(instance, call, "%s is a parameter: in model exchange it can be set in event mode",
+                         info->name);
+    }
     if (info->causality == FC_CAUSALITY_PARAMETER) {
         return fc_refuse(instance, call, "%s is a fixed parameter and can't be set after initialization",
                          info->name);
@@ -92,6 +100,11 @@ static fmi2Status refuse_setting(const FcInstance* instance, FcCall call, const 
 
 static bool is_computed(const FcVariableInfo* info) {
     return info->causality == FC_CAUSALITY_OUTPUT || info->causality == FC_CAUSALITY_LOCAL;
+}
+
+// F_t_settled is computed for who asks for it.
+static bool is_settled_force(const FcVariableInfo* info) {
+    return info->offset == offsetof(FcVariables, F_t_settled);
 }
 
 static bool arrays_are_missing(const void* vr, size_t nvr, const void* value) {
@@ -106,21 +119,26 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     if (arrays_are_missing(vr, nvr, value)) {
         return fc_refuse(instance, FC_CALL_GET_REAL, "vr or value is NULL");
     }
-    bool computed = false;
+    bool computed = false, rates = false, settled = false;
     for (size_t i = 0; i < nvr; i++) {
         if (!is_variable_of_type(vr[i], FC_TYPE_REAL)) {
             return refuse_reference(instance, FC_CALL_GET_REAL, vr[i], FC_TYPE_REAL);
         }
         computed |= is_computed(&fc_variables[vr[i]]);
+        rates |= fc_variable_is_rate(&fc_variables[vr[i]]);
+        settled |= is_settled_force(&fc_variables[vr[i]]);
     }
-    if (computed) {
-        FcMessage message;
-        if (!fc_instance_refresh_outputs(instance, &message)) {
-            return fc_refuse(instance, FC_CALL_GET_REAL, "the outputs can't be computed: %s", message.text);
-        }
+    FcMessage message;
+    double F_t_settled = 0.0;
+    if ((computed &&
+         !(rates ? fc_instance_refresh_rates : fc_instance_refresh_outputs)(instance, &message)) ||
+        (settled && !fc_settled_force(&instance->contact, &F_t_settled, &message))) {
+        return fc_refuse(instance, FC_CALL_GET_REAL, "the outputs can't be computed: %s", message.text);
     }
     for (size_t i = 0; i < nvr; i++) {
-        value[i] = *fc_variable_real(&instance->contact.state.variables, &fc_variables[vr[i]]);
+        const FcVariableInfo* info = &fc_variables[vr[i]];
+        value[i] = is_settled_force(info) ? F_t_settled
+                                          : *fc_variable_real(&instance->contact.state.variables, info);
     }
     return fmi2OK;
 }

@@ -1,13 +1,14 @@
 // What modelDescription.xml says of each variable, as the C code sees it.
 //
-// modelDescription.xml is the only source: frictionlab/packing/variable_table.py writes the table at build time,
+// modelDescription.xml is the only source: workshop/packing/variable_table.py writes the table at build time,
 // and fc_variables[value reference] is the variable with that reference.
 #ifndef FC_FMI2_VARIABLES_H
 #define FC_FMI2_VARIABLES_H
 
 #include <stdbool.h>
-
 #include <stddef.h>
+
+#include "friction_contact.h"
 
 typedef enum {
     FC_TYPE_REAL,
@@ -41,6 +42,8 @@ typedef struct {
 extern const FcVariableInfo fc_variables[];
 extern const unsigned fc_variables_count;
 
+extern const unsigned fc_event_indicators_count; // numberOfEventIndicators of the XML
+
 extern const char fc_guid[];             // guid of the packaged modelDescription.xml
 extern const char fc_model_identifier[]; // modelIdentifier of the XML
 
@@ -51,5 +54,52 @@ extern const unsigned fc_log_categories_count;
 #define FC_LOG_STATUS_WARNING "logStatusWarning"
 #define FC_LOG_EVENTS "logEvents" // life cycle: instantiated, initialized, terminated
 #define FC_LOG_SOLVER "logSolver" // messages of the numerical solver
+
+// Where the value of a variable lies, and which values it may take.
+static inline double* fc_variable_real(FcVariables* variables, const FcVariableInfo* info) {
+    return (double*)(void*)((char*)variables + info->offset);
+}
+
+static inline int* fc_variable_integer(FcVariables* variables, const FcVariableInfo* info) {
+    return (int*)(void*)((char*)variables + info->offset);
+}
+
+static inline double fc_variable_value(const FcVariables* variables, const FcVariableInfo* info) {
+    const void* place = (const char*)variables + info->offset;
+    return info->type == FC_TYPE_REAL ? *(const double*)place : *(const int*)place;
+}
+
+// Finite and within min and max, whose defaults are the largest finite numbers.
+static inline int fc_variable_allows(const FcVariableInfo* info, double value) {
+    return value >= info->min && value <= info->max;
+}
+
+// One of der(delta), der(W_f), der(Q_f).
+static inline bool fc_variable_is_rate(const FcVariableInfo* info) {
+    return info->offset >= offsetof(FcVariables, der) &&
+           info->offset < offsetof(FcVariables, der) + sizeof(FcStateRates);
+}
+
+// One of delta, W_f, Q_f: the states of model exchange.
+static inline bool fc_variable_is_state(const FcVariableInfo* info) {
+    return info->offset == offsetof(FcVariables, delta) || info->offset == offsetof(FcVariables, W_f) ||
+           info->offset == offsetof(FcVariables, Q_f);
+}
+
+// The place of an input variable in the arrays of friction_contact.h; FC_INPUT_COUNT for any other variable.
+static inline FcInput fc_variable_input(const FcVariableInfo* info) {
+    switch (info->offset) {
+    case offsetof(FcVariables, V):
+        return FC_INPUT_V;
+    case offsetof(FcVariables, d):
+        return FC_INPUT_D;
+    case offsetof(FcVariables, E):
+        return FC_INPUT_E;
+    case offsetof(FcVariables, load):
+        return FC_INPUT_LOAD;
+    default:
+        return FC_INPUT_COUNT;
+    }
+}
 
 #endif

@@ -7,6 +7,13 @@
 // Time derivative of F_t [N/s] of a bristle deflected by delta [m], the inputs moving as the drive says.
 double fc_force_rate(const FcScene* scene, double delta);
 
+// Derivatives of ln(sigma), ln(A_r) and ln(F_n) with respect to an input, the separation following where it floats: per m,
+// Pa and N.
+typedef struct {
+    FcContactLogSlope by_d, by_E, by_load;
+} FcLogSlopes;
+FcLogSlopes fc_log_slopes(const FcScene* scene);
+
 // Partial derivatives with respect to one input, at the given deflection and rates of the inputs.
 typedef struct {
     double F_t;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/constants.h"
+#include "model/root.h"
 
 // f t modulo 1, exact to the last bit of t: the product's rounding error is added back.
 static double phase_in_cycles(double f, double t) {
@@ -184,6 +185,26 @@ double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at
            drive->vibration.V_1 / drive->omega * (at_t1.sine - at_t0.sine);
 }
 
+// The integral of tau sin(omega tau) over an interval centred at tau = 0, s being omega times half its length. It vanishes
+// like s^3.
+static double sine_moment(double omega, double s) {
+    return s > 0.1 ? 2.0 * (sin(s) - s * cos(s)) / (omega * omega)
+                   : 2.0 * s * s * s * (1.0 / 3 - s * s * (1.0 / 30 - s * s * (1.0 / 840 - s * s / 45360))) /
+                         (omega * omega);
+}
+
+// The integral of (t1 - t) V(t) is half the duration times the displacement less that of (t - middle) V(t).
+double fc_drive_displacement_integral(const FcDrive* drive, double t0, double t1) {
+    const double duration = t1 - t0;
+    double moment = drive->V.rate * duration * duration * duration / 12.0;
+    if (drive->vibration.V_1 != 0.0) {
+        const double omega = drive->omega;
+        moment -= drive->vibration.V_1 * sin(theta(drive, 0.5 * (t0 + t1))) *
+                  sine_moment(omega, 0.5 * omega * duration);
+    }
+    return 0.5 * duration * fc_drive_displacement(drive, t0, t1) - moment;
+}
+
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
 // the integrals of (v + V' tau)^2, of 2 (v + V' tau) V_1 cos and of V_1^2 cos^2.
 double fc_drive_square(const FcDrive* drive, double t0, double t1) {
@@ -197,12 +218,8 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
         const double omega = drive->omega;
         const double angle = theta(drive, middle);
         const double s = 0.5 * omega * duration;
-        // integral of tau sin(omega tau), which vanishes like s^3
-        const double moment =
-            s > 0.1 ? 2.0 * (sin(s) - s * cos(s)) / (omega * omega)
-                    : 2.0 * s * s * s * (1.0 / 3 - s * s * (1.0 / 30 - s * s * (1.0 / 840 - s * s / 45360))) /
-                          (omega * omega);
-        square += 2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * moment * sin(angle));
+        square +=
+            2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * sine_moment(omega, s) * sin(angle));
         square += V_1 * V_1 * (0.5 * duration + 0.5 * sin(2.0 * s) / omega * cos(2.0 * angle));
     }
     return fmax(0.0, square);
@@ -213,36 +230,26 @@ static const double SAME_ANGLE = 1e-13;
 
 static double least_ahead(double angle) { return SAME_ANGLE * (1.0 + fabs(angle)); }
 
-// How far ahead of now, by more than the rounding of a root, the next angle is that equals target modulo 2 pi.
-static double angle_ahead(double now, double target) {
+// How far ahead of now, by more than `least`, the next angle is that equals target modulo 2 pi.
+static double angle_ahead(double now, double target, double least) {
     double ahead = fmod(target - now, FC_TWO_PI);
     if (ahead < 0.0) {
         ahead += FC_TWO_PI;
     }
-    return ahead > least_ahead(now) ? ahead : ahead + FC_TWO_PI;
+    return ahead > least ? ahead : ahead + FC_TWO_PI;
 }
 
-// Root of V in the bracket [t0, t1], on which V is monotone: Newton, kept inside by bisection.
+static FcRootFunction V_of_root(void* drive, double t) {
+    const FcVelocity at = fc_drive_velocity(drive, t);
+    return (FcRootFunction){.value = at.V, .rate = at.rate, .curvature = at.curvature};
+}
+
+// Root of V in the bracket [t0, t1], on which V is monotone, to rounding.
 static double root_of_V(const FcDrive* drive, double t0, double t1) {
-    const double V_0 = fc_drive_V(drive, t0);
-    double t = 0.5 * (t0 + t1);
-    for (int i = 0; i < 100; i++) {
-        const FcVelocity at = fc_drive_velocity(drive, t);
-        if ((at.V < 0.0) == (V_0 < 0.0)) {
-            t0 = t;
-        } else {
-            t1 = t;
-        }
-        double next = t - at.V / at.rate;
-        if (!(next > t0 && next < t1)) {
-            next = 0.5 * (t0 + t1);
-        }
-        if (fabs(next - t) <= 1e-16 * t || next == t0 || next == t1) {
-            return next;
-        }
-        t = next;
-    }
-    return t;
+    FcDrive at = *drive;
+    double evaluations = 0.0;
+    return fc_root(V_of_root, &at, t0, V_of_root(&at, t0), t1, V_of_root(&at, t1), 1e-6, INFINITY,
+                   &evaluations);
 }
 
 // A dip shallower than this is smooth enough to be stepped over.
@@ -284,15 +291,16 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     const double V_1 = drive->vibration.V_1;
     const double V = drive->V.value;
     const double now = theta(drive, t);
+    const double least = t > 0.0 ? least_ahead(now) : 0.0; // what begins is no root that has been passed
     if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
-        const double to_root = angle_ahead(now, root);
-        const double to_other = angle_ahead(now, -root);
+        const double to_root = angle_ahead(now, root, least);
+        const double to_other = angle_ahead(now, -root, least);
         const double time = t + fmin(to_root, to_other) / drive->omega;
         return time < end ? reversal_of_held(drive, time, root, to_root < to_other ? 1.0 : -1.0)
                           : none_before(end);
     }
-    const double time = t + angle_ahead(now, V * V_1 > 0.0 ? FC_PI : 0.0) / drive->omega;
+    const double time = t + angle_ahead(now, V * V_1 > 0.0 ? FC_PI : 0.0, least) / drive->omega;
     return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
 }
 
@@ -316,7 +324,9 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
         if (fabs(slope) < 1.0) {
             const double now = theta(drive, from);
             const double angle = asin(slope);
-            to = from + fmin(angle_ahead(now, angle), angle_ahead(now, FC_PI - angle)) / drive->omega;
+            const double least = least_ahead(now);
+            to = from +
+                 fmin(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least)) / drive->omega;
         }
         const bool stops_at_end = !(to < end);
         if (stops_at_end) {

@@ -101,6 +101,9 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1);
 double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at_t0, double t1,
                                      FcPhase at_t1);
 
+// integral of the displacement from t0 on over [t0, t1] [m s], exact.
+double fc_drive_displacement_integral(const FcDrive* drive, double t0, double t1);
+
 // integral of V^2 over [t0, t1] [m2/s], exact.
 double fc_drive_square(const FcDrive* drive, double t0, double t1);
 

@@ -31,6 +31,12 @@ FcScene fc_scene_later(const FcScene* scene, double t) {
     return fc_scene_make(scene->contact, &at_E, scene->friction, scene->F_C, &drive);
 }
 
+FcScene fc_scene_from(const FcScene* scene, double t) {
+    FcScene from = fc_scene_later(scene, t);
+    from.drive.theta_0 += from.drive.omega * t;
+    return from;
+}
+
 // The contact at the modulus of the time t.
 static FcContactAtModulus contact_at(const FcScene* scene, double t) {
     return scene->drive.E.rate == 0.0 ? scene->at_E
@@ -111,6 +117,10 @@ FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase a
             rates.sigma += by_E.sigma * drive->E.rate;
             rates.limit += by_E.F_n * drive->E.rate;
         }
+        if (scene->floats) { // the surfaces follow the load: what E does to F_n cancels, also in rounding
+            rates.limit =
+                drive->load.rate / fc_drive_load(drive, t) + by_d.F_n * fc_drive_d_rate_at_phase(drive, at_t);
+        }
         if (!fc_limit_follows_load(scene->friction)) {
             rates.limit = 0.0;
         }
@@ -127,39 +137,62 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
     return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
+FcScene fc_scene_of_bound(const FcScene* scene, FcFriction* friction) {
+    FcScene bound = *scene;
+    *friction = fc_law_of_bound(scene->friction);
+    bound.friction = friction;
+    return bound;
+}
+
 double fc_scene_bound_rate(const FcScene* scene, double t) {
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const FcLogRates rates = fc_scene_log_rates(scene, t);
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, &friction);
+    const FcCoefficients at = fc_scene_coefficients(&bound, t);
+    const FcLogRates rates = fc_scene_log_rates(&bound, t);
     return at.limit / at.sigma * (rates.limit - rates.sigma);
 }
 
-// A bristle that slips has a deflection of g / sigma but for what rounds in the phase at the end of a step.
-static const double ON_THE_BOUND = 1.0 - 1e-12;
-
-double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double side = delta < 0.0 ? -1.0 : 1.0;
-    if (scene->friction->model != FC_ELASTIC_PLASTIC || at.sigma * fabs(delta) < ON_THE_BOUND * at.limit) {
-        return 0.0;
-    }
-    return side * at.V >= fc_scene_bound_rate(scene, t) ? side : 0.0;
+// delta' of a bristle that touches no bound.
+static double free_rate(const FcScene* scene, const FcCoefficients* at, double delta) {
+    return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
 }
 
-static double elastic_plastic_rate(const FcScene* scene, double t, double V, double delta) {
-    const double side = fc_scene_slip_side(scene, t, delta);
-    return side != 0.0 ? side * fc_scene_bound_rate(scene, t) : V;
+static double bound_at(const FcScene* scene, const FcCoefficients* at) {
+    return at->limit * fc_bound_over_limit(scene->friction, at->V);
+}
+
+// A bristle that slips has the deflection of the bound but for what rounds at the end of a step: the phase, and a load
+// that has fallen by decades.
+static const double ON_THE_BOUND = 1.0 - 1e-10;
+
+double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
+    if (!fc_is_bounded(scene->friction)) {
+        return 0.0;
+    }
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    const double bound = bound_at(scene, &at);
+    if (at.sigma * fabs(delta) < ON_THE_BOUND * bound) {
+        return 0.0;
+    }
+    const double side = delta < 0.0 ? -1.0 : 1.0;
+    return side * free_rate(scene, &at, side * (bound / at.sigma)) >= fc_scene_bound_rate(scene, t) ? side
+                                                                                                    : 0.0;
 }
 
 double fc_scene_deflection_rate(const FcScene* scene, double t, double delta) {
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    switch (scene->friction->model) {
-    case FC_COULOMB:
+    if (scene->friction->model == FC_COULOMB) {
         return 0.0;
-    case FC_ELASTIC_PLASTIC:
-        return elastic_plastic_rate(scene, t, at.V, delta);
-    default:
-        return fc_coefficients_rate(&at) * delta + at.V;
     }
+    const double side = fc_scene_slip_side(scene, t, delta);
+    if (side != 0.0) {
+        return side * fc_scene_bound_rate(scene, t);
+    }
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    if (fc_is_bounded(scene->friction)) {
+        const double D = bound_at(scene, &at) / at.sigma;
+        delta = fmax(-D, fmin(D, delta));
+    }
+    return free_rate(scene, &at, delta);
 }
 
 static double force(const FcScene* scene, double t, const FcCoefficients* at, double delta) {
@@ -171,8 +204,9 @@ static double force(const FcScene* scene, double t, const FcCoefficients* at, do
     const double damping =
         friction->sigma_1 != 0.0 ? friction->sigma_1 * fc_scene_deflection_rate(scene, t, delta) : 0.0;
     double elastic = at->sigma * delta; // Eq. 1
-    if (friction->model == FC_ELASTIC_PLASTIC) {
-        elastic = fmax(-at->limit, fmin(at->limit, elastic));
+    if (fc_is_bounded(friction)) {
+        const double bound = bound_at(scene, at);
+        elastic = fmax(-bound, fmin(bound, elastic));
     }
     return elastic + damping + viscous;
 }

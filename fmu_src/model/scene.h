@@ -33,6 +33,9 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
 // The scene with its local time starting at t [s]; with vibration, t a whole number of periods.
 FcScene fc_scene_later(const FcScene* scene, double t);
 
+// The same with t at any phase.
+FcScene fc_scene_from(const FcScene* scene, double t);
+
 // At the local time t [s].
 double fc_scene_d(const FcScene* scene, double t);      // m
 double fc_scene_d_rate(const FcScene* scene, double t); // m/s
@@ -49,9 +52,9 @@ typedef struct {
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
 FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
-// -sigma |V| / g [1/s]: the equation is delta' = rate delta + V.
-static inline double fc_coefficients_rate(const FcCoefficients* at) {
-    return -at->sigma * fabs(at->V) / at->limit;
+// r = sigma |V| / g [1/s]: the equation is delta' = V - r delta.
+static inline double fc_relaxation_rate(const FcCoefficients* at) {
+    return at->sigma * fabs(at->V) / at->limit;
 }
 
 // Time derivatives of ln(sigma) and ln(g) [1/s]; 0 for what has become 0.
@@ -62,15 +65,17 @@ typedef struct {
 FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
-// Rate [m/s] at which the bound g / sigma of the deflection moves.
+// The scene of ElasticPlastic whose limit is the bound of a bounded law. It points to *friction, which it sets.
+FcScene fc_scene_of_bound(const FcScene* scene, FcFriction* friction);
+
+// Rate [m/s] at which the bound of the deflection moves.
 double fc_scene_bound_rate(const FcScene* scene, double t);
 
-// +1 or -1 where a bristle of ElasticPlastic deflected by delta [m] slips along that bound, 0 where it sticks and in
-// every other law.
+// +1 or -1 where a bristle deflected by delta [m] slips along that bound, 0 where it does not and in laws without one.
 double fc_scene_slip_side(const FcScene* scene, double t, double delta);
 
 // delta' [m/s] of a bristle that is deflected by delta [m], for every law. A bristle that an input has pushed beyond the
-// limit of ElasticPlastic lies on it.
+// bound lies on it.
 double fc_scene_deflection_rate(const FcScene* scene, double t, double delta);
 
 // What can be seen of the scene, with a bristle deflected by delta [m]: F_t with damping and viscous friction.

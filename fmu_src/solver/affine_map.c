@@ -38,6 +38,15 @@ FcMap fc_map_power(const FcMap* one, double n) {
     return power;
 }
 
+FcMap fc_map_of_one_start(const FcStepResult* result) {
+    return (FcMap){.relaxation = 1.0,
+                   .offset = result->delta,
+                   .impulse_offset = result->impulse,
+                   .work_offset = result->work,
+                   .drag_offset = result->drag,
+                   .heat_offset = result->heat};
+}
+
 void fc_map_apply(const FcMap* map, FcStepResult* result) {
     const double delta_0 = result->delta;
     result->delta = delta_0 - map->relaxation * delta_0 + map->offset; // digits of a small change
@@ -49,21 +58,12 @@ void fc_map_apply(const FcMap* map, FcStepResult* result) {
 
 // (1/2 - (z - 1 + e^-z) / z^2) / z, which tends to 1/6, for z in [0, 1]: 1/3! - z/4! + z^2/5! - ...
 static double phi_3(double z) {
-    static const double TERMS[] = {1.0 / 6,
-                                   1.0 / 24,
-                                   1.0 / 120,
-                                   1.0 / 720,
-                                   1.0 / 5040,
-                                   1.0 / 40320,
-                                   1.0 / 362880,
-                                   1.0 / 3628800,
-                                   1.0 / 39916800,
-                                   1.0 / 479001600,
-                                   1.0 / 6227020800.0,
-                                   1.0 / 87178291200.0,
-                                   1.0 / 1307674368e3,
-                                   1.0 / 20922789888e3,
-                                   1.0 / 355687428096e3};
+    // clang-format off
+    static const double TERMS[] = {
+        1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800,
+        1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800.0, 1.0 / 87178291200.0, 1.0 / 1307674368e3,
+        1.0 / 20922789888e3, 1.0 / 355687428096e3};
+    // clang-format on
     double sum = 0.0;
     for (int k = (int)(sizeof TERMS / sizeof *TERMS) - 1; k >= 0; k--) {
         sum = TERMS[k] - z * sum;
@@ -107,34 +107,23 @@ static PathParts parts_of_path(double sigma, double limit, double displacement) 
 }
 
 // With the settled deflection D = s g / sigma, s = sgn V: delta = D + (delta_0 - D) e^-x/|D| along the path x. Work and heat
-// are the integrals of sigma delta and sigma delta |delta| / D over it.
-static FcMap map_of_path(const PathParts* parts, double sigma, double displacement) {
-    return (FcMap){
-        .relaxation = parts->relaxation,
-        .offset = parts->offset,
-        .work_slope = parts->force * parts->end,
-        .work_offset = parts->force * displacement * parts->mean,
-        // sigma (delta_0 e + D (1 - e))^2 / |D| integrated, e = e^-x/|D|
-        .heat_square = 0.5 * sigma * parts->relaxation * (2.0 - parts->relaxation),
-        .heat_slope = sigma * parts->offset * parts->relaxation,
-        .heat_offset = parts->force * displacement * parts->heat,
-    };
-}
-
-FcMap fc_map_of_path(double sigma, double limit, double displacement) {
-    const PathParts parts = parts_of_path(sigma, limit, displacement);
-    return map_of_path(&parts, sigma, displacement);
-}
-
-// drag = V (delta_1 - delta_0)
+// are the integrals of sigma delta and sigma delta |delta| / D over it; drag = V (delta_1 - delta_0).
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h) {
     assert(!(at->sigma < 0.0) && at->limit > 0.0 && h >= 0.0); // a sigma that is no number goes through
-    const double V = at->V;
-    const PathParts parts = parts_of_path(at->sigma, at->limit, V * h);
-    FcMap map = map_of_path(&parts, at->sigma, V * h);
-    map.impulse_slope = parts.stiffness * h * parts.end;
-    map.impulse_offset = parts.force * h * parts.mean;
-    map.drag_slope = -V * map.relaxation;
-    map.drag_offset = V * map.offset;
-    return map;
+    const double displacement = at->V * h;
+    const PathParts parts = parts_of_path(at->sigma, at->limit, displacement);
+    return (FcMap){
+        .relaxation = parts.relaxation,
+        .offset = parts.offset,
+        .impulse_slope = parts.stiffness * h * parts.end,
+        .impulse_offset = parts.force * h * parts.mean,
+        .work_slope = parts.force * parts.end,
+        .work_offset = parts.force * displacement * parts.mean,
+        .drag_slope = -at->V * parts.relaxation,
+        .drag_offset = at->V * parts.offset,
+        // sigma (delta_0 e + D (1 - e))^2 / |D| integrated, e = e^-x/|D|
+        .heat_square = 0.5 * at->sigma * parts.relaxation * (2.0 - parts.relaxation),
+        .heat_slope = at->sigma * parts.offset * parts.relaxation,
+        .heat_offset = parts.force * displacement * parts.heat,
+    };
 }

@@ -26,12 +26,11 @@ FcMap fc_map_identity(void);
 void fc_map_append(FcMap* map, const FcMap* next); // the map, then the next one
 FcMap fc_map_power(const FcMap* one, double n);    // n a non-negative whole number
 
+// The map of one interval that is known for the start that led to this result alone.
+FcMap fc_map_of_one_start(const FcStepResult* result);
+
 // Takes result->delta over the interval and adds what the interval gives.
 void fc_map_apply(const FcMap* map, FcStepResult* result);
-
-// One interval in which sigma [N/m] and the limit [N] stand still and V keeps its sign: what follows from its displacement
-// [m], whatever V does on the way, exactly. The impulse and the drag are left 0.
-FcMap fc_map_of_path(double sigma, double limit, double displacement);
 
 // One interval of constant coefficients: exact for any duration h [s] >= 0.
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h);

@@ -1,0 +1,222 @@
+#include "hybrid.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Of the bound, and of the velocities: far above rounding, far below what a host's integrator tells apart.
+static const double HYSTERESIS = 1e-10;
+
+// A bristle that is so near to its bound lies on it.
+static const double ON_THE_BOUND = 1.0 - 1e-12;
+
+// Shorter times [of the time itself] tell no speed: rounding rules.
+static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
+
+static const double TWO_PI = 6.283185307179586;
+
+bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
+    if (contact->state.variables.friction.model == FC_COULOMB) {
+        return fc_message_set(
+            message, "friction.model = Coulomb (2) is not for model exchange: it has no state, and its force "
+                     "jumps with the sign of V, so that a mass could not stick; take ElasticPlastic (3), or "
+                     "co-simulation");
+    }
+    FcStates nominals = {{0.0}};
+    return fc_hybrid_nominals(contact, &nominals, message);
+}
+
+void fc_hybrid_start(FcFrictionContact* contact) {
+    FcStates nominals = {{0.0}};
+    FcMessage unheard;
+    if (fc_hybrid_nominals(contact, &nominals, &unheard)) {
+        contact->state.hybrid.nominal_delta = nominals.of[0];
+        contact->state.hybrid.nominal_energy = nominals.of[1];
+    }
+    fc_hybrid_event_ends(contact);
+}
+
+void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
+    contact->state.time = time;
+    contact->state.time_rest = 0.0;
+}
+
+static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
+
+static bool fail_rates(const FcVariables* v, FcMessage* message) {
+    return fc_message_set(message,
+                          "F_t or the rate of delta, W_f or Q_f is beyond the largest number: V = %.9g m/s "
+                          "with vibration.V_1 = %.9g m/s, delta = %.9g m",
+                          v->V, v->vibration.V_1, v->delta);
+}
+
+bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
+    if (!fc_friction_contact_check(contact, message)) {
+        return false;
+    }
+    FcVariables* v = &contact->state.variables;
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const FcContactResponse response = fc_scene_contact(&scene, 0.0);
+    const FcMotion now = fc_motion(&scene, regime_of(contact), v->delta);
+    if (!isfinite(now.F_t) || !isfinite(now.rates.delta) || !isfinite(now.rates.W_f) ||
+        !isfinite(now.rates.Q_f)) {
+        return fail_rates(v, message);
+    }
+    v->F_t = now.F_t;
+    v->F_t_mean = now.F_t;
+    v->F_n = response.F_n;
+    v->sigma = response.sigma;
+    v->A_r = response.A_r;
+    v->der = now.rates;
+    return true;
+}
+
+// What pushes a bristle that slips, with hysteresis [m/s].
+static double push(FcFrictionContact* contact, int side) {
+    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
+    const FcDrive* drive = &moving.drive;
+    const double speed =
+        fabs(drive->V.value) + drive->vibration.V_1 + fabs(fc_scene_bound_rate(&moving, 0.0));
+    return fc_regime_push(&moving, side) + HYSTERESIS * speed;
+}
+
+bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
+    if (!fc_friction_contact_check(contact, message)) {
+        return false;
+    }
+    const FcVariables* v = &contact->state.variables;
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    double* z = indicators->of;
+    z[0] = v->friction.model == FC_ELASTIC_PLASTIC ? 1.0 : fc_drive_V(&scene.drive, 0.0);
+    z[1] = z[2] = z[3] = 1.0;
+    if (regime_of(contact) != FC_FREE) {
+        z[3] = push(contact, regime_of(contact));
+    } else if (fc_is_bounded(scene.friction)) {
+        const double reached = v->delta / fc_regime_bound(&scene);
+        z[1] = (1.0 - reached) + HYSTERESIS;
+        z[2] = (1.0 + reached) + HYSTERESIS;
+    }
+    for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
+        if (!isfinite(z[i])) {
+            return fail_rates(v, message);
+        }
+    }
+    return true;
+}
+
+// The inputs in the order of FcInput.
+static void copy_inputs(const FcVariables* v, double inputs[FC_INPUT_COUNT]) {
+    inputs[FC_INPUT_V] = v->V;
+    inputs[FC_INPUT_D] = v->d;
+    inputs[FC_INPUT_E] = v->E;
+    inputs[FC_INPUT_LOAD] = v->load;
+}
+
+static void look_at_inputs(FcFrictionContact* contact) {
+    FcHybrid* hybrid = &contact->state.hybrid;
+    double inputs[FC_INPUT_COUNT];
+    copy_inputs(&contact->state.variables, inputs);
+    const double passed = contact->state.time - hybrid->seen_time;
+    if (!(passed > SHORTEST_LOOK * fabs(contact->state.time))) {
+        return;
+    }
+    for (int i = 0; i < FC_INPUT_COUNT; i++) {
+        const double speed = (inputs[i] - hybrid->seen[i]) / passed;
+        hybrid->speed[i] = isfinite(speed) ? speed : 0.0;
+    }
+    memcpy(hybrid->seen, inputs, sizeof inputs);
+    hybrid->seen_time = contact->state.time;
+}
+
+bool fc_hybrid_step_completed(FcFrictionContact* contact) {
+    look_at_inputs(contact);
+    FcEventIndicators z;
+    FcMessage unheard;
+    return fc_is_bounded(&contact->state.variables.friction) && fc_hybrid_indicators(contact, &z, &unheard) &&
+           (z.of[1] <= 0.0 || z.of[2] <= 0.0 || z.of[3] <= 0.0);
+}
+
+// Moves delta; what the bristle stored in between is heat.
+static void move_to(FcFrictionContact* contact, double delta) {
+    FcVariables* v = &contact->state.variables;
+    if (delta == v->delta) {
+        return;
+    }
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const double heat = 0.5 * fc_scene_stiffness(&scene, 0.0) * (v->delta - delta) * (v->delta + delta);
+    if (!isfinite(delta) || !isfinite(v->Q_f + heat)) {
+        return;
+    }
+    v->delta = delta;
+    v->Q_f += heat;
+    contact->state.hybrid.changed = 1;
+}
+
+void fc_hybrid_event_begins(FcFrictionContact* contact) {
+    look_at_inputs(contact);
+    FcMessage unheard;
+    if (regime_of(contact) != FC_FREE && fc_friction_contact_check(contact, &unheard)) {
+        const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+        move_to(contact, (double)regime_of(contact) * fc_regime_bound(&scene));
+    }
+}
+
+// An input may have jumped at the event: a bristle that is now within its bound is free, one beyond is taken onto it.
+static FcRegime next_regime(FcFrictionContact* contact) {
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const double D = fc_regime_bound(&scene);
+    const double delta = contact->state.variables.delta;
+    if (fabs(delta) < ON_THE_BOUND * D) {
+        return FC_FREE;
+    }
+    const int side = delta < 0.0 ? -1 : 1;
+    move_to(contact, side * D);
+    if (regime_of(contact) == (FcRegime)side) {
+        return push(contact, side) > 0.0 ? (FcRegime)side : FC_FREE;
+    }
+    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
+    return fc_regime_push(&moving, side) > 0.0 ? (FcRegime)side : FC_FREE;
+}
+
+bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
+    FcStates nominals = {{0.0}};
+    if (!fc_hybrid_nominals(contact, &nominals, message)) {
+        return false;
+    }
+    FcHybrid* hybrid = &contact->state.hybrid;
+    if (fc_is_bounded(&contact->state.variables.friction)) {
+        hybrid->regime = next_regime(contact);
+    }
+    *changed = hybrid->changed;
+    *nominals_changed = nominals.of[0] != hybrid->nominal_delta || nominals.of[1] != hybrid->nominal_energy;
+    hybrid->changed = 0;
+    hybrid->nominal_delta = nominals.of[0];
+    hybrid->nominal_energy = nominals.of[1];
+    return true;
+}
+
+void fc_hybrid_event_ends(FcFrictionContact* contact) {
+    FcHybrid* hybrid = &contact->state.hybrid;
+    hybrid->seen_time = contact->state.time;
+    copy_inputs(&contact->state.variables, hybrid->seen);
+}
+
+bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message) {
+    if (!fc_friction_contact_check(contact, message)) {
+        return false;
+    }
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const FcVibration* vibration = &scene.drive.vibration;
+    const double force = fc_scene_force_scale(&scene);
+    const double length = force / fc_contact_stiffness(&scene.at_E, scene.drive.d.value);
+    const double amplitude = vibration->V_1 / (TWO_PI * vibration->f);
+    const double energy = force * fmax(length, amplitude);
+    if (!(length > 0.0 && energy > 0.0) || !isfinite(length) || !isfinite(energy)) {
+        return fc_message_set(message,
+                              "the nominal values of the states are no finite numbers above 0: the limit of "
+                              "the force is %.9g N, sigma = %.9g N/m",
+                              force, fc_contact_stiffness(&scene.at_E, scene.drive.d.value));
+    }
+    *nominals = (FcStates){.of = {length, energy, energy}};
+    return true;
+}

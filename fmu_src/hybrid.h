@@ -1,0 +1,64 @@
+// One contact as a differential equation with events: what FMI for model exchange sees of the physics. The states are delta,
+// W_f and Q_f; the inputs are what they are when asked.
+//
+// A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event: it slips once it is
+// beyond its bound and pushed, and is free again once it is pushed no more. Both have a little hysteresis, so that the
+// rounding of an event's time starts no second event. The motion between two events depends on time, states, inputs and regime
+// alone. Whether a bristle is still pushed depends besides on how fast the inputs move its bound. That is estimated from the
+// inputs at the end of the last two steps of the integrator; an error of it enters the moment of sticking, and delta and
+// the force by its square.
+#ifndef FC_HYBRID_H
+#define FC_HYBRID_H
+
+#include "friction_contact.h"
+
+enum { FC_STATE_COUNT = 3, FC_EVENT_INDICATOR_COUNT = 4 };
+
+typedef struct {
+    double of[FC_STATE_COUNT]; // delta [m], W_f [J], Q_f [J]
+} FcStates;
+
+typedef struct {
+    double of[FC_EVENT_INDICATOR_COUNT];
+} FcEventIndicators;
+
+// False with *message filled for a law that has no state, and where the nominal values are no finite numbers above 0.
+bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message);
+
+// After fc_friction_contact_initialize.
+void fc_hybrid_start(FcFrictionContact* contact);
+
+// Moves the contact to the time [s] of the host's integrator.
+void fc_hybrid_set_time(FcFrictionContact* contact, double time);
+
+// Recomputes the outputs and the rates of the states; false with *message filled where the inputs do not go together or a
+// result is beyond the largest number.
+bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
+
+// Positive but at an event:
+//   0   V with its vibration [m/s], where |V| has a kink; 1 in ElasticPlastic, which has none
+//   1   (D - delta) / D + hysteresis while a bounded bristle is free, else 1
+//   2   (D + delta) / D + hysteresis while a bounded bristle is free, else 1
+//   3   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
+// The first may have either sign. False as fc_hybrid_refresh.
+bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message);
+
+// The integrator has completed a step: looks where the inputs are. True if the regime has come to its end; false also where
+// the inputs do not go together, which the next evaluation says.
+bool fc_hybrid_step_completed(FcFrictionContact* contact);
+
+// An event begins, with the inputs as they were before it: a bristle that slips is taken onto its bound.
+void fc_hybrid_event_begins(FcFrictionContact* contact);
+
+// The regime after the event. *changed says whether a state has changed since the event began, *nominals_changed whether
+// the nominal values have. False as fc_hybrid_refresh.
+bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
+
+// The event is over: the inputs may have jumped in it, which is no motion.
+void fc_hybrid_event_ends(FcFrictionContact* contact);
+
+// Nominal values at the present inputs: of delta the bound or saturation length F / sigma without vibration, F being the limit
+// of the force; of the energies F times that length, or times the vibration's amplitude V_1 / (2 pi f) where that is larger.
+bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message);
+
+#endif

@@ -1,0 +1,166 @@
+#include "settled_force.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "model/constants.h"
+#include "solver/methods/method.h"
+
+// Of the forces whose differences make a derivative: as fine as the solver goes.
+static const double TOLERANCE = 1e-12;
+
+// A derivative is good where its error is estimated as this of it, or as that of this over the force's scale.
+static const double ACCURATE = 1e-9;
+static const double ROUNDING = 1e-10;
+
+// What a way is shortened by, and how often.
+static const double SHORTER = 0.25;
+enum { MOST_WAYS = 20 };
+
+// No force is another one over such a speed [m/s] and not over less.
+static const double FAST = 1e12;
+
+// The contact at time 0 with its inputs held.
+static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
+    FcFrictionContact held = *contact;
+    FcFrictionState* state = &held.state;
+    state->variables.delta = 0.0;
+    state->time = 0.0;
+    state->time_rest = 0.0;
+    memset(state->rate, 0, sizeof state->rate);
+    state->next_rate_set = 0;
+    return held;
+}
+
+// But for viscous friction. Adds what it spends to *evaluations.
+static bool dry_force(FcFrictionContact* held, double tolerance, double* force, double* evaluations,
+                      FcMessage* message) {
+    if (!fc_friction_contact_refresh(held, message)) {
+        return false;
+    }
+    const FcVariables* v = &held->state.variables;
+    const FcScene scene = fc_friction_contact_scene(held);
+    const FcSolverOptions options = {.tolerance = tolerance, .step_size = v->solver.stepSize};
+    *force = fc_method_settled_force(&scene, &options, v->delta_0, evaluations);
+    if (*evaluations > FC_MOST_EVALUATIONS) {
+        return fc_message_set(
+            message,
+            "F_t_settled or its derivative needs more than %.0e evaluations: vibration.a_d = %.9g m at "
+            "d = %.9g m moves the contact over too many orders of magnitude",
+            FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
+    }
+    return true;
+}
+
+static bool is_finite(double number, const char* name, FcMessage* message) {
+    return isfinite(number) || fc_message_set(message, "%s is beyond the largest number", name);
+}
+
+bool fc_settled_force(const FcFrictionContact* contact, double* force, FcMessage* message) {
+    FcFrictionContact held = at_time_0(contact);
+    const FcVariables* v = &held.state.variables;
+    double dry;
+    double evaluations = 0.0;
+    if (!dry_force(&held, v->solver.tolerance, &dry, &evaluations, message)) {
+        return false;
+    }
+    *force = dry + v->friction.sigma_2 * v->V;
+    return is_finite(*force, "F_t_settled", message);
+}
+
+static double* input_of(FcVariables* v, FcInput input) {
+    double* const inputs[FC_INPUT_COUNT] = {
+        [FC_INPUT_V] = &v->V, [FC_INPUT_D] = &v->d, [FC_INPUT_E] = &v->E, [FC_INPUT_LOAD] = &v->load};
+    return inputs[input];
+}
+
+// The way [over the input's unit] over which the force is fitted at first, with its sign: it passes neither V = 0 nor
+// |V| = V_1, where the force has jumps and kinks, and leads to surfaces farther apart.
+static double first_way(const FcFrictionContact* held, const FcScene* scene, FcInput input) {
+    const FcVariables* v = &held->state.variables;
+    const double V_1 = v->vibration.V_1;
+    const double speed = fabs(v->V);
+    const double part = 0.25;
+    switch (input) {
+    case FC_INPUT_V: {
+        double scale = fmax(V_1, speed - V_1);
+        if (V_1 == 0.0) {
+            const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+            const double range = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
+            scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(range, FAST) : v->friction.V_S);
+        }
+        const double room = speed >= V_1 ? speed - V_1 : speed; // towards 0
+        return copysign(part * scale, room > part * scale ? -v->V : v->V);
+    }
+    case FC_INPUT_D:
+        return part * fmin(1.0 / scene->at_E.decay, v->d);
+    case FC_INPUT_E:
+        return part * v->E;
+    default:
+        return -part * v->load;
+    }
+}
+
+// The derivative at the start of a way by the polynomial through the force at NODES Chebyshev points of it, and what its last
+// terms come to. With c_k the coefficients of T_k over the way, the derivative there is 2 / way times the sum of
+// (-1)^(k + 1) k^2 c_k.
+enum { NODES = 8 };
+static bool slope_over(FcFrictionContact* held, FcInput input, double way, double* slope, double* error,
+                       double* evaluations, FcMessage* message) {
+    double* const x = input_of(&held->state.variables, input);
+    const double start = *x;
+    double force[NODES];
+    for (int j = 0; j < NODES; j++) {
+        *x = start + 0.5 * way * (1.0 + cos(FC_PI * (j + 0.5) / NODES));
+        if (!dry_force(held, TOLERANCE, &force[j], evaluations, message)) {
+            return false;
+        }
+    }
+    *x = start;
+    *slope = 0.0;
+    *error = 0.0;
+    for (int k = 1; k < NODES; k++) {
+        double c = 0.0;
+        for (int j = 0; j < NODES; j++) {
+            c += 2.0 / NODES * (force[j] - force[0]) * cos(FC_PI * k * (j + 0.5) / NODES);
+        }
+        const double term = 2.0 * k * k * c / way;
+        *slope += k % 2 == 1 ? term : -term;
+        *error = k >= NODES - 2 ? fmax(*error, fabs(term)) : 0.0;
+    }
+    return true;
+}
+
+// The way is shortened until the last terms are small, or rounding.
+bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, double* slope,
+                            FcMessage* message) {
+    FcFrictionContact held = at_time_0(contact);
+    if (!fc_friction_contact_refresh(&held, message)) {
+        return false;
+    }
+    const FcScene scene = fc_friction_contact_scene(&held);
+    const double force = fc_scene_force_scale(&scene);
+    double way = first_way(&held, &scene, input);
+    const double usual = force / fabs(way);
+    double least = DBL_MAX;
+    *slope = NAN;
+    double evaluations = 0.0;
+    for (int shorter = 0; shorter < MOST_WAYS; shorter++) {
+        double found;
+        double error;
+        if (!slope_over(&held, input, way, &found, &error, &evaluations, message)) {
+            return false;
+        }
+        if (error < least * (fabs(found) + usual)) {
+            least = error / (fabs(found) + usual);
+            *slope = found;
+        }
+        if (error <= ACCURATE * fabs(found) || error * fabs(way) <= ROUNDING * force) {
+            break;
+        }
+        way *= SHORTER;
+    }
+    *slope += input == FC_INPUT_V ? held.state.variables.friction.sigma_2 : 0.0;
+    return is_finite(*slope, "the derivative of F_t_settled", message);
+}

@@ -1,0 +1,49 @@
+// What holds over a whole interval, the part of a communication step that one map is made of: the largest and smallest of
+// what the bristle's equation is made of, and how fast it moves.
+#ifndef FC_SOLVER_INTERVAL_H
+#define FC_SOLVER_INTERVAL_H
+
+#include <stdbool.h>
+
+#include "model/scene.h"
+
+// How fast the scene moves, at the most: the one measure of pace of every panel that is planned.
+typedef struct {
+    double phase;     // 1/s, of the vibration's angle
+    double log_sigma; // 1/s, of ln(sigma) and of ln(g) but for the Stribeck curve
+    // The surfaces come so close, or E or the load move so far, that log_sigma holds only what the decay of the contact
+    // with d gives; the rest is to be followed along the interval.
+    bool is_local;
+} FcPace;
+
+typedef struct {
+    const FcScene* scene;
+    const FcScene* beyond_peaks; // the same without its Stribeck curve
+    double duration;             // s
+    double tolerance;            // 1, of F_t at the end and of its mean, over the force
+    double force;                // N, what the tolerance is relative to
+    double speed;                // m/s, largest |V|
+    double stiffness;            // N/m, largest sigma
+    double limit;                // N, smallest g
+    double saturation; // m, largest g / sigma: over this path errors fade by e at least; infinite if unknown
+    double forgotten;  // m, over this path they fade below the square of the tolerance
+    FcPace pace;
+    bool moving_limit; // g is no constant
+} FcInterval;
+
+// Keeps the pointers. beyond_peaks is the scene itself where it has no Stribeck curve.
+FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
+                            double tolerance);
+
+// What the tolerance allows of a force [N].
+static inline double fc_allowed_force(const FcInterval* interval) {
+    return interval->tolerance * interval->force;
+}
+
+// Time [s] from t on over which the phase, ln(sigma) or ln(g) moves by 1, at the least; g by the normal force.
+double fc_smooth_time(const FcInterval* interval, double t);
+
+// About -log10(x), down to the next power of two; about 308 for 0 and the smallest numbers.
+double fc_digits(double x);
+
+#endif

@@ -1,0 +1,163 @@
+#include "solver/stretches/section.h"
+
+#include <math.h>
+
+#include "model/constants.h"
+#include "solver/panels/gauss_rule.h"
+
+// Gauss panels may be cheaper for a section over which the bristle relaxes by less than this, in a peak and elsewhere, and
+// the phase and ln(sigma) move by less than SLOW.
+static const double SOFT_IN_PEAK = 2.5;
+static const double SOFT = 40.0;
+static const double SLOW = 15.0;
+// Where the bristle may relax by this much, sigma is sampled in the section: it may be many times that at the interval's
+// start.
+static const double MATTERS = 0.5;
+// A peak adds this to the change over a panel, beyond its width.
+static const double PEAK_CHANGE = 2.0;
+// n nodes resolve e^z where z is less than half of n.
+static const double RESOLVED = 0.47;
+// Time, in panels of 4 nodes, of the Radau panels between two reversals half a period apart, up to FEW_DECADES of accuracy
+// and for each more; and of one panel.
+static const double RADAU = 7.0;
+static const double FEW_DECADES = 3.0;
+static const double RADAU_FOR_EACH = 2.3;
+static const double HALF_PERIOD = 0.5 * FC_PI;
+static const double RADAU_PANEL = 2.3;
+
+// A panel that lasts for a whole stretch is accurate up to a tolerance of 10^-(one + phi sqrt(phi) + mu sqrt(mu) +
+// z sqrt(z)), about, with a scatter of half a decade (4 nodes) to one and a half (12): a plan of cost, judged afterwards. time: of a panel, over that
+// of 4 nodes.
+enum { RULES = 4 };
+static const struct {
+    int nodes;
+    double time;
+    double one, phi, mu, z;
+} RULE[RULES] = {
+    {4, 1.00, -4.44, 2.14, 0.42, 0.65},
+    {6, 1.25, -10.16, 5.06, 0.99, 1.91},
+    {8, 1.40, -15.04, 6.49, 1.65, 3.05},
+    {12, 1.93, -19.12, 6.23, 2.21, 3.30},
+};
+
+// The mean sees a piece by its share of the stretch: decades that each of so many is spared.
+enum { MOST_PIECES = 12 };
+static const double SPARED[MOST_PIECES + 1] = {0, 0, .3, .48, .6, .7, .78, .85, .9, .95, 1, 1.04, 1.08};
+
+// Whether a stretch that is all in a peak goes through so much of it that nodes spread evenly may miss it.
+static bool is_narrow_somewhere(const FcStretch* stretch) {
+    const FcScene* scene = stretch->interval->scene;
+    const FcDrive* drive = &scene->drive;
+    const double moves = 2.0 * drive->vibration.V_1 + fabs(drive->V.rate) * (stretch->end - stretch->start);
+    return stretch->peaks.after == stretch->end && moves > 3.0 * scene->friction->V_S;
+}
+
+static FcRelaxation measured(const FcSection* section, double* evaluations) {
+    enum { N = 4 };
+    const FcGaussRule* rule = &FC_GAUSS_4;
+    const double duration = section->end - section->start;
+    FcNodeCoefficients at;
+    fc_node_coefficients(section->scene, section->start, duration, rule->node, N, &at);
+    *evaluations += N;
+    double z[N]; // if it went on as there
+    for (int i = 0; i < N; i++) {
+        z[i] = duration * at.sigma[i] * fabs(at.V[i]) / at.limit[i];
+    }
+    const double first = rule->weight[0] * z[0] + rule->weight[1] * z[1];
+    const double second = rule->weight[2] * z[2] + rule->weight[3] * z[3];
+    return (FcRelaxation){
+        .whole = first + second,
+        .half = fc_most(first, second),
+        .fastest = fc_most(fc_most(z[0], z[1]), fc_most(z[2], z[3])),
+    };
+}
+
+static void find_relaxation(const FcStretch* stretch, FcSection* section, double* evaluations) {
+    const FcInterval* interval = stretch->interval;
+    const double X = fabs(fc_stretch_displacement(stretch, section->start, section->end));
+    const double z = stretch->per_path * X;
+    const double most = interval->stiffness / interval->limit * X;
+    section->is_measured = !section->in_peak && most > MATTERS && z < SOFT;
+    section->z = section->is_measured ? measured(section, evaluations) : (FcRelaxation){z, z, z};
+}
+
+static bool is_soft(const FcPace* pace, const FcSection* section) {
+    return !pace->is_local && section->z.whole < (section->in_peak ? SOFT_IN_PEAK : SOFT) &&
+           (section->end - section->start) * (pace->phase + pace->log_sigma) < SLOW;
+}
+
+int fc_sections(const FcStretch* stretch, FcSection* sections, double* evaluations) {
+    const FcInterval* interval = stretch->interval;
+    const double ends[] = {stretch->start, stretch->peaks.after, stretch->peaks.before, stretch->end};
+    const bool narrow = is_narrow_somewhere(stretch);
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        const double duration = ends[i + 1] - ends[i];
+        if (!(duration > 0.0)) {
+            continue;
+        }
+        FcSection* section = &sections[count++];
+        section->in_peak = i != 1;
+        section->scene = section->in_peak ? interval->scene : interval->beyond_peaks;
+        section->start = ends[i];
+        section->end = ends[i + 1];
+        section->share = duration / (stretch->end - stretch->start);
+        find_relaxation(stretch, section, evaluations);
+        section->forgets = stretch->per_path * (fabs(stretch->displacement) + stretch->path_after);
+        section->soft = !narrow && is_soft(&interval->pace, section);
+    }
+    return count;
+}
+
+// The first rule whose estimate will be small enough; RULES if there is none.
+static int rule_for(double phi, double mu, double z, double decades) {
+    const double root_phi = sqrt(phi);
+    const double root_mu = sqrt(mu);
+    const double root_z = sqrt(z);
+    for (int i = 0; i < RULES; i++) {
+        const double of_estimate =
+            RULE[i].one + RULE[i].phi * root_phi + RULE[i].mu * root_mu + RULE[i].z * root_z;
+        if (of_estimate < -decades && z < RESOLVED * RULE[i].nodes) {
+            return i;
+        }
+    }
+    return RULES;
+}
+
+FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades) {
+    const double of_half_period = RADAU + RADAU_FOR_EACH * fc_most(0.0, decades - FEW_DECADES);
+    double least = fc_most(RADAU_PANEL, of_half_period * fc_least(1.0, fc_most(phi, mu) / HALF_PERIOD));
+    FcGaussPieces cheapest = {0, FC_GAUSS_MOST_NODES};
+    for (int n = 1; n <= MOST_PIECES && n * RULE[0].time < least; n++) {
+        const double of_piece = n == 1 ? z->whole : n == 2 ? z->half : z->fastest / n;
+        const int i = rule_for(phi / n, mu / n, of_piece, decades - SPARED[n]);
+        if (i < RULES && n * RULE[i].time < least) {
+            least = n * RULE[i].time;
+            cheapest = (FcGaussPieces){n, RULE[i].nodes};
+        }
+    }
+    return cheapest;
+}
+
+// The number of nodes for a panel in a peak, over which about this much changes.
+static double nodes_for(double decades, double change) { return 2.0 + 0.6 * decades + 0.5 * change; }
+
+static FcGaussPieces pieces_in_peak(double change, double decades) {
+    const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(decades, 0.0));
+    const double count = fc_most(1.0, ceil(0.5 * change / room));
+    return (FcGaussPieces){(int)fc_least(count, 1e9), fc_gauss_count(nodes_for(decades, change / count))};
+}
+
+FcGaussPieces fc_section_pieces(const FcStretch* stretch, const FcSection* section) {
+    const FcPace* pace = &stretch->interval->pace;
+    const double duration = section->end - section->start;
+    const double phase = pace->phase * duration;
+    const double log_sigma = pace->log_sigma * duration;
+    if (section->in_peak) {
+        const double change =
+            1.4 * (phase + log_sigma) + 2.0 * section->z.whole + PEAK_CHANGE + stretch->peaks.reach;
+        return pieces_in_peak(change, stretch->peaks.digits);
+    }
+    const double decades = fc_digits(stretch->interval->tolerance) - fc_digits(section->share);
+    return fc_gauss_pieces(0.5 * phase, 0.5 * log_sigma, &section->z, decades);
+}
