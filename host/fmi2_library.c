@@ -109,12 +109,17 @@ static void keep_error(fmi2ComponentEnvironment environment, fmi2String name, fm
 
 bool fmi2_instance_make(Fmi2Instance* instance, const Fmi2Library* library, const char* name,
                         const char* guid, const char* resources) {
+    return fmi2_instance_make_for(instance, library, fmi2CoSimulation, name, guid, resources);
+}
+
+bool fmi2_instance_make_for(Fmi2Instance* instance, const Fmi2Library* library, fmi2Type type,
+                            const char* name, const char* guid, const char* resources) {
     *instance = (Fmi2Instance){
         .library = library,
         .callbacks = {keep_error, calloc, free, NULL, instance},
     };
-    instance->component = library->Instantiate(name, fmi2CoSimulation, guid, resources, &instance->callbacks,
-                                               fmi2False, fmi2True);
+    instance->component =
+        library->Instantiate(name, type, guid, resources, &instance->callbacks, fmi2False, fmi2True);
     if (!instance->component && !instance->said[0]) {
         snprintf(instance->said, sizeof instance->said, "the FMU gives no instance, and no reason");
     }

@@ -88,7 +88,7 @@ extern const Fmi2Library fmi2_linked;
 bool fmi2_library_open(Fmi2Library* library, const char* path, char* why, size_t size);
 void fmi2_library_close(Fmi2Library* library);
 
-// An instance for co-simulation with its logger. It must not be moved while it lives: the FMU keeps its address.
+// An instance with its logger. It must not be moved while it lives: the FMU keeps its address.
 typedef struct {
     const Fmi2Library* library;
     fmi2Component component;
@@ -97,9 +97,14 @@ typedef struct {
     char said[FMI2_TEXT]; // the last of them, in one line; "" where there is none
 } Fmi2Instance;
 
-// False, with the FMU's message or another reason in instance->said, where the FMU does not give an instance.
+// For co-simulation. False, with the FMU's message or another reason in instance->said, where the FMU does not give an
+// instance.
 bool fmi2_instance_make(Fmi2Instance* instance, const Fmi2Library* library, const char* name,
                         const char* guid, const char* resources);
+
+// For either interface.
+bool fmi2_instance_make_for(Fmi2Instance* instance, const Fmi2Library* library, fmi2Type type,
+                            const char* name, const char* guid, const char* resources);
 
 // Asks for the messages of errors alone: writing those that nobody reads takes a third of a short scenario's
 // time. An FMU that does not know their category goes on writing all.

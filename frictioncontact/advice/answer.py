@@ -1,0 +1,181 @@
+"""`advise`: start values that hold an accuracy, graded against the FMU at its tightest tolerance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from frictioncontact import resources
+from frictioncontact.advice.coulomb_bound import coulomb_errors
+from frictioncontact.advice.question import LEAST, Output, Question, question
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST = 1e-2  # solver.tolerance
+# From five phases, since an error may vanish at one; steps of which not all are a whole number of periods.
+PHASES = tuple(k / 5.0 for k in range(5))
+STEPS = (1.0, 0.37, 1.0)  # over the communication step
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to set, and what it was graded by. str() gives it in words."""
+
+    asked: Question
+    settings: dict[str, Value]  # start values besides the scene's own
+    why: str
+    mean: float  # N, mean friction
+    scale: float  # N, F_C: what errors are over
+    error: float  # N, largest that was found
+
+    @property
+    def start_values(self) -> dict[str, Value]:
+        """The scene's and the advised ones: start values for `simulate`."""
+        return {**self.asked.given, **self.settings}
+
+    @property
+    def knows_the_mean(self) -> bool:
+        """Whether some tolerance gives that accuracy of the mean friction."""
+        return self.asked.accuracy * abs(self.mean) >= LEAST * self.scale
+
+    def __str__(self) -> str:
+        asked, known = self.asked, self.knows_the_mean
+        of_mean = f", {self.error / abs(self.mean):.1e} of the mean friction" if known else ""
+        promise = (
+            "of F_C and of the mean friction" if known else "of F_C; the mean friction is too small for it"
+        )
+        held = f"inputs {'linear' if asked.linear else 'held'}"
+        steps = held if asked.inputs else f"and {STEPS[1] * asked.step:.4g} s, from rest and settled"
+        lines = [
+            self.why,
+            f"Mean friction: {self.mean:.6g} N. Promise: within {asked.accuracy:g} {promise}.",
+            f"Graded over steps of {asked.step:.6g} s, {steps}: {self.error / self.scale:.1e} F_C{of_mean}.",
+        ]
+        if asked.vibrates and asked.step > 0.5 * asked.period:
+            lines.append("The step exceeds half a vibration period: connect F_t_mean, not F_t.")
+        return "\n".join(lines)
+
+
+def advise(
+    scene: Mapping[str, Value] | None = None,
+    *,
+    accuracy: float = 1e-3,
+    step: float | None = None,
+    output: Output = "both",
+    inputs: Mapping[str, npt.ArrayLike] | pd.DataFrame | None = None,
+    linear: bool = False,
+    phases: tuple[float, ...] = PHASES,
+    fmu: str | Path | None = None,
+) -> Advice:
+    """What to set so that F_t and F_t_mean are within an accuracy of F_C and of the mean friction.
+
+    scene     start values of what describes it, SI units
+    accuracy  largest error, over F_C and over the mean friction, from 1e-10 to 1
+    step      communication step, s (a period of the vibration)
+    output    which output must be accurate: "F_t", "F_t_mean" or "both"
+    inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load: the steps are
+              its own, the first 400 are graded
+    linear    inputs are linear between their samples; else held
+    phases    of the vibration, over a period, from which it is graded
+    fmu       another .fmu file of this model
+
+    The advice is held against the FMU at solver.tolerance = 1e-10, from rest and settled. UserError names
+    what is wrong with the question.
+    """
+    loaded = opened(Path(fmu) if fmu else resources.fmu())
+    asked = question(loaded, scene, accuracy, step, output, inputs, linear)
+    mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
+    advice = Advice(asked, {}, "", mean, scale, 0.0)
+    goal = accuracy * (min(1.0, abs(mean) / scale) if advice.knows_the_mean else 1.0)
+    settings, why = settings_for(loaded, asked, goal)
+    errors = largest_errors(loaded, asked, settings, phases)
+    error = {"both": max(errors), "F_t": errors[0], "F_t_mean": errors[1]}[output]
+    if error > goal * scale:
+        raise UserError(
+            f"{why} It misses by {error / scale:.1e} F_C here, which is a fault: please report it"
+        )
+    return Advice(asked, settings, why, mean, scale, error)
+
+
+def mean_friction(fmu: FrictionFmu, asked: Question) -> float:
+    """Mean of F_t [N]: over the inputs, or over a period once settled."""
+    if asked.inputs:
+        count = len(next(iter(asked.inputs.values()))) - 1
+        rows = simulate(fmu, asked.given, asked.step, count, asked.inputs, asked.linear, asked.start)
+        return float(rows["F_t_mean"][1:].mean())
+    with fmu.session({**asked.given, **SETTLED}) as session:
+        session.step(asked.period)
+        return session.get("F_t_mean")
+
+
+def mean_limit(fmu: FrictionFmu, asked: Question) -> float:
+    """F_C, or the mean of mu F_n over a period [N]: the friction of Coulomb's law at a constant velocity."""
+    forward: dict[str, Value] = {
+        "friction.model": "Coulomb",
+        "V": 1.0,
+        "vibration.V_1": 0.0,
+        "friction.sigma_2": 0.0,
+    }
+    with fmu.session({**asked.given, **forward}) as session:
+        session.step(asked.period)
+        return session.get("F_t_mean")
+
+
+def settings_for(fmu: FrictionFmu, asked: Question, goal: float) -> tuple[dict[str, Value], str]:
+    """Start values that hold an error of goal over F_C, and why they do."""
+    if not asked.inputs:
+        with fmu.session(asked.given) as session:
+            sigma = session.get("sigma")
+        of_F, of_mean = coulomb_errors(asked.values, sigma, asked.step)
+        bound = {"both": max(of_F, of_mean), "F_t": of_F, "F_t_mean": of_mean}[asked.output]
+        if bound <= goal:
+            return {"friction.model": "Coulomb"}, f"Coulomb friction, which is within {bound:.1e} F_C here."
+    # A power of ten, a little below so that an exponent is not lost to rounding.
+    tolerance = min(max(10.0 ** math.floor(math.log10(goal) + 1e-9), LEAST), MOST)
+    return {
+        "solver.tolerance": float(f"{tolerance:.0e}")
+    }, f"The default at solver.tolerance {tolerance:.0e}."
+
+
+def largest_errors(
+    fmu: FrictionFmu, asked: Question, settings: Mapping[str, Value], phases: tuple[float, ...]
+) -> tuple[float, float]:
+    """Largest differences [N] of F_t and F_t_mean to the FMU at its tightest tolerance.
+
+    With inputs over their samples, from delta_0 = 0; without over some steps from every phase of the
+    vibration, from delta_0 = 0 and settled.
+    """
+    if asked.inputs:
+        runs: list[tuple[float, dict[str, Value]]] = [(asked.start, {})]
+    else:
+        starts = [phase * asked.period for phase in phases] if asked.vibrates else [0.0]
+        runs = [(start, state) for start in starts for state in ({}, {**SETTLED})]
+    errors = np.zeros(2)
+    for start, state in runs:
+        errors = np.maximum(errors, _run_errors(fmu, asked, {**settings, **state}, start))
+    return float(errors[0]), float(errors[1])
+
+
+def _run_errors(fmu: FrictionFmu, asked: Question, settings: Mapping[str, Value], start: float) -> np.ndarray:
+    """Of one run from start [s]: from where the settings say."""
+    if asked.inputs:
+        steps = np.full(len(next(iter(asked.inputs.values()))) - 1, asked.step)
+    else:
+        steps = asked.step * np.array(STEPS)
+    held = {name: samples[: len(steps)] for name, samples in asked.inputs.items()}
+    rates = {name: np.diff(samples) / steps for name, samples in asked.inputs.items()} if asked.linear else {}
+    tight = {"solver.tolerance": LEAST, **{name: settings[name] for name in SETTLED if name in settings}}
+    advised, right = (
+        run(fmu, {**asked.given, **chosen}, steps, held, rates, start, ("F_t", "F_t_mean"))[1:]
+        for chosen in (settings, tight)
+    )
+    return np.abs(advised - right).max(axis=0)

@@ -1,0 +1,86 @@
+"""A mass held by a stuck contact, and the masters that may exchange force and velocity between them.
+
+    m v' = -F_t,      delta' = V = v,      F_t = sigma delta + sigma_1 V     while the contact sticks
+
+Every master below takes steps of H with values held over a step (but for "Jacobi, linear"), so a step is an
+affine map, and the exchange is stable where the eigenvalues of its matrix are at most 1.
+
+    Jacobi          both sides start from the values at the start of the step; F_t is what the last step of
+                    the FMU left, with the velocity that it was given then: libcosim, fmpy's SSP, most tools
+    Jacobi, reread  the same, but F_t is read again after the new V has been set
+    Jacobi, linear  the same with the derivatives: V, F_t and then F_t' are exchanged before the step
+    Gauss-Seidel    the mass goes first, then the contact with the new velocity
+
+With a = H^2 sigma / m and b = H sigma_1 / m the eigenvalues x are the roots of
+
+    Jacobi          x^3 - 2 x^2 + (1 + a + b) x - b          on the unit circle at  b - b^2 = a
+    Jacobi, reread  x^2 - (2 - b) x + 1 + a - b              b = a,  b = 2 + a / 2
+    Jacobi, linear  x^2 - (2 - a - b + b^2 / 2) x + D        D = 1,  b = 2 + a / 2
+                    D = 1 + a^2 / 4 - b - a b / 2 + b^2 / 2
+    Gauss-Seidel    x^2 - (2 - a - b) x + 1 - b              b = 0,  b = 2 - a / 2
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from frictioncontact.fmu import Value
+
+JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = "Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel"
+# The largest H sqrt(sigma / m) that some sigma_1 makes stable: there the two edges meet.
+LARGEST_STEP = {JACOBI: 0.5, REREAD: 2.0, LINEAR: math.sqrt(2.0 + math.sqrt(8.0)), GAUSS_SEIDEL: 2.0}
+MASTERS = tuple(LARGEST_STEP)
+MARGIN = 1.1  # of the advised sigma_1 over the smallest stable one, at which a swing never dies out
+
+
+def damping_range(m: float, sigma: float, master: str, H: float) -> tuple[float, float] | None:
+    """The sigma_1 [N s/m] between which a step of H [s] is stable; None where none is.
+
+    m in kg, sigma in N/m. The edges are those of the head of this file.
+    """
+    a = H / m * H * sigma
+    if math.sqrt(a) > LARGEST_STEP[master]:
+        return None
+    if master == JACOBI:
+        root = math.sqrt(max(1.0 - 4.0 * a, 0.0))
+        low, high = 2.0 * a / (1.0 + root), (1.0 + root) / 2.0
+    elif master == REREAD:
+        low, high = a, 2.0 + a / 2.0
+    elif master == LINEAR:
+        root = math.sqrt(max(1.0 + a - a**2 / 4.0, 0.0))
+        low, high = a**2 / 2.0 / (1.0 + a / 2.0 + root), 1.0 + a / 2.0 + min(1.0, root)
+    else:
+        low, high = 0.0, 2.0 - a / 2.0
+    return m / H * low, m / H * high
+
+
+def least_damping(m: float, sigma: float, master: str, H: float) -> float | None:
+    """The smallest stable sigma_1 [N s/m] and a tenth; 0 where none is needed, None where none is stable."""
+    span = damping_range(m, sigma, master, H)
+    return None if span is None else min(MARGIN * span[0], math.sqrt(span[0] * span[1]))
+
+
+def advice(m: float, sigma: float, master: str, H: float, start_values: Mapping[str, Value]) -> str:
+    """What to set for a mass of m [kg] on a contact of sigma [N/m] and a step of H [s], in words."""
+    time = math.sqrt(m / sigma)
+    lines = [
+        f"The stuck contact is a spring of {sigma:.6g} N/m under {m:g} kg: sqrt(m / sigma) = {time:.6g} s.",
+        f"{master}: friction.sigma_1 can make steps up to {LARGEST_STEP[master] * time:.6g} s stable.",
+    ]
+    span, damping = damping_range(m, sigma, master, H), least_damping(m, sigma, master, H)
+    if span is None or damping is None:
+        lines.append(f"At a step of {H:g} s no friction.sigma_1 does. Take a shorter step, or Gauss-Seidel.")
+        return "\n".join(lines)
+    lines.append(f"At a step of {H:g} s it is stable from {span[0]:.6g} to {span[1]:.6g} N s/m.")
+    if damping == 0.0:
+        lines.append("It needs none: the smallest errs least.")
+    else:
+        lines += [
+            f"Set {damping:.6g} N s/m, the smallest and a tenth: more errs more.",
+            "It adds sigma_1 delta' to F_t, also while the contact slides under a vibration: F_t may then",
+            "swing by many times F_C, though its mean stays. Set it only where the mass sticks.",
+        ]
+    settings = {**start_values, "friction.sigma_1": f"{damping:.6g}"}
+    lines.append("\n--start-values " + " ".join(f"{name} {value}" for name, value in settings.items()))
+    return "\n".join(lines)

@@ -1,0 +1,151 @@
+"""Many scenarios of an FMU in one call.
+
+    simulate_many({"V": V[:, None], "contact.stiffnessScale": scale},
+                  {"mean": "F_t_mean", "least": ("F_t", "min"), "work": ("W_f", "change")}, samples=64)
+
+gives arrays "mean", "least" and "work" of the shape that V[:, None] and scale broadcast to.
+
+The scenarios run in host/batch.c through the FMI functions of the FMU itself, on threads of this process.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import resources
+from .errors import BatchError
+from .prepare import Outputs, Unit, check_whole, prepared
+from .run import Progress
+from .runner import runner
+from .unpacked import loaded_fmu
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_THREADS = 1024
+
+
+def simulate_many(
+    values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
+    outputs: Outputs = ("F_t_mean",),
+    *,
+    fmu: str | Path | bytes | None = None,
+    settle: npt.ArrayLike | None = None,
+    duration: npt.ArrayLike = 1.0,
+    samples: int = 1,
+    unit: Unit = "period",
+    settled: bool = False,
+    inputs: Mapping[str, npt.ArrayLike] | None = None,
+    steps: npt.ArrayLike | None = None,
+    errors: Literal["raise", "keep"] = "raise",
+    threads: int | None = None,
+    progress: bool | Progress = False,
+) -> dict[str, np.ndarray] | pd.DataFrame:
+    """Results of every scenario: arrays of the shape that the values broadcast to, or a frame for a frame.
+
+    values    what is set at the start: name of an input or parameter -> values in the units of the model
+              description, those of an enumeration as names of its items or as numbers. Arrays broadcast
+              as in NumPy; a row of a frame is a scenario, and nothing broadcasts beyond its rows
+    outputs   names of variables to be read; or name of a result -> variable, or (variable, statistic)
+              with a statistic of "end" (after the last step, the default), "change" (since the settling),
+              "mean", "min", "max" (of the samples), "samples" (all of them: one axis more; in a frame the
+              columns NAME[0], NAME[1], ...)
+    fmu       another .fmu file of this model with a binary for this platform, or its bytes
+    settle    length of a first step that is not read. Where it is not given, there is none; then scenarios
+              start settled if the unit is the period and the values say nothing of initialState
+    duration  what is read after that, in samples equal steps
+    unit      of settle and duration: a period of the vibration, 1 / vibration.f, or a second
+    settled   start where the state tends to after infinitely many periods: initialState = Settled
+    inputs    what is set before each step, alike in all scenarios: name of an input -> a value for every step
+    steps     lengths of the steps, in the unit, in place of duration and samples
+    errors    "raise": BatchError with the message of the first scenario that the FMU refuses;
+              "keep": its results are NaN and "reason", one result more, holds the message (else None)
+    threads   that run at once, up to 1024; one for each processor that this process may use
+    progress  True: a bar on a terminal; or a function that is told how many scenarios are finished and
+              how many of them refused
+
+    BatchError before anything runs where a name, a value or a length is wrong; it names column and row,
+    counted from 0. At a KeyboardInterrupt the threads stop after their present step, and within a second
+    it goes on to the caller; a few steps of the default method are run without a thread, to their end.
+    """
+    batch = prepared(
+        loaded_fmu(resources.fmu() if fmu is None else fmu, runner(resources.batch_host())),
+        values,
+        outputs,
+        settle=settle,
+        duration=duration,
+        samples=samples,
+        unit=unit,
+        settled=settled,
+        inputs=inputs,
+        steps=steps,
+    )
+    if errors not in ("raise", "keep"):
+        raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
+    if threads is not None:
+        check_whole(threads, MOST_THREADS, "threads =")
+    with shown_progress(progress, batch.scenarios) as shown:
+        results = batch.run(threads or processors(), errors == "raise", shown)
+    if errors == "raise":
+        del results["reason"]
+    return _frame(results, values.index) if not isinstance(values, Mapping) else results
+
+
+def processors() -> int:
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _frame(results: Mapping[str, np.ndarray], index: pd.Index) -> pd.DataFrame:
+    import pandas as pd
+
+    columns: dict[str, np.ndarray] = {}
+    for name, array in results.items():
+        if array.ndim == 1:
+            columns[name] = array
+        else:
+            columns |= {f"{name}[{k}]": array[:, k] for k in range(array.shape[1])}
+    return pd.DataFrame(columns, index=index)
+
+
+def shown_progress(progress: bool | Progress, scenarios: int) -> AbstractContextManager[Progress]:
+    """What is told how many scenarios are finished and refused: a bar, the given function, or nothing."""
+    if callable(progress):
+        return nullcontext(progress)
+    return _bar(scenarios) if progress else nullcontext(lambda finished, refused: None)
+
+
+@contextmanager
+def _bar(scenarios: int) -> Iterator[Progress]:
+    """On standard error where that is a terminal: scenarios per second and time left."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"), TimeRemainingColumn(), TextColumn("{task.fields[refused]}"),
+    )  # fmt: skip
+    with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("Simulating", total=scenarios, rate="", refused="")
+        began = time.monotonic()
+
+        def show(finished: int, refused: int) -> None:
+            rate = finished / max(time.monotonic() - began, 1e-3)
+            bar.update(
+                task,
+                completed=finished,
+                rate=f"{rate:.0f}/s",
+                refused=f"{refused} refused" if refused else "",
+            )
+
+        yield show

@@ -1,0 +1,142 @@
+"""The arguments of `simulate_many`, checked before anything runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .columns import common_shape, flat, numbers_of, start_values
+from .errors import BatchError
+from .run import Batch
+from .runner import STATISTICS
+from .unpacked import LoadedFmu
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Statistic = Literal["end", "change", "mean", "min", "max", "samples"]
+Output = str | tuple[str, Statistic]
+Outputs = Sequence[str] | Mapping[str, Output]
+Unit = Literal["period", "s"]
+MOST_SAMPLES = 1_000_000
+
+
+def prepared(
+    fmu: LoadedFmu,
+    values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
+    outputs: Outputs,
+    *,
+    settle: npt.ArrayLike | None = None,
+    duration: npt.ArrayLike = 1.0,
+    samples: int = 1,
+    unit: Unit = "period",
+    settled: bool = False,
+    inputs: Mapping[str, npt.ArrayLike] | None = None,
+    steps: npt.ArrayLike | None = None,
+    times: bool = False,
+) -> Batch:
+    """The batch of `simulate_many`, checked. times: one result more, "seconds" that each took."""
+    lengths = None
+    if steps is not None:
+        lengths = _row(numbers_of(steps, "steps", 0.0), "steps")
+        samples = len(lengths)
+    if unit not in ("period", "s"):
+        raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
+    check_whole(samples, MOST_SAMPLES, "samples =")
+    named = _named(values)
+    if settle is None:
+        settle = 0.0
+        settled = settled or (unit == "period" and "initialState" not in named)
+    starts = start_values(fmu, _settled(fmu, named) if settled else named)
+    spans = {"settle": numbers_of(settle, "settle", 0.0), "duration": numbers_of(duration, "duration", 0.0)}
+    shape = common_shape(starts | spans, None if isinstance(values, Mapping) else len(values))
+    try:
+        columns = {name: flat(column, shape) for name, column in (starts | spans).items()}
+    except (MemoryError, ValueError):  # more than can be addressed
+        raise BatchError(f"no memory for {math.prod(shape)} scenarios") from None
+    return Batch(
+        fmu,
+        shape,
+        {name: columns[name] for name in starts},
+        columns["settle"],
+        columns["duration"],
+        int(samples),
+        _read(fmu, outputs),
+        fmu.variable("vibration.f", "unit").valueReference if unit == "period" else None,
+        times,
+        *_moving(fmu, inputs or {}, int(samples)),
+        lengths,
+    )
+
+
+def _moving(
+    fmu: LoadedFmu, inputs: Mapping[str, npt.ArrayLike], samples: int
+) -> tuple[tuple[int, ...], np.ndarray | None]:
+    """Value references, and values before each step."""
+    references, columns = [], []
+    for name, values in inputs.items():
+        references.append(fmu.variable(name, f"input {name}", ("input",)).valueReference)
+        columns.append(_row(numbers_of(values, f"input {name}"), f"input {name}"))
+        if len(columns[-1]) != samples:
+            raise BatchError(f"input {name}: {len(columns[-1])} values for {samples} steps")
+    return tuple(references), np.column_stack(columns) if columns else None
+
+
+def _row(array: np.ndarray, where: str) -> np.ndarray:
+    if array.ndim != 1:
+        raise BatchError(f"{where}: must be a row of numbers")
+    return np.ascontiguousarray(array)
+
+
+def check_whole(number: object, most: int, where: str) -> None:
+    is_whole = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
+    if not is_whole or not 1 <= number <= most:
+        raise BatchError(f"{where} {number}: must be a whole number from 1 to {most}")
+
+
+def _named(values: Mapping[str, npt.ArrayLike] | pd.DataFrame) -> Mapping[str, npt.ArrayLike]:
+    if isinstance(values, Mapping):
+        return values
+    if not hasattr(values, "columns"):
+        raise BatchError("values: must be a mapping of names to values, or a pandas frame")
+    if not values.columns.is_unique:
+        name = values.columns[values.columns.duplicated()][0]
+        raise BatchError(f"column {name}: is there twice")
+    return {name: values[name].array for name in values.columns}
+
+
+def _settled(fmu: LoadedFmu, named: Mapping[str, npt.ArrayLike]) -> Mapping[str, npt.ArrayLike]:
+    fmu.variable("initialState", "settled")
+    if "initialState" in named:
+        raise BatchError("column initialState: settled gives it already")
+    return {**named, "initialState": "Settled"}
+
+
+def _pair(output: Output, where: str) -> tuple[str, Statistic]:
+    pair = (output, "end") if isinstance(output, str) else output
+    if not isinstance(pair, (tuple, list)) or len(pair) != 2 or not isinstance(pair[0], str):
+        raise BatchError(f"{where}: {str(output)[:40]} is neither a variable nor (variable, statistic)")
+    return pair[0], pair[1]
+
+
+def _read(fmu: LoadedFmu, outputs: Outputs) -> dict[str, tuple[int, Statistic]]:
+    """Name of each result -> value reference and statistic."""
+    if isinstance(outputs, str) or not isinstance(outputs, Iterable):
+        raise BatchError(f"outputs = {outputs!r}: must be a sequence of names, or a mapping")
+    named = dict(outputs) if isinstance(outputs, Mapping) else {name: name for name in outputs}
+    read = {}
+    for name, output in named.items():
+        variable, statistic = _pair(output, f"output {name}")
+        found = fmu.variable(variable, f"output {name}")
+        if found.type != "Real":
+            raise BatchError(f"output {name}: {variable} is of type {found.type}; only Real is read")
+        if statistic not in STATISTICS:
+            raise BatchError(f"output {name}: {statistic!r} is not one of {', '.join(STATISTICS)}")
+        if name in ("reason", "seconds"):
+            raise BatchError(f"output {name}: the name is taken")
+        read[name] = found.valueReference, statistic
+    return read

@@ -1,0 +1,108 @@
+"""What all commands share: options, the one line that an error becomes, progress, shown paths, CSV files."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import importlib.util
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from frictioncontact import resources
+from frictioncontact.errors import UserError
+from frictioncontact.files import whole_file
+
+TABLE = 120  # characters, of the widest table
+called_as: str | None = None  # what a file of scripts/ calls the command of its user
+
+
+def command_line(prog: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
+    """The parser of a command; its texts keep their lines, and %(prog)s in them is what it is called."""
+    return argparse.ArgumentParser(
+        prog=called_as or prog,
+        description=description,
+        epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def add_fmu(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--fmu", type=Path, help="use this FMU instead of the package's own")
+
+
+def add_output(parser: argparse.ArgumentParser, default: Path) -> None:
+    parser.add_argument("--output", type=Path, default=default, help=f"folder to write to ({place(default)})")
+
+
+def place(path: Path) -> str:
+    """A default path in a help text: within the clone, or within the present folder."""
+    return str(path.relative_to(resources.CLONE) if path.is_absolute() else path).replace("%", "%%")
+
+
+def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespace) -> None:
+    """Runs a command. What its user can mend becomes one line on standard error, and the exit status 1."""
+    try:
+        run(options)
+        sys.stdout.flush()
+    except UserError as error:
+        sys.exit(f"error: {error}")
+    except OSError as error:
+        where = error.filename or ("standard output" if _stdout_fails() else getattr(options, "output", None))
+        sys.exit(f"error: {f'{where}: ' if where else ''}{error.strerror or error}")
+
+
+def _stdout_fails() -> bool:
+    """Whether nothing can be printed any more. What was not yet written then goes nowhere."""
+    try:
+        os.write(1, b"\n")
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return True
+    return False
+
+
+def can_draw() -> bool:
+    """Whether matplotlib is there; where it is not, says on standard error how to get it."""
+    if importlib.util.find_spec("matplotlib"):
+        return True
+    print("no pictures: pip install 'frictioncontact[plot]' installs what draws them", file=sys.stderr)
+    return False
+
+
+def table_console() -> Console:
+    """Standard output, for tables: wide enough to cut none off, whatever the terminal says of its width."""
+    return Console(width=max(TABLE, Console().width))
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """On standard error, gone at the end; nothing where that is no terminal."""
+    console = Console(stderr=True)
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        yield progress
+
+
+def shown(path: Path) -> str:
+    """The path as a person in the present folder would type it."""
+    path = path.resolve()
+    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
+
+
+def say_written(paths: Sequence[Path]) -> None:
+    print("Written:", ", ".join(map(shown, paths)))
+
+
+def write_csv(rows: Sequence[Mapping[str, object]], path: Path) -> Path:
+    """The rows under a header with the first one's names."""
+    with whole_file(path) as unfinished, unfinished.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return path

@@ -1,0 +1,280 @@
+"""FrictionContact.fmu through fmpy: load it once, open sessions, step them, read arrays.
+
+    with FrictionFmu("build/FrictionContact.fmu") as fmu, fmu.session({"vibration.V_1": 1.44}) as session:
+        session.step(5e-5)
+        session.get("F_t_mean")
+
+A value of an enumeration is its number or its item's name. Every refused call raises FrictionError with
+the FMU's own message.
+"""
+
+from __future__ import annotations
+
+import atexit
+import shutil
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Mapping, Sequence
+from ctypes import c_double, c_int, c_uint
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+from fmpy import extract, read_model_description
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    calloc,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    free,
+)
+
+from .errors import UserError
+from .platforms import library_in
+
+Value = float | int | str
+MODEL = "FrictionContact"
+INPUTS = ("V", "d", "E", "load")
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+SETTLED = {"initialState": "Settled"}  # start values: the periodic state
+
+
+class FrictionError(UserError):
+    """The FMU refused a call; the text is its message."""
+
+
+class FrictionFmu:
+    """The unzipped FMU and its model description."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
+        try:
+            self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))
+        except zipfile.BadZipFile:
+            self.close()
+            raise UserError(f"{path} is not an FMU: not a zip archive") from None
+        except (zlib.error, EOFError, RuntimeError) as error:
+            self.close()
+            raise UserError(f"{path} is not an FMU: damaged: {error}") from None
+        try:
+            self.description = read_model_description(str(self.directory), validate=False)
+        except Exception as error:  # whatever the reader makes of the text
+            self.close()
+            reason = (str(error) or type(error).__name__).splitlines()[0]
+            raise UserError(f"{path} is not an FMU: its modelDescription.xml: {reason}") from None
+        if self.description.modelName != MODEL:
+            self.close()
+            raise UserError(f"{path} is another FMU: {self.description.modelName}")
+        self.variables = {variable.name: variable for variable in self.description.modelVariables}
+        self._library = self._slave()  # keeps the shared library loaded between sessions
+
+    def _slave(self) -> FMU2Slave:
+        identifier = self.description.coSimulation.modelIdentifier
+        files = {path.relative_to(self.directory).as_posix() for path in self.directory.glob("binaries/*/*")}
+        library = library_in(files, identifier)
+        return FMU2Slave(
+            guid=self.description.guid,
+            modelIdentifier=identifier,
+            unzipDirectory=str(self.directory),
+            libraryPath=str(self.directory / library) if library else None,
+            instanceName="contact",
+        )
+
+    def session(
+        self,
+        start_values: Mapping[str, Value] | None = None,
+        start: float = 0.0,
+        tolerance: float | None = None,
+    ) -> Session:
+        """An initialized instance; times in s."""
+        return Session(self, self._slave(), start_values or {}, start, tolerance)
+
+    def close(self) -> None:
+        shutil.rmtree(self._temporary, ignore_errors=True)
+
+    def __enter__(self) -> FrictionFmu:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def logging_callbacks(messages: list[str]) -> fmi2CallbackFunctions:
+    """Callbacks of an instance, which keep its messages; the caller keeps them while the instance lives."""
+
+    def log(environment: object, instance: bytes, status: int, category: bytes, message: bytes) -> None:
+        messages.append(message.decode())
+
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = fmi2CallbackLoggerTYPE(log)
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    return callbacks
+
+
+class Session:
+    """One instance in step mode."""
+
+    def __init__(
+        self,
+        fmu: FrictionFmu,
+        slave: FMU2Slave,
+        start_values: Mapping[str, Value],
+        start: float,
+        tolerance: float | None,
+    ) -> None:
+        self.fmu = fmu
+        self.slave = slave
+        self.time = start
+        self.messages: list[str] = []
+        self._callbacks = logging_callbacks(self.messages)
+        slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+        try:
+            self._call(slave.setupExperiment, tolerance, start)
+            for name, value in start_values.items():
+                self.set(name, value)
+            self._call(slave.enterInitializationMode)
+            self._call(slave.exitInitializationMode)
+        except FrictionError:
+            self.close()
+            raise
+
+    def _call(self, function: object, *arguments: object) -> object:
+        before = len(self.messages)
+        try:
+            return function(*arguments)  # type: ignore[operator]
+        except FMICallException as error:
+            raise FrictionError("; ".join(self.messages[before:]) or str(error)) from None
+
+    def set(self, name: str, value: Value) -> None:
+        variable = self.fmu.variables[name]
+        if variable.type == "Real":
+            self._call(self.slave.setReal, [variable.valueReference], [float(value)])
+            return
+        if isinstance(value, str):
+            value = {item.name: int(item.value) for item in variable.declaredType.items}[value]
+        self._call(self.slave.setInteger, [variable.valueReference], [int(value)])
+
+    def set_rates(self, **rates: float) -> None:
+        """Time derivatives of inputs over the next step."""
+        references = [self.fmu.variables[name].valueReference for name in rates]
+        self._call(self.slave.setRealInputDerivatives, references, [1] * len(rates), list(rates.values()))
+
+    def step(self, h: float) -> None:
+        """Advance by h [s]."""
+        self._call(self.slave.doStep, self.time, h)
+        self.time += h
+
+    def step_many(self, h: float, count: int) -> None:
+        """count steps of h [s] with held inputs, with as little Python as possible between them."""
+        do_step, component, time = self.slave.fmi2DoStep, self.slave.component, self.time
+        for k in range(count):
+            self._call(do_step, component, time + k * h, h, 1)
+        self.time = time + count * h
+
+    def get(self, name: str) -> float:
+        return float(self.read([name])[0])
+
+    def read(self, names: Sequence[str] = OUTPUTS) -> np.ndarray:
+        references = [self.fmu.variables[name].valueReference for name in names]
+        return np.array(self._call(self.slave.getReal, references))
+
+    def force_rate(self) -> float:
+        """dF_t/dt [N/s] at the present time."""
+        reference, order, value = (c_uint * 1)(3), (c_int * 1)(1), (c_double * 1)()
+        reference[0] = self.fmu.variables["F_t"].valueReference
+        self._call(self.slave.fmi2GetRealOutputDerivatives, self.slave.component, reference, 1, order, value)
+        return value[0]
+
+    def slope(self, output: str, name: str) -> float:
+        """Partial derivative of an output by an input."""
+        of, by = ([self.fmu.variables[each].valueReference] for each in (output, name))
+        return self._call(self.slave.getDirectionalDerivative, of, by, [1.0])[0]
+
+    def close(self) -> None:
+        if self.slave.component is not None:
+            self.slave.fmi2FreeInstance(self.slave.component)
+            self.slave.component = None
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def simulate(
+    fmu: FrictionFmu,
+    start_values: Mapping[str, Value],
+    step: float,
+    count: int,
+    inputs: Mapping[str, Sequence[float]] | None = None,
+    linear: bool = False,
+    start: float = 0.0,
+    outputs: Sequence[str] = OUTPUTS,
+) -> dict[str, np.ndarray]:
+    """count steps of the length step [s]; arrays of count + 1 points, "time" among them.
+
+    inputs: count + 1 samples of any of INPUTS at the communication points; held over each step, or linear
+    between them. Before the first step F_t_mean equals what the FMU gives at the start.
+    """
+    samples = {name: np.asarray(values, dtype=float) for name, values in (inputs or {}).items()}
+    held = {name: values[:count] for name, values in samples.items()}
+    rates = {name: np.diff(values) / step for name, values in samples.items()} if linear else {}
+    rows = run(fmu, start_values, np.full(count, step), held, rates, start, outputs)
+    return {"time": start + step * np.arange(count + 1), **dict(zip(outputs, rows.T, strict=True))}
+
+
+def run(
+    fmu: FrictionFmu,
+    start_values: Mapping[str, Value],
+    steps: np.ndarray,
+    inputs: Mapping[str, np.ndarray],
+    rates: Mapping[str, np.ndarray],
+    start: float = 0.0,
+    outputs: Sequence[str] = OUTPUTS,
+) -> np.ndarray:
+    """Outputs at the start and after each of the steps [s], [point, output].
+
+    inputs and rates: value at the begin of each step, and its time derivative over the step (none: held).
+    """
+    rows = np.empty((len(steps) + 1, len(outputs)))
+    first = {name: float(values[0]) for name, values in inputs.items()}
+    with fmu.session({**start_values, **first}, start) as session:
+        rows[0] = session.read(outputs)
+        for k, step in enumerate(steps):
+            for name, values in inputs.items():
+                session.set(name, values[k])
+            if rates:
+                session.set_rates(**{name: values[k] for name, values in rates.items()})
+            session.step(float(step))
+            rows[k + 1] = session.read(outputs)
+    return rows
+
+
+def opened(path: Path) -> FrictionFmu:
+    """The FMU of a file, unzipped once in a process as long as the file stays as it is."""
+    try:
+        stat = path.stat()
+    except OSError as error:
+        raise UserError(f"{path}: {error.strerror}") from None
+    if path.is_dir():
+        raise UserError(f"{path}: Is a directory")
+    return _opened(path, (stat.st_ino, stat.st_mtime_ns, stat.st_size))
+
+
+@cache
+def _opened(path: Path, version: tuple[int, ...]) -> FrictionFmu:
+    fmu = FrictionFmu(path)
+    atexit.register(fmu.close)
+    return fmu

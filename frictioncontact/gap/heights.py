@@ -1,0 +1,105 @@
+"""Height statistics of the asperities: contact area, stiffness and normal load against the separation.
+
+Three contacts over the same two surfaces, all by quadrature of the same integrals (paper, Eq. 6-19):
+
+    exponential   density c exp(-lambda s), elastic-plastic asperities: the paper's, and the FMU's closed form
+    gaussian      normal density, elastic-plastic asperities (Chang, Etsion, Bogy 1987)
+    elastic       normal density, elastic asperities only (Greenwood, Williamson 1966)
+
+s = z / R_q is the height, h = d / R_q the separation, w = omega_c / R_q the critical interference.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from frictioncontact.errors import UserError
+from frictioncontact.parameters import E_FULL, Surfaces
+
+Density = Callable[[float], float]
+MODELS = ("exponential", "gaussian", "elastic")
+# Where both densities have fallen below 1e-17 of the integrals' values at the separation.
+TAIL = 14.0
+SMALLEST_SEPARATION = 1e-3  # in units of R_q: below, mean planes touch and no asperity theory holds
+
+
+def gaussian(s: float) -> float:
+    return math.exp(-0.5 * s * s) / math.sqrt(2.0 * math.pi)
+
+
+def exponential(c: float, decay: float) -> Density:
+    """c exp(-decay s), Eq. 17 with s = z / R_q."""
+    return lambda s: c * math.exp(-decay * s)
+
+
+def height_integral(h: float, n: float, density: Density = gaussian) -> float:
+    """F_n(h): the integral of (s - h)^n density(s) over s from h on."""
+    return _integral(lambda s: (s - h) ** n * density(s), h, h + TAIL)
+
+
+def _integral(function: Density, left: float, right: float) -> float:
+    """Adaptive quadrature, in pieces that grow away from the left end: densities fall off from there."""
+    corners, width = [left], 0.5
+    while corners[-1] + 1.5 * width < right:
+        corners.append(corners[-1] + width)
+        width *= 1.6
+    corners.append(right)
+    pieces = (
+        quad(function, a, b, epsabs=0.0, epsrel=1e-12, limit=200)[0]
+        for a, b in zip(corners[:-1], corners[1:], strict=True)
+    )
+    return math.fsum(pieces)
+
+
+def _density(surfaces: Surfaces, model: str) -> Density:
+    return exponential(surfaces.c, surfaces.lambda_) if model == "exponential" else gaussian
+
+
+def area(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
+    """A_r [m2], Eq. 18, 19, 22; model "elastic" takes Eq. 8 for every asperity."""
+    h, w = d / surfaces.R_q, surfaces.critical_interference(E) / surfaces.R_q
+    density = _density(surfaces, model)
+    front = math.pi * surfaces.beta * surfaces.A_n
+    if model == "elastic":
+        return front * height_integral(h, 1.0, density)
+    elastic = quad(lambda s: (s - h) * density(s), h, h + w, epsabs=0.0, epsrel=1e-12)[0]
+    plastic = _integral(lambda s: (2.0 * (s - h) - w) * density(s), h + w, h + w + TAIL)
+    return front * (elastic + plastic)
+
+
+def stiffness(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
+    """sigma [N/m], Eq. 3."""
+    return E * area(surfaces, d, E, model) ** 2 / d**3
+
+
+def load(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
+    """Normal load [N]: Eq. 9 below omega_c and Eq. 16 above it, summed over the asperities."""
+    R_q, omega_c = surfaces.R_q, surfaces.critical_interference(E)
+    h, w = d / R_q, omega_c / R_q
+    density = _density(surfaces, model)
+    count = surfaces.eta * surfaces.A_n
+    hertz = 4.0 / 3.0 * E * math.sqrt(surfaces.R) * R_q**1.5
+    if model == "elastic":
+        return count * hertz * height_integral(h, 1.5, density)
+    flow = math.pi * surfaces.R * R_q * surfaces.yield_pressure
+    elastic = quad(lambda s: (s - h) ** 1.5 * density(s), h, h + w, epsabs=0.0, epsrel=1e-12)[0]
+    plastic = _integral(lambda s: (2.0 * (s - h) - w) * density(s), h + w, h + w + TAIL)
+    return count * (hertz * elastic + flow * plastic)
+
+
+def separation(surfaces: Surfaces, wanted: float, E: float = E_FULL, model: str = "exponential") -> float:
+    """d [m] at which the surfaces carry the wanted load [N]."""
+    nearest, farthest = SMALLEST_SEPARATION * surfaces.R_q, 12.0 * surfaces.R_q
+    most, least = load(surfaces, nearest, E, model), load(surfaces, farthest, E, model)
+    if not least <= wanted <= most:
+        raise UserError(
+            f"load = {wanted:g} N is out of reach: these surfaces carry {least:.3g} N at d = 12 R_q "
+            f"and {most:.5g} N at d = {SMALLEST_SEPARATION:g} R_q"
+        )
+    return brentq(
+        lambda d: math.log(load(surfaces, d, E, model) / wanted), nearest, farthest, xtol=1e-18, rtol=1e-12
+    )

@@ -1,0 +1,170 @@
+"""`identify`: named parameters of the FMU from measured friction, and what is found, to print and to plot."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Console
+
+from frictioncontact import resources
+from frictioncontact.command import TABLE
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu, Value, opened
+from frictioncontact.identification.bootstrap import bootstrap as refits_of
+from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
+from frictioncontact.identification.experiment import Experiment, Rows
+from frictioncontact.identification.fit import fit as fitted
+from frictioncontact.identification.parameter import LARGEST, Parameter, accepted, parameter
+from frictioncontact.identification.result import Fit
+from frictioncontact.identification.search import Tell, silent
+from frictioncontact.identification.series import Record
+from frictioncontact.identification.show import show
+from frictioncontact.values import Variables, number, pairs, real
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    Asked = Sequence[str] | Mapping[str, float | tuple[float, float] | None]
+
+DEFAULT = ("contact.stiffnessScale", "vibration.phase_d")
+LEAST_REFITS = 40  # below, there is no 2.5 % quantile
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What a fit found. str() says first whether the law fits; plot() draws it."""
+
+    fit: Fit
+    experiment: Experiment = field(repr=False)
+    spread: np.ndarray | None = field(repr=False)  # coordinates of every refit, [refit, parameter]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted parameters, SI units: start values for `simulate`."""
+        names = (p.name for p in self.fit.parameters)
+        return dict(zip(names, map(float, self.fit.values), strict=True))
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Their 95 % intervals by profile likelihood; nan where the data give none."""
+        profiles = self.fit.profiles or []
+        return {p.name: interval for p, interval in zip(self.fit.parameters, profiles, strict=True)}
+
+    @property
+    def misfits(self) -> list[str]:
+        """What is wrong with the law for these data, in words; empty where it fits."""
+        return self.fit.misfits
+
+    def __str__(self) -> str:
+        text = io.StringIO()
+        show(Console(file=text, width=TABLE), self.experiment, self.fit, self.spread)
+        return text.getvalue()
+
+    def plot(self) -> Figure:
+        """Measured and fitted forces, and how sharply the data fix the parameters. Needs matplotlib."""
+        import matplotlib
+
+        from frictioncontact.identification.figures import picture
+
+        with matplotlib.rc_context():
+            return picture(self.experiment, self.fit)
+
+
+def identify(
+    data: str | Path | pd.DataFrame,
+    fit: Asked = DEFAULT,
+    *,
+    start: Mapping[str, Value] | None = None,
+    uncertain: Mapping[str, float | str] | None = None,
+    bootstrap: int | None = None,
+    fmu: str | Path | None = None,
+    tell: Tell = silent,
+) -> Identification:
+    """Least squares of any parameters of the FMU to measured friction, with 95 % intervals.
+
+    data       a CSV file, or a frame with the same headings, "NAME [UNIT]": a row a steady mean, F_t_mean
+               with V and any other input or parameter; or a series in time, F_t with position or V.
+               NAME.uncertainty is the standard uncertainty of a column
+    fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
+    start      start values that all rows share, SI units
+    uncertain  standard uncertainties: name -> SI value or per cent ("5%")
+    bootstrap  so many refits to data with new noise, at least 40, for intervals by simulation too
+    fmu        another .fmu file of this model
+    tell       is told what is begun
+
+    UserError names what is wrong with the data or the request.
+    """
+    if bootstrap is not None:
+        if not isinstance(bootstrap, (int, np.integer)):
+            raise UserError(f"bootstrap = {bootstrap!r}: must be a whole number")
+        if bootstrap < LEAST_REFITS:
+            raise UserError(
+                f"bootstrap {bootstrap}: must be at least {LEAST_REFITS}, to have a 2.5 % quantile"
+            )
+    loaded = opened(Path(fmu) if fmu else resources.fmu())
+    variables = Variables(loaded.description)
+    constants = {name: variables.given(name, value, "start") for name, value in pairs(start, "start").items()}
+    stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
+    rows = read(Path(data) if isinstance(data, str) else data, loaded, constants, stated)
+    asked = fit.items() if isinstance(fit, Mapping) else ((name, None) for name in _names(fit))
+    parameters = [_parameter(loaded, name, value, constants) for name, value in asked]
+    if not parameters:
+        raise UserError("fit: names no parameter")
+    _check(parameters, rows, constants)
+    experiment = (Record if isinstance(rows, Series) else Rows)(loaded, rows, parameters)
+    found = fitted(experiment, tell)
+    spread = None if bootstrap is None else refits_of(experiment, found, bootstrap, tell)
+    return Identification(found, experiment, spread)
+
+
+def _names(fit: Iterable[str]) -> list[str]:
+    if not isinstance(fit, Iterable):
+        raise UserError(f"fit = {fit!r}: must be a name, names, or a mapping of names")
+    names = [fit] if isinstance(fit, str) else list(fit)
+    for name in names:
+        if names.count(name) > 1:
+            raise UserError(f"{name} is to be fitted twice")
+    return names
+
+
+def _stated(fmu: FrictionFmu, name: str, value: float | str) -> Stated:
+    if name not in (MEASURED, FORCE, *accepted(fmu)):
+        raise UserError(f"the uncertainty of {name}: {name} is no variable that a file may hold")
+    text = str(value)
+    found = number(text.removesuffix("%"), f"the uncertainty of {name}")
+    if not 1.0 / LARGEST <= found <= LARGEST:
+        raise UserError(f"the uncertainty of {name}, {text}: must be from {1.0 / LARGEST:g} to {LARGEST:g}")
+    relative = text.endswith("%")
+    return Stated(name, found / 100.0 if relative else found, relative)
+
+
+def _parameter(
+    fmu: FrictionFmu, name: str, value: float | tuple[float, float] | None, constants: Mapping[str, Value]
+) -> Parameter:
+    if isinstance(value, (tuple, list)):
+        if len(value) != 2:
+            raise UserError(f"{name} = {value}: a range is (low, high)")
+        low, high = (real(bound, name) for bound in value)
+        if not low < high:
+            raise UserError(f"{name} = {low:g}..{high:g}: the range is empty")
+        return parameter(fmu, name, None, (low, high), constants)
+    return parameter(fmu, name, None if value is None else real(value, name), None, constants)
+
+
+def _check(
+    parameters: Sequence[Parameter], rows: Measurements | Series, constants: Mapping[str, Value]
+) -> None:
+    uncertain = () if isinstance(rows, Series) else [one.name for one in rows.uncertain]
+    for name in (p.name for p in parameters):
+        if name in rows.names:
+            raise UserError(f"{name} is a column of the measurements and can't be fitted too")
+        if name in constants:
+            raise UserError(f"{name} is given as a start value and can't be fitted too")
+        if name in uncertain:
+            raise UserError(f"{name} is fitted, and so takes no uncertainty")

@@ -1,0 +1,64 @@
+"""Headings of measurement files: "NAME [UNIT]", with the factor of the unit to SI."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.identification.parameter import accepted
+
+HEADING = re.compile(r"\s*([^\[\]]+?)\s*\[\s*([^\[\]]*?)\s*\]\s*")
+FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
+OWN = {  # columns that are no inputs or parameters of the FMU
+    "F_t_mean": FORCES,
+    "F_t": FORCES,
+    "time": {"s": 1.0, "ms": 1e-3},
+    "position": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    index: int
+    heading: str
+    name: str
+    factor: float  # from the column's unit to SI
+
+
+def units(fmu: FrictionFmu, name: str) -> dict[str, float]:
+    """The units that a variable may be given in, each with its factor to SI."""
+    variable = fmu.variables[name]
+    known = {variable.unit: 1.0}
+    for unit in fmu.description.unitDefinitions:
+        if unit.name == variable.unit:
+            known |= {display.name: 1.0 / display.factor for display in unit.displayUnits}
+    return known | (FORCES if variable.unit == "N" else {})
+
+
+def columns_of(fmu: FrictionFmu, path: Path, line: int, header: Sequence[str]) -> list[Column]:
+    return [_column(fmu, path, line, index, cell) for index, cell in enumerate(header)]
+
+
+def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> Column:
+    where = f"{path}, line {line}, column {index + 1}"
+    match = HEADING.fullmatch(cell)
+    if not match:
+        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]', for example 'V [m/s]'")
+    name, unit = match.groups()
+    plain = name.removesuffix(".uncertainty")
+    if plain in OWN:
+        known = OWN[plain]
+    elif plain in accepted(fmu):
+        known = units(fmu, plain)
+    else:
+        others = ", ".join([*OWN, *accepted(fmu)])
+        raise UserError(
+            f"{where}: there is no variable {name!r}; columns may be {others}, and NAME.uncertainty of each"
+        )
+    if unit not in known:
+        raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
+    return Column(index, cell.strip(), name, known[unit])

@@ -1,0 +1,133 @@
+"""Fits named parameters of the FMU to a CSV of measured friction: steady means, or a series in time."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from frictioncontact import resources
+from frictioncontact.command import (
+    add_fmu,
+    add_output,
+    can_draw,
+    command_line,
+    finish,
+    progress_bar,
+    table_console,
+)
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import opened
+from frictioncontact.identification.api import DEFAULT, identify
+from frictioncontact.identification.show import show
+from frictioncontact.values import Variables, assignment, number
+
+DESCRIPTION = """\
+Fits any parameters of the FMU to measured friction by least squares. Says first, in words, whether the law
+fits at all; then the values with 95 % intervals, linear and by profile likelihood, their correlations, and
+what the data can't tell. Draws identify.png."""
+
+EPILOG = """\
+The CSV has one row per steady state, and every model value is the FMU's own F_t_mean over one vibration
+period of the periodic state. Each column is a variable of the FMU with a unit that it may have, in brackets;
+lines that begin with # are skipped:
+
+  V [mm/s],vibration.V_1 [m/s],load [N],F_t_mean [N],F_t_mean.uncertainty [N]
+  20,0.5,100,31.2,0.8
+
+F_t_mean and V are needed. NAME.uncertainty, the standard uncertainty of a column, is optional. A column load
+drives the FMU's load: contact.input = Load and friction.limit = Load follow from it unless --set says
+otherwise. What is no column keeps the FMU's start value, or that of --set.
+
+A column time [s] makes it a series instead, for example a loop of presliding and sliding, with F_t [N] and
+either position [m] or V [m/s]; load, d and E may vary along it.
+
+Without a file it fits the informative rows of the paper's Table 2: two parameters, three
+rows. That is an identification, not a validation.
+
+examples:
+  %(prog)s
+  %(prog)s mine.csv --fit contact.stiffnessScale --fit F_C=55 --set vibration.f=22e3
+  %(prog)s mine.csv --fit contact.sigma=1e5..1e8 --set contact.model=Constant
+  %(prog)s mine.csv --uncertain F_t_mean=0.5 --uncertain vibration.V_1=10%% --bootstrap 1000"""
+
+EXAMPLE = resources.data() / "table2.csv"
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("frictioncontact identify", DESCRIPTION, EPILOG)
+    parser.add_argument("csv", type=Path, nargs="?", default=EXAMPLE, help="measurements (data/table2.csv)")
+    parser.add_argument(
+        "--fit",
+        action="append",
+        metavar="NAME[=START|=LOW..HIGH]",
+        help="parameter to fit, with a start value or a range that it stays in, in SI units; again for each "
+        "(contact.stiffnessScale and vibration.phase_d)",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="start value for all rows, in SI units",
+    )
+    parser.add_argument(
+        "--uncertain",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE|PERCENT%",
+        help="standard uncertainty, in SI units or per cent: of the measured force, of a column (each row "
+        "its own error), or of another variable (one error in all rows); again for each",
+    )
+    parser.add_argument(
+        "--bootstrap", type=int, metavar="N", help="intervals by N refits of data with new noise, too"
+    )
+    parser.add_argument("--quick", action="store_true", help="no picture")
+    add_fmu(parser)
+    add_output(parser, resources.output())
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    path = options.fmu or resources.fmu()
+    variables = Variables(opened(path).description)
+    with progress_bar() as bar:
+        task = bar.add_task("", total=None)
+        found = identify(
+            options.csv,
+            fit_of(options.fit),
+            start=dict(variables.assigned(text, "--set") for text in options.set),
+            uncertain=dict(assignment(text, "--uncertain") for text in options.uncertain),
+            bootstrap=options.bootstrap,
+            fmu=path,
+            tell=lambda text: bar.update(task, description=text),
+        )
+    show(table_console(), found.experiment, found.fit, found.spread)
+    if not options.quick and can_draw():
+        from frictioncontact import style
+        from frictioncontact.identification import figures  # takes a second, which --quick saves
+
+        options.output.mkdir(parents=True, exist_ok=True)
+        path = options.output / "identify.png"
+        style.save(figures.picture(found.experiment, found.fit), path, path.with_suffix(".svg"))
+        print(f"Written: {path} and .svg")
+
+
+def fit_of(words: Sequence[str] | None) -> dict[str, float | tuple[float, float] | None]:
+    """What --fit asks for: name -> start value, range or neither."""
+    asked: dict[str, float | tuple[float, float] | None] = {}
+    for text in words or DEFAULT:
+        name, _, value = text.partition("=")
+        if name in asked:
+            raise UserError(f"--fit names {name} twice")
+        parts = [number(part, f"--fit {text}") for part in value.split("..", 1)] if value else [None]
+        asked[name] = (parts[0], parts[1]) if len(parts) == 2 else parts[0]
+    return asked
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

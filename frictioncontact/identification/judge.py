@@ -1,0 +1,188 @@
+"""What a fit can't tell, and whether the law fits at all, in words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy import stats
+
+from frictioncontact.identification.experiment import Experiment
+from frictioncontact.identification.parameter import Parameter
+from frictioncontact.identification.result import Fit
+from frictioncontact.identification.search import SAME
+
+# kappa = sigma V_1 / (2 pi f F): mean friction changes by less than 0.3 % of F_C (1.5 % near V = V_1) per
+# e-fold of sigma outside of these, the first pair with d constant, the second where it vibrates.
+INFORMATIVE = {False: (0.1, 100.0), True: (0.01, 3000.0)}
+STIFFNESS_LIKE = ("contact.stiffnessScale", "contact.sigma", "d", "E", "load")
+MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
+
+
+def judge(experiment: Experiment, result: Fit) -> None:
+    """Adds misfits and warnings to a fit with kappa and profiles."""
+    result.misfits.extend(_misfits(experiment, result))
+    result.warnings.extend(
+        [
+            *_count(experiment, result),
+            *_kappa(experiment, result),
+            *(text for k in range(len(result.parameters)) for text in _interval(result, k)),
+            *_correlated(result),
+            *_minima(result),
+        ]
+    )
+
+
+def _misfits(experiment: Experiment, result: Fit) -> list[str]:
+    rms = float(np.sqrt(np.mean(result.residuals**2)))
+    found = []
+    if result.known and result.degrees > 0:
+        independent = result.squares / result.correlated
+        chance = float(stats.chi2.sf(independent, result.degrees))
+        if chance < 0.01:
+            stated = float(np.sqrt(np.mean(experiment.weight**-2.0)))
+            found.append(
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is larger than the stated "
+                f"uncertainties allow ({stated:.3g} N rms; probability {chance:.1e}). "
+                "The intervals are those of a law that fits"
+            )
+    elif experiment.word == "sample":
+        scatter = float(np.std(np.diff(experiment.force, 2)) / math.sqrt(6.0))
+        if rms > 2.0 * scatter:
+            found.append(
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / scatter:.3g} times the "
+                f"scatter of neighbouring samples, {scatter:.2g} N. "
+                f"The intervals count {result.correlated:.3g} samples as one"
+            )
+    return found
+
+
+def _count(experiment: Experiment, result: Fit) -> list[str]:
+    if result.degrees <= 0 and not result.known:
+        return [
+            f"as many parameters as {experiment.word}s: the fit has nothing to check it, and "
+            "no interval can be given"
+        ]
+    if result.degrees < 3:
+        return [
+            f"{len(experiment.force)} {experiment.word}s for {len(result.parameters)} parameters: "
+            "an identification, not a validation"
+        ]
+    return []
+
+
+def _kappa(experiment: Experiment, result: Fit) -> list[str]:
+    if result.kappa is None:
+        return []
+    conditions = experiment.rows.conditions
+    fitted = {p.name: value for p, value in zip(result.parameters, result.values, strict=True)}
+    rows = [{**condition, **fitted} for condition in conditions]
+    if any(row.get("friction.limit") == "Load" and row.get("vibration.a_d", 0.0) for row in rows):
+        return []
+    reversing = [k for k, row in enumerate(rows) if _moves(row)]
+    if not reversing and not set(fitted) & {"V", "vibration.V_1", "vibration.a_d"}:
+        if any(row.get("friction.model") == "LuGre" or row.get("friction.sigma_2", 0.0) for row in rows):
+            return []
+        return [
+            "no row has V < V_1, nor both V_1 and a_d: the means are F_C, and tell nothing about anything "
+            "else"
+        ]
+    stiff = ", ".join(p.name for p in result.parameters if p.name in STIFFNESS_LIKE)
+    if not stiff or not reversing:
+        return []
+    bounds = [INFORMATIVE[rows[k].get("vibration.a_d", 0.0) > 0.0] for k in reversing]
+    kappa = result.kappa[reversing]
+    name = "kappa = sigma V_1 / (2 pi f F_C)"
+    if all(value > high for value, (_, high) in zip(kappa, bounds, strict=True)):
+        side = f"at least {kappa.min():.3g}: beyond {min(high for _, high in bounds):g}"
+    elif all(value < low for value, (low, _) in zip(kappa, bounds, strict=True)):
+        side = f"at most {kappa.max():.3g}: below {max(low for low, _ in bounds):g}"
+    else:
+        return []
+    return [f"{name} is {side} the mean friction says nearly nothing about {stiff}"]
+
+
+def _moves(row: dict) -> bool:
+    """Whether the mean can differ from F_C: V reverses, or it varies while the stiffness does."""
+    V_1 = float(row.get("vibration.V_1", 0.0))
+    return abs(float(row.get("V", 0.0))) < V_1 or V_1 * float(row.get("vibration.a_d", 0.0)) > 0.0
+
+
+def _interval(result: Fit, k: int) -> list[str]:
+    p, value = result.parameters[k], result.values[k]
+    low, high = result.profiles[k]
+    unit = "" if p.unit == "1" else f" {p.unit}"
+    found = []
+    if not math.isnan(low):
+        below, above = p.to_coordinate(low), p.to_coordinate(high)
+        half = 0.5 * (above - below)
+        open_low, open_high = (
+            not math.isfinite(below) or below <= p.to_coordinate(p.low),
+            not math.isfinite(above),
+        )
+        if open_low and open_high:
+            found.append(
+                f"the data can't tell {p.name}: within 95 % it may be anything from {p.low:.3g} to "
+                f"{p.high:.3g}{unit}, which is all that was searched"
+            )
+        elif open_low or open_high:
+            bound = f"at most {high:.3g}" if open_low else f"at least {low:.3g}"
+            found.append(
+                f"the data can't tell {p.name}: within 95 % it is {bound}{unit}, and no more is known"
+            )
+        elif half > _large(p, value):
+            found.append(f"the data can't tell {p.name}: within 95 % it may be {low:.3g} to {high:.3g}{unit}")
+        linear = result.half_widths[k]
+        if not (open_low or open_high) and linear > 0.0 and not 1.0 / MISLEADS < half / linear < MISLEADS:
+            found.append(f"the linear interval of {p.name} misleads: trust the profile")
+    elif result.half_widths[k] > _large(p, value):
+        found.append(f"the data can't tell {p.name}")
+    if value <= p.low * (1 + 1e-6) or value >= p.high * (1 - 1e-6):
+        found.append(f"{p.name} ended at its bound {value:g}{unit}")
+    return found
+
+
+def _open(result: Fit, k: int) -> bool:
+    """Whether the data give no bound to the parameter on a side."""
+    low, high = result.profiles[k]
+    return math.isinf(high) or math.isinf(low) or (result.parameters[k].logarithmic and low == 0.0)
+
+
+def _large(p: Parameter, value: float) -> float:
+    """Half-width in the coordinate beyond which a value is not known."""
+    if p.logarithmic:
+        return math.log(2.0)
+    return math.pi / 4.0 if p.periodic else abs(p.to_coordinate(value))
+
+
+def _correlated(result: Fit) -> list[str]:
+    correlation, found = result.correlation, []
+    for j in range(len(result.parameters)):
+        for k in range(j):
+            if abs(correlation[j, k]) > 0.95:
+                pair = f"{result.parameters[k].name} and {result.parameters[j].name}"
+                found.append(f"the data hardly tell {pair} apart: correlation {correlation[j, k]:.3f}")
+    return found
+
+
+def _minima(result: Fit) -> list[str]:
+    edge, found = result.region_bound, []
+    if not result.minima[0].settled:
+        found.append("the fit did not settle: its search was ended after its last evaluation")
+    for other in result.minima[1:4]:
+        if all(
+            _open(result, k)
+            for k in range(len(result.parameters))
+            if abs(other.point - result.point)[k] > SAME
+        ):
+            continue  # somewhere on a floor that the profiles tell of
+        values = ", ".join(
+            f"{p.name} {p.to_value(x):.4g}" for p, x in zip(result.parameters, other.point, strict=False)
+        )
+        if other.squares < edge:
+            found.append(f"another solution lies within the 95 % region: {values}")
+        elif math.isfinite(edge):
+            found.append(f"another minimum, outside the 95 % region: {values}")
+        else:
+            found.append(f"another minimum: {values}")
+    return found

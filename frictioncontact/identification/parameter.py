@@ -1,0 +1,110 @@
+"""A parameter that is fitted, and the coordinate it is fitted in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu
+
+# The ranges where nothing is given. Of other parameters starts are sought within a factor of 3 of the usual
+# value, and the fit stays within a factor of FARTHEST of it.
+RANGES = {
+    "contact.stiffnessScale": (1e-9, 10.0),
+    "contact.sigma": (1e3, 1e13),
+    "vibration.phase_d": (0.0, 2.0 * math.pi),
+}
+NEAR, FARTHEST = 3.0, 1e6
+LARGEST = 1e50  # a value without a bound in the model description, and a residual
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """The coordinate is the logarithm if the parameter must be positive, so that an interval is a factor.
+
+    Else it is the value over the largest that is searched, or over 1 rad.
+    """
+
+    name: str
+    unit: str
+    low: float  # the fit stays from low to high
+    high: float
+    search: tuple[float, float]  # where starts are sought
+    start: float | None
+    logarithmic: bool
+
+    @property
+    def periodic(self) -> bool:
+        return self.name == "vibration.phase_d"
+
+    @property
+    def unit_of_coordinate(self) -> float:
+        return 1.0 if self.periodic else max(map(abs, self.search)) or 1.0
+
+    def to_coordinate(self, value: float) -> float:
+        if self.logarithmic:
+            return math.log(value) if value > 0.0 else -math.inf
+        return value / self.unit_of_coordinate
+
+    def to_value(self, coordinate: float) -> float:
+        return float(self.values(np.float64(coordinate)))
+
+    def values(self, coordinates: np.ndarray) -> np.ndarray:
+        if self.logarithmic:
+            return np.exp(np.minimum(coordinates, 700.0))
+        return coordinates * self.unit_of_coordinate
+
+    def wrapped(self, coordinate: float) -> float:
+        return coordinate % (2.0 * math.pi) if self.periodic else coordinate
+
+
+def accepted(fmu: FrictionFmu) -> list[str]:
+    """Variables that a column may hold, or a fit vary."""
+    return [
+        name
+        for name, variable in fmu.variables.items()
+        if variable.type == "Real"
+        and variable.causality in ("input", "parameter")
+        and not name.startswith("solver.")
+        and name != "delta_0"
+    ]
+
+
+def parameter(
+    fmu: FrictionFmu,
+    name: str,
+    start: float | None,
+    search: tuple[float, float] | None,
+    constants: Mapping[str, Any],
+) -> Parameter:
+    """A parameter by its name in the FMU, with bounds and unit from the model description.
+
+    search is the range that it stays in; of a phase it says only where starts are sought. UserError where the
+    name is none that can be fitted, or a value is out of bounds.
+    """
+    if name not in accepted(fmu):
+        raise UserError(f"{name} can't be fitted; these can: {', '.join(accepted(fmu))}")
+    variable = fmu.variables[name]
+    low = -LARGEST if variable.min is None else float(variable.min)
+    high = LARGEST if variable.max is None else float(variable.max)
+    for value in (*(search or ()), *([] if start is None else [start])):
+        if not low <= value <= high:
+            raise UserError(f"{name} = {value:g} {variable.unit} must be from {low:g} to {high:g}")
+    logarithmic = low > 0.0
+    search = search or (RANGES.get(name) if start is None else None)
+    if search is not None:
+        stays = search
+    else:
+        usual = float(constants.get(name, variable.start)) if start is None else start
+        usual = usual or float(variable.nominal or 1.0)
+        far = FARTHEST * abs(usual)
+        search = max(low, min(usual / NEAR, usual * NEAR)), min(high, max(usual / NEAR, usual * NEAR))
+        stays = max(low, usual / FARTHEST if logarithmic else -far), min(high, far)
+    if name == "vibration.phase_d":
+        stays = -math.inf, math.inf
+    return Parameter(name, variable.unit, *stays, search, start, logarithmic)

@@ -1,0 +1,104 @@
+"""What a fit found, on the terminal: first whether the law fits, then numbers, then what they can't tell."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from frictioncontact.identification.bootstrap import quantiles
+from frictioncontact.identification.data import Measurements
+from frictioncontact.identification.experiment import Experiment
+from frictioncontact.identification.result import Fit
+from frictioncontact.parameters import E_FULL, SEPARATION
+
+MOST = 30  # rows shown
+
+
+def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarray | None = None) -> None:
+    """Misfits, values and intervals, rows, correlations, warnings. spread: the refits of bootstrap()."""
+
+    def say(text: str) -> None:
+        console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    for text in result.misfits:
+        say(f"MISFIT: {text}\n")
+    console.print(_values(result, spread))
+    if experiment.word == "row":
+        console.print(_rows(experiment, result))
+    if len(result.parameters) > 1:
+        console.print(_correlations(result))
+    word = experiment.word
+    say(f"misfit: {np.sqrt(np.mean(result.residuals**2)):.3g} N rms over {len(result.residuals)} {word}s")
+    if math.isfinite(result.deviation):
+        say(f"scatter of one {word}: {result.deviation:.3g} N ({result.degrees} degrees of freedom)")
+    if not result.known and not result.misfits:
+        say("whether the law fits within the measurement's scatter can't be said: no uncertainty is stated")
+    names = [p.name for p in result.parameters]
+    if "contact.stiffnessScale" in names and isinstance(experiment.rows, Measurements):
+        scale = result.values[names.index("contact.stiffnessScale")]
+        say(f"asperity stiffness at 14 um, scaled: {_stiffness(experiment, scale):.5g} N/m")
+    for warning in result.warnings:
+        say(f"warning: {warning}")
+
+
+def _stiffness(experiment: Experiment, scale: float) -> float:
+    """sigma [N/m] at the separation and modulus of Table 1, with what else the first row has."""
+    plain = {
+        "contact.input": "Separation",
+        "d": SEPARATION,
+        "E": E_FULL,
+        "vibration.a_d": 0.0,
+        "contact.stiffnessScale": scale,
+    }
+    with experiment.fmu.session({**experiment.rows.conditions[0], **plain}) as session:
+        return session.get("sigma")
+
+
+def _values(result: Fit, spread: np.ndarray | None) -> Table:
+    table = Table(title="Fitted parameters", title_justify="left")
+    headings = ["parameter", "unit", "value", "95 % interval, linear", "by profile"]
+    for heading in headings + ([] if spread is None else [f"by {len(spread)} refits"]):
+        table.add_column(heading, justify="left" if heading == "parameter" else "right")
+    for k, p in enumerate(result.parameters):
+        intervals = [result.interval(k), result.profiles[k]]
+        if spread is not None:
+            intervals.append(quantiles(result, spread, k))
+        table.add_row(p.name, p.unit, f"{result.values[k]:.6g}", *(_interval(*one) for one in intervals))
+        if p.unit == "rad":
+            degrees = [_interval(*np.degrees(one)) for one in intervals]
+            table.add_row("", "deg", f"{math.degrees(result.values[k]):.6g}", *degrees)
+    return table
+
+
+def _interval(low: float, high: float) -> str:
+    return "none" if math.isnan(low) else f"{low:.5g} .. {high:.5g}"
+
+
+def _rows(experiment: Experiment, result: Fit) -> Table:
+    table = Table(title="Mean friction force [N]", title_justify="left")
+    for heading in ("row", "measured", "fitted", "difference", "kappa"):
+        table.add_column(heading, justify="right")
+    for k in range(min(len(result.model), MOST)):
+        table.add_row(
+            str(k + 1),
+            f"{experiment.force[k]:.3f}",
+            f"{result.model[k]:.3f}",
+            f"{result.residuals[k]:+.3f}",
+            f"{result.kappa[k]:.3g}",
+        )
+    if len(result.model) > MOST:
+        table.add_row("...", "", "", "", "")
+    return table
+
+
+def _correlations(result: Fit) -> Table:
+    table = Table(title="Correlations", title_justify="left")
+    table.add_column("")
+    for p in result.parameters:
+        table.add_column(p.name, justify="right")
+    for p, row in zip(result.parameters, result.correlation, strict=True):
+        table.add_row(p.name, *("none" if math.isnan(value) else f"{value:+.3f}" for value in row))
+    return table

@@ -1,0 +1,84 @@
+"""One scene over time: a table on the terminal, or a CSV file."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from frictioncontact import resources
+from frictioncontact.command import add_fmu, command_line, finish, say_written
+from frictioncontact.errors import UserError
+from frictioncontact.files import write_whole
+from frictioncontact.fmu import INPUTS, OUTPUTS, opened
+from frictioncontact.simulation.run import simulate
+from frictioncontact.values import Variables, csv_rows, number, shown
+
+DESCRIPTION = """\
+Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file. All values
+are in SI units, as in the FMU; what is not set has the FMU's start value.
+
+  %(prog)s --set V=0.5 --set vibration.V_1=1.44 --stop 1e-3 --step 5e-5
+  %(prog)s --inputs drive.csv --stop 2 --step 1e-3 --outputs F_t_mean W_f --output out.csv"""
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("frictioncontact simulate", DESCRIPTION)
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="start value")
+    parser.add_argument("--stop", type=float, required=True, help="end, s")
+    parser.add_argument("--step", type=float, required=True, help="time between two rows, s")
+    parser.add_argument(
+        "--inputs", type=Path, metavar="CSV",
+        help=f"columns time and any of {', '.join(INPUTS)}, linear between their samples",
+    )  # fmt: skip
+    parser.add_argument(
+        "--outputs", nargs="+", default=OUTPUTS, metavar="NAME", help=f"variables ({' '.join(OUTPUTS)})"
+    )
+    parser.add_argument("--output", type=Path, metavar="CSV", help="file to write to")
+    add_fmu(parser)
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    path = options.fmu or resources.fmu()
+    variables = Variables(opened(path).description)
+    start = dict(variables.assigned(text, "--set") for text in options.set)
+    table = simulate(
+        start,
+        stop=options.stop,
+        step=options.step,
+        inputs=read_inputs(options.inputs) if options.inputs else None,
+        outputs=options.outputs,
+        fmu=path,
+    )
+    if options.output:
+        write_whole(options.output, table.to_csv(index=False))
+        say_written([options.output])
+    else:
+        print(table.to_string(index=False, float_format="{:.6g}".format))
+
+
+def read_inputs(path: Path) -> dict[str, list[float]]:
+    """The columns of a CSV file under their headings; UserError names file, line and column."""
+    lines = list(csv_rows(path))
+    if not lines:
+        raise UserError(f"{path}: no header row")
+    header = lines[0][1]
+    for name in header:
+        if header.count(name) > 1:
+            raise UserError(f"{path}: column {shown(name)} is there twice")
+    columns: dict[str, list[float]] = {name: [] for name in header}
+    for line, cells in lines[1:]:
+        if len(cells) != len(header):
+            raise UserError(f"{path}, line {line}: has {len(cells)} cells where the header has {len(header)}")
+        for name, cell in zip(header, cells, strict=True):
+            columns[name].append(number(cell, f"{path}, line {line}, {name}"))
+    return columns
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

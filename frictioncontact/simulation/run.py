@@ -1,0 +1,91 @@
+"""`simulate`: one scene over time, as a table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from frictioncontact import resources
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import OUTPUTS, FrictionFmu, Value, opened, run
+from frictioncontact.simulation.inputs import Samples, samples
+from frictioncontact.values import Variables, pairs
+
+if TYPE_CHECKING:
+    Table = Mapping[str, npt.ArrayLike] | pd.DataFrame
+
+MOST = 10_000_000  # rows
+
+
+def simulate(
+    start: Mapping[str, Value] | None = None,
+    *,
+    stop: float,
+    step: float,
+    inputs: Table | None = None,
+    outputs: Sequence[str] = OUTPUTS,
+    fmu: str | Path | None = None,
+) -> pd.DataFrame:
+    """A scene from 0 to stop; a row each step, with the column time [s] and one for each output.
+
+    start    name of an input or parameter -> its value at the start, in the units of the model description;
+             of an enumeration the name of an item or its number
+    stop     s; the last step is shorter where stop is no multiple of step
+    step     s between two rows; F_t_mean is the mean over the time since the row before
+    inputs   a table (mapping or frame) with time [s] and any of V, d, E, load: linear between the samples,
+             held before the first and after the last; two samples at one time are a jump. The result does not
+             depend on how samples and steps lie to each other
+    outputs  names of variables to be read
+    fmu      another .fmu file of this model
+
+    UserError names what is wrong with a name or value; FrictionError is the FMU's own refusal.
+    """
+    loaded = opened(Path(fmu) if fmu else resources.fmu())
+    outputs = _names(outputs)
+    values = checked(loaded, pairs(start, "start"), outputs)
+    ends = _ends(stop, step)
+    moving = samples(inputs) if inputs is not None else Samples(np.zeros(1), {})
+    times = moving.steps(ends)
+    begins = np.concatenate([[0.0], times[:-1]])
+    lengths = times - begins
+    rows = run(loaded, values, lengths, *moving.over(begins, times), outputs=outputs)
+    if "F_t_mean" in outputs:
+        k = list(outputs).index("F_t_mean")
+        impulse = np.concatenate([[0.0], np.cumsum(rows[1:, k] * lengths)])
+        kept = np.concatenate([[0], np.searchsorted(times, ends) + 1])
+        rows = rows[kept]
+        rows[1:, k] = np.diff(impulse[kept]) / np.diff(ends, prepend=0.0)
+    return pd.DataFrame({"time": np.concatenate([[0.0], ends]), **dict(zip(outputs, rows.T, strict=True))})
+
+
+def checked(fmu: FrictionFmu, start: Mapping[str, Value], outputs: Sequence[str]) -> dict[str, Value]:
+    """The start values; UserError where a name or a value is wrong, or an output can't be read."""
+    variables = Variables(fmu.description)
+    for name in outputs:
+        variables.readable(name, "outputs")
+    return {name: variables.given(str(name), value, "start") for name, value in start.items()}
+
+
+def _names(outputs: object) -> list[str]:
+    if isinstance(outputs, str) or not isinstance(outputs, Iterable):
+        raise UserError(f"outputs = {outputs!r}: must be a sequence of names")
+    return [str(name) for name in outputs]
+
+
+def _ends(stop: float, step: float) -> np.ndarray:
+    """Times [s] of the rows after the first."""
+    for name, value in (("stop", stop), ("step", step)):
+        if not (isinstance(value, (int, float, np.number)) and 0.0 < value < math.inf):
+            raise UserError(f"{name} = {value}: must be a positive number of seconds")
+    if stop > MOST * step:
+        raise UserError(f"step = {step:g} s: stop / step must be at most {MOST}")
+    count = max(1, math.ceil(stop / step - 1e-9))
+    ends = step * np.arange(1.0, count + 1.0)
+    ends[-1] = stop
+    return ends

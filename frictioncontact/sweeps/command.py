@@ -1,0 +1,100 @@
+"""Many scenarios on many processors: friction means, extremes and work over any parameters, into Parquet."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from frictioncontact import resources
+from frictioncontact.batch.many import processors
+from frictioncontact.command import command_line, finish
+from frictioncontact.errors import UserError
+from frictioncontact.sweeps.group import RESULTS
+from frictioncontact.sweeps.run import kept, sweep
+from frictioncontact.values import assignment
+
+DESCRIPTION = """\
+Runs the FMU to its periodic state in many scenarios and writes one row for each to results.parquet, a folder
+of files that pandas.read_parquet reads as one.
+
+Scenarios: every combination of the --vary values (a grid); --random N rows drawn from the --vary ranges;
+or the rows of a --csv file whose header names variables. Values are in SI units; those of enumerations
+are names.
+
+  %(prog)s --vary V=0.005:0.5:20:log --vary vibration.V_1=0:1.5:16
+  %(prog)s --random 10000 --seed 1 --vary V=1e-3:1:log --vary d=10e-6:18e-6 --set vibration.V_1=1.44
+  %(prog)s --csv scenarios.csv --cluster tcp://10.0.0.5:8786
+
+A sweep that was stopped, however it was, goes on when the same command is given again. Scenarios that the FMU
+refuses are kept apart in failed.parquet and failed.csv, with the reason."""
+
+EPILOG = "columns of the results:\n" + "\n".join(f"  {name:<12} {text}" for name, text in RESULTS.items())
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("frictioncontact sweep", DESCRIPTION, EPILOG)
+    add = parser.add_argument
+    add("--vary", action="append", default=[], metavar="NAME=VALUES",
+        help="a,b,c or low:high:count[:log]; with --random a,b,c or low:high[:log]")  # fmt: skip
+    add("--random", type=int, metavar="N", help="draw N scenarios instead of a grid")
+    add("--seed", type=int, default=0, help="of --random (0)")
+    add("--csv", type=Path, metavar="FILE", help="take the scenarios from a file")
+    add("--set", action="append", default=[], metavar="NAME=VALUE", help="in all scenarios")
+    add("--output", type=Path, help="folder of the results (sweep)")
+    add("--fresh", action="store_true", help="discard what the folder holds of a sweep")
+    add("--cluster", "--scheduler", metavar="tcp://HOST:PORT",
+        help="scheduler of a Dask cluster that has this package, instead of threads here")  # fmt: skip
+    add("--workers", type=int, default=processors(), help="threads here (one a processor)")
+    add("--group", "--chunk", type=int, metavar="N",
+        help="scenarios of a file, which a kill loses (a 64th of the sweep, at most 250000)")  # fmt: skip
+    add("--settle", type=float, default=1e6, help="periods before the one that is read (1e6)")
+    add("--samples", type=int, default=64, help="samples of that period (64)")
+    add("--fmu", type=Path, help="use this FMU instead of the package's own")
+    add("--quick", action="store_true", help="a grid of 16 x 12 scenarios, afresh")
+    options = parser.parse_args(argv)
+    if options.quick:
+        options.fresh = True
+        options.vary = options.vary or ["V=0.005:0.5:16:log", "vibration.V_1=0:1.44:12"]
+    options.output = options.output or resources.output("sweep-quick" if options.quick else "sweep")
+    return options
+
+
+def named(texts: Iterable[str], option: str) -> dict[str, str]:
+    """Of several "NAME=VALUE" of an option."""
+    values: dict[str, str] = {}
+    for text in texts:
+        name, value = assignment(text, option)
+        if name in values:
+            raise UserError(f"{option} {name}: is given twice")
+        values[name] = value
+    return values
+
+
+def wanted(options: argparse.Namespace) -> dict[str, object]:
+    """The arguments of `sweep`."""
+    given = {name: value for name, value in vars(options).items() if name != "quick"}
+    return given | {name: named(given[name], f"--{name}") for name in ("vary", "set")}
+
+
+def run(options: argparse.Namespace) -> None:
+    swept = sweep(progress=True, **wanted(options))
+    if swept.new:
+        print(swept)
+    else:
+        print(f"nothing to do: {options.output} holds all {swept.good} results "
+              f"({swept.refused} failed scenarios apart)")  # fmt: skip
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    options = arguments(argv)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends like Control-C
+    try:
+        finish(run, options)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"stopped; {kept(options.output)}") from None
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""The measurements of data/measurements, as arrays. Sources are in that folder's README."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from frictioncontact import resources
+
+FOLDER = resources.data() / "measurements"
+
+
+def _columns(path: Path) -> dict[str, list[str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def _floats(column: list[str]) -> np.ndarray:
+    return np.array([float(cell) for cell in column])
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Mean friction of sliding, without and with a longitudinal vibration (Luo 2024)."""
+
+    lubrication: str  # dry, oil
+    V: np.ndarray  # m/s; without the row at rest
+    without: np.ndarray  # N
+    vibrated: np.ndarray  # N
+    static_without: float  # N, largest static friction
+    static_vibrated: float  # N
+
+    f: float = 26e3  # Hz
+    amplitude: float = 0.35e-6  # m
+
+    @property
+    def V_1(self) -> float:
+        """Amplitude of the velocity [m/s]."""
+        return 2.0 * np.pi * self.f * self.amplitude
+
+
+def sliding(lubrication: str) -> Sliding:
+    """The rows of luo2024.csv, "dry" or "oil"."""
+    columns = _columns(FOLDER / "luo2024.csv")
+    keep = np.array([name == lubrication for name in columns["lubrication"]])
+    V, without, vibrated = (_floats(columns[name])[keep] for name in ("V_m_per_s", "F_without_N", "F_with_N"))
+    rest = V == 0.0
+    return Sliding(
+        lubrication,
+        V[~rest],
+        without[~rest],
+        vibrated[~rest],
+        float(without[rest][0]),
+        float(vibrated[rest][0]),
+    )
+
+
+@dataclass(frozen=True)
+class Record:
+    """Friction along a prescribed path under a prescribed load (friction-record.csv.gz), or a part of it."""
+
+    time: np.ndarray  # s
+    load: np.ndarray  # N
+    position: np.ndarray  # m
+    friction: np.ndarray  # N, positive where it resists positive velocity
+
+    def between(self, first: float, last: float) -> Record:
+        """The samples from first to last [s]."""
+        kept = (self.time >= first) & (self.time <= last)
+        return Record(self.time[kept], self.load[kept], self.position[kept], self.friction[kept])
+
+
+def record() -> Record:
+    """The whole record."""
+    with gzip.open(FOLDER / "friction-record.csv.gz", "rt", encoding="utf-8") as file:
+        return Record(*np.loadtxt(file, delimiter=",", skiprows=1, unpack=True))
+
+
+@dataclass(frozen=True)
+class NormalVibration:
+    """Reduction of friction by a vibration normal to the surface (Dong 2015)."""
+
+    V: np.ndarray  # m/s
+    reduction: np.ndarray  # of the friction without vibration
+
+    f: float = 22e3  # Hz
+    between: float = 40.6e-3  # m/s, measured as well; the abstract does not print its reduction
+
+
+def normal_vibration() -> NormalVibration:
+    columns = _columns(FOLDER / "dong2015.csv")
+    return NormalVibration(_floats(columns["V_m_per_s"]), _floats(columns["reduction"]))

@@ -1,1 +1,0 @@
-"""Sanitizers, fuzzers, soak, coverage, mutants: the long runs."""

@@ -1,1 +1,0 @@
-"""Many scenes on all cores or a Dask cluster."""

@@ -1,0 +1,1 @@
+"""What makes and proves the FMU and its Python package; nothing of it is installed by users."""

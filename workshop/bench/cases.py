@@ -1,0 +1,136 @@
+"""The scenes of the benchmarks, and what is right in each: the reference at every communication point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from frictioncontact.fmu import Value
+from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
+from workshop.bench.driver import Job
+from workshop.reference import solution as reference
+from workshop.reference.coulomb import mean_limit
+from workshop.reference.scene import Scene
+from workshop.reference.solution import MP
+from workshop.reference.start_values import scene_of
+
+SIGMAS = (6e4, 6e6, 6e8, 6e10, 6e12)  # N/m at 14 um
+# No whole number of periods, so that what cancels over a period, and luck at one phase, do not count.
+VIBRATING_STEP = 0.93 * PERIOD
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene with its communication steps; run from each of the starts [s]."""
+
+    name: str
+    title: str
+    start_values: Mapping[str, Value]
+    step: float = PERIOD  # s
+    count: int = 4
+    starts: tuple[float, ...] = (0.0,)
+    inputs: Mapping[str, np.ndarray] = field(default_factory=dict)  # count + 1 samples
+    linear: bool = False
+
+    def job(self, start: float = 0.0, budget: float = 0.02, **settings: Value) -> Job:
+        values = {**self.start_values, **{name.replace("__", "."): value for name, value in settings.items()}}
+        return Job(values, self.step, self.count, start, self.inputs, self.linear, budget)
+
+    def scene_at(self, k: int, start: float) -> Scene:
+        """The scene of step k, its inputs counted from the step's own start."""
+        scene = scene_of(self.start_values)
+        if not self.inputs:
+            return scene
+        now = {name: float(samples[k]) for name, samples in self.inputs.items()}
+        rates = {}
+        if self.linear:
+            rates = {f"{name}_rate": float(v[k + 1] - v[k]) / self.step for name, v in self.inputs.items()}
+        return replace(scene, **now, **rates, start=MP.mpf(start) + k * MP.mpf(self.step))
+
+    @property
+    def F_C(self) -> float:
+        """What errors are over [N]: F_C, or mu times the mean of F_n over a period at the start."""
+        scene = scene_of(self.start_values)
+        return scene.F_C if scene.limit == "Constant" else float(mean_limit(scene, 0, scene.period))
+
+
+def expected(case: Case, start: float) -> tuple[np.ndarray, np.ndarray]:
+    """F_t at the end of each step and its mean over the step [N]."""
+    delta, H = 0, MP.mpf(case.step)
+    whole = (H * scene_of(case.start_values).f) % 1 < 1e-9 and not case.inputs
+    F, F_mean = [], []
+    for k in range(case.count):
+        begin = MP.mpf(start) + (0 if whole else k) * H  # every whole period is the same map
+        scene = case.scene_at(k, start)
+        delta, impulse, _ = reference.solve(scene, begin, begin + H, delta)
+        F.append(float(reference.force(scene, begin + H, delta)))
+        F_mean.append(float(impulse) / case.step)
+    return np.array(F), np.array(F_mean)
+
+
+def vibrating(sigma: float) -> Case:
+    return Case(
+        f"vibrating-{sigma:.0e}".replace("+", ""),
+        f"V and d vibrate, σ {sigma:.0e} N/m".replace("e+", "e"),
+        {
+            "vibration.V_1": 1.44,
+            "vibration.a_d": 1.1e-6,
+            "contact.stiffnessScale": sigma / STIFFNESS_PRINTED,
+        },
+        step=VIBRATING_STEP,
+        starts=(0.0, 0.23 * PERIOD, 0.27 * PERIOD),
+    )
+
+
+def sampled(samples_per_period: int, sigma: float, linear: bool, periods: int = 1) -> Case:
+    """V and d of the vibration come from outside, as samples; the FMU's own vibration is off."""
+    count = samples_per_period * periods
+    angle = 2 * np.pi * (np.arange(count + 1) / samples_per_period + 0.13)
+    kind = "linear" if linear else "held"
+    return Case(
+        f"sampled-{samples_per_period}-{kind}-{sigma:.0e}".replace("+", ""),
+        f"V, d sampled {samples_per_period} per period, {kind}, σ {sigma:.0e}".replace("e+", "e"),
+        {"contact.stiffnessScale": sigma / STIFFNESS_PRINTED},
+        step=PERIOD / samples_per_period,
+        count=count,
+        inputs={"V": 0.005 + 1.44 * np.cos(angle), "d": SEPARATION + 1.1e-6 * np.cos(angle)},
+        linear=linear,
+    )
+
+
+def cases() -> list[Case]:
+    triangle = np.interp(np.arange(41), [0, 10, 30, 40], [0.0, 0.2, -0.2, 0.0])
+    steps = np.random.default_rng(20).uniform(0.002, 0.02, 17)
+    gaps = np.random.default_rng(21).uniform(13e-6, 15e-6, 17)
+    return [
+        *(vibrating(sigma) for sigma in SIGMAS),
+        Case(
+            "vibrating-V",
+            "V vibrates, constant σ 2.5e6 N/m",
+            {"vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.5e6},
+            step=VIBRATING_STEP,
+            starts=(0.0, 0.23 * PERIOD, 0.27 * PERIOD),
+        ),
+        Case(
+            "vibrating-d",
+            "d vibrates, V 5 mm/s",
+            {"vibration.a_d": 1.1e-6},
+            step=VIBRATING_STEP,
+            starts=(0.0, 0.4 * PERIOD),
+        ),
+        Case("held", "no vibration, V and d held", {}, step=1e-6, count=16, inputs={"V": steps, "d": gaps}),
+        Case(
+            "linear",
+            "presliding hysteresis, V linear",
+            {"contact.model": "Constant", "contact.sigma": 2.5e6},
+            step=5e-6,
+            count=40,
+            inputs={"V": triangle},
+            linear=True,
+        ),
+        sampled(20, 6e6, linear=True),
+        sampled(20, 6e12, linear=True),
+        sampled(20, 6e6, linear=False),
+    ]

@@ -1,0 +1,199 @@
+"""A mass on a belt with the FMU and a Jacobi master: both sides take each step from the values at its start.
+
+    m x'' = -k x - c x' + F_t,      V = V_belt - x',      V_belt = V_0 + V_a sin(2 pi f t)
+    F_t held       the mass sees F_t, the FMU sees V, of the start of the step
+    F_t linear     the mass sees F_t + t dF_t/dt (the FMU's output derivative), the FMU V + t dV/dt
+
+Within a step the mass is integrated exactly (matrix exponential), so that the coupling alone is seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from frictioncontact.fmu import FrictionError, FrictionFmu
+
+CHATTER = 0.5  # of F_C: an error of F_t beyond this is no solution
+COUPLINGS = ("F_t held", "F_t linear")
+
+
+@dataclass(frozen=True)
+class Belt:
+    """A belt to and fro: the mass sticks after every reversal and slips until the next."""
+
+    m: float = 1.0  # kg
+    k: float = 1e4  # N/m
+    c: float = 40.0  # N s/m
+    V_0: float = 0.05  # m/s
+    V_a: float = 0.3  # m/s
+    f: float = 10.0  # Hz
+    sigma: float = 1e6  # N/m
+    F_C: float = 10.0  # N
+    end: float = 0.25  # s
+
+    @property
+    def start_values(self) -> dict[str, float | str]:
+        return {"contact.model": "Constant", "contact.sigma": self.sigma, "F_C": self.F_C}
+
+    def V(self, t: float) -> float:
+        return self.V_0 + self.V_a * math.sin(2 * math.pi * self.f * t)
+
+    def V_rate(self, t: float) -> float:
+        return 2 * math.pi * self.f * self.V_a * math.cos(2 * math.pi * self.f * t)
+
+
+def transition(belt: Belt, H: float) -> np.ndarray:
+    """(x, v, F, F') at the start to (x, v) at the end of a step with F + t F'."""
+    system = np.zeros((4, 4))
+    system[0, 1] = 1.0
+    system[1] = [-belt.k / belt.m, -belt.c / belt.m, 1.0 / belt.m, 0.0]
+    system[2, 3] = 1.0
+    return expm(system * H)[:2]
+
+
+def acceleration(belt: Belt, x: float, v: float, F: float) -> float:
+    return (F - belt.k * x - belt.c * v) / belt.m
+
+
+def cosimulate(
+    fmu: FrictionFmu, belt: Belt, coupling: str, H: float, count: int, x_0: float = 0.0
+) -> np.ndarray:
+    """Rows of x, v, F_t at the communication points; ends early when x is beyond all bounds."""
+    linear = coupling == "F_t linear"
+    step = transition(belt, H)
+    x, v = x_0, 0.0
+    rows = []
+    with fmu.session({**belt.start_values, "V": belt.V(0.0)}) as session:
+        F = session.get("F_t")
+        rows.append((x, v, F))
+        for n in range(count):
+            session.set("V", belt.V(n * H) - v)
+            rate = 0.0
+            if linear:
+                session.set_rates(V=belt.V_rate(n * H) - acceleration(belt, x, v, F))
+                rate = session.force_rate()
+            x, v = step @ (x, v, F, rate)
+            session.step(H)
+            F = session.get("F_t")
+            rows.append((x, v, F))
+            if not abs(x) < 1e6:
+                break
+    return np.array(rows)
+
+
+Trajectory = Callable[[np.ndarray], np.ndarray]  # times to rows of x, v, F_t
+
+
+def monolithic(belt: Belt) -> Trajectory:
+    """Mass and bristle as one system: scipy's DOP853 at 1e-11."""
+
+    def slope(t: float, y: np.ndarray) -> tuple[float, float, float]:
+        x, v, F = y
+        V = belt.V(t) - v
+        return v, acceleration(belt, x, v, F), belt.sigma * (V - abs(V) * F / belt.F_C)
+
+    scale = (belt.F_C / belt.k, belt.V_a, belt.F_C)
+    tolerance = 1e-11
+    result = solve_ivp(
+        slope,
+        (0.0, belt.end),
+        (0.0, 0.0, 0.0),
+        "DOP853",
+        dense_output=True,
+        rtol=tolerance,
+        atol=np.array(scale) * tolerance,
+    )
+    if not result.success:
+        raise ArithmeticError(f"the monolithic reference fails: {result.message}")
+    return result.sol
+
+
+def coupled_errors(
+    fmu: FrictionFmu, belt: Belt, reference: Trajectory, quick: bool
+) -> list[dict[str, object]]:
+    """Largest error of F_t over F_C, and of x over F_C / k, against the communication step."""
+    rows = []
+    for coupling in COUPLINGS:
+        for count in (500, 2000, 8000) if quick else (250, 500, 1000, 2000, 4000, 8000, 16000, 32000):
+            H = belt.end / count
+            row: dict[str, object] = {"coupling": coupling, "H": H, "failure": ""}
+            try:
+                got = cosimulate(fmu, belt, coupling, H, count)
+            except FrictionError as error:
+                rows.append({**row, "error_F_t": np.nan, "error_x": np.nan, "failure": str(error)})
+                continue
+            right = reference(H * np.arange(len(got))).T
+            error_x = np.abs(got[:, 0] - right[:, 0]).max() * belt.k / belt.F_C
+            error_F = np.abs(got[:, 2] - right[:, 2]).max() / belt.F_C
+            if len(got) <= count or error_F > CHATTER:
+                row["failure"] = "chatters"
+            rows.append({**row, "error_F_t": float(error_F), "error_x": float(error_x)})
+    return [{key: row[key] for key in ("coupling", "H", "error_F_t", "error_x", "failure")} for row in rows]
+
+
+def stick_map(belt: Belt, coupling: str, H: float) -> np.ndarray:
+    """One step of the coupling in stick, where delta' = V: (x, v, F) at the start to those at the end."""
+    mass = transition(belt, H)
+    sigma = belt.sigma
+    rows = np.zeros((3, 3))
+    linear = coupling == "F_t linear"
+    # dF/dt = sigma V = -sigma v;  dV/dt = -(F - k x - c v) / m
+    F_rate = np.array([0.0, -sigma, 0.0]) if linear else np.zeros(3)
+    V_rate = -np.array([-belt.k, -belt.c, 1.0]) / belt.m if linear else np.zeros(3)
+    for i in range(2):
+        rows[i] = [mass[i, 0], mass[i, 1], mass[i, 2]] + mass[i, 3] * F_rate
+    rows[2] = np.array([0.0, -sigma * H, 1.0]) + 0.5 * sigma * H**2 * V_rate
+    return rows
+
+
+def theoretical_edge(belt: Belt, coupling: str) -> float:
+    """The step H [s] at which the spectral radius of the stick map passes 1.
+
+    Every F = k x at rest stays: one eigenvalue is 1 and is left out.
+    """
+
+    def grows(H: float) -> bool:
+        values = np.linalg.eigvals(stick_map(belt, coupling, H))
+        moving = np.delete(values, np.abs(values - 1.0).argmin())
+        return bool(np.abs(moving).max() > 1.0)
+
+    return _bisect(grows, 1e-6)
+
+
+def coupled_edge(fmu: FrictionFmu, belt: Belt, coupling: str) -> float:
+    """The same measured: does a small swing about rest, the belt at rest too, grow or die out?
+
+    The swing is so small that the bristle only sticks: sigma |V| / F_C is far below all other rates.
+    """
+    x_0 = 1e-9 * belt.F_C / belt.sigma
+    at_rest = replace(belt, V_0=0.0, V_a=0.0)
+
+    def grows(H: float) -> bool:
+        speed = np.abs(cosimulate(fmu, at_rest, coupling, H, 400, x_0)[:, 1])
+        slides = speed.max() > 1e-6 * belt.V_a  # it grew until the bristle slid
+        return bool(slides or speed[300:].max() > speed[200:300].max())
+
+    return _bisect(grows, 0.5 * theoretical_edge(belt, coupling), 1e-3)
+
+
+def _bisect(grows: Callable[[float], bool], low: float, precision: float = 1e-6) -> float:
+    if grows(low):
+        raise ArithmeticError(f"the coupling is unstable at H = {low:.3g} s already")
+    high = low
+    while not grows(high):
+        low, high = high, 1.5 * high
+        if high > 1e3:
+            return float("inf")
+    while high / low > 1 + precision:
+        middle = (low * high) ** 0.5
+        if grows(middle):
+            high = middle
+        else:
+            low = middle
+    return (low * high) ** 0.5

@@ -1,0 +1,176 @@
+"""Levels of the model: how far simpler laws and contacts are from the scene's own, for typical scenes."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from rich.progress import Progress
+from rich.table import Table
+
+from frictioncontact.advice.answer import PHASES, STEPS
+from frictioncontact.command import (
+    add_fmu,
+    add_output,
+    command_line,
+    finish,
+    progress_bar,
+    say_written,
+    write_csv,
+)
+from frictioncontact.fmu import FrictionFmu, Value
+from frictioncontact.parameters import E_FULL, E_REDUCED, STIFFNESS_PRINTED, TABLE_2
+from workshop.bench.cases import Case, sampled, vibrating
+from workshop.bench.coupling import Belt, monolithic
+from workshop.bench.driver import REPORT, wide_console
+from workshop.build import build_fmu
+from workshop.reference import solution as reference
+from workshop.reference.settled import settled
+from workshop.reference.solution import MP
+from workshop.reference.start_values import scene_of
+
+
+def largest_errors(
+    fmu: FrictionFmu, case: Case, settings: Mapping[str, Value], phases: tuple[float, ...] = PHASES
+) -> tuple[float, float]:
+    """Largest errors [N] of F_t and F_t_mean of a case's scene solved with settings, against the reference.
+
+    With inputs over their samples, from delta_0 = 0; without over some steps from every phase of the
+    vibration, from delta_0 = 0 and settled.
+    """
+    scene = scene_of(case.start_values)
+    if case.inputs:
+        runs = [(case.starts[0], 0.0)]
+    else:
+        period = 1.0 / scene.f
+        starts = [phase * period for phase in phases] if scene.vibrates else [0.0]
+        runs = [
+            (start, delta) for start in starts for delta in (0.0, float(settled(scene, MP.mpf(start), 0)))
+        ]
+    errors = np.zeros(2)
+    for start, delta in runs:
+        errors = np.maximum(errors, _run_errors(fmu, case, settings, start, delta))
+    return float(errors[0]), float(errors[1])
+
+
+def _run_errors(
+    fmu: FrictionFmu, case: Case, settings: Mapping[str, Value], start: float, delta_0: float
+) -> np.ndarray:
+    first = {name: float(samples[0]) for name, samples in case.inputs.items()}
+    errors, now, delta = np.zeros(2), MP.mpf(start), MP.mpf(delta_0)
+    values = {**case.start_values, "delta_0": delta_0, **settings, **first}
+    with fmu.session(values, start) as session:
+        for k, ratio in enumerate([1.0] * case.count if case.inputs else STEPS):
+            h, scene = ratio * case.step, case.scene_at(k, start)
+            for name in case.inputs:
+                session.set(name, getattr(scene, name))
+            if case.linear and case.inputs:
+                session.set_rates(**{name: getattr(scene, f"{name}_rate") for name in case.inputs})
+            session.step(h)
+            delta, impulse = reference.advance(scene, now, h, delta)[:2]
+            now += MP.mpf(h)
+            right = float(reference.force(scene, now, delta)), float(impulse) / h
+            errors = np.maximum(errors, np.abs(session.read(("F_t", "F_t_mean")) - right))
+    return errors
+
+
+def simpler(case: Case) -> dict[str, dict[str, Value]]:
+    """Start values of the simpler levels, by the headings of their columns."""
+    still = replace(scene_of(case.start_values), a_d=0.0)
+    sigma = float(reference.sigma(still, 0))
+    return {
+        "Coulomb": {"friction.model": "Coulomb"},
+        "ElasticPlastic": {"friction.model": "ElasticPlastic"},
+        "contact Constant": {"contact.model": "Constant", "contact.sigma": sigma},
+        "default at 1e-3": {"solver.tolerance": 1e-3},
+    }
+
+
+def _stick_slip() -> Case:
+    """The velocity of the mass on a belt, as the monolithic reference has it."""
+    belt, count = Belt(end=0.1), 100
+    times = belt.end / count * np.arange(count + 1)
+    velocity = np.array([belt.V(t) for t in times]) - monolithic(belt)(times)[1]
+    values = {"F_C": belt.F_C, "contact.stiffnessScale": belt.sigma / STIFFNESS_PRINTED}
+    return Case(
+        "stick-slip",
+        "stick-slip on a belt",
+        values,
+        belt.end / count,
+        count,
+        inputs={"V": velocity},
+        linear=True,
+    )
+
+
+def _table_2() -> Iterator[Case]:
+    for row in TABLE_2:
+        E = E_REDUCED if row.softened else E_FULL
+        values = {"E": E, "vibration.V_1": row.V_1, "vibration.a_d": row.a_d}
+        yield Case(f"table-2-row-{row.number}", f"Table 2, row {row.number}", values)
+
+
+def scenes() -> list[Case]:
+    """The scenes for which the table of levels is made."""
+    presliding = sampled(40, 2.5e6, linear=True)
+    return [
+        Case("steady", "steady sliding, 0.1 ms steps", {}, step=1e-4),
+        *_table_2(),
+        replace(
+            presliding,
+            name="presliding",
+            title="presliding hysteresis",
+            inputs={"V": 0.3 * np.cos(2 * np.pi * np.arange(41) / 40)},
+        ),
+        _stick_slip(),
+        replace(vibrating(2.5e6), name="soft", title="soft contact, V and d vibrate"),
+        replace(vibrating(6e12), name="stiff", title="stiff contact, V and d vibrate"),
+        replace(
+            vibrating(2.5e6), name="many-periods", title="soft contact, 1 ms steps over 20 kHz", step=1e-3
+        ),
+    ]
+
+
+def rows_of(fmu: FrictionFmu, phases: tuple[float, ...], progress: Progress) -> list[dict[str, object]]:
+    """The table: a row a scene, a column a level, its largest errors of F_t and F_t_mean over F_C."""
+    cases = scenes()
+    task = progress.add_task("Grading levels", total=len(cases))
+    rows: list[dict[str, object]] = []
+    for case in cases:
+        row: dict[str, object] = {"scene": case.title}
+        for level, settings in simpler(case).items():
+            errors = largest_errors(fmu, case, settings, phases)
+            row[level] = ", ".join(f"{error / case.F_C:.0e}" for error in errors)
+        rows.append(row)
+        progress.advance(task)
+    return rows
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("bench/levels", __doc__)
+    parser.add_argument("--quick", action="store_true", help="from two phases instead of five")
+    add_fmu(parser)
+    add_output(parser, REPORT)
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    with progress_bar() as progress, FrictionFmu(options.fmu or build_fmu(progress=progress)) as fmu:
+        rows = rows_of(fmu, PHASES[:2] if options.quick else PHASES, progress)
+    table = Table(title="Largest errors of F_t and of its mean, over F_C", title_justify="left")
+    for heading in rows[0]:
+        table.add_column(heading)
+    for row in rows:
+        table.add_row(*map(str, row.values()))
+    wide_console().print(table)
+    say_written([write_csv(rows, options.output / "levels.csv")])
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+"""Where each method is stable: alone, over z = sigma |V| h / F_C, and coupled to a mass on a belt."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+import numpy as np
+from rich.table import Table
+
+from frictioncontact.command import finish, progress_bar, say_written, write_csv
+from frictioncontact.fmu import FrictionFmu
+from workshop.bench import stability_figures
+from workshop.bench.coupling import (
+    COUPLINGS,
+    Belt,
+    coupled_edge,
+    coupled_errors,
+    monolithic,
+    theoretical_edge,
+)
+from workshop.bench.driver import (
+    bench_options,
+    open_bench,
+    renew_docs,
+    wide_console,
+    write_machine,
+)
+from workshop.bench.stability_map import EDGES, METHODS, classify, measured_edge
+
+DESCRIPTION = """\
+Maps where each method is stable. First alone: z = sigma |V| h / F_C from 1e-3 to 1e8, with the theoretical
+limits over the measured edges. Then coupled: a mass on a belt, advanced side by side with the FMU, with
+friction held over a step or moving at its derivative, against a monolithic reference."""
+
+
+def stability_map(fmu: FrictionFmu, quick: bool) -> list[dict[str, object]]:
+    exponents = np.linspace(-3, 8, 45 if quick else 177)
+    return [
+        {"method": method, "z": float(z), "behaviour": classify(fmu, method, float(z))}
+        for method in METHODS
+        for z in 10.0**exponents
+    ]
+
+
+def edges(fmu: FrictionFmu) -> list[dict[str, object]]:
+    rows = []
+    for method, limits in EDGES.items():
+        for (before, after), theory in limits.items():
+            found = measured_edge(fmu, method, before, theory)
+            rows.append(
+                {
+                    "method": method,
+                    "from": before,
+                    "to": after,
+                    "theory_z": theory,
+                    "measured_z": found,
+                    "deviation": found / theory - 1,
+                }
+            )
+    return rows
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, bench_options("stability", DESCRIPTION).parse_args(argv))
+
+
+def run(options: argparse.Namespace) -> None:
+    output, quick = options.output, options.quick
+    belt = Belt()
+    with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
+        task = progress.add_task("Mapping z against method", total=4)
+        behaviours = stability_map(bench.fmu, quick)
+        progress.advance(task)
+        found = edges(bench.fmu)
+        progress.update(task, advance=1, description="Mass on a belt: edges")
+        coupled = [
+            {
+                "coupling": name,
+                "theory_H": theoretical_edge(belt, name),
+                "measured_H": coupled_edge(bench.fmu, belt, name),
+            }
+            for name in COUPLINGS
+        ]
+        progress.update(task, advance=1, description="Mass on a belt: stick-slip")
+        reference = monolithic(belt)
+        errors = coupled_errors(bench.fmu, belt, reference, quick)
+        progress.advance(task)
+    written = [
+        write_csv(behaviours, output / "stability.csv"),
+        write_csv(found, output / "stability-edges.csv"),
+        write_csv(coupled, output / "coupled-edges.csv"),
+        write_csv(errors, output / "coupled-errors.csv"),
+        write_machine(output / "machine.json"),
+    ]
+    written += stability_figures.draw_map(behaviours, found, output)
+    written += stability_figures.draw_coupled(errors, coupled, reference, belt, output)
+    if options.docs:
+        written += renew_docs(written)
+    console = wide_console()
+    console.print(_table("Edges in z = sigma |V| h / F_C", found))
+    console.print(_table("Mass on a belt: largest stable communication step [s] in stick", coupled))
+    say_written(written)
+
+
+def _table(title: str, rows: Sequence[dict[str, object]]) -> Table:
+    table = Table(title=title, title_justify="left")
+    for heading in rows[0]:
+        table.add_column(heading, no_wrap=True)
+    for row in rows:
+        table.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value) for value in row.values()))
+    return table
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""Pictures of stability."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import NullFormatter
+
+from frictioncontact import style
+from workshop.bench.coupling import Belt, Trajectory
+
+BEHAVIOUR = {
+    "monotone": style.BLUE,
+    "stable": style.SKY,
+    "rings": style.AMBER,
+    "diverges": style.RED,
+    "refuses": style.LIGHT,
+}
+COUPLING = {"F_t held": style.ORANGE, "F_t linear": style.BLUE}
+
+
+def draw_map(
+    rows: Sequence[Mapping[str, object]], edges: Sequence[Mapping[str, object]], folder: Path
+) -> list[Path]:
+    methods = list(dict.fromkeys(str(row["method"]) for row in rows))
+    figure, axes = style.subplots(size=(8.5, 3.8))
+    for i, method in enumerate(methods):
+        own = [row for row in rows if row["method"] == method]
+        z = np.array([row["z"] for row in own], dtype=float)
+        half = (z[1] / z[0]) ** 0.5
+        for row, centre in zip(own, z, strict=True):
+            left, right = centre / half, centre * half
+            axes.barh(i, right - left, 0.72, left, color=BEHAVIOUR[str(row["behaviour"])], linewidth=0)
+        for edge in edges:
+            if edge["method"] == method:
+                axes.plot([edge["theory_z"]] * 2, [i - 0.48, i + 0.48], color=style.BLACK, linewidth=1.4)
+                axes.plot(edge["measured_z"], i, "x", color=style.BLACK, markersize=5)
+    axes.set_xscale("log")
+    axes.set_xlim(z[0] / half, z[-1] * half)
+    axes.set_yticks(range(len(methods)), methods)
+    axes.invert_yaxis()
+    axes.grid(False)
+    axes.set_xlabel(r"$z = \sigma\,|V|\,h / F_C$")
+    axes.set_title("Steady sliding from rest: behaviour against z")
+    handles: list[object] = [Patch(color=colour, label=name) for name, colour in BEHAVIOUR.items()]
+    handles += [
+        Line2D([], [], color=style.BLACK, label="limit in theory"),
+        Line2D([], [], color=style.BLACK, marker="x", linestyle="", label="measured"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=7)
+    return style.save_both(figure, folder, "stability")
+
+
+def draw_coupled(
+    errors: Sequence[Mapping[str, object]],
+    edges: Sequence[Mapping[str, object]],
+    reference: Trajectory,
+    belt: Belt,
+    folder: Path,
+) -> list[Path]:
+    figure, (motion, panel) = style.subplots(1, 2, size=(10.0, 4.0))
+    t = np.linspace(0.0, belt.end, 1000)
+    x, _, F = reference(t)
+    motion.plot(1e3 * t, F / belt.F_C, color=style.BLACK, label=r"$F_t / F_C$")
+    motion.plot(1e3 * t, belt.k * x / belt.F_C, color=style.GREEN, label=r"$k x / F_C$")
+    motion.set_xlabel("time [ms]")
+    motion.set_title("Mass on a belt that goes to and fro, solved as one system")
+    motion.legend()
+    for coupling, colour in COUPLING.items():
+        own = [row for row in errors if row["coupling"] == coupling]
+        good = [row for row in own if not row["failure"]]
+        name = coupling.replace("F_t", "$F_t$")
+        panel.loglog(
+            [row["H"] for row in good], [row["error_F_t"] for row in good], "o-", color=colour, label=name
+        )
+        bad = [row["H"] for row in own if row["failure"]]
+        panel.plot(
+            bad,
+            [2.0] * len(bad),
+            "x",
+            color=colour,
+            label=f"{name}: chatters" if bad else None,
+        )
+        for edge in edges:
+            if edge["coupling"] == coupling and np.isfinite(float(edge["theory_H"])):  # type: ignore[arg-type]
+                panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)
+                panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
+    panel.xaxis.set_minor_formatter(NullFormatter())
+    panel.set_xlabel("communication step H [s]")
+    panel.set_ylabel("largest error of $F_t$ over $F_C$")
+    panel.set_title("Jacobi master; dashed: stable in stick up to here")
+    panel.legend()
+    return style.save_both(figure, folder, "coupled")

@@ -1,0 +1,385 @@
+"""Speed against accuracy: every method of the FMU and its peers, scene by scene."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from rich.table import Table
+
+from frictioncontact.command import finish, progress_bar, say_written, write_csv
+from frictioncontact.fmu import Value
+from frictioncontact.parameters import PERIOD, SEPARATION
+from workshop.bench import figures, periodic_means, releases
+from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
+from workshop.bench.driver import (
+    Bench,
+    Job,
+    Outcome,
+    bench_options,
+    open_bench,
+    renew_docs,
+    wide_console,
+    write_machine,
+)
+from workshop.bench.grade import FIXED_STEP, Point, grade_point
+from workshop.bench.peers import PLAIN_PROGRAMS, SCIPY, PythonFmu, plain, python_fmu, scipy_solver
+
+DESCRIPTION = """\
+Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of order 5
+and ARKODE that stop at reversals, CVODE with its defaults, scipy's Radau, BDF and LSODA, an FMU made with
+PythonFMU) over tolerances or steps: CPU and wall time, evaluations of the right-hand side, and the largest
+error of F_t and of its mean against an independent reference. Then what gives the mean of the periodic state
+(the default, harmonic balance, a closed form), the error against the communication step for held and linear
+inputs, and the cost of one step against the number of vibration periods in it."""
+
+MATCHED_ERROR = 1e-9
+SLOW = 5e-4  # s per period: what takes longer is measured once
+ACCURACIES = tuple(10.0**-k for k in range(2, 13))
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is measured."""
+
+    tolerances: Sequence[float]  # of the default, cvode and the peers in C
+    slow_tolerances: Sequence[float]  # of what runs in Python
+    steps: Sequence[int]  # internal steps per communication step
+    budget: float  # s of CPU time for one setting in one round
+    rounds: int  # in which everything in C takes turns; the least time counts
+    most_evaluations: int  # of scipy's solvers in one run
+    scipy: Sequence[str]
+
+
+FULL = Effort(
+    [10.0**-k for k in range(2, 13)],
+    [1e-3, 1e-4, 1e-6, 1e-8, 1e-10],
+    [4**k for k in range(9)],
+    0.001,
+    4,
+    15_000,
+    SCIPY,
+)
+QUICK = Effort(
+    [1e-3, 1e-6, 1e-9, 1e-12], [1e-3, 1e-6], [1, 16, 256, 4096], 0.001, 2, 1500, ("Radau", "LSODA")
+)
+
+
+@dataclass(frozen=True)
+class Task:
+    """A method at a setting: outcome from a start [s] for which there is a reference."""
+
+    method: str
+    setting: float
+    run: Callable[[float], Outcome]
+    slow: bool = False  # it runs in Python: once, from one start
+
+
+def tasks(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iterator[Task]:
+    def fmu(**settings: Value) -> Callable[[float], Outcome]:
+        return lambda start: bench.run(case.job(start, effort.budget, **settings))
+
+    for tolerance in effort.tolerances:
+        for method in ("collocation", "cvode"):
+            yield Task(method, tolerance, fmu(solver__method=method, solver__tolerance=tolerance))
+        for method in PLAIN_PROGRAMS:
+            yield Task(
+                method,
+                tolerance,
+                lambda start, method=method, tolerance=tolerance: plain(
+                    bench, method, case, start, tolerance, effort.budget
+                ),
+            )
+    for steps in effort.steps:
+        for method in FIXED_STEP:
+            yield Task(method, steps, fmu(solver__method=method, solver__stepSize=case.step / steps))
+    for tolerance in effort.slow_tolerances:
+        for method in effort.scipy:
+            yield Task(
+                f"scipy {method}",
+                tolerance,
+                lambda start, method=method, tolerance=tolerance: scipy_solver(
+                    case, start, method, tolerance, effort.most_evaluations
+                ),
+                slow=True,
+            )
+        yield Task(
+            "PythonFMU",
+            tolerance,
+            lambda start, tolerance=tolerance: python.run(case, start, tolerance),
+            True,
+        )
+
+
+def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> list[Point]:
+    """Every method at every setting, each with its least time of all rounds."""
+    references = {start: expected(case, start) for start in case.starts}
+    one = {case.starts[0]: references[case.starts[0]]}
+    planned = list(tasks(bench, python, case, effort))
+    points: list[Point] = []
+    for turn in range(effort.rounds):
+        for k, task in enumerate(planned):
+            if turn and (task.slow or points[k].failure or points[k].cpu > SLOW):
+                continue
+            known = one if task.slow else references
+            point = grade_point(case, known, task.method, task.setting, task.run)
+            if turn == 0:
+                points.append(point)
+            else:
+                points[k] = replace(
+                    point, cpu=min(point.cpu, points[k].cpu), wall=min(point.wall, points[k].wall)
+                )
+    return points
+
+
+def cost_at(points: Sequence[Point], error: float) -> float:
+    """CPU time [s] per period at which a method reaches the error: interpolated between its settings."""
+    measured = sorted((p for p in points if not p.failure), key=lambda p: -p.error)
+    front: list[Point] = []  # ever smaller errors at ever higher cost
+    for p in measured:
+        while front and front[-1].cpu >= p.cpu:
+            front.pop()
+        front.append(p)
+    if not front or front[-1].error > error:
+        return math.nan
+    if front[0].error <= error:
+        return front[0].cpu
+    errors = [-math.log(max(p.error, 1e-17)) for p in front]
+    return math.exp(np.interp(-math.log(error), errors, [math.log(p.cpu) for p in front]))
+
+
+def price(points: Sequence[Point], accuracies: Sequence[float] = ACCURACIES) -> list[dict[str, object]]:
+    """What the default costs over the cheapest other method, in every scene at every accuracy.
+
+    A setting reaches an accuracy if its error does; a fixed step only if the next smaller one does too, so
+    that luck at one step does not count. Where nothing else reaches it, `ratio` is 0; where the default does
+    not, NaN.
+    """
+    rows: list[dict[str, object]] = []
+    for case in dict.fromkeys(p.case for p in points):
+        for accuracy in accuracies:
+            costs = {}
+            for method in dict.fromkeys(p.method for p in points):
+                own = sorted(
+                    (p for p in points if p.case == case and p.method == method and not p.failure),
+                    key=lambda p: p.setting,
+                )
+                errors = [p.error for p in own]
+                if method in FIXED_STEP:
+                    errors = [max(pair) for pair in zip(errors, [*errors, math.inf][1:], strict=True)]
+                reached = [p.cpu for p, error in zip(own, errors, strict=True) if error <= accuracy]
+                if reached:
+                    costs[method] = min(reached)
+            default = costs.pop("collocation", math.nan)
+            rival = min(costs, key=costs.__getitem__, default="")
+            ratio = default / costs[rival] if rival else 0.0 * default
+            rows.append({"case": case, "accuracy": accuracy, "cheapest_other": rival, "ratio": ratio})
+    return rows
+
+
+def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
+    """Error against the true vibration when V and d come from outside as samples, held or linear."""
+    counts = (5, 20, 100) if quick else (5, 10, 20, 50, 100, 200, 400)
+    rows = []
+    for sigma in (6e6,) if quick else (6e6, 6e12):
+        for n in counts:
+            truth: tuple[np.ndarray, np.ndarray] | None = None
+            for linear in (False, True):
+                case = sampled(n, sigma, linear, periods=2)
+                inside = replace(
+                    case,
+                    start_values={**vibrating(sigma).start_values},
+                    inputs={},
+                )
+                truth = truth or expected(inside, 0.13 * PERIOD)
+                outcome = bench.run(case.job(0.0, 0.0, solver__tolerance=1e-9))
+                errors = [
+                    float(np.abs(got - right).max()) / case.F_C
+                    for got, right in zip((outcome.F, outcome.F_mean), truth, strict=True)
+                ]
+                rows.append(
+                    {
+                        "sigma": sigma,
+                        "samples_per_period": n,
+                        "inputs": "linear" if linear else "held",
+                        "error_F_t": errors[0],
+                        "error_F_t_mean": errors[1],
+                    }
+                )
+    return rows
+
+
+def period_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
+    """CPU time of one communication step against the number of vibration periods in it."""
+    rows = []
+    most = {"collocation": 1e9, "cvode": 1e3, "backwardEuler": 1e4}
+    for method in most:
+        for periods in (1, 10, 1e2, 1e3, 1e4, 1e6, 1e9):
+            if periods > most[method] * (0.1 if quick else 1.0):
+                continue
+            values = {
+                **vibrating(6e8).start_values,
+                "solver.method": method,
+                "solver.stepSize": PERIOD / 1000,
+            }
+            outcome = bench.run(Job(values, periods * PERIOD, 2, budget=0.004 if quick else 0.05))
+            rows.append(
+                {
+                    "method": method,
+                    "periods": periods,
+                    "cpu_s_per_step": outcome.cpu,
+                    "wall_s_per_step": outcome.wall,
+                    "evaluations_per_step": outcome.evaluations,
+                    "failure": outcome.failure,
+                }
+            )
+    return rows
+
+
+def held_step(bench: Bench, quick: bool) -> Outcome:
+    """Three inputs set, one step, two outputs read; no vibration."""
+    k = np.arange(64)
+    inputs = {
+        "V": 0.005 + 0.001 * np.cos(k),
+        "d": SEPARATION + 1e-8 * np.sin(k),
+        "E": 58e9 + 1e7 * np.sin(k),
+    }
+    return bench.run(Job({}, 1e-6, 200_000, inputs=inputs, budget=0.1 if quick else 1.0))
+
+
+def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
+    """Cost of each method over that of collocation at the matched error."""
+    methods = [m for m in dict.fromkeys(p.method for p in points) if m != "collocation"]
+    rows = []
+    for case in dict.fromkeys(p.case for p in points):
+        own = {m: [p for p in points if p.case == case and p.method == m] for m in (*methods, "collocation")}
+        base = cost_at(own["collocation"], MATCHED_ERROR)
+        costs = {m: cost_at(own[m], MATCHED_ERROR) / base for m in methods}
+        rows.append({"case": case, "collocation_us_per_period": 1e6 * base, **costs})
+    return rows
+
+
+COLUMNS: dict[str, Sequence[str]] = {  # of the table of ratios: the least of these methods
+    "Radau IIA": ("Radau IIA",),
+    "ARKODE": ("ARKODE implicit", "ARKODE explicit"),
+    "cvode": ("cvode",),
+    "plain CVODE": ("plain CVODE",),
+    "fixed step": FIXED_STEP,
+    "Python": (*(f"scipy {method}" for method in SCIPY), "PythonFMU"),
+}
+
+
+def ratio_table(rows: Sequence[dict[str, object]]) -> Table:
+    """The best peer of each scene, then the others; the CSV has them all."""
+    table = Table(
+        title=f"CPU time over that of collocation, both with errors of {MATCHED_ERROR:.0e} F_C at most",
+        title_justify="left",
+    )
+    table.add_column("scene", no_wrap=True)
+    for heading in ("collocation", "best peer", *COLUMNS):
+        table.add_column(heading, justify="right")
+    for row in rows:
+        own = f"{row['collocation_us_per_period']:.2f} us"
+        best = cheapest(row, [name for names in COLUMNS.values() for name in names])
+        others = (cheapest(row, names)[0] for names in COLUMNS.values())
+        table.add_row(str(row["case"]), own, " ".join(best), *others)
+    return table
+
+
+def cheapest(row: dict[str, object], names: Sequence[str]) -> tuple[str, str]:
+    """The least ratio of these methods, and whose it is."""
+    known = {name: float(row[name]) for name in names if not math.isnan(row.get(name, math.nan))}  # type: ignore[arg-type]
+    if not known:
+        return "not reached", ""
+    best = min(known, key=known.__getitem__)
+    return f"{known[best]:.3g}", best
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    parser = bench_options("work-precision", DESCRIPTION)
+    parser.add_argument(
+        "--against",
+        type=Path,
+        metavar="FMU",
+        help="compare the default's work with that of this release of the FMU, both taking turns",
+    )
+    finish(run, parser.parse_args(argv))
+
+
+def run(options: argparse.Namespace) -> None:
+    output, quick = options.output, options.quick
+    effort = QUICK if quick else FULL
+    chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
+    output.mkdir(parents=True, exist_ok=True)
+    with (
+        progress_bar() as progress,
+        open_bench(options.build_dir, progress) as bench,
+        python_fmu() as python,
+    ):
+        task = progress.add_task("Measuring", total=len(chosen) + 5)
+        points: list[Point] = []
+        for case in chosen:
+            progress.update(task, description=case.name)
+            points += measure(bench, python, case, effort)
+            progress.advance(task)
+        step_sizes = step_size_points(bench, quick)
+        progress.advance(task)
+        periods = period_points(bench, quick)
+        progress.advance(task)
+        means = periodic_means.periodic_means(bench)
+        progress.advance(task)
+        held = held_step(bench, quick)
+        progress.update(task, description="the default against the tolerance")
+        against_tolerance = releases.compare(
+            bench,
+            options.against,
+            [case for case in chosen if case.name.startswith("vibrating")],
+            effort.tolerances,
+            effort.budget,
+        )
+    compared = ratios(points)
+    prices = price(points)
+    written = [
+        write_csv([p.row() for p in points], output / "work-precision.csv"),
+        write_csv(compared, output / "work-precision-ratios.csv"),
+        write_csv(prices, output / "work-precision-price.csv"),
+        write_csv([p.row() for p in against_tolerance], output / "work-tolerance.csv"),
+        write_csv(step_sizes, output / "step-size.csv"),
+        write_csv(periods, output / "periods.csv"),
+        write_csv(means, output / "periodic-means.csv"),
+        write_machine(output / "machine.json"),
+    ]
+    titles = {case.name: case.title for case in chosen}
+    written += figures.work_precision(points, titles, output)
+    written += figures.price(prices, titles, output)
+    written += figures.step_sizes(step_sizes, output)
+    written += figures.periods(periods, output)
+    if options.docs:
+        written += renew_docs(written)
+    wide_console().print(ratio_table(compared))
+    wide_console().print(periodic_means.table(means))
+    if options.against:
+        wide_console().print(releases.table(against_tolerance))
+    one, many = (
+        row["cpu_s_per_step"]
+        for row in periods
+        if row["method"] == "collocation" and row["periods"] in (1, 1e6)
+    )
+    print(f"One step over 1e6 periods costs {many / one:.2f} times one over 1 period.")
+    print(f"Held inputs, no vibration: {1e9 * held.cpu:.0f} ns to set 3 inputs, step and get 2 outputs.")
+    say_written(written)
+
+
+QUICK_CASES = (
+    f"vibrating-{SIGMAS[1]:.0e}".replace("+", ""),
+    f"vibrating-{SIGMAS[4]:.0e}".replace("+", ""),
+    "held",
+)
+
+
+if __name__ == "__main__":
+    main()

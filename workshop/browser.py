@@ -1,0 +1,39 @@
+"""The headless Chromium in which the pages are looked at."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from playwright.sync_api import Browser, Error, Playwright, sync_playwright
+
+from frictioncontact.errors import UserError
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+
+
+def find_browser() -> str | None:
+    return next((path for name in NAMES if (path := shutil.which(name))), None)
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """UserError where none is installed, or where it does not start."""
+    executable = find_browser()
+    if executable is None:
+        raise UserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")
+    with sync_playwright() as playwright:
+        try:
+            browser = _launched(playwright, executable)
+        except Error:  # on a machine with much other work the first may be gone before it answers
+            try:
+                browser = _launched(playwright, executable)
+            except Error as error:
+                raise UserError(f"Chromium does not start: {error.message.splitlines()[0]}") from None
+        yield browser
+        browser.close()
+
+
+def _launched(playwright: Playwright, executable: str) -> Browser:
+    return playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])

@@ -1,0 +1,140 @@
+"""Builds the FMU with CMake: `build_fmu()` for other commands, `python -m workshop.build` by itself.
+
+CMAKE_ARGS in the environment is passed on when configuring, e.g. CMAKE_ARGS=-DWITH_SUNDIALS=OFF.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.progress import Progress, TaskID
+
+from frictioncontact.command import finish, progress_bar
+from frictioncontact.errors import UserError
+from workshop.project import ROOT
+
+PERCENT = re.compile(r"^\[\s*(\d+)%\] (.*)")
+
+
+def presets() -> dict[str, Path]:
+    """The build presets and the folders that they build in."""
+    listed = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
+    return {preset["name"]: Path(preset["binaryDir"].replace("${sourceDir}", str(ROOT))) for preset in listed}
+
+
+def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path:
+    """Configures and builds a preset and gives the path of its FMU.
+
+    Shows a bar in the given progress, or in one of its own.
+    """
+    return build_targets(preset, (), progress) / "FrictionContact.fmu"
+
+
+def build_targets(
+    preset: str, targets: Sequence[str], progress: Progress | None = None, options: Sequence[str] = ()
+) -> Path:
+    """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
+
+    Commands that are started together build one after the other. What a killed build left, and what came with
+    a copied or renamed project, is built anew.
+    """
+    if progress is None:
+        with progress_bar() as own:
+            return build_targets(preset, targets, own, options)
+    folder = presets()[preset]
+    task = progress.add_task("Waiting for another build", total=100)
+    with _locked(folder):
+        progress.update(task, description="Configuring")
+        cmake = [sys.executable, "-m", "cmake"]
+        unfinished = folder / "unfinished"
+        anew = unfinished.exists() or _is_of_another_folder(folder)
+        settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
+        settings += shlex.split(os.environ.get("CMAKE_ARGS", ""))
+        _run(
+            [*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])],
+            progress,
+            task,
+            unfinished,
+        )
+        chosen = ["--target", *targets] if targets else []
+        chosen += ["--parallel", str(os.cpu_count() or 1), *(["--clean-first"] if anew else [])]
+        _run([*cmake, "--build", str(folder), *chosen], progress, task, unfinished)
+    progress.remove_task(task)
+    return folder
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Holds the lock of a build folder, which is made if it is new."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = (folder / "lock").open("w")
+    except OSError as error:
+        raise UserError(f"{error.filename} can't be written: {error.strerror}") from None
+    with lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _is_of_another_folder(folder: Path) -> bool:
+    """Whether CMake's cache in folder was made for sources that are elsewhere."""
+    try:
+        cache = (folder / "CMakeCache.txt").read_text(errors="replace")
+    except FileNotFoundError:
+        return False
+    home = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", cache, re.MULTILINE)
+    made_in = re.search(r"^CMAKE_CACHEFILE_DIR:INTERNAL=(.*)$", cache, re.MULTILINE)
+    return not (_is_folder(home, ROOT) and _is_folder(made_in, folder))
+
+
+def _is_folder(entry: re.Match[str] | None, folder: Path) -> bool:
+    return entry is not None and Path(entry[1]).exists() and Path(entry[1]).samefile(folder)
+
+
+def _run(command: list[str], progress: Progress, task: TaskID, unfinished: Path) -> None:
+    """Runs a command of CMake. The file `unfinished` stays if it is killed; if it fails, it tidies up."""
+    lines: list[str] = []
+    unfinished.touch()
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+    ) as process:
+        for line in process.stdout or ():
+            lines.append(line)
+            if match := PERCENT.match(line):
+                progress.update(task, completed=int(match[1]), description=match[2].strip()[:50])
+            elif line.startswith("-- Fetching"):
+                progress.update(task, description="Fetching SUNDIALS")
+    if process.returncode >= 0:
+        unfinished.unlink()
+    if process.returncode:
+        raise UserError(_reason(lines))
+
+
+def _reason(lines: list[str]) -> str:
+    """CMake's own error message as one line, or else the compiler's output."""
+    text = "".join(lines)
+    if match := re.search(
+        r"CMake Error(?: at [^\n]*)?:\s*\n?(.*?)(?:Call Stack|-- Configuring|\Z)", text, re.DOTALL
+    ):
+        return " ".join(match[1].split())
+    return "".join(line for line in lines if not PERCENT.match(line))[-6000:].strip()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="workshop.build", description="Build FrictionContact.fmu.")
+    parser.add_argument("--preset", choices=list(presets()), default="default", help="build preset")
+    finish(lambda options: print(f"built {build_fmu(options.preset).relative_to(ROOT)}"), parser.parse_args())
+
+
+if __name__ == "__main__":
+    main()

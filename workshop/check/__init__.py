@@ -1,0 +1,1 @@
+"""Sanitizers, fuzzers, soak and coverage: the long runs."""

@@ -1,0 +1,291 @@
+"""scripts/check: the long runs that look for crashes, leaks, races, hangs and drift.
+
+    scripts/check                  all of them, an hour and more
+    scripts/check fuzz soak        these
+    scripts/check --quick ...      minutes
+    scripts/check hunt --minutes 10 --seed 1
+    scripts/check --ci             sanitizers, valgrind and fuzzers in under four minutes
+
+Each prints its figures and the command behind them. docs/reliability.md says what they found.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from frictioncontact.errors import UserError
+from workshop.build import build_fmu, build_targets
+from workshop.project import ROOT
+
+FUZZERS = {"call_sequence": 100, "model_exchange": 160, "state_bytes": 900}  # name: longest input in bytes
+# The tests that call the library. Left out: pages in a browser; commands, releases and examples, which build
+# or start something of their own; times; and the references, which load no FMU.
+OF_LIBRARY = ("tests/fmi2", "tests/solver", "tests/physics", "tests/batch", "tests/package", "tests/paper")
+LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
+
+
+class Skipped(Exception):
+    """A check can't run here; the text says what is missing."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How long the runs are."""
+
+    tests: tuple[str, ...]  # of the library
+    fuzz_seconds: int
+    fuzz_runs: int
+    soak: tuple[str, str]  # held steps, seconds of vibration
+    hunt_minutes: float
+    seed: int = 0  # of the hunt
+
+
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
+QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2)
+
+
+def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
+    """Runs a command in the project's root with its output shown; raises UserError if it fails."""
+    if environment:
+        print(" ".join(f"{name}={value}" for name, value in environment.items()))
+    print("$ " + " ".join(command), flush=True)
+    done = subprocess.run(command, cwd=ROOT, env={**os.environ, **(environment or {})}, check=False)
+    if done.returncode:
+        raise UserError(f"{Path(command[0]).name} ended with {done.returncode}")
+
+
+def _tool(name: str, package: str) -> str:
+    found = shutil.which(name)
+    if found is None:
+        raise Skipped(f"{name} is missing (Debian: apt-get install {package})")
+    return found
+
+
+def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | None = None) -> None:
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
+    _run(command, {"FRICTION_FMU": str(fmu), **(environment or {})})
+
+
+def _runtimes(*names: str) -> str:
+    """The sanitizer runtimes, to be loaded before Python, which was built without."""
+    compiler = os.environ.get("CC", "cc")
+    paths = []
+    for name in names:
+        answer = subprocess.run(
+            [*compiler.split(), f"-print-file-name={name}"], capture_output=True, text=True, check=True
+        )
+        path = Path(answer.stdout.strip())
+        if not path.is_absolute():
+            raise Skipped(f"{compiler} has no {name} (with gcc it comes along)")
+        paths.append(str(path.resolve()))
+    return " ".join(paths)
+
+
+def check_sanitize(extent: Extent) -> None:
+    """The library's tests and the C unit tests with AddressSanitizer and UndefinedBehaviorSanitizer."""
+    folder = build_targets("asan", ["unit_tests"])
+    _run([str(Path(sys.executable).with_name("ctest")), "--test-dir", str(folder), "--output-on-failure"])
+    runtimes = _runtimes("libasan.so", "libubsan.so")
+    environment = {
+        "LD_PRELOAD": runtimes,
+        "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:allocator_may_return_null=1",  # Python itself leaks
+        "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
+    }
+    short = ("-k", "not compute_without_end")  # 1e8 evaluations apiece, of code that runs in all others
+    _test(build_fmu("asan"), (*extent.tests, *short), environment)
+
+
+def check_threads(extent: Extent) -> None:
+    """The threaded test on a library built with ThreadSanitizer."""
+    environment = {"LD_PRELOAD": _runtimes("libtsan.so"), "TSAN_OPTIONS": "halt_on_error=1"}
+    _test(build_fmu("tsan"), ("tests/fmi2/test_instances.py",), environment)
+
+
+def check_fuzz(extent: Extent) -> None:
+    """libFuzzer on call sequences and on state bytes, with the same sanitizers."""
+    _fuzz("fuzz", extent)
+
+
+def check_fuzz_many(extent: Extent) -> None:
+    """libFuzzer without sanitizers: some 5000 executions a second, of which 1e7 are asked for."""
+    _fuzz("fuzz-fast", extent)
+
+
+@contextmanager
+def _clang() -> Iterator[None]:
+    """What is built inside is built with clang."""
+    clang = os.environ.get("CC") or shutil.which("clang") or shutil.which("clang-14")
+    if clang is None or "clang" not in clang:
+        raise Skipped("clang is missing (Debian: apt-get install clang libclang-rt-14-dev)")
+    os.environ["CC"] = clang
+    try:
+        yield
+    finally:
+        del os.environ["CC"]
+
+
+def _fuzz(preset: str, extent: Extent) -> None:
+    with _clang():
+        folder = build_targets(preset, [*(f"fuzz_{name}" for name in FUZZERS)])
+    for name, longest in FUZZERS.items():
+        found = folder / f"corpus-{name}"
+        found.mkdir(exist_ok=True)
+        options = [
+            f"-max_len={longest}",
+            f"-max_total_time={extent.fuzz_seconds}",
+            f"-runs={extent.fuzz_runs}",
+            "-timeout=30",
+            "-print_final_stats=1",
+            "-verbosity=0",
+            "-print_funcs=0",
+            f"-artifact_prefix={folder}/{name}-",
+        ]
+        _run([str(folder / f"fuzz_{name}"), *options, str(found), f"tests/fuzz/corpus/{name}"])
+
+
+def check_soak(extent: Extent) -> None:
+    """Very many steps: the work does not drift from the cycle identity."""
+    folder = build_targets("default", ["soak"])
+    _run([str(folder / "soak"), *extent.soak])
+
+
+def check_hunt(extent: Extent) -> None:
+    """Random scenes against the reference of hunt/, every law: nothing is beyond the tolerance."""
+    folder = build_targets("default", ["hunt"])
+    options = {
+        "seed": extent.seed,
+        "minutes": extent.hunt_minutes,
+        "jobs": os.cpu_count() or 1,
+        "minimize": 2,
+    }
+    _run(
+        [
+            str(folder / "hunt/hunt"),
+            *(word for name, value in options.items() for word in (f"--{name}", str(value))),
+        ]
+    )
+
+
+def write_hunt_corpus(folder: Path) -> list[str]:
+    """The inputs of tests/hunt/corpus.txt, a line of hexadecimal digits each, as files; their paths."""
+    paths = []
+    for number, line in enumerate((ROOT / "tests/hunt/corpus.txt").read_text().split()):
+        paths.append(folder / f"seed-{number}")
+        paths[-1].write_bytes(bytes.fromhex(line))
+    return [str(path) for path in paths]
+
+
+def check_hunt_guided(extent: Extent) -> None:
+    """The same with scenes that libFuzzer draws, led on by new ways through the solver."""
+    with _clang():
+        folder = build_targets("fuzz-fast", ["fuzz_hunt"])
+    found = folder / "corpus-hunt"
+    found.mkdir(exist_ok=True)
+    write_hunt_corpus(found)
+    options = [
+        f"-seed={extent.seed}",
+        f"-max_total_time={round(60 * extent.hunt_minutes)}",
+        "-max_len=260",
+        "-timeout=100",
+        "-verbosity=0",
+        "-print_funcs=0",
+        "-print_final_stats=1",
+        f"-artifact_prefix={folder}/hunt-",
+    ]
+    _run([str(folder / "hunt/fuzz_hunt"), *options, str(found)])
+
+
+def check_leaks(extent: Extent) -> None:
+    """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
+    valgrind = _tool("valgrind", "valgrind")
+    folder = build_targets("debug", ["soak", *(f"replay_{name}" for name in FUZZERS)])
+    options = ["--quiet", "--leak-check=full", "--show-leak-kinds=all", "--error-exitcode=1"]
+    for name in FUZZERS:
+        seeds = sorted(str(seed.relative_to(ROOT)) for seed in (ROOT / "tests/fuzz/corpus" / name).iterdir())
+        _run([valgrind, *options, str(folder / f"replay_{name}"), *seeds])
+    _run([valgrind, *options, str(folder / "soak"), "1e5", "1"])
+
+
+def check_coverage(extent: Extent) -> None:
+    """Lines and branches of fmu_src that the tests execute."""
+    fmu = build_fmu("coverage")
+    for counts in fmu.parent.rglob("*.gcda"):
+        counts.unlink()
+    _test(fmu, extent.tests)
+    gcovr = [sys.executable, "-m", "gcovr", "--root", ".", "--filter", "fmu_src/", str(fmu.parent)]
+    _run([*gcovr, "--print-summary", "--fail-under-line", str(LEAST_LINES)])
+
+
+def write_bad_input(extent: Extent) -> None:
+    """Writes docs/bad-input.md anew from the tests' bad calls."""
+    build_fmu()
+    _run([sys.executable, "tests/fmi2/bad_input_page.py"])
+
+
+CHECKS: dict[str, Callable[[Extent], None]] = {
+    "sanitize": check_sanitize,
+    "threads": check_threads,
+    "fuzz": check_fuzz,
+    "fuzz-many": check_fuzz_many,
+    "soak": check_soak,
+    "hunt": check_hunt,
+    "hunt-guided": check_hunt_guided,
+    "leaks": check_leaks,
+    "coverage": check_coverage,
+    "bad-input": write_bad_input,
+}
+IN_CI = ("sanitize", "leaks", "fuzz")
+
+
+def main() -> None:
+    what = "\n".join(f"  {name:14} {check.__doc__}" for name, check in CHECKS.items())
+    parser = argparse.ArgumentParser(
+        prog="scripts/check",
+        description="The long runs: crashes, leaks, races, hangs, drift.",
+        epilog=f"checks:\n{what}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("checks", nargs="*", metavar="CHECK", help="which ones; all when none is named")
+    parser.add_argument("--quick", action="store_true", help="shorter runs, in minutes")
+    parser.add_argument(
+        "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
+    )
+    parser.add_argument("--minutes", type=float, help="of the hunt")
+    parser.add_argument("--seed", type=int, help="of the hunt; drawn anew when not given")
+    arguments = parser.parse_args()
+    for name in arguments.checks:
+        if name not in CHECKS:
+            parser.error(f"unknown check {name}; there are: {', '.join(CHECKS)}")
+    extent = CI if arguments.ci else QUICK if arguments.quick else FULL
+    seed = random.randrange(10**6) if arguments.seed is None else arguments.seed
+    extent = replace(extent, seed=seed, hunt_minutes=arguments.minutes or extent.hunt_minutes)
+    failed = []
+    for name in arguments.checks or (IN_CI if arguments.ci else CHECKS):
+        print(f"\n== {name}: {CHECKS[name].__doc__}", flush=True)
+        begin = time.monotonic()
+        try:
+            CHECKS[name](extent)
+            result = "nothing found"
+        except Skipped as reason:
+            result = f"skipped: {reason}"
+        except UserError as error:
+            result = f"FAILED: {error}"
+            failed.append(name)
+        print(f"== {name}: {result} ({time.monotonic() - begin:.0f} s)", flush=True)
+    if failed:
+        sys.exit(f"error: {', '.join(failed)} failed")
+
+
+if __name__ == "__main__":
+    main()

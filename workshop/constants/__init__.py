@@ -1,0 +1,1 @@
+"""What the solver's constants come from: each module is run by hand and prints or writes some of them."""

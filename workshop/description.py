@@ -1,0 +1,60 @@
+"""modelDescription.xml as FMPy reads it, and as plain values for pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
+
+from workshop.project import ROOT
+
+XML = ROOT / "modelDescription.xml"
+
+
+def read(xml: Path = XML) -> ModelDescription:
+    """Of a file, or of the folder of an unzipped FMU."""
+    return read_model_description(str(xml), validate=False)
+
+
+def display_unit(model: ModelDescription, variable: ScalarVariable) -> tuple[str, float]:
+    """The unit that people use for a Real, and the factor to it from SI."""
+    own = variable.unit or ""
+    name = variable.displayUnit or own
+    factors = {
+        display.name: display.factor
+        for unit in model.unitDefinitions
+        if unit.name == own
+        for display in unit.displayUnits
+    }
+    return name, factors.get(name, 1.0)
+
+
+def description(xml: Path = XML) -> dict[str, Any]:
+    """Version and variables, in the order of the file.
+
+    A variable has name, reference, causality, description and start (SI; the name of the item for an
+    enumeration, None for an output); a Real has displayUnit and the factor from SI to it, an enumeration its
+    items with their descriptions.
+    """
+    model = read(xml)
+    return {"version": model.version, "variables": [_plain(model, v) for v in model.modelVariables]}
+
+
+def _plain(model: ModelDescription, variable: ScalarVariable) -> dict[str, Any]:
+    plain: dict[str, Any] = {
+        "name": variable.name,
+        "reference": variable.valueReference,
+        "causality": variable.causality,
+        "description": variable.description or "",
+        "start": None,
+    }
+    if variable.type == "Enumeration":
+        items = variable.declaredType.items
+        plain["items"] = [{"name": item.name, "description": item.description or ""} for item in items]
+        plain["start"] = items[int(variable.start or "1") - 1].name
+        return plain
+    plain["displayUnit"], plain["factor"] = display_unit(model, variable)
+    if variable.start is not None:
+        plain["start"] = float(variable.start)
+    return plain

@@ -1,0 +1,186 @@
+"""The pictures of README.md, docs/using.md and docs/solver.md, drawn into docs/pictures/."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from frictioncontact import style
+from frictioncontact.command import add_fmu, add_output, command_line, finish
+from frictioncontact.fmu import SETTLED, FrictionFmu, simulate
+from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
+from frictioncontact.table2 import figure as table2_figure
+from frictioncontact.table2 import rows as table2
+from workshop.build import build_fmu
+from workshop.fmu_docs import stretch
+from workshop.project import ROOT
+
+FOLDER = ROOT / "docs" / "pictures"
+SCENE = start_values(TABLE_2[1], IDENTIFIED)  # row 2: everything vibrates
+V_1 = TABLE_2[1].V_1
+
+
+def overview(fmu: FrictionFmu, path: Path) -> None:
+    """What the vibration does within microseconds, and what a tool that steps at a millisecond sees of it."""
+    figure, (inside, coupled) = style.subplots(1, 2, size=(11.0, 4.2))
+    _switched_on(inside, fmu)
+    _ramped(coupled, fmu)
+    style.save(figure, path)
+
+
+def _switched_on(axes: Axes, fmu: FrictionFmu) -> None:
+    step, before, after = PERIOD / 200, 200, 800
+    times, force, mean = [], [], []
+    with fmu.session(SCENE | {"vibration.V_1": 0.0, "vibration.a_d": 0.0}) as session:
+        # Steady sliding, to a time at which the vibration of d passes zero: sigma starts without a jump.
+        session.step((100.75 - SCENE["vibration.phase_d"] / (2 * np.pi)) * PERIOD)
+        start = session.time
+        for k in range(before + after):
+            if k == before:
+                session.set("vibration.V_1", V_1)
+                session.set("vibration.a_d", SCENE["vibration.a_d"])
+            session.step(step)
+            times.append(session.time - start - before * step)
+            force.append(session.get("F_t"))
+    for k in range(4):
+        mean.append(np.mean(force[before + 200 * k : before + 200 * (k + 1)]))
+    axes.plot(1e6 * np.array(times), force, color=style.BLUE, lw=2)
+    axes.hlines(mean, [0, 50, 100, 150], [50, 100, 150, 200], color=style.ORANGE, lw=2.2)
+    axes.axvline(0.0, color=style.GREY, lw=1.0, ls="--")
+    axes.set_xlim(-50.0, 200.0)
+    axes.set_ylim(0.0, 1.05 * max(force))
+    axes.set_xlabel("time [µs]")
+    axes.set_ylabel("friction force [N]")
+    axes.set_title("Vibration of 20 kHz switched on at t = 0")
+    handles = [
+        Line2D([], [], color=style.BLUE, lw=2.0, label="$F_t$"),
+        Line2D([], [], color=style.ORANGE, lw=2.2, label="its mean over each period"),
+    ]
+    axes.legend(handles=handles, loc="upper right")
+
+
+def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
+    """V_1 and a_d rise to their full values and back, and each millisecond is one communication step."""
+    step, count = 1.01e-3, 60
+    share = np.clip(1.5 * np.sin(np.pi * np.arange(count + 1) / count) ** 2, 0.0, 1.0)
+    rows = []
+    with fmu.session(SCENE | {"vibration.V_1": 0.0, "vibration.a_d": 0.0}, start=-step) as session:
+        session.step(step)
+        for part in share[1:]:
+            session.set("vibration.V_1", part * V_1)
+            session.set("vibration.a_d", part * SCENE["vibration.a_d"])
+            session.step(step)
+            rows.append((session.time, session.get("F_t"), session.get("F_t_mean")))
+    time, sample, mean = np.array(rows).T
+    amplitude = axes.twinx()
+    amplitude.fill_between(1e3 * time, share[1:] * V_1, step="pre", color=style.LIGHT, alpha=0.45, lw=0)
+    amplitude.set_ylim(0.0, 6.0)
+    amplitude.set_yticks([0.0, V_1])
+    amplitude.set_ylabel("$V_1$ [m/s]", y=0.12)
+    amplitude.grid(visible=False)
+    axes.set_zorder(amplitude.get_zorder() + 1)
+    axes.patch.set_visible(False)
+    axes.plot(
+        1e3 * time, sample, "o", color=style.BLUE, ms=3.5, mfc="white", label="$F_t$: a sample, any phase"
+    )
+    axes.plot(1e3 * time, mean, color=style.ORANGE, lw=2.4, label="$F_t$ mean of the step: couple this")
+    axes.set_xlim(0.0, 1e3 * time[-1])
+    axes.set_ylim(0.0, 82.0)
+    axes.set_yticks([0, 20, 40, 60])
+    axes.set_xlabel("time [ms]")
+    axes.set_title("The same contact in a tool that steps at 1 ms")
+    axes.legend(loc="upper center", ncols=2)
+
+
+def fmpy_example(fmu: FrictionFmu, path: Path) -> None:
+    """The result of the README's `fmpy simulate`: the default experiment from rest."""
+    run = simulate(fmu, SCENE, 5e-7, 400)
+    time = 1e6 * run["time"]
+    figure, panels = style.subplots(3, 1, size=(7.6, 5.6), sharex=True)
+    for axes, names, scale, label in (
+        (panels[0], ("F_t", "F_t_mean"), 1.0, "force [N]"),
+        (panels[1], ("sigma",), 1e-6, "stiffness [MN/m]"),
+        (panels[2], ("W_f",), 1e3, "work [mJ]"),
+    ):
+        for name, width in zip(names, (2.0, 1.0), strict=False):
+            axes.plot(time, scale * run[name], lw=width, label=name)
+        axes.set_ylabel(label)
+        axes.legend(loc="upper right", ncols=2)
+    panels[0].set_ylim(top=72.0)
+    panels[1].set_ylim(top=10.5)
+    panels[2].legend(loc="upper left")
+    panels[2].set_xlabel("time [µs]")
+    panels[2].set_xlim(0.0, time[-1])
+    style.save(figure, path)
+
+
+def step_sizes(fmu: FrictionFmu, path: Path) -> None:
+    """Where F_t and F_t_mean lie after a step, at any phase, against the length of the step."""
+    figure, axes = style.subplots(size=(7.6, 4.2))
+    steps = np.geomspace(0.02, 20.0, 241) * PERIOD
+    phases = 60
+    values = np.empty((len(steps), phases, 2))
+    with fmu.session(SCENE | SETTLED) as session:
+        for k, step in enumerate(steps):
+            for phase in range(phases):
+                session.step(PERIOD * (np.ceil(session.time / PERIOD) + phase / phases) - session.time)
+                session.step(step)
+                values[k, phase] = session.read(("F_t", "F_t_mean"))
+    for number, (name, colour, strength) in enumerate(
+        (("F_t", style.SKY, 0.35), ("F_t_mean", style.ORANGE, 0.75))
+    ):
+        low, high = values[..., number].min(axis=1), values[..., number].max(axis=1)
+        axes.fill_between(1e6 * steps, low, high, color=colour, alpha=strength, lw=0, label=name)
+    exact = table2.mean_force(fmu, TABLE_2[1], IDENTIFIED)
+    axes.axhline(exact, color=style.BLACK, lw=1.0, label=f"mean of the periodic state, {exact:.2f} N")
+    axes.axvline(0.5e6 * PERIOD, color=style.BLACK, lw=1.0, ls="--")
+    axes.set_xscale("log")
+    for place, text in (
+        (5.0, "resolves the vibration:\nuse $F_t$"),
+        (160.0, "too long for that:\nuse F_t_mean"),
+    ):
+        axes.text(place, 55.0, text, ha="center", va="center", fontsize=10)
+    axes.text(0.5e6 * PERIOD * 1.07, 62.5, "half a period", fontsize=8.5, va="center")
+    axes.set_ylim(0.0, 66.0)
+    axes.set_xlim(1e6 * steps[0], 1e6 * steps[-1])
+    axes.set_xticks([1, 10, 50, 100, 500, 1000], ["1", "10", "50", "100", "500", "1000"])
+    axes.set_xlabel("communication step [µs]; the vibration's period is 50 µs")
+    axes.set_ylabel("force after a step, at any phase [N]")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
+    style.save(figure, path)
+
+
+def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
+    """All pictures; gives their paths."""
+    table2_figure.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
+    for drawing in (overview, fmpy_example, step_sizes):
+        drawing(fmu, folder / f"{drawing.__name__}.png")
+    stretch.draw(folder / "solver-stretch.png")
+    names = ("table2", "overview", "fmpy_example", "step_sizes", "solver-stretch")
+    return sorted(folder / f"{name}.png" for name in names)
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("scripts/pictures", __doc__)
+    add_fmu(parser)
+    add_output(parser, FOLDER)
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    with FrictionFmu(options.fmu or build_fmu()) as fmu:
+        for path in draw(fmu, options.output):
+            print(path)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

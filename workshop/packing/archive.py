@@ -1,0 +1,144 @@
+"""Packs an FMU: model description with its guid, binaries, sources and any further files.
+
+The same input gives the same bytes: names are sorted and timestamps fixed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import struct
+import sys
+import zipfile
+from pathlib import Path
+
+from frictioncontact.files import whole_file
+from workshop.packing import model_description
+
+FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+CHECKSUMS = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
+# ELF, PE, Mach-O, universal Mach-O
+BINARY_BEGINNINGS = (b"\x7fELF", b"MZ", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
+BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": ".dylib"}
+
+
+def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, Path]:
+    """What a C11 compiler needs to build the FMU alone: path under sources/ -> file."""
+    files = {
+        path.relative_to(source_dir).as_posix(): path
+        for path in source_dir.rglob("*")
+        if path.suffix in (".c", ".h")
+    }
+    files["fmi2/variables.c"] = table
+    files |= {name: fmi_headers / name for name in FMI_HEADERS}
+    return files
+
+
+def binary_name(platform: str, identifier: str) -> str:
+    """binaries/linux64/FrictionContact.so and its like: platform is linux64, win64, aarch64-darwin, ..."""
+    system = platform.rsplit("-", maxsplit=1)[-1].rstrip("0123456789")
+    if system not in BINARY_SUFFIXES:
+        raise ValueError(f"unknown FMI platform {platform}")
+    return f"binaries/{platform}/{identifier}{BINARY_SUFFIXES[system]}"
+
+
+def whole_binary(path: Path) -> bytes:
+    """The bytes of a shared library; ValueError if it is none, or was not written to its end."""
+    content = path.read_bytes()
+    if not content.startswith(BINARY_BEGINNINGS):
+        raise ValueError(f"{path} is no shared library: remove it and build again")
+    if content.startswith(b"\x7fELF\x02\x01"):  # little-endian, 64 bits: the section headers stand last
+        header = content[:64].ljust(64, b"\xff")
+        (offset,), (size, count) = struct.unpack_from("<Q", header, 40), struct.unpack_from("<HH", header, 58)
+        if offset + size * count > len(content):
+            raise ValueError(f"{path} is cut short: remove it and build again")
+    return content
+
+
+def packaged_xml(path: Path, sources: list[str]) -> bytes:
+    """The model description as it goes into the FMU: with its guid and the list of its C sources."""
+    xml = path.read_bytes()
+    guid = model_description.guid_of(xml)
+    text = xml.decode()
+    for interface in ("ModelExchange", "CoSimulation"):
+        text = _with_sources(path, text, interface, sources)
+    return text.replace(f'guid="{model_description.GUID_PLACEHOLDER}"', f'guid="{guid}"').encode()
+
+
+def _with_sources(path: Path, text: str, interface: str, sources: list[str]) -> str:
+    head, found, rest = text.partition(f"<{interface}\n")
+    attributes, closed, rest = rest.partition("/>")
+    if not found or not closed or "<" in attributes:
+        raise ValueError(f"{path}: expected one {interface} element without content")
+    files = "".join(f'      <File name="{name}"/>\n' for name in sources)
+    listed = f">\n    <SourceFiles>\n{files}    </SourceFiles>\n  </{interface}>"
+    return f"{head}<{interface}\n{attributes}{listed}{rest}"
+
+
+def checksums(entries: dict[str, bytes]) -> bytes:
+    """One line for each entry, as sha256sum writes and reads it."""
+    lines = (f"{hashlib.sha256(entries[name]).hexdigest()}  {name}\n" for name in sorted(entries))
+    return "".join(lines).encode()
+
+
+def write_fmu(
+    output: Path, xml: Path, binaries: dict[str, Path], sources: dict[str, Path], others: dict[str, Path]
+) -> None:
+    """Writes output whole or not at all.
+
+    binaries maps platforms, sources paths under sources/, others paths in the FMU, to files.
+    """
+    identifier = model_description.read(xml).coSimulation.modelIdentifier
+    c_files = sorted(name for name in sources if name.endswith(".c"))
+    entries = {"modelDescription.xml": packaged_xml(xml, c_files)}
+    entries |= {binary_name(platform, identifier): whole_binary(path) for platform, path in binaries.items()}
+    entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
+    entries |= {name: path.read_bytes() for name, path in others.items()}
+    entries[CHECKSUMS] = checksums(entries)
+    with whole_file(output) as unfinished, zipfile.ZipFile(unfinished, "w") as archive:
+        for name in sorted(entries, key=lambda name: (name != "modelDescription.xml", name)):
+            info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.create_system = 3  # Unix, wherever it is packed
+            info.external_attr = 0o100644 << 16
+            archive.writestr(info, entries[name])
+
+
+def _pair(text: str) -> tuple[str, Path]:
+    name, separator, path = text.partition("=")
+    if not separator:
+        raise argparse.ArgumentTypeError(f"{text} is not of the form NAME=FILE")
+    return name, Path(path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description="Pack an FMU. @FILE stands for the arguments in FILE, one a line.",
+        fromfile_prefix_chars="@",
+    )
+    parser.add_argument("output", type=Path)
+    parser.add_argument("--xml", type=Path, required=True, help="modelDescription.xml with its placeholder")
+    parser.add_argument("--sources", type=Path, required=True, help="folder of the C sources")
+    parser.add_argument("--table", type=Path, required=True, help="generated variable table")
+    parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers")
+    parser.add_argument("--binary", type=_pair, action="append", default=[], metavar="PLATFORM=FILE")
+    parser.add_argument("--file", type=_pair, action="append", default=[], metavar="NAME=FILE")
+    parser.add_argument(
+        "--folder", type=_pair, action="append", default=[], metavar="NAME=FOLDER", help="all files in it"
+    )
+    arguments = parser.parse_args()
+    write_fmu(
+        arguments.output,
+        arguments.xml,
+        dict(arguments.binary),
+        source_files(arguments.sources, arguments.table, arguments.fmi_headers),
+        dict(arguments.file)
+        | {f"{name}/{path.name}": path for name, folder in arguments.folder for path in folder.iterdir()},
+    )
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {error}")

@@ -1,0 +1,93 @@
+"""Writes the C variable table of fmu_src/fmi2/variables.h from modelDescription.xml.
+
+usage: python -m workshop.packing.variable_table modelDescription.xml variables.c
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from fmpy.model_description import ModelDescription, ScalarVariable
+
+from workshop.packing import model_description
+
+
+def table(description: ModelDescription) -> str:
+    lines = [
+        "// Generated from modelDescription.xml; edit that.",
+        '#include "fmi2/variables.h"',
+        '#include "friction_contact.h"',
+        "",
+        "#include <float.h>",
+        "",
+        f"const char fc_guid[] = {_string(description.guid)};",
+        f"const char fc_model_identifier[] = {_string(description.coSimulation.modelIdentifier)};",
+        f"const unsigned fc_event_indicators_count = {description.numberOfEventIndicators};",
+        "",
+        "const char* const fc_log_categories[] = {",
+        *(f"    {_string(category.name)}," for category in description.logCategories),
+        "};",
+        f"const unsigned fc_log_categories_count = {len(description.logCategories)};",
+        "",
+    ]
+    for enumeration in description.typeDefinitions:
+        names = ", ".join(_string(item.name) for item in enumeration.items)
+        lines.append(f"static const char* const literals_of_{enumeration.name}[] = {{{names}}};")
+    lines += ["", *(_type_check(variable) for variable in description.modelVariables), ""]
+    lines += [
+        "const FcVariableInfo fc_variables[] = {",
+        *(_row(variable) for variable in description.modelVariables),
+        "};",
+        f"const unsigned fc_variables_count = {len(description.modelVariables)};",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _type_check(variable: ScalarVariable) -> str:
+    c_type = "double" if variable.type == "Real" else "int"
+    member = model_description.c_member(variable.name)
+    return (
+        f"_Static_assert(_Generic(((FcVariables*)0)->{member}, {c_type}: 1, default: 0),"
+        f' "{variable.name} must be of type {c_type}");'
+    )
+
+
+def _row(variable: ScalarVariable) -> str:
+    low, high = variable.min, variable.max
+    if variable.type == "Enumeration":
+        low, high = "1", str(len(variable.declaredType.items))
+    cells = [
+        _string(variable.name),
+        _string(variable.unit or ""),
+        f"FC_TYPE_{variable.type.upper()}",
+        f"FC_CAUSALITY_{variable.causality.upper()}",
+        f"FC_VARIABILITY_{variable.variability.upper()}",
+        "0" if variable.start is None else "1",
+        _double(variable.start, "0.0"),
+        _double(low, "-DBL_MAX"),
+        _double(high, "DBL_MAX"),
+        f"literals_of_{variable.declaredType.name}" if variable.declaredType else "NULL",
+        f"offsetof(FcVariables, {model_description.c_member(variable.name)})",
+    ]
+    return "    {" + ", ".join(cells) + "},"
+
+
+def _double(value: str | None, absent: str) -> str:
+    return absent if value is None else repr(float(value))
+
+
+def _string(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def main() -> None:
+    source, target = Path(sys.argv[1]), Path(sys.argv[2])
+    target.write_text(table(model_description.read(source)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, KeyError) as error:
+        sys.exit(f"modelDescription.xml: {error}")

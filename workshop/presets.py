@@ -1,0 +1,175 @@
+"""Scenes that the page of the live FMU offers and the FMU holds as parameter sets: the one place for them."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from frictioncontact.fmu import SETTLED
+from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, Row, start_values
+from workshop.project import ROOT
+
+DRY_ROWS = ROOT / "data" / "measurements" / "luo2024.csv"
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A scene: start values of the FMU, and what is known of it from elsewhere."""
+
+    id: str
+    group: str
+    title: str
+    note: str  # HTML
+    values: dict[str, float | str]
+    known: float | None = None  # N, mean force
+    known_from: str | None = None
+    measured: tuple[tuple[float, float, str], ...] | None = None  # V / V_1, force over that without, text
+
+
+def presets() -> list[Preset]:
+    return [*table_2(IDENTIFIED), *table_2(PRINTED), *dry_rows(), *scenes()]
+
+
+def possible(presets: Sequence[Preset], variables: Sequence[Mapping[str, Any]]) -> list[Preset]:
+    """Those whose variables and items are among the variables of description()."""
+    known = {variable["name"]: variable for variable in variables}
+    return [
+        preset
+        for preset in presets
+        if all(
+            name in known and (not isinstance(value, str) or value in _items(known[name]))
+            for name, value in preset.values.items()
+        )
+    ]
+
+
+def _items(variable: Mapping[str, Any]) -> list[str]:
+    return [item["name"] for item in variable["items"]]
+
+
+def table_2(parameters: ParameterSet) -> list[Preset]:
+    """The six rows of Table 2 with one set of parameters."""
+    name = "identified" if parameters is IDENTIFIED else "exact"
+    group = (
+        "Table 2, identified stiffness and phase"
+        if parameters is IDENTIFIED
+        else "Table 2, exact: the printed parameters"
+    )
+    return [
+        Preset(
+            f"table2-row{row.number}-{name}",
+            group,
+            f"Row {row.number} {name}: {_conditions(row)}",
+            _table_2_note(parameters),
+            SETTLED | start_values(row, parameters),
+            known=row.paper_force,
+            known_from="Paper",
+        )
+        for row in TABLE_2
+    ]
+
+
+def _conditions(row: Row) -> str:
+    parts = [
+        *(["E₁ −30 %"] if row.softened else []),
+        *([f"{1e6 * row.a_d:g} µm across"] if row.a_d else []),
+        *([f"{row.V_1:g} m/s along"] if row.V_1 else []),
+    ]
+    return ", ".join(parts) or "no vibration"
+
+
+def _table_2_note(parameters: ParameterSet) -> str:
+    if parameters is IDENTIFIED:
+        return (
+            "Three numbers fitted to the three informative rows of Table 2: stiffness 2.5366 MN/m at 14 µm, "
+            "phase 224.94°, velocity 0.5 m/s. They show that the equations can reach the rows, not that the "
+            "equations are right."
+        )
+    return "The equations at the printed parameters: where the paper's number differs, they do not give it."
+
+
+def dry_rows() -> list[Preset]:
+    """Luo et al. 2024, Fig. 5b: each row that slides, with its measured force without vibration as F_C."""
+    f, amplitude = 26e3, 0.35e-6  # Hz, m
+    V_1 = 2.0 * math.pi * f * amplitude
+    with DRY_ROWS.open(newline="", encoding="utf-8") as file:
+        lines = [line for line in csv.DictReader(file) if line["lubrication"] == "dry"]
+    rows = [tuple(float(line[name]) for name in ("V_m_per_s", "F_without_N", "F_with_N")) for line in lines]
+    rows = [row for row in rows if row[0] > 0.0]  # at rest the mean of every law is 0
+    points = tuple(
+        (V / V_1, force / without, f"{1e3 * V:g} mm/s: {force:g} of {without:g} N")
+        for V, without, force in rows
+    )
+    return [
+        Preset(
+            f"luo2024-dry-{1e3 * V:g}mm-s",
+            "Measured: 26 kHz along the sliding",
+            f"Dry steel, measured: {1e3 * V:g} mm/s",
+            "L. Luo et al., <i>Sci. Rep.</i> 14:25847 (2024), Fig. 5b. The limit is the force measured "
+            "without vibration at this velocity; one stiffness, 7.76 MN/m, is fitted to all five rows. Their "
+            "ratios are the points of figure c.",
+            SETTLED
+            | {
+                "friction.model": "ElasticPlastic",
+                "contact.model": "Constant",
+                "contact.sigma": 7.76e6,
+                "contact.input": "Load",
+                "load": 10.8,
+                "F_C": without,
+                "V": V,
+                "vibration.f": f,
+                "vibration.V_1": V_1,
+            },
+            known=force,
+            known_from="Measured",
+            measured=points,
+        )
+        for V, without, force in rows
+    ]
+
+
+def scenes() -> list[Preset]:
+    group = "Scenes"
+    return [
+        Preset(
+            "stick-slip",
+            group,
+            "Stick and slip: a belt that moves to and fro",
+            "A resting body on a belt of 10 mm/s + 50 mm/s cos(2π 2 Hz t), LuGre's law. Where the belt slows "
+            "below the Stribeck velocity the friction rises towards the static one; after each turn the "
+            "contact sticks and is loaded like a spring.",
+            SETTLED
+            | {
+                "friction.model": "LuGre",
+                "friction.staticRatio": 1.5,
+                "friction.V_S": 0.005,
+                "contact.stiffnessScale": IDENTIFIED.stiffnessScale,
+                "V": 0.01,
+                "vibration.V_1": 0.05,
+                "vibration.f": 2.0,
+            },
+        ),
+        Preset(
+            "ultrasonic-motor",
+            group,
+            "Ultrasonic motor: a stator that moves in ellipses",
+            "The slider runs at 0.1 m/s over a stator of 40 kHz. While the stator moves with the slider it "
+            "is pressed on harder, so the mean friction is negative: it drives. Figure c is the motor's "
+            "force over its speed.",
+            SETTLED
+            | {
+                "friction.limit": "Load",
+                "friction.mu": 0.2,
+                "contact.model": "Mindlin",
+                "contact.input": "Load",
+                "load": 100.0,
+                "V": 0.1,
+                "vibration.V_1": 0.3,
+                "vibration.f": 40e3,
+                "vibration.a_d": 1.5e-6,
+            },
+        ),
+    ]

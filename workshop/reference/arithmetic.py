@@ -1,0 +1,134 @@
+"""The numbers the reference computes with: mpmath at 40 digits, or the machine's extended precision.
+
+The quadrature of ``quadrature`` is written once for arrays of either kind. Extended precision (19
+digits on x86-64) serves sweeps of many scenes; it is itself graded against the 40 digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import mpmath
+import numpy as np
+
+DIGITS = 40
+MP = mpmath.mp.clone()
+MP.dps = DIGITS
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    name: str
+    real: Callable[[Any], Any]  # an mpf, float or int as a number of this kind
+    exp: Callable[[Any], Any]  # elementwise, on arrays
+    expm1: Callable[[Any], Any]
+    cos: Callable[[Any], Any]
+    log: Callable[[Any], Any]
+    dtype: Any
+    nodes: int  # Gauss nodes in one piece of the mesh
+    window_nodes: int  # Gauss nodes in one window of the integrating factor
+    window: float  # exponent beyond which the integrating factor has forgotten its past
+
+    def array(self, values: Any) -> np.ndarray:
+        return np.array([self.real(value) for value in values], dtype=self.dtype)
+
+    def matrix(self, rows: Any) -> np.ndarray:
+        return np.array([[self.real(value) for value in row] for row in rows], dtype=self.dtype)
+
+
+def _longdouble(value: Any) -> np.longdouble:
+    if not isinstance(value, MP.mpf):
+        return np.longdouble(value)
+    high = float(value)
+    return (
+        np.longdouble(high) + np.longdouble(float(value - high)) if np.isfinite(high) else np.longdouble(high)
+    )
+
+
+def multiprecision(value: Any) -> Any:
+    """An mpf of the same value, to 21 digits where it comes from extended precision."""
+    if isinstance(value, np.longdouble):
+        return MP.mpf(np.format_float_scientific(value, unique=True))
+    return MP.mpf(value)
+
+
+MULTIPRECISION = Arithmetic(
+    "multiprecision",
+    MP.mpf,
+    np.frompyfunc(MP.exp, 1, 1),
+    np.frompyfunc(MP.expm1, 1, 1),
+    np.frompyfunc(MP.cos, 1, 1),
+    np.frompyfunc(MP.log, 1, 1),
+    object,
+    nodes=16,
+    window_nodes=32,
+    window=56.0,
+)
+EXTENDED = Arithmetic(
+    "extended",
+    _longdouble,
+    np.exp,
+    np.expm1,
+    np.cos,
+    np.log,
+    np.longdouble,
+    nodes=16,
+    window_nodes=36,
+    window=46.0,
+)
+
+
+@dataclass(frozen=True)
+class GaussRule:
+    """Gauss-Legendre on [0, 1]."""
+
+    nodes: Any  # in (0, 1)
+    weights: Any  # sum 1
+    from_start: Any  # from_start[i][j]: integral of the j-th Lagrange polynomial over [0, nodes[i]]
+    to_end: Any  # the same over [nodes[i], 1]
+
+
+def _legendre(n: int, x: Any) -> list:
+    values = [MP.mpf(1), x]
+    for m in range(1, n + 1):
+        values.append(((2 * m + 1) * x * values[m] - m * values[m - 1]) / (m + 1))
+    return values  # P_0 .. P_(n+1)
+
+
+@cache
+def gauss_rule(n: int) -> GaussRule:
+    points, weights = [], []
+    for i in range(n, 0, -1):
+        x = MP.cos(MP.pi * (i - MP.mpf(1) / 4) / (n + MP.mpf(1) / 2))
+        for _ in range(8):
+            P = _legendre(n, x)
+            slope = n * (x * P[n] - P[n - 1]) / (x * x - 1)
+            x -= P[n] / slope
+        P = _legendre(n, x)
+        slope = n * (x * P[n] - P[n - 1]) / (x * x - 1)
+        points.append(x)
+        weights.append(2 / ((1 - x * x) * slope * slope))
+    P = [_legendre(n, x) for x in points]
+    from_start, to_end = [], []
+    for i in range(n):
+        # integral of P_m over [x, 1] is (P_(m-1)(x) - P_(m+1)(x)) / (2 m + 1)
+        rest = [1 - points[i]] + [(P[i][m - 1] - P[i][m + 1]) / (2 * m + 1) for m in range(1, n)]
+        row = [weights[j] * sum((2 * m + 1) * P[j][m] * rest[m] for m in range(n)) / 4 for j in range(n)]
+        to_end.append(row)
+        from_start.append([weights[j] / 2 - row[j] for j in range(n)])
+    return GaussRule([(1 + x) / 2 for x in points], [w / 2 for w in weights], from_start, to_end)
+
+
+@cache
+def gauss_arrays(n: int, arithmetic: Arithmetic) -> GaussRule:
+    """The same in arrays of one arithmetic."""
+    rule = gauss_rule(n)
+    return GaussRule(
+        arithmetic.array(rule.nodes),
+        arithmetic.array(rule.weights),
+        arithmetic.matrix(rule.from_start),
+        arithmetic.matrix(rule.to_end),
+    )

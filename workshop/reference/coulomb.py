@@ -1,0 +1,45 @@
+"""Coulomb friction between reversals: F_t = F_C(t) sgn V + sigma_2 V."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from workshop.reference.arithmetic import EXTENDED, MP, MULTIPRECISION, gauss_rule
+from workshop.reference.mesh import longest_piece
+from workshop.reference.scene import Drive, Scene, events
+
+
+def coulomb(scene: Scene, t0: Any, h: Any, delta_0: Any) -> tuple[Any, Any, Any, Any]:
+    """Deflection (as it was) [m], impulse [N s], work and heat [J]: all its work is heat."""
+    h = MP.mpf(h)
+    drive = Drive(scene, t0, MULTIPRECISION)
+    corners = [MP.mpf(0), *events(drive, h), h]
+    longest = longest_piece(scene, drive, MP.mpf(0), h)
+    begin, size, sign = [], [], []
+    for left, right in zip(corners[:-1], corners[1:], strict=True):
+        count = max(1, int(MP.ceil((right - left) / longest)))
+        begin += [left + (right - left) * k / count for k in range(count)]
+        size += [(right - left) / count] * count
+        sign += [MP.sign(drive.V((left + right) / 2))] * count
+    begin, size, sign = (EXTENDED.array(values)[:, None] for values in (begin, size, sign))
+    rule = gauss_rule(EXTENDED.nodes)
+    tau = begin + size * EXTENDED.array(rule.nodes)[None, :]
+    drive = Drive(scene, t0, EXTENDED)
+    V = drive.V(tau)
+    force = sign * drive.coulomb(tau) + drive.sigma_2 * V
+    time = size * EXTENDED.array(rule.weights)
+    work = (time * force * V).sum()
+    return EXTENDED.real(delta_0), (time * force).sum(), work, work
+
+
+def path(scene: Scene, t0: Any, h: Any) -> Any:
+    """Integral of |V| [m]: the work against one newton."""
+    sliding = replace(scene, friction="Coulomb", limit="Constant", F_C=1.0, sigma_2=0.0)
+    return coulomb(sliding, t0, h, 0)[2]
+
+
+def mean_limit(scene: Scene, t0: Any, h: Any) -> Any:
+    """Time mean of F_C(t) [N]: of the constant, or of mu F_n(t)."""
+    forward = replace(scene, friction="Coulomb", V=1.0, V_rate=0.0, V_1=0.0, sigma_2=0.0)
+    return coulomb(forward, t0, h, 0)[1] / EXTENDED.real(MP.mpf(h))

@@ -1,0 +1,263 @@
+"""Figures of the regimes: mean friction, sensitivities, friction reduction, and which model is enough."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from workshop.figure import (
+    AMBER,
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PINK,
+    SKY,
+    Classes,
+    Figure,
+    Level,
+    Line,
+    Map,
+    Panel,
+    Span,
+)
+from workshop.regimes.mean import (
+    PARAMETERS,
+    REGIMES,
+    Probe,
+    Regime,
+    coulomb_limit,
+    coulomb_sensitivity,
+    on_map,
+    regime_map,
+    soft_limit,
+    soft_sensitivity,
+)
+
+ALPHA = 1.1 / 6.0  # a_d / R_q in the paper
+PHASE = math.radians(225.0)  # about the identified phase
+KAPPA, ZETA = "κ = σ V_1 / (2π f F_C)", "ζ = V / V_1"
+SYMBOLS = {"V": "V", "V_1": "V_1", "d": "d", "a_d": "a_d", "phase_d": "phase", "E": "E", "F_C": "F_C"}
+STEPS_FULL, STEPS_QUICK = 49, 17
+
+
+def grids(quick: bool) -> tuple[np.ndarray, np.ndarray]:
+    """kappa and zeta of the maps."""
+    n = STEPS_QUICK if quick else STEPS_FULL
+    return np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 1.5, n)
+
+
+def means(probe: Probe, quick: bool) -> Figure:
+    """Mean friction over kappa and zeta without and with normal vibration, and cuts against the limits."""
+    kappas, zetas = grids(quick)
+    levels = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
+    still = probe.mean(on_map(kappas, zetas))
+    moving = probe.mean(on_map(kappas, zetas, ALPHA, PHASE))
+    cuts = []
+    fine = np.linspace(0.005, 1.5, 120)
+    for kappa, colour in zip((0.3, 1.0, 3.0, 10.0), (SKY, GREEN, AMBER, PINK), strict=True):
+        cuts.append(Line(fine, probe.mean(Regime(kappa, fine)), f"FMU, κ = {kappa:g}", colour))
+    cuts += [
+        Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dash"),
+        Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", INK, "dash"),
+    ]
+    panels = [
+        Panel(
+            "d constant",
+            KAPPA,
+            ZETA,
+            [Map(kappas, zetas, still, "mean F_t / F_C", 0.0, 1.0, levels)],
+            True,
+            True,
+        ),
+        Panel(
+            "a_d / R_q = 0.18, phase 225°",
+            KAPPA,
+            ZETA,
+            [Map(kappas, zetas, moving, "mean F_t / F_C", 0.0, 1.0, levels)],
+            True,
+            True,
+        ),
+        Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)),
+    ]
+    caption = (
+        "Mean friction in the periodic state. Stiff contacts behave as Coulomb's, for κ above 100 with d "
+        "constant and above 3000 with d moving this much. Soft ones, below 0.1, hold a nearly constant "
+        "deflection and have a limit of their own: π²/4 times Coulomb's mean at small ζ. Beyond ζ = 1 "
+        "nothing reverses and, with d constant, the mean is F_C."
+    )
+    return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
+
+
+def sensitivities(probe: Probe, quick: bool) -> Figure:
+    """A map per parameter."""
+    n = STEPS_QUICK if quick else 33
+    kappas, zetas = np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 0.99, n)
+    panels = []
+    for name in PARAMETERS:
+        values = probe.sensitivity(on_map(kappas, zetas, ALPHA, PHASE), name)
+        top = 2.0 if name == "d" else 0.5
+        levels = (-1.0, -0.1, 0.1, 1.0) if name == "d" else (-0.2, -0.1, 0.0, 0.1, 0.2)
+        unit = "per rad" if name == "phase_d" else "per 100 %"
+        item = Map(kappas, zetas, values, f"of F_C, {unit}", -top, top, levels, True)
+        panels.append(Panel(f"To {SYMBOLS[name]}", KAPPA, ZETA, [item], True, True))
+    caption = (
+        "Change of the mean friction, in parts of F_C, per relative change of each quantity (the phase: "
+        "per rad), with a_d / R_q = 0.18 and a phase of 225° at d = 14 µm. Read 0.1 as: one percent more "
+        "of it changes the mean by 0.1 % of F_C. Note the wider scale of d: the stiffness follows its 17th "
+        "power here. E acts through the stiffness alone, so it shows minus a seventeenth of what d shows."
+    )
+    return Figure("sensitivity", "What the mean friction is sensitive to", caption, panels, 4, (18.0, 9.0))
+
+
+def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
+    """Along kappa at one zeta, against the closed-form limits at both ends."""
+    kappas = np.geomspace(1e-3, 1e5, 33 if quick else 97)
+    zeta = 0.3
+    ends = np.array([1e-3, 1e-2]), np.array([1e4, 1e5])
+    groups = (("V", "V_1", "F_C"), ("a_d", "phase_d", "E"), ("d",))
+    colours = (BLUE, ORANGE, GREEN)
+    panels = []
+    for names in groups:
+        items = []
+        for name, colour in zip(names, colours, strict=False):
+            items.append(
+                Line(
+                    kappas,
+                    probe.sensitivity(Regime(kappas, zeta, ALPHA, PHASE), name),
+                    f"FMU, to {SYMBOLS[name]}",
+                    colour,
+                )
+            )
+            limits = soft_sensitivity(zeta, name, ALPHA, PHASE), coulomb_sensitivity(zeta, name)
+            for x, y in zip(ends, limits, strict=True):
+                items.append(Line(x, [y, y], "", INK, "dash", 2.4))
+        items.append(Line([1.0], [np.nan], "limits in closed form", INK, "dash", 2.4))
+        title = "To " + ", ".join(SYMBOLS[name] for name in names)
+        panels.append(Panel(title, KAPPA, "of F_C per 100 % or rad", items, True))
+    caption = (
+        "The same along κ at ζ = 0.3. The dashed ends are the limits: Coulomb's (2/π) asin ζ to the right, "
+        "where only V, V_1 and F_C matter, and the soft limit ζ ⟨σ⟩ / ⟨σ |ζ + cos|⟩ to the left, where the "
+        "phase matters and the stiffness no more."
+    )
+    return Figure("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
+
+
+def phases(probe: Probe, quick: bool) -> Figure:
+    """Mean friction over phase and amplitude of the separation."""
+    n = 25 if quick else 73
+    angles, alphas = np.linspace(0.0, 360.0, n), np.linspace(0.0, 0.5, n)
+    panels = []
+    for kappa, zeta in ((0.5, 0.35), (5.0, 0.1), (50.0, 0.02)):
+        values = probe.mean(Regime(kappa, zeta, alphas[:, None], np.radians(angles)))
+        top = max(0.1, round(float(np.max(np.abs(values))), 1))
+        item = Map(
+            angles, alphas, values, "mean F_t / F_C", -top, top, (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4), True
+        )
+        panels.append(Panel(f"κ = {kappa:g}, ζ = {zeta:g}", "phase of d [deg]", "a_d / R_q", [item]))
+    caption = (
+        "When the separation moves with the velocity, the phase decides: the contact is stiff on the way "
+        "in one direction and soft on the way back. Blue is negative mean friction: the vibration drives "
+        "the sliding, as in an ultrasonic motor."
+    )
+    return Figure("phase", "Phase and amplitude of the moving separation", caption, panels, 3, (15.0, 4.6))
+
+
+def regimes(probe: Probe, quick: bool) -> Figure:
+    """Which model is enough, over kappa and zeta, for three amplitudes of the separation."""
+    n = 21 if quick else 61
+    kappas, zetas = np.geomspace(1e-2, 1e7, n), np.geomspace(1e-3, 1.5, n)
+    panels = []
+    for alpha, words in (
+        (0.0, "d constant"),
+        (0.02, "a_d / R_q = 0.02"),
+        (ALPHA, "a_d / R_q = 0.18 (paper)"),
+    ):
+        z = regime_map(probe, kappas, zetas, alpha, phases=8 if quick else 12)
+        items = [
+            Classes(kappas, zetas, z, REGIMES, (SKY, GREEN, AMBER, PINK)),
+            *_table_2_points(),
+        ]
+        panels.append(Panel(words, KAPPA, ZETA, items, True, True))
+    caption = (
+        "The simplest model whose mean friction is within 1 % of F_C at every phase of the separation. "
+        "Where the mean may be negative, some phase drives the sliding. Marked: row 3 of Table 2 at the "
+        "printed parameters (κ = 1.2e6, ζ = 0.0035) and as identified (κ = 0.53, ζ = 0.35)."
+    )
+    return Figure("regimes", "Which model a scene needs", caption, panels, 3, (15.0, 5.6))
+
+
+def _table_2_points() -> list[Line]:
+    from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
+
+    points = []
+    for parameters in (PRINTED, IDENTIFIED):
+        V_1 = TABLE_2[2].V_1
+        kappa = parameters.stiffness * V_1 / (2.0 * math.pi * FREQUENCY * COULOMB_FORCE)
+        points.append(Line([kappa], [parameters.V / V_1], "", INK, markers=True))
+    return points
+
+
+# Headline ranges of published measurements: what their abstracts state, in percent of friction reduction.
+MEASURED = (
+    Span(40.0, 100.0, "Shahgholian et al. 2015, longitudinal: 40–100 %", GREY),
+    Span(29.0, 62.0, "Dong, Dapino 2015, normal vibration: 29–62 %", PINK),
+)
+UP_TO = (60.0, "Dong, Dapino 2014 [9]: up to 60 %, both directions")
+
+
+def reduction(probe: Probe, quick: bool) -> Figure:
+    """Friction reduction over V / V_1 with the limits, and what others measured."""
+    zetas = np.geomspace(1e-3, 2.0, 60 if quick else 160)
+    lines = [
+        Line(zetas, [100.0 * (1.0 - coulomb_limit(z)) for z in zetas], "Coulomb limit, κ → ∞", INK, "dash")
+    ]
+    for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY)):
+        values = 100.0 * (1.0 - probe.mean(Regime(kappa, zetas)))
+        lines.append(Line(zetas, values, f"FMU, κ = {kappa:g}", colour))
+    lines.append(
+        Line(zetas, [100.0 * (1.0 - soft_limit(z)) for z in zetas], "soft limit, κ → 0", BLUE, "dash")
+    )
+    lines.append(Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True))
+    model = Panel(
+        "Tangential vibration, d constant",
+        "V / V_1",
+        "friction reduction [%]",
+        lines,
+        True,
+        y_range=(0.0, 105.0),
+        x_range=(1e-3, 2.0),
+    )
+    wide = np.linspace(0.01, 1.2, 80)
+    measured = [
+        *MEASURED,
+        Line(wide, [100.0 * (1.0 - coulomb_limit(z)) for z in wide], "Coulomb limit, κ → ∞", INK, "dash"),
+        Line(wide, [100.0 * (1.0 - soft_limit(z)) for z in wide], "soft limit, κ → 0", BLUE, "dash"),
+        Level(UP_TO[0], UP_TO[1], ORANGE, "dot"),
+    ]
+    against = Panel(
+        "Measured headline ranges",
+        "V / V_1 of the limits",
+        "friction reduction [%]",
+        measured,
+        y_range=(0.0, 105.0),
+    )
+    caption = (
+        "With a constant separation every stiffness lies between the two dashed limits. The measured "
+        "ranges are those that the abstracts state; they give no V / V_1, so they are bands over the whole "
+        "width: D. Shahgholian Ghahfarokhi, M. Salimi, M. Farzin, Modares Mech. Eng. 15(9), 187–198 "
+        "(2015); S. Dong, M. J. Dapino, J. Vis. Exp. 2015, 52931 (normal vibration at 22 kHz: another "
+        "mechanism than that of the curves, shown for scale); S. Dong, M. J. Dapino, Ultrasonics 54(1), "
+        "343–350 (2014), the paper's reference 9. The printed V / V_1 of Table 2 is 0.0035: there every "
+        "stiffness gives at least 99.4 %, not 51 %."
+    )
+    return Figure(
+        "reduction",
+        "Friction reduction against the velocity ratio",
+        caption,
+        [model, against],
+        2,
+        (12.0, 5.4),
+    )

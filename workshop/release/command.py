@@ -1,0 +1,223 @@
+"""One .fmu that runs everywhere: `scripts/release`.
+
+Every library is compiled by zig from the same sources, with SUNDIALS CVODE inside, then inspected. The file
+appears under its name only when it is complete and the FMI validator finds nothing. The same input gives the
+same bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.metadata
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from fmpy.validation import validate_fmu
+from rich.progress import Progress
+
+from frictioncontact.command import finish, progress_bar, shown
+from frictioncontact.errors import UserError
+from frictioncontact.files import whole_file
+from workshop.fmu_docs.page import page as index_page
+from workshop.playground.page import page_text
+from workshop.project import ROOT
+from workshop.release import inspect as release_inspect
+from workshop.release.targets import CACHE, SUFFIXES, build, zig
+from workshop.release.universal import universal
+from workshop.release.verify import SUMS, verify, write_sums
+from workshop.release.wheel import wheels
+
+PLAYGROUND = "playground.html"  # the page of the live FMU, inside the FMU and beside it
+QUICK = ("linux64", "aarch64-linux")
+SUNDIALS = ROOT / "build" / "sundials-source"
+# Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
+TOOLCHAIN_LICENSES = {
+    "zig-license.txt": "LICENSE",
+    "mingw-w64-license.txt": "lib/libc/mingw/COPYING",
+}
+
+
+def compile_platforms(
+    platforms: Iterable[str],
+    folder: Path,
+    cache: Path = CACHE,
+    root: Path = ROOT,
+    tell: Callable[[str], None] = lambda platform: None,
+) -> dict[str, Path]:
+    """Libraries in folders of CMake under folder, one a platform, each inspected; root holds the sources.
+
+    Beside each lies the batch host, which goes into the wheels.
+    """
+    libraries = {}
+    for platform in platforms:
+        tell(platform)
+        build(platform, "fmu_parts", folder / platform, cache, root)
+        libraries[platform] = folder / platform / f"FrictionContact{SUFFIXES[platform]}"
+        release_inspect.check(platform, libraries[platform])
+        build(platform, "friction_batch", folder / platform, cache, root)
+        release_inspect.check(platform, batch_host(folder, platform), "batch_")
+    return libraries
+
+
+def batch_host(folder: Path, platform: str) -> Path:
+    """What compile_platforms has made."""
+    return folder / platform / f"friction_batch{SUFFIXES[platform]}"
+
+
+def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str, Path]:
+    """darwin64 for both processors, where both were compiled."""
+    if not {"darwin64", "aarch64-darwin"} <= libraries.keys():
+        return libraries
+    path = folder / "universal.dylib"
+    path.write_bytes(
+        universal([libraries["darwin64"].read_bytes(), libraries["aarch64-darwin"].read_bytes()])
+    )
+    return {**libraries, "darwin64": path}
+
+
+def documents(folder: Path) -> dict[str, Path]:
+    """The page of the live FMU and index.html with a link to it, in folder: name in the FMU -> file."""
+    files = {f"documentation/{name}": folder / name for name in ("index.html", PLAYGROUND)}
+    files["documentation/index.html"].write_text(index_page(playground=True), encoding="utf-8")
+    files[f"documentation/{PLAYGROUND}"].write_text(page_text(), encoding="utf-8")
+    return files
+
+
+def pack(output: Path, libraries: dict[str, Path], parts: Path, files: dict[str, Path]) -> None:
+    """Writes output, if the validator finds nothing in it.
+
+    parts: CMake's folder of one of the platforms; files: name in the FMU -> file, besides what CMake lists.
+    """
+    arguments = [f"@{parts / 'generated' / 'package.txt'}"]
+    for platform, library in libraries.items():
+        arguments += ["--binary", f"{platform}={library}"]
+    for name, path in TOOLCHAIN_LICENSES.items():
+        arguments += ["--file", f"documentation/licenses/{name}={zig().parent / path}"]
+    for name, path in files.items():
+        arguments += ["--file", f"{name}={path}"]
+    packer = [sys.executable, "-B", "-m", "workshop.packing.archive"]
+    with whole_file(output) as unchecked:
+        run = subprocess.run(
+            [*packer, str(unchecked.absolute()), *arguments], cwd=ROOT, capture_output=True, text=True
+        )
+        if run.returncode:
+            raise UserError(f"packing fails: {' '.join(run.stderr.split())[-300:]}")
+        problems = validate_fmu(str(unchecked))
+        if problems:
+            raise UserError(f"the validator finds: {' '.join(problems[0].split())}")
+
+
+def size_table(fmu: Path) -> str:
+    """Sizes of the parts of the file, unpacked and packed, in kB of 1000 bytes."""
+    groups: dict[str, list[int]] = {}
+    with zipfile.ZipFile(fmu) as archive:
+        for entry in archive.infolist():
+            top, _, rest = entry.filename.partition("/")
+            group = f"{top}/{rest.partition('/')[0]}" if top == "binaries" else f"{top}/" if rest else top
+            sizes = groups.setdefault(group, [0, 0])
+            sizes[0] += entry.file_size
+            sizes[1] += entry.compress_size
+    rows = [(group, whole, packed) for group, (whole, packed) in groups.items()]
+    rows.append((fmu.name, sum(whole for _, whole, _ in rows), fmu.stat().st_size))
+    lines = [f"{'part':26}{'unpacked kB':>12}{'packed kB':>12}"]
+    lines += [f"{name:26}{whole / 1e3:12.1f}{packed / 1e3:12.1f}" for name, whole, packed in rows]
+    return "\n".join(lines)
+
+
+def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> None:
+    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not."""
+    platforms = list(platforms)
+    zig()
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        if output.is_dir():
+            raise UserError(f"{output} can't be written: it is a folder")
+        with tempfile.TemporaryFile(dir=output.parent):
+            pass
+    except OSError as error:
+        raise UserError(f"{output} can't be written: {error.strerror}") from None
+    task = progress.add_task("Compiling", total=len(platforms) + 3)
+
+    def tell(platform: str) -> None:
+        progress.update(task, advance=1, description=f"Compiling for {platform}")
+
+    with tempfile.TemporaryDirectory(prefix="release-") as temporary:
+        folder = Path(temporary)
+        libraries = compile_platforms(platforms, folder, tell=tell)
+        tell("a page")
+        files = documents(folder)
+        progress.update(task, advance=1, description="Packing and validating")
+        fmu, page = folder / "FrictionContact.fmu", files[f"documentation/{PLAYGROUND}"]
+        pack(fmu, with_universal_darwin(libraries, folder), folder / platforms[0], files)
+        tell("wheels")
+        hosts = {platform: batch_host(folder, platform) for platform in platforms}
+        made = wheels(fmu, page, hosts, folder / "wheels")
+        targets = {output: fmu, **{output.with_name(path.name): path for path in (page, *made)}}
+        for target, path in targets.items():
+            with whole_file(target) as unfinished:
+                shutil.copyfile(path, unfinished)
+        write_sums(list(targets))
+    progress.remove_task(task)
+
+
+def sundials_version() -> str:
+    """Of the source that cmake/Sundials.cmake fetched: its number and the checksum of its archive."""
+    numbers = re.findall(
+        r'set\(PACKAGE_VERSION_(?:MAJOR|MINOR|PATCH) "(\d+)"\)', (SUNDIALS / "CMakeLists.txt").read_text()
+    )
+    return f"{'.'.join(numbers)} (sha256 {(SUNDIALS / 'archive.sha256').read_text().strip()})"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        prog="scripts/release",
+        description="Build one FrictionContact.fmu for Linux, Windows and macOS, cross-compiled with zig.",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu"
+    )
+    parser.add_argument(
+        "--platforms", nargs="+", choices=list(SUFFIXES), metavar="PLATFORM", help=", ".join(SUFFIXES)
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick"
+    )
+    parser.add_argument(
+        "--check",
+        type=Path,
+        metavar="FMU",
+        help="tell whether a file is one of ours, as it was packed, and gives its reference results",
+    )
+    finish(_run, parser.parse_args())
+
+
+def _run(options: argparse.Namespace) -> None:
+    if options.check:
+        for line in verify(options.check):
+            print(f"ok  {line}", flush=True)
+    else:
+        _release(options)
+
+
+def _release(options: argparse.Namespace) -> None:
+    name = "release-quick" if options.quick else "release"
+    output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
+    platforms = options.platforms or (QUICK if options.quick else list(SUFFIXES))
+    with progress_bar() as progress:
+        make_release(output, platforms, progress)
+    print(size_table(output))
+    print(f"SUNDIALS {sundials_version()}")
+    print(f"zig {importlib.metadata.version('ziglang')}")
+    for line in output.with_name(SUMS).read_text().splitlines():
+        checksum, _, name = line.partition("  ")
+        print(f"{shown(output.with_name(name))} (sha256 {checksum})")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,159 @@
+"""What a library shows to the loader, read from its file: format, processor, exports, needs, signature."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import lief
+
+from frictioncontact.errors import UserError
+
+lief.logging.disable()  # it reports on harmless oddities of the files
+
+NEWEST_GLIBC = (2, 17)
+PROCESSORS = {
+    "linux64": "X86_64",
+    "aarch64-linux": "AARCH64",
+    "win64": "AMD64",
+    "darwin64": "X86_64",
+    "aarch64-darwin": "ARM64",
+}
+MINIMUM_MACOS = {"darwin64": (10, 15), "aarch64-darwin": (11, 0)}
+# zig's linker exports the header and the handle of the image itself; nothing binds to them.
+IMAGE_SYMBOLS = {"__mh_dylib_header", "___dso_handle"}
+# Libraries that every system of the platform has.
+SYSTEM_LIBRARIES = re.compile(
+    r"lib(c|m|dl|pthread)\.so\.\d|ld-linux-.*|/usr/lib/libSystem\.B\.dylib|KERNEL32\.dll|api-ms-win-crt-.*\.dll|ntdll\.dll"
+)
+ADHOC_FLAG = 0x2
+
+
+@dataclass(frozen=True)
+class Library:
+    """Facts of one shared library."""
+
+    processor: str
+    exports: set[str]
+    needs: set[str]
+    glibc: tuple[int, ...]  # newest symbol version needed; empty where there is no glibc
+    minimum_macos: tuple[int, ...]
+    signature: str  # "none", "ad hoc" or "broken"
+    debug_sections: set[str]
+
+
+def inspect(path: Path) -> Library:
+    binary = lief.parse(str(path))
+    if isinstance(binary, lief.ELF.Binary):
+        return _elf(binary)
+    if isinstance(binary, lief.PE.Binary):
+        return _pe(binary)
+    if isinstance(binary, lief.MachO.Binary):
+        return _macho(binary, path.read_bytes())
+    raise UserError(f"{path} is no shared library")
+
+
+def check(platform: str, path: Path, prefix: str = "fmi2") -> Library:
+    """The facts of a library of the release; UserError names the first that is not as it must be.
+
+    prefix: how the names begin that it exports.
+    """
+    library = inspect(path)
+    darwin = platform in MINIMUM_MACOS
+    foreign = {name for name in library.exports if not name.startswith(prefix)}
+    if foreign:
+        raise UserError(f"{platform}: {sorted(foreign)[0]} is exported, and only {prefix} functions may be")
+    if library.processor != PROCESSORS[platform]:
+        raise UserError(f"{platform}: built for {library.processor}, not for {PROCESSORS[platform]}")
+    if library.glibc > NEWEST_GLIBC:
+        raise UserError(f"{platform}: needs GLIBC_{'.'.join(map(str, library.glibc))}, later than 2.17")
+    strange = {name for name in library.needs if not SYSTEM_LIBRARIES.fullmatch(name)}
+    if strange:
+        raise UserError(f"{platform}: needs {sorted(strange)[0]}, which not every system has")
+    if darwin and library.minimum_macos != MINIMUM_MACOS[platform]:
+        raise UserError(f"{platform}: minimum macOS is {library.minimum_macos}")
+    if platform == "aarch64-darwin" and library.signature != "ad hoc":
+        raise UserError(f"{platform}: signature: {library.signature}; macOS on ARM loads signed code only")
+    if library.debug_sections:
+        raise UserError(f"{platform}: not stripped, holds {sorted(library.debug_sections)[0]}")
+    return library
+
+
+def _elf(binary: lief.ELF.Binary) -> Library:
+    versions = [
+        tuple(int(part) for part in match[1].split("."))
+        for requirement in binary.symbols_version_requirement
+        for version in requirement.get_auxiliary_symbols()
+        if (match := re.fullmatch(r"GLIBC_([\d.]+)", str(version.name)))
+    ]
+    return Library(
+        processor=str(binary.header.machine_type).rpartition(".")[2],
+        exports={str(symbol.name) for symbol in binary.exported_symbols},
+        needs=set(map(str, binary.libraries)),
+        glibc=max(versions, default=()),
+        minimum_macos=(),
+        signature="none",
+        debug_sections={
+            str(section.name)
+            for section in binary.sections
+            if str(section.name) == ".symtab" or str(section.name).startswith(".debug")
+        },
+    )
+
+
+def _pe(binary: lief.PE.Binary) -> Library:
+    return Library(
+        processor=str(binary.header.machine).rpartition(".")[2],
+        exports={str(function.name) for function in binary.exported_functions},
+        needs=set(map(str, binary.libraries)),
+        glibc=(),
+        minimum_macos=(),
+        signature="none",
+        debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},
+    )
+
+
+def _macho(binary: lief.MachO.Binary, content: bytes) -> Library:
+    exported = {str(entry.symbol.name) for entry in binary.dyld_info.exports if entry.symbol is not None}
+    return Library(
+        processor=str(binary.header.cpu_type).rpartition(".")[2],
+        exports={name.removeprefix("_") for name in exported - IMAGE_SYMBOLS},
+        needs={str(library.name) for library in binary.libraries} - {f"@rpath/{_install_name(binary)}"},
+        glibc=(),
+        minimum_macos=tuple(binary.build_version.minos)[:2],
+        signature=_signature(binary, content),
+        debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},
+    )
+
+
+def _install_name(binary: lief.MachO.Binary) -> str:
+    for command in binary.commands:
+        if command.command == lief.MachO.LoadCommand.TYPE.ID_DYLIB:
+            return str(command.name).rpartition("/")[2]
+    return ""
+
+
+def _signature(binary: lief.MachO.Binary, content: bytes) -> str:
+    """Reads the code directory and computes the hash of every page anew."""
+    if not binary.has_code_signature:
+        return "none"
+    start = binary.code_signature.data_offset
+
+    def number(offset: int, size: int = 4) -> int:
+        return int.from_bytes(content[offset : offset + size], "big")
+
+    if number(start) != 0xFADE0CC0:
+        return "broken"
+    slots = {number(start + 12 + 8 * k): number(start + 16 + 8 * k) for k in range(number(start + 8))}
+    directory = start + slots.get(0, 0)
+    if number(directory) != 0xFADE0C02:
+        return "broken"
+    flags, hashes, count, limit = (number(directory + offset) for offset in (12, 16, 28, 32))
+    hash_size, page = content[directory + 36], 1 << content[directory + 39]
+    for k in range(count):
+        expected = content[directory + hashes + k * hash_size : directory + hashes + (k + 1) * hash_size]
+        if hashlib.sha256(content[k * page : min((k + 1) * page, limit)]).digest()[:hash_size] != expected:
+            return "broken"
+    return "ad hoc" if flags & ADHOC_FLAG and limit == start else "broken"

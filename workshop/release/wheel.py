@@ -1,0 +1,82 @@
+"""Wheels with the FMU inside: scripts/wheel makes this platform's, scripts/release those of all platforms."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from frictioncontact import resources
+from frictioncontact.command import add_output, command_line, finish, say_written
+from frictioncontact.errors import UserError
+from workshop.build import build_fmu
+from workshop.playground.page import page_text
+from workshop.project import ROOT
+from workshop.release.build_hook import PAGE
+
+TAGS = {  # by the oldest system that cmake/zig.cmake compiles for
+    "linux64": "manylinux2014_x86_64",
+    "aarch64-linux": "manylinux2014_aarch64",
+    "win64": "win_amd64",
+    "darwin64": "macosx_10_15_x86_64",
+    "aarch64-darwin": "macosx_11_0_arm64",
+}
+DESCRIPTION = """\
+Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
+page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
+
+
+def wheels(fmu: Path, page: Path, hosts: Mapping[str, Path], output: Path) -> list[Path]:
+    """A wheel for each platform with its batch host, and the sdist, in the folder output."""
+    made = [packed("wheel", output, [fmu, page, host], TAGS[platform]) for platform, host in hosts.items()]
+    return [*made, packed("sdist", output, [page])]
+
+
+def packed(target: str, output: Path, files: Sequence[Path], tag: str = "") -> Path:
+    """Runs hatchling for a target, wheel or sdist, with these files in the bundle; UserError says why not."""
+    with tempfile.TemporaryDirectory(prefix="bundle-") as temporary:
+        bundle, made = Path(temporary, "bundle"), Path(temporary, "made")
+        bundle.mkdir()
+        for path in files:
+            shutil.copy(path, bundle)
+        run = subprocess.run(
+            [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(made)],
+            cwd=ROOT,
+            env={**os.environ, "FRICTIONCONTACT_BUNDLE": str(bundle), "FRICTIONCONTACT_PLATFORM": tag},
+            capture_output=True,
+            text=True,
+        )
+        if run.returncode:
+            raise UserError(f"the {target} fails: {' '.join(run.stderr.split())[-300:]}")
+        (path,) = made.iterdir()
+        output.mkdir(parents=True, exist_ok=True)
+        return Path(shutil.move(path, output / path.name))
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("scripts/wheel", DESCRIPTION)
+    add_output(parser, ROOT / "build" / "wheel")
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    fmu = build_fmu()
+    with tempfile.TemporaryDirectory(prefix="page-") as temporary:
+        page = Path(temporary, PAGE)
+        page.write_text(page_text(), encoding="utf-8")
+        wheel = packed("wheel", options.output, [fmu, page, resources.batch_host()])
+    say_written([wheel])
+    print(f"{wheel.stat().st_size / 1e6:.2f} MB")
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,141 @@
+"""Does an identification recover what made the data? Synthetic noisy measurements, fitted again and again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.identification.data import Measurements, Series, Uncertain
+from frictioncontact.identification.experiment import Experiment, Rows
+from frictioncontact.identification.fit import with_profiles
+from frictioncontact.identification.parameter import Parameter, parameter
+from frictioncontact.identification.result import Fit
+from frictioncontact.identification.search import search
+from frictioncontact.identification.series import Record
+from workshop.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
+
+TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
+NOISE = 0.5  # N, standard deviation of one mean
+LOOP_TRUTH = {"contact.sigma": 2.5e6, "F_C": 48.0}
+LOOP_START = 5.0  # N, the force that a loop begins with
+LOOP_NOISE = 0.3  # N, standard deviation of one sample
+NAMES = ("V", "vibration.V_1", "vibration.a_d")
+
+
+def conditions() -> list[dict[str, float]]:
+    """Twelve rows as a person would measure them: some with, some without normal vibration."""
+    return [
+        {"V": V, "vibration.V_1": V_1, "vibration.a_d": a_d}
+        for V in (0.2, 0.6)
+        for V_1 in (0.5, 1.0, 1.5)
+        for a_d in (0.0, 1e-6)
+    ]
+
+
+def measurements(force: np.ndarray, uncertainty: list[float] | None = None) -> Measurements:
+    return Measurements(NAMES, conditions(), list(force), uncertainty)
+
+
+def parameters(fmu: FrictionFmu) -> list[Parameter]:
+    """Nothing is known of them but where the command searches."""
+    return [parameter(fmu, name, None, None, {}) for name in TRUTH]
+
+
+def true_forces(fmu: FrictionFmu) -> np.ndarray:
+    experiment = Rows(fmu, measurements(np.zeros(len(conditions()))), parameters(fmu))
+    return experiment.means([p.to_coordinate(TRUTH[p.name]) for p in experiment.parameters])
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """What fits found that knew nothing of the truth, one for each seed."""
+
+    truth: dict[str, float]
+    fits: list[Fit]
+
+    def holds(self, name: str) -> list[bool]:
+        """Whether the 95 % interval of each seed holds the true value."""
+        k = list(self.truth).index(name)
+        intervals = [one.profiles[k] for one in self.fits]
+        return [low <= self.truth[name] <= high for low, high in intervals]
+
+
+def from_rows(
+    fmu: FrictionFmu, seeds: int, uncertainty: list[float] | None = None, V_1_error: float = 0.0
+) -> Recovered:
+    """From one noisy set of rows per seed; uncertainty as stated, or None to estimate it from the scatter.
+
+    V_1_error: relative standard error of the V_1 of each row.
+    """
+    forces = true_forces(fmu)
+    rows = measurements(forces, uncertainty)
+    if V_1_error > 0.0:
+        uncertain = [
+            Uncertain("vibration.V_1", V_1_error * row["vibration.V_1"], k)
+            for k, row in enumerate(conditions())
+        ]
+        rows = replace(rows, uncertain=tuple(uncertain))
+    experiment = Rows(fmu, rows, parameters(fmu))
+    return _recovered(experiment, TRUTH, experiment.target, NOISE, seeds)
+
+
+def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> Recovered:
+    """From one noisy loop per seed: presliding at first, sliding at its ends later."""
+    time = np.linspace(0.0, 2.0, 160)
+    position = 60e-6 * np.sin(2.0 * np.pi * time) * (0.3 + 0.5 * time)
+    constants = {"contact.model": "Constant", "friction.model": law}
+    series = Series(
+        time, np.diff(position) / np.diff(time), {}, np.zeros(len(time)), constants,
+        np.full(len(time), LOOP_NOISE) if stated else None, position,
+    )  # fmt: skip
+    named = [
+        parameter(fmu, "contact.sigma", None, (1e3, 1e9), constants),
+        parameter(fmu, "F_C", None, None, constants),
+    ]
+    first = Record(fmu, series, named)
+    truth = [p.to_coordinate(LOOP_TRUTH[p.name]) for p in named]
+    forces = first.forces(np.array([[*truth, LOOP_START]]))[0]
+    return _recovered(
+        Record(fmu, replace(series, force=forces), named), LOOP_TRUTH, forces, LOOP_NOISE, seeds
+    )
+
+
+def _recovered(
+    experiment: Experiment, truth: dict[str, float], exact: np.ndarray, noise: float, seeds: int
+) -> Recovered:
+    random = np.array([np.random.default_rng(seed).standard_normal(len(exact)) for seed in range(seeds)])
+    random[:, : len(experiment.force)] *= noise
+    found = [with_profiles(experiment, search(experiment, target)) for target in exact + random]
+    return Recovered(truth, found)
+
+
+def figure(fmu: FrictionFmu, seeds: int) -> Figure:
+    """The intervals of every seed against the truth."""
+    found = from_rows(fmu, seeds)
+    panels = []
+    for k, name in enumerate(TRUTH):
+        factor, unit = {
+            "contact.stiffnessScale": (1e7, "1e-7"),
+            "vibration.phase_d": (np.degrees(1.0), "deg"),
+        }.get(name, (1.0, "N"))
+        good: tuple[list[float], list[float]] = ([], [])
+        missed: tuple[list[float], list[float]] = ([], [])
+        held = found.holds(name)
+        for seed, is_held in enumerate(held):
+            x, y = good if is_held else missed
+            x += [seed, seed, np.nan]
+            y += [*(factor * np.array(found.fits[seed].profiles[k])), np.nan]
+        items = [
+            Line(*good, f"holds the truth: {sum(held)} of {seeds}", BLUE),
+            Level(factor * TRUTH[name], "truth", INK, "dash"),
+        ]
+        if missed[0]:
+            items.insert(1, Line(*missed, "misses it", ORANGE, width=2.4))
+        panels.append(Panel(name, "seed", f"95 % interval [{unit}]", items, x_range=(-1.0, seeds)))
+    caption = (
+        f"Twelve synthetic mean forces with normal noise of {NOISE:g} N, fitted for three parameters, with "
+        f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should hold the truth."
+    )
+    return Figure("recovery", "Known parameters, recovered from noisy data", caption, panels, 3, (15.0, 4.6))

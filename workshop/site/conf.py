@@ -1,0 +1,145 @@
+"""Configuration of Sphinx. The pages are the project's Markdown files, where they lie and as they are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from docutils.nodes import Element
+from sphinx.addnodes import desc_annotation
+from sphinx.application import Sphinx
+
+ROOT = Path(__file__).resolve().parents[2]
+
+project = "FrictionContact"
+author = "The FrictionContact authors"
+copyright = "the FrictionContact authors, BSD-3-Clause"
+version = release = re.search(
+    r'^\s+version="([^"]+)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"), re.MULTILINE
+)[1]
+
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+root_doc = "README"
+include_patterns = [
+    "*.md",
+    "docs/*.md",
+    "examples/README.md",
+    "examples/*/README.md",
+    "data/measurements/README.md",
+]
+exclude_patterns = [".*", "build"]
+myst_heading_anchors = 4
+smartquotes_action = "D"  # dashes only, which lists of parameters are written with
+highlight_language = "none"  # of what names no language
+default_role = "code"  # a name between single backticks, in Markdown as in docstrings
+autodoc_typehints_format = "short"
+python_maximum_signature_line_length = 90
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+
+html_theme = "sphinx_book_theme"
+html_title = f"{project} {version}"
+templates_path = ["templates"]
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_use_index = False  # the search finds names
+html_domain_indices = False
+html_context = {"default_mode": "auto"}  # light or dark, as the browser asks
+html_theme_options = {
+    "show_toc_level": 2,
+    "home_page_in_toc": True,
+    "use_download_button": False,
+    "use_fullscreen_button": False,
+    "secondary_sidebar_items": {"**": ["page-toc"], "docs/playground": []},
+}
+# A browser reads no file for a page that was opened from a folder: the excerpts under the hits of a search.
+SUMMARY = "if (location.protocol === 'file:') DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;"
+
+CONTENTS = {
+    "Use": {
+        "In your tool": "docs/using",
+        "Importers": "docs/compatibility",
+        "Measured parameters": "docs/measured-parameters",
+        "Playground": "docs/playground",
+        "Python": "docs/api",
+    },
+    "Examples": {
+        "Overview": "examples/README",
+        "A mass on a belt": "examples/stick-slip/README",
+        "A slow plant": "examples/ultrasonic-slider/README",
+        "Validation in CI": "examples/ci-validation/README",
+        "A million scenarios": "examples/simulate-many/README",
+        "Sweep": "examples/sweep/README",
+    },
+    "Model": {"Equations": "docs/physics", "Validation": "docs/validation", "Errata": "docs/errata"},
+    "Solver": {"Numerics": "docs/numerics", "How it works": "docs/solver"},
+    "Trust": {
+        "Reliability": "docs/reliability",
+        "Wrong calls and values": "docs/bad-input",
+        "Release": "docs/release",
+    },
+    "Project": {
+        "Changelog": "CHANGELOG",
+        "Contributing": "CONTRIBUTING",
+        "Security": "SECURITY",
+        "Data": "data/measurements/README",
+    },
+}
+PLAYGROUND = """
+<p><a href="../playground.html">Open it in a window of its own</a></p>
+<iframe class="playground" src="../playground.html" title="The FMU, alive" loading="lazy"></iframe>
+"""
+
+
+def toctree(pages: Mapping[str, str], caption: str) -> str:
+    """A table of contents, title to page, that shows in the side bar only."""
+    entries = [f"{title} <{page}>" for title, page in pages.items()]
+    return "\n".join(["", "```{toctree}", ":hidden:", f":caption: {caption}", *entries, "```", ""])
+
+
+def complete(app: Sphinx, page: str, source: list[str]) -> None:
+    """What the site adds to the pages, which other hosts of Markdown show as they are."""
+    if page == root_doc:
+        source[0] += "".join(toctree(pages, caption) for caption, pages in CONTENTS.items())
+    elif page == "CHANGELOG":
+        for version in app.config.older.split():
+            link = f'<p><a href="{version}/index.html">The pages of {version}</a></p>'
+            source[0] = source[0].replace(f"## {version}\n", f"## {version}\n\n{link}\n")
+    elif page == "docs/playground":
+        title, _, rest = source[0].partition("\n")
+        source[0] = f"{title}\n{PLAYGROUND}{rest}"
+
+
+def plain_text(app: Sphinx, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+    """Docstrings are plain text: what reStructuredText would take for its own is escaped.
+
+    Parameters in two columns, NAME  MEANING, become fields; what stands indented after an empty line is code.
+    """
+    written, code = [], False
+    for before, line in zip(["", *lines], lines, strict=False):
+        if line.strip():
+            begins = line.startswith("    ") and not before.strip()
+            written += ["::", ""] if begins and not code else []
+            code = line.startswith("    ") and (code or begins)
+        if not code:
+            line = re.sub(r"^(\w+) {2,}(?=\S)", r":param \1: ", line)
+            line = re.sub(r"(`[^`]*`)|([*|]|_(?!\w))", lambda found: found[1] or "\\" + found[2], line)
+        written.append(line)
+    lines[:] = written
+
+
+def without_paths(app: Sphinx, domain: str, kind: str, content: Element) -> None:
+    """The value of a constant that is a path is that of the machine which builds the site: left out."""
+    for annotation in list(content.parent.findall(desc_annotation)):
+        if str(ROOT) in annotation.astext():
+            annotation.parent.remove(annotation)
+
+
+def setup(app: Sphinx) -> None:
+    app.add_config_value("older", "", "env")
+    app.connect("object-description-transform", without_paths)
+    app.connect("autodoc-process-docstring", plain_text)
+    app.connect("source-read", complete)
+    app.add_js_file(None, body=SUMMARY)
