@@ -17,7 +17,9 @@
 #ifndef BENCH_JOB_H
 #define BENCH_JOB_H
 
-enum { JOB_VALUES = 64, JOB_OUTPUTS = 8, JOB_INPUTS = 3, JOB_PRINTED = 100000 };
+#include <stddef.h>
+
+enum { JOB_VALUES = 64, JOB_OUTPUTS = 8, JOB_INPUTS = 4, JOB_PRINTED = 100000 };
 
 typedef struct {
     unsigned reference;

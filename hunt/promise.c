@@ -1,0 +1,90 @@
+#include "promise.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "fmu_step.h"
+
+static double top_speed(const ReferenceScene* s) { return fmax(fmax(fabs(s->V), s->V_1), 1e-6); }
+
+// By what the logarithm of a positive input moves in the step.
+static double log_change(double value, double change) {
+    return fabs(log(fmax(1e-300, 1.0 + change / value)));
+}
+
+static bool moves_by_decades(const ReferenceScene* s) {
+    const double by_d = fabs(s->d_rate) * s->h * s->lambda / s->R_q;
+    const double by_load = s->input == INPUT_LOAD ? log_change(s->load, s->load_rate * s->h) : by_d;
+    return fmax(by_load, log_change(s->E, s->E_rate * s->h)) > log(3.0);
+}
+
+// The class but for the method: the first that holds.
+static int class_of_scene(const ReferenceScene* s, const ReferenceStep* truth) {
+    const bool has_curve = s->staticRatio != 1.0 && (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC);
+    if (moves_by_decades(s)) {
+        return CLASS_DECADES;
+    }
+    if (truth->largest > 3.0 * truth->scale) {
+        return CLASS_BEYOND;
+    }
+    if (has_curve && s->law == LAW_ELASTIC_PLASTIC) {
+        return CLASS_CURVE;
+    }
+    if (s->V_1 > 0.0 && fabs(fabs(s->V) - s->V_1) < 1e-3 * s->V_1) {
+        return CLASS_TOUCH;
+    }
+    return has_curve && s->V_S < 1e-3 * top_speed(s) ? CLASS_NARROW : CLASS_USUAL;
+}
+
+int promise_class(const ReferenceScene* s, const ReferenceStep* truth, int method) {
+    const int kind = class_of_scene(s, truth);
+    const bool is_affine = s->law == LAW_DAHL || s->law == LAW_LUGRE;
+    if (is_affine && method > FMU_CVODE) {
+        return CLASS_FIXED;
+    }
+    return is_affine && method == FMU_CVODE && kind > CLASS_CVODE ? CLASS_CVODE : kind;
+}
+
+enum { COLUMNS = 5 };
+static const double TOLERANCES[COLUMNS] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-9};
+
+static const struct {
+    const char* name;
+    double factor[COLUMNS]; // of the tolerance
+} PROMISES[CLASSES] = {
+    [CLASS_FIXED] = {"fixed steps", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
+    [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 10, 100}},
+    [CLASS_BEYOND] = {"force beyond the limit", {1, 1, 10, 1e3, 1e6}},
+    [CLASS_CVODE] = {"cvode", {1, 1, 10, 10, 1000}},
+    [CLASS_CURVE] = {"ElasticPlastic with a peak", {1, 1, 2, 200, 2e5}},
+    [CLASS_TOUCH] = {"grazing", {1, 1, 10, 10, 10}},
+    [CLASS_NARROW] = {"narrow peak", {1, 1, 10, 10, 10}},
+    [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},
+};
+
+const char* promise_name(int kind) { return PROMISES[kind].name; }
+
+double promise_factor(int kind, double tolerance) {
+    int column = 0;
+    while (column + 1 < COLUMNS && tolerance < 0.99 * TOLERANCES[column]) {
+        column++;
+    }
+    return PROMISES[kind].factor[column];
+}
+
+void promise_print(void) {
+    printf("| steps |");
+    for (int k = 0; k < COLUMNS; k++) {
+        printf(" %g |", TOLERANCES[k]);
+    }
+    printf("\n");
+    for (int kind = 0; kind < CLASSES; kind++) {
+        printf("| %s |", PROMISES[kind].name);
+        for (int k = 0; k < COLUMNS; k++) {
+            const double factor = PROMISES[kind].factor[k];
+            isinf(factor) ? printf(" none |") : printf(" %g |", factor);
+        }
+        printf("\n");
+    }
+}

@@ -1,0 +1,30 @@
+// What is promised: for which steps solver.tolerance is held, and by how much others may miss it. docs/numerics.md has the
+// same table, with the reasons.
+#ifndef HUNT_PROMISE_H
+#define HUNT_PROMISE_H
+
+#include "reference.h"
+
+// In the order in which a step is given to the first that fits.
+enum {
+    CLASS_FIXED,   // Dahl and LuGre by fixed steps
+    CLASS_DECADES, // an input moves E, the load or what d makes of it by a factor of 3 and more in the step
+    CLASS_BEYOND,  // the bristle's force is, or starts, at more than three times the limit
+    CLASS_CVODE,   // Dahl and LuGre by cvode, in no class above
+    CLASS_CURVE,   // ElasticPlastic with static friction
+    CLASS_TOUCH,   // V grazes zero: |V| is within 1e-3 of V_1
+    CLASS_NARROW,  // LuGre's V_S is below a thousandth of V
+    CLASS_USUAL,
+    CLASSES
+};
+
+int promise_class(const ReferenceScene* scene, const ReferenceStep* truth, int method);
+const char* promise_name(int kind);
+
+// How many times the tolerance an error of a step of this class may be.
+double promise_factor(int kind, double tolerance);
+
+// Prints the table.
+void promise_print(void);
+
+#endif
