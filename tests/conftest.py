@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.fmu import FrictionFmu
+from frictioncontact.fmu import FrictionFmu
 
 # Started in the background, a runner ignores Control-C, and so would the commands that tests interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from frictionlab.fmu import FrictionFmu, Value
+from frictioncontact.fmu import FrictionFmu, Value
 
 SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
 

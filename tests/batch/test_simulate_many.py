@@ -16,9 +16,9 @@ import pandas as pd
 import pytest
 from batch.one_by_one import sampled_period
 
-from frictionlab.batch import BatchError, simulate_many
-from frictionlab.fmu import FrictionFmu
-from frictionlab.sweep.scenario import OUTPUTS
+from frictioncontact.batch import BatchError, simulate_many
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.sweeps.group import OUTPUTS
 
 VIBRATING = {"vibration.V_1": 1.44}
 F_C, V_1 = 55.0, 1.44  # N, m/s
@@ -46,7 +46,9 @@ class TestNumbers:
         """2 / pi F_C asin(V / V_1): no bristle, and a bristle that is stiff."""
         V = np.linspace(0.01, 1.4, 40)
         got = simulate_many(
-            fmu_path, {"V": V[:, None], "friction.model": ["Coulomb", "Dahl"], **VIBRATING}, threads=threads
+            {"V": V[:, None], "friction.model": ["Coulomb", "Dahl"], **VIBRATING},
+            threads=threads,
+            fmu=fmu_path,
         )
         expected = 2.0 / np.pi * F_C * np.arcsin(V / V_1)
         assert got["F_t_mean"].shape == (40, 2)
@@ -61,7 +63,7 @@ class TestNumbers:
         """One instance that is reset gives what a fresh one gives, in the same steps."""
         scenarios = random_scenarios(60, samples)
         outputs = {name: output for name, output in OUTPUTS.items() if name != "reduction"}
-        got = simulate_many(fmu_path, scenarios, outputs, settle=200.0, samples=samples, threads=threads)
+        got = simulate_many(scenarios, outputs, settle=200.0, samples=samples, threads=threads, fmu=fmu_path)
         for row, values in enumerate(scenarios.to_dict("records")):
             expected = sampled_period(fmu, values, 200.0, samples)
             assert {name: got[name].iloc[row] for name in got} == {n: expected[n] for n in got}, values
@@ -70,12 +72,12 @@ class TestNumbers:
         """Held V without vibration: F_t = F_C (1 - exp(-x)), x = sigma V t / F_C."""
         sigma, V, duration = 2.5e6, np.array([0.005, 0.02]), 0.01
         got = simulate_many(
-            fmu_path,
             {"V": V, "contact.model": "Constant", "contact.sigma": sigma},
             {"force": ("F_t", "samples"), "delta": "delta"},
             unit="s",
             duration=duration,
             samples=4,
+            fmu=fmu_path,
         )
         t = duration * np.arange(1, 5) / 4
         expected = F_C * -np.expm1(-sigma * np.outer(V, t) / F_C)
@@ -89,9 +91,8 @@ class TestNumbers:
         V, d = random.uniform(-0.5, 0.5, 13), random.uniform(13e-6, 15e-6, 13)
         scale = np.array([1e-7, 1e-5, 1e-3])
         got = simulate_many(
-            fmu_path, {"contact.stiffnessScale": scale}, {"force": ("F_t", "samples")}, unit="s",
-            inputs={"V": V, "d": d}, steps=steps,
-        )  # fmt: skip
+            {"contact.stiffnessScale": scale}, {"force": ("F_t", "samples")}, unit="s",
+            inputs={"V": V, "d": d}, steps=steps, fmu=fmu_path)  # fmt: skip
         for row, value in zip(got["force"], scale, strict=True):
             with fmu.session({"contact.stiffnessScale": value}) as session:
                 for k, h in enumerate(steps):
@@ -104,15 +105,18 @@ class TestNumbers:
         """Work of steady sliding is F_C V t."""
         duration = np.array([1.0, 2.0, 5.0])
         got = simulate_many(
-            fmu_path, {"V": 0.3}, {"work": ("W_f", "change")}, unit="s", settle=[1.0, 0.5, 2.0],
-            duration=duration,
-        )  # fmt: skip
+            {"V": 0.3}, {"work": ("W_f", "change")}, unit="s", settle=[1.0, 0.5, 2.0],
+            duration=duration, fmu=fmu_path)  # fmt: skip
         assert got["work"] == pytest.approx(F_C * 0.3 * duration, rel=1e-9)
 
     def test_period_is_that_of_the_scenario(self, fmu_path: Path) -> None:
         f = np.array([10e3, 20e3, 40e3])
         got = simulate_many(
-            fmu_path, {"V": 0.3, "vibration.f": f}, {"work": ("W_f", "change")}, settle=100.0, duration=1.0
+            {"V": 0.3, "vibration.f": f},
+            {"work": ("W_f", "change")},
+            settle=100.0,
+            duration=1.0,
+            fmu=fmu_path,
         )
         assert got["work"] == pytest.approx(F_C * 0.3 / f, rel=1e-9)
 
@@ -125,18 +129,18 @@ class TestNumbers:
             **VIBRATING,
         }
         outputs = {"mean": "F_t_mean", "work": ("W_f", "change"), "heat": ("Q_f", "change")}
-        settled = simulate_many(fmu_path, values, outputs, settled=True)
-        waited = simulate_many(fmu_path, values, outputs)
+        settled = simulate_many(values, outputs, settled=True, fmu=fmu_path)
+        waited = simulate_many(values, outputs, settle=1e6, fmu=fmu_path)
         assert settled["mean"] == pytest.approx(waited["mean"], abs=1e-7 * F_C)
         assert settled["heat"] == pytest.approx(settled["work"], rel=1e-6)
 
     def test_settled_is_not_given_twice(self, fmu_path: Path) -> None:
         with pytest.raises(BatchError, match="column initialState: settled gives it already"):
-            simulate_many(fmu_path, {"initialState": "Given"}, settled=True)
+            simulate_many({"initialState": "Given"}, settled=True, fmu=fmu_path)
 
     def test_enumerations_by_name_or_number(self, fmu_path: Path) -> None:
-        by_name = simulate_many(fmu_path, {"V": 0.2, "friction.model": ["Dahl", "Coulomb"], **VIBRATING})
-        by_number = simulate_many(fmu_path, {"V": 0.2, "friction.model": [1, 2], **VIBRATING})
+        by_name = simulate_many({"V": 0.2, "friction.model": ["Dahl", "Coulomb"], **VIBRATING}, fmu=fmu_path)
+        by_number = simulate_many({"V": 0.2, "friction.model": [1, 2], **VIBRATING}, fmu=fmu_path)
         assert (by_name["F_t_mean"] == by_number["F_t_mean"]).all()
         assert by_name["F_t_mean"][0] != by_name["F_t_mean"][1]
 
@@ -145,12 +149,12 @@ class TestShapes:
     def test_frame_in_frame_out(self, fmu_path: Path) -> None:
         frame = pd.DataFrame({"V": [0.1, 0.2], "friction.model": ["Dahl", "Coulomb"]}, index=["a", "b"])
         frame["friction.model"] = frame["friction.model"].astype("category")
-        got = simulate_many(fmu_path, frame, {"F": ("F_t", "samples"), "W": "W_f"}, samples=2)
+        got = simulate_many(frame, {"F": ("F_t", "samples"), "W": "W_f"}, samples=2, fmu=fmu_path)
         assert list(got.index) == ["a", "b"]
         assert list(got.columns) == ["F[0]", "F[1]", "W"]
 
     def test_frame_without_columns(self, fmu_path: Path) -> None:
-        got = simulate_many(fmu_path, pd.DataFrame(index=["a", "b"]))
+        got = simulate_many(pd.DataFrame(index=["a", "b"]), fmu=fmu_path)
         assert list(got.index) == ["a", "b"]
 
     @pytest.mark.parametrize(("settle", "size"), [([1.0, 2.0, 3.0], "3"), ([[1.0], [2.0]], "2 x 1")])
@@ -159,26 +163,29 @@ class TestShapes:
         for rows in (1, 2):
             frame = pd.DataFrame({"V": [0.1] * rows})
             with pytest.raises(BatchError, match=f"its {size} values do not go with the {rows} rows of the"):
-                simulate_many(fmu_path, frame, settle=settle)
+                simulate_many(frame, settle=settle, fmu=fmu_path)
 
     def test_no_column_is_one_scenario(self, fmu_path: Path) -> None:
-        assert simulate_many(fmu_path, {})["F_t_mean"].shape == ()
+        assert simulate_many({}, fmu=fmu_path)["F_t_mean"].shape == ()
 
     def test_no_row_is_no_scenario(self, fmu_path: Path) -> None:
-        got = simulate_many(fmu_path, {"V": np.empty((0, 3))}, errors="keep")
+        got = simulate_many({"V": np.empty((0, 3))}, errors="keep", fmu=fmu_path)
         assert got["F_t_mean"].shape == got["reason"].shape == (0, 3)
 
     def test_bytes_of_an_fmu(self, fmu_path: Path) -> None:
         values = {"V": [0.1, 0.2], **VIBRATING}
-        by_path, by_bytes = simulate_many(fmu_path, values), simulate_many(fmu_path.read_bytes(), values)
+        by_path, by_bytes = (
+            simulate_many(values, fmu=fmu_path),
+            simulate_many(values, fmu=fmu_path.read_bytes()),
+        )
         assert (by_path["F_t_mean"] == by_bytes["F_t_mean"]).all()
 
 
 class TestRefusals:
     def test_kept_with_the_message(self, fmu: FrictionFmu, fmu_path: Path) -> None:
         d = np.array([14e-6, -1e-6, 15e-6, 0.0])
-        got = simulate_many(fmu_path, {"d": d, **VIBRATING}, errors="keep", threads=2)
-        alone = simulate_many(fmu_path, {"d": d[::2], **VIBRATING})
+        got = simulate_many({"d": d, **VIBRATING}, errors="keep", threads=2, fmu=fmu_path)
+        alone = simulate_many({"d": d[::2], **VIBRATING}, fmu=fmu_path)
         assert list(got["reason"] == None) == [True, False, True, False]  # noqa: E711
         assert "d = -1e-06 m" in got["reason"][1]
         assert np.isnan(got["F_t_mean"][[1, 3]]).all()
@@ -187,7 +194,7 @@ class TestRefusals:
     def test_instance_is_usable_after_a_refused_step(self, fmu_path: Path) -> None:
         """solver.stepSize would need more steps than are allowed: refused in fmi2DoStep, not before."""
         values = {"V": 0.1, "solver.method": ["rk4", "collocation"], **VIBRATING}
-        got = simulate_many(fmu_path, values, settle=1e8, errors="keep", threads=1)
+        got = simulate_many(values, settle=1e8, errors="keep", threads=1, fmu=fmu_path)
         assert "solver.stepSize" in got["reason"][0]
         assert got["F_t_mean"][1] == pytest.approx(2 / np.pi * F_C * np.arcsin(0.1 / V_1), rel=2e-5)
 
@@ -195,7 +202,7 @@ class TestRefusals:
         d = np.full((50, 40), 14e-6)
         d[20:, 7:] = -3e-6
         with pytest.raises(BatchError, match=r"^scenario \(20, 7\): .*d = -3e-06 m"):
-            simulate_many(fmu_path, {"d": d}, threads=4)
+            simulate_many({"d": d}, threads=4, fmu=fmu_path)
 
     @pytest.mark.parametrize(
         ("values", "message"),
@@ -208,7 +215,7 @@ class TestRefusals:
             ({"V": 1j}, r"column V: '1j' is not a number"),
             ({"V": [0.1, 0.2], "d": [14e-6] * 3}, "column d: its 3 values do not go with the 2 of those"),
             ({"v": 0.1}, "column v: v is no variable of the FMU; did you mean V?"),
-            ({"F_t": 0.1}, "column F_t: F_t is of causality output and can't be set"),
+            ({"F_t": 0.1}, "column F_t: F_t is an output of the FMU and can't be set"),
             ({"friction.model": ["Dahl", "Dahle"]}, "column friction.model, row 1: 'Dahle' is not one of"),
             ({"friction.model": [1, 1.5]}, "column friction.model, row 1: 1.5 is not a whole number or"),
             (pd.DataFrame({"V": [0.1, pd.NA]}), "column V, row 1: '<NA>' is not a number"),
@@ -227,7 +234,7 @@ class TestRefusals:
     )  # fmt: skip
     def test_wrong_values(self, fmu_path: Path, values: dict, message: str) -> None:
         with pytest.raises(BatchError, match=message) as caught:
-            simulate_many(fmu_path, values)
+            simulate_many(values, fmu=fmu_path)
         assert "\n" not in str(caught.value)
 
     @pytest.mark.parametrize(
@@ -256,18 +263,18 @@ class TestRefusals:
             ({"steps": [[1.0]]}, "steps: must be a row of numbers"),
             ({"steps": [1.0, -1.0]}, "steps, row 1: -1 must be at least 0"),
             ({"inputs": {"V": [0.1]}, "steps": [1.0, 1.0]}, "input V: 1 values for 2 steps"),
-            ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is of causality parameter and can't be set"),
+            ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is a parameter of the FMU and can't be set"),
             ({"inputs": {"V": [math.nan]}}, "input V, row 0: nan is not a finite number"),
         ],
     )
     def test_wrong_arguments(self, fmu_path: Path, arguments: dict, message: str) -> None:
         with pytest.raises(BatchError, match=message):
-            simulate_many(fmu_path, {"V": [0.1, 0.2]}, **arguments)
+            simulate_many({"V": [0.1, 0.2]}, **arguments, fmu=fmu_path)
 
 
 class TestFiles:
     def test_nothing_stays_in_the_file_system(self, fmu_path: Path, tmp_path: Path) -> None:
-        code = f"from frictionlab.batch import simulate_many; simulate_many({str(fmu_path)!r}, {{}})"
+        code = f"from frictioncontact.batch import simulate_many; simulate_many({{}}, fmu={str(fmu_path)!r})"
         subprocess.run([sys.executable, "-c", code], env=environment(tmp_path), check=True)
         assert list(tmp_path.iterdir()) == []
 
@@ -289,7 +296,7 @@ class TestFiles:
             (tmp_path / "none.fmu", "No such file"),
         ):
             with pytest.raises(BatchError, match=f"{path}: {message}") as caught:
-                simulate_many(path, {})
+                simulate_many({}, fmu=path)
             assert "\n" not in str(caught.value)
 
     def test_model_description_of_another_fmu(self, fmu_path: Path, tmp_path: Path) -> None:
@@ -302,7 +309,7 @@ class TestFiles:
                     content = head + b'guid="{0}"' + rest.split(b'"', 1)[1]
                 archive.writestr(name, content)
         with pytest.raises(BatchError, match=r"the guid is \{0\}"):
-            simulate_many(other, {"V": [0.1, 0.2]}, errors="keep")
+            simulate_many({"V": [0.1, 0.2]}, errors="keep", fmu=other)
 
 
 def environment(tmp: Path) -> dict[str, str]:
@@ -322,10 +329,10 @@ class TestStops:
     def test_at_an_interrupt(self, fmu_path: Path, tmp_path: Path, scenarios: str) -> None:
         """Control-C reaches the caller, who is told of no thread, file or message that stays."""
         code = (
-            "import sys, time\nfrom frictionlab.batch import simulate_many\n"
+            "import sys, time\nfrom frictioncontact.batch import simulate_many\n"
             "def told(finished, refused):\n"
             "    print('running', flush=True)\n"
-            f"try:\n    simulate_many({str(fmu_path)!r}, {scenarios}, threads=2, progress=told)\n"
+            f"try:\n    simulate_many({scenarios}, fmu={str(fmu_path)!r}, threads=2, progress=told)\n"
             "except KeyboardInterrupt:\n    print('interrupted')\n"
         )
         process = subprocess.Popen(
@@ -346,17 +353,17 @@ class TestStops:
 
         before = threading.active_count()
         with pytest.raises(RuntimeError, match="enough"):
-            simulate_many(fmu_path, {"V": np.linspace(0.1, 1.0, 10**6), **VIBRATING}, progress=told)
+            simulate_many({"V": np.linspace(0.1, 1.0, 10**6), **VIBRATING}, progress=told, fmu=fmu_path)
         assert threading.active_count() == before
 
     def test_progress_tells_all(self, fmu_path: Path) -> None:
         seen: list[tuple[int, int]] = []
         d = np.where(np.arange(300) % 3, 14e-6, -1.0)
         simulate_many(
-            fmu_path,
             {"d": d},
             errors="keep",
             progress=lambda finished, refused: seen.append((finished, refused)),
+            fmu=fmu_path,
         )
         assert seen[-1] == (300, 100)
         assert seen == sorted(seen)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from frictionlab.bench.driver import Bench
-from frictionlab.build import build_targets
-from frictionlab.fmu import FrictionFmu
+from frictioncontact.fmu import FrictionFmu
+from workshop.bench.driver import Bench
+from workshop.build import build_targets
 
 
 @pytest.fixture(scope="session")

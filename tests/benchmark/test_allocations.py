@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from frictionlab.bench.driver import Bench, Job
+from workshop.bench.driver import Bench, Job
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the counter is preloaded, as Linux allows")
 

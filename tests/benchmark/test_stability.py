@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frictionlab.bench.coupling import (
+from frictioncontact.fmu import FrictionFmu
+from workshop.bench.coupling import (
     COUPLINGS,
     Belt,
     cosimulate,
@@ -14,8 +15,7 @@ from frictionlab.bench.coupling import (
     monolithic,
     theoretical_edge,
 )
-from frictionlab.bench.stability_map import EDGES, classify, measured_edge
-from frictionlab.fmu import FrictionFmu
+from workshop.bench.stability_map import EDGES, classify, measured_edge
 
 
 @pytest.mark.parametrize(("method", "edge"), [(m, edge) for m, limits in EDGES.items() for edge in limits])

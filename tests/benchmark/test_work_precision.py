@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from frictionlab.bench import stability, work_precision
-from frictionlab.bench.driver import Bench
-from frictionlab.bench.grade import Point
-from frictionlab.bench.work_precision import cost_at, step_size_points
+from workshop.bench import stability, work_precision
+from workshop.bench.driver import Bench
+from workshop.bench.grade import Point
+from workshop.bench.periodic_means import SCENES, closed_form, harmonic_balance
+from workshop.bench.work_precision import cheapest, cost_at, step_size_points
+from workshop.reference import solution as reference
+from workshop.reference.start_values import scene_of
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:
@@ -34,6 +38,22 @@ def test_failures_do_not_count() -> None:
     assert math.isnan(cost_at([made(1e-9, 1.0, "refused")], 1e-6))
 
 
+@pytest.mark.parametrize("title", SCENES)
+def test_peers_of_the_periodic_mean_solve_the_same_scene(title: str) -> None:
+    scene = scene_of(SCENES[title])
+    right = float(reference.periodic_mean(scene))
+    still = float(reference.sigma(replace(scene, a_d=0.0), 0))
+    assert harmonic_balance(scene, still, 2048) == pytest.approx(right, abs=1e-3)
+    if scene.contact.model == "Constant":
+        assert closed_form(scene, still, 512) == pytest.approx(right, abs=1e-11)
+
+
+def test_the_table_of_ratios_leads_with_the_best_peer() -> None:
+    row = {"cvode": 5.0, "Radau IIA": 3.0, "rk4": math.nan}
+    assert cheapest(row, ["cvode", "Radau IIA", "rk4", "trapezoid"]) == ("3", "Radau IIA")
+    assert cheapest(row, ["rk4"]) == ("not reached", "")
+
+
 def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> None:
     rows = step_size_points(bench, quick=True)
     for kind, order in (("held", 1), ("linear", 2)):
@@ -49,7 +69,15 @@ def test_both_commands_run_whole_with_quick(fmu_path: Path, tmp_path: Path) -> N
     options = ["--quick", "--build-dir", str(fmu_path.parent), "--output", str(tmp_path)]
     work_precision.main(options)
     stability.main(options)
-    names = ["work-precision", "work-precision-ratios", "step-size", "periods", "stability", "coupled-errors"]
+    names = [
+        "work-precision",
+        "work-precision-ratios",
+        "step-size",
+        "periods",
+        "periodic-means",
+        "stability",
+        "coupled-errors",
+    ]
     for name in names:
         with (tmp_path / f"{name}.csv").open(newline="") as file:
             assert len(list(csv.DictReader(file))) > 2

@@ -16,12 +16,13 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab import build
-from frictionlab.project import ROOT, UserError
+from frictioncontact.errors import UserError
+from workshop import build
+from workshop.project import ROOT
 
 FMU = "build/debug/FrictionContact.fmu"
 BINARY = "binaries/linux64/FrictionContact.so"
-COMMAND = [sys.executable, "-m", "frictionlab", "build", "--preset", "debug"]
+COMMAND = [sys.executable, "-m", "workshop", "workshop.build", "--preset", "debug"]
 LINUX_ONLY = pytest.mark.skipif(sys.platform != "linux", reason="shared libraries are loaded as on Linux")
 
 # A compiler that is killed, with all that called it, when it has begun to write the library.
@@ -172,12 +173,17 @@ except KeyboardInterrupt:
     [SLOW, SLOW_DESTRUCTOR, CHANGED, CAUGHT],
     ids=["module", "destructor", "changed", "caught"],
 )
-def test_interrupted_while_importing(tmp_path: Path, numpy: str) -> None:
+@pytest.mark.parametrize(
+    "command",
+    [["workshop", "frictioncontact.sweeps.command", "--help"], ["frictioncontact", "simulate", "--help"]],
+    ids=["clone", "installed"],
+)
+def test_interrupted_while_importing(tmp_path: Path, numpy: str, command: list[str]) -> None:
     """With a slow numpy. Python drops what is raised in a destructor; imports change or catch it."""
     reached = tmp_path / "reached"
     (tmp_path / "numpy.py").write_text(numpy.format(reached=str(reached), folder=str(tmp_path)))
     process = subprocess.Popen(
-        [sys.executable, "-m", "frictionlab", "sweep.command", "--help"],
+        [sys.executable, "-m", *command],
         env={**os.environ, "PYTHONPATH": str(tmp_path)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         text=True, start_new_session=True,
     )  # fmt: skip
@@ -192,7 +198,7 @@ def refusal(library: Path) -> str:
         sys.executable,
         "-B",
         "-m",
-        "frictionlab.packing.archive",
+        "workshop.packing.archive",
         str(output),
         *arguments,
         "--fmi-headers",
@@ -231,7 +237,8 @@ def test_a_project_that_can_not_be_written() -> None:
     """One line of the set-up's own. Root may write everywhere, so it is another user who tries."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "scripts").mkdir()
-        for name in ("scripts/setup", "requirements.txt", "constraints.txt"):
+        files = ("requirements.txt", "constraints.txt", "pyproject.toml", "modelDescription.xml")
+        for name in ("scripts/setup", *files):
             shutil.copy(ROOT / name, Path(folder, name))
         for path in (Path(folder), Path(folder, "scripts")):
             path.chmod(0o555)

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictionlab.fmu import OUTPUTS, FrictionFmu, simulate
-from frictionlab.fmu_docs.readme import SCENE
-from frictionlab.paper import table2
-from frictionlab.paper.run import percent
+from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
+from frictioncontact.parameters import COULOMB_FORCE, IDENTIFIED, PERIOD, TABLE_2, start_values
+from frictioncontact.table2 import rows as table2
+from frictioncontact.table2.command import percent
+from workshop.fmu_docs.readme import SCENE
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/*.md")])
@@ -58,11 +59,14 @@ def test_commands_exist(document: Path) -> None:
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
-def test_python_examples_run(fmu_path: Path, code: str) -> None:
+def test_python_examples_run(fmu_path: Path, tmp_path: Path, code: str) -> None:
+    """In a folder that has what the project's root has; what an example writes beside it stays there."""
+    for path in ROOT.iterdir():
+        (tmp_path / path.name).symlink_to(path)
     if "libcosimpy" in code:
         pytest.importorskip("libcosimpy")
     command = [sys.executable, "-W", "error", "-c", code]
-    finished = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    finished = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert finished.returncode == 0, finished.stderr
 
 
@@ -93,6 +97,36 @@ def test_table_2_of_the_readme_is_what_the_run_prints(fmu: FrictionFmu) -> None:
         assert f"| {row.paper_force:.0f} ({row.paper_reduction:.0f} %) |" in line
         assert f"| {result.exact:.4f} ({percent(result.exact, 55.0)} %) |" in line
         assert f"| {result.identified:.2f} ({percent(result.identified, 55.0)} %) |" in line
+
+
+def test_the_force_beyond_the_limit_is_what_the_guide_says(fmu: FrictionFmu) -> None:
+    row_4 = start_values(TABLE_2[3], IDENTIFIED) | {"initialState": "Settled"}
+    period = simulate(fmu, row_4, PERIOD / 1000, 1000)
+    most = np.max(period["F_t"]) / COULOMB_FORCE
+    assert f"it reaches {most:.2f} `F_C` in each period" in " ".join(USING.split())
+
+
+def test_what_the_page_of_the_solver_names_is_there() -> None:
+    page = (ROOT / "docs" / "solver.md").read_text(encoding="utf-8")
+    sources = ROOT / "fmu_src"
+    code = "".join(path.read_text(encoding="utf-8") for path in sources.rglob("*.[ch]"))
+    named = set(re.findall(r"`([^`]+)`", page))
+    for path in (name for name in named if re.fullmatch(r"[\w/]+\.(h|c|py)", name)):
+        folders = (ROOT, sources, sources / "solver", sources / "solver" / "stick_slip")
+        assert any((folder / path).exists() for folder in folders), path
+    for name in named:
+        if re.fullmatch(r"(fc_|Fc|FC_|kind_of_panel|end_radau)\w*", name):
+            assert re.search(rf"\b{name}\b", code), name
+        if module := re.fullmatch(r"python -m ([\w.]+)", name):
+            assert (ROOT / module[1].replace(".", "/")).with_suffix(".py").exists(), name
+
+
+def test_the_budget_of_the_tolerance_is_the_header_s() -> None:
+    """Every share of budget.h stands in the table of docs/solver.md with its value, and no other does."""
+    header = (ROOT / "fmu_src" / "solver" / "budget.h").read_text(encoding="utf-8")
+    shares = dict(re.findall(r"double (FC_(?:SHARE|PLAN|TRUST)\w+) = ([\d.]+);", header))
+    page = (ROOT / "docs" / "solver.md").read_text(encoding="utf-8")
+    assert dict(re.findall(r"\| `(FC_\w+)` \| ([\d.]+)", page)) == shares
 
 
 def test_every_variable_is_explained_with_its_unit_and_start(fmu: FrictionFmu) -> None:

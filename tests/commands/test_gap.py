@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
-from frictionlab.contact import separation as gap
-from frictionlab.contact.heights import load
-from frictionlab.parameters import Surfaces
+from frictioncontact.gap import command as gap
+from frictioncontact.gap.heights import load
+from frictioncontact.parameters import Surfaces
 
 
 def test_load_gives_start_values_that_carry_it(capsys: pytest.CaptureFixture[str]) -> None:
@@ -30,6 +33,35 @@ def test_values_that_are_not_positive_are_refused(
         gap.main(argv)
     assert stop.value.code == 2
     assert "is not a positive number" in capsys.readouterr().err
+
+
+def test_more_than_all_of_the_area_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    """A_r / A_n is A_r(14 um) e^(3 (14 - d) / 6) / A_n: 1 at d = 3.479 um."""
+    gap.main(["--separation", "3.48e-6"])
+    assert "warning" not in capsys.readouterr().out
+    gap.main(["--separation", "1e-6", "3.47e-6", "14e-6"])
+    assert "warning: up to d = 3.4700 um the real area A_r is larger" in capsys.readouterr().out
+
+
+def test_a_terminal_without_width_shows_the_table(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "0")
+    gap.main(["--separation", "14e-6"])
+    printed = capsys.readouterr().out
+    assert "312.4" in printed
+    assert "A_r [mm2]" in printed
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+def test_full_standard_output_is_named() -> None:
+    with Path("/dev/full").open("w") as full:
+        ran = subprocess.run(
+            [sys.executable, "-P", "-m", "workshop", "frictioncontact.gap.command"],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+    assert ran.returncode == 1
+    assert ran.stderr == "error: standard output: No space left on device\n"
 
 
 def test_load_out_of_reach_is_refused() -> None:

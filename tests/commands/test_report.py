@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.browser import find_browser
-from frictionlab.report import browser as report_browser
-from frictionlab.report import command as report
+from workshop.browser import find_browser
+from workshop.report import browser as report_browser
+from workshop.report import command as report
 
 SECTIONS = (
     "claims",

@@ -10,9 +10,9 @@ from pathlib import Path
 import matplotlib.image
 import pytest
 
-from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
-from frictionlab.reference import solution as reference
-from frictionlab.reference.start_values import scene_of
+from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
+from workshop.reference import solution as reference
+from workshop.reference.start_values import scene_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -73,7 +73,7 @@ def test_print_shows_every_number_and_claims_no_validation(written: tuple[Path, 
 
 
 def test_picture_shows_all_three_sources(written: tuple[Path, str]) -> None:
-    from frictionlab import style
+    from frictioncontact import style
 
     pixels = matplotlib.image.imread(written[0] / "table2.png")[..., :3]
     assert pixels.shape[0] > 1000 and pixels.shape[1] > 1000

@@ -4,70 +4,50 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
+import resource
 import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import fmpy
 import numpy as np
 import pandas as pd
-import psutil
 import pytest
 from batch.one_by_one import sampled_period
-from deadly import deadly
-from distributed import Client
 from scipy.integrate import quad
 
-from frictionlab.batch.many import built_runner
-from frictionlab.fmu import FrictionFmu
-from frictionlab.parameters import IDENTIFIED, TABLE_2, start_values
-from frictionlab.project import UserError
-from frictionlab.reference.solution import periodic_mean
-from frictionlab.reference.start_values import scene_of
-from frictionlab.sweep import cluster as sweep_cluster
-from frictionlab.sweep import command as sweep
-from frictionlab.sweep.plan import Scenarios
-from frictionlab.sweep.scenario import RESULTS, Work, run_chunk
-from frictionlab.sweep.spans import Chunks, missing
-from frictionlab.sweep.stop import held_back
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.parameters import IDENTIFIED, TABLE_2, start_values
+from frictioncontact.sweeps.group import RESULTS
+from frictioncontact.sweeps.run import sweep
+from workshop.reference.solution import periodic_mean
+from workshop.reference.start_values import scene_of
 
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
+MANY = [
+    "--random", "100000", "--seed", "3", "--vary", "V=0.01:1:log", "--vary", "d=-0.1e-6:15e-6",
+    "--vary", "friction.model=Dahl,Coulomb", "--set", "vibration.V_1=1.44", "--samples", "1",
+]  # fmt: skip
 
 
 def command(fmu: Path, output: Path, *arguments: str) -> list[str]:
-    return [
-        sys.executable,
-        "-m",
-        "frictionlab.sweep.command",
-        "--fmu",
-        str(fmu),
-        "--output",
-        str(output),
-        *arguments,
-    ]
+    """As the file of scripts/ runs it."""
+    module = [sys.executable, "-m", "frictioncontact", "sweep"]
+    return [*module, "--fmu", str(fmu), "--output", str(output), *arguments]
 
 
 def environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
 
 
-def without_project(folder: Path) -> dict[str, str]:
-    """An environment in which `import frictionlab` fails, as on a machine that lacks this project."""
-    (folder / "hidden").mkdir()
-    (folder / "hidden" / "frictionlab.py").write_text("raise ImportError('this project is not here')\n")
-    return {**environment(), "PYTHONPATH": str(folder / "hidden")}
-
-
-def run(fmu: Path, output: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def run(fmu: Path, output: Path, *arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        command(fmu, output, *arguments), capture_output=True, text=True, timeout=120, env=environment()
-    )
+        command(fmu, output, *arguments),
+        capture_output=True, text=True, timeout=120, env=environment(), **options,
+    )  # fmt: skip
 
 
 def wait_for(condition: Callable[[], object], seconds: float = 60.0) -> None:
@@ -77,8 +57,18 @@ def wait_for(condition: Callable[[], object], seconds: float = 60.0) -> None:
         time.sleep(0.01)
 
 
+def parts(output: Path) -> list[Path]:
+    return list((output / "parts").glob("*.parquet"))
+
+
 def kept_rows(output: Path) -> int:
-    return sum(len(pd.read_parquet(part)) for part in (output / "parts").glob("*.parquet"))
+    """Scenarios whose group counts as run, good or refused."""
+    return sum(
+        len(pd.read_parquet(path))
+        for part in parts(output)
+        for path in (part, output / "failed.parquet" / part.name)
+        if path.exists()
+    )
 
 
 def check_grid(output: Path, fmu: FrictionFmu) -> None:
@@ -87,8 +77,8 @@ def check_grid(output: Path, fmu: FrictionFmu) -> None:
     assert list(table["scenario"]) == list(range(1000))
     assert not table.isna().any().any()
     V, V_1 = np.geomspace(0.005, 0.5, 40), np.linspace(0, 1.44, 25)
-    assert np.array_equal(table["V"], np.repeat(V, 25))
-    assert np.array_equal(table["vibration.V_1"], np.tile(V_1, 40))
+    assert np.allclose(table["V"], np.repeat(V, 25), rtol=1e-14, atol=0.0)
+    assert np.allclose(table["vibration.V_1"], np.tile(V_1, 40), rtol=1e-14, atol=0.0)
     for k in (0, 24, 500, 999):
         row = table.iloc[k]
         here = sampled_period(fmu, {name: row[name] for name in ("V", "vibration.V_1")}, 1e6, 16)
@@ -97,26 +87,8 @@ def check_grid(output: Path, fmu: FrictionFmu) -> None:
             assert row[name] == here[name], name
 
 
-def processes_of_group(group: int) -> list[int]:
-    """Processes that have not ended, whether or not their parent has looked after them."""
-    found = []
-    for process in psutil.process_iter(["pid", "status"]):
-        with contextlib.suppress(ProcessLookupError):
-            if os.getpgid(process.pid) == group and process.info["status"] != psutil.STATUS_ZOMBIE:
-                found.append(process.pid)
-    return found
-
-
-def evaluate(fmu_path: Path, values: dict[str, float], samples: int) -> dict[str, float]:
-    """A scenario as a worker runs it."""
-    work = Work(fmu_path.read_bytes(), built_runner().read_bytes(), fmpy.platform, 1e6, samples)
-    results = run_chunk(work, {name: np.array([value]) for name, value in values.items()})
-    assert not results.reasons
-    return {name: column[0] for name, column in results.columns.items()}
-
-
-def table_of(scenarios: Scenarios) -> pd.DataFrame:
-    return pd.DataFrame(scenarios.shown(0, scenarios.count))
+def without_times(folder: Path) -> pd.DataFrame:
+    return pd.read_parquet(folder).drop(columns="seconds", errors="ignore")
 
 
 @pytest.fixture
@@ -125,6 +97,7 @@ def started() -> Iterator[Callable[..., subprocess.Popen]]:
     processes: list[subprocess.Popen] = []
 
     def start(arguments: list[str], **options: object) -> subprocess.Popen:
+        options = {"env": environment(), **options}
         processes.append(subprocess.Popen(arguments, start_new_session=True, **options))
         return processes[-1]
 
@@ -135,36 +108,20 @@ def started() -> Iterator[Callable[..., subprocess.Popen]]:
             process.wait()
 
 
-@pytest.fixture
-def endless(fmu_path: Path, started: Callable[..., subprocess.Popen]) -> Callable[..., subprocess.Popen]:
-    """Starts a sweep of a million scenarios into a folder, with more variables of the environment."""
-
-    def start(output: Path, more: Mapping[str, str] | None = None) -> subprocess.Popen:
-        return started(
-            command(fmu_path, output, "--random", "1000000", "--vary", "V=0.01:1", "--workers", "2"),
-            env={**environment(), **(more or {})}, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
-
-    return start
-
-
-TO_ALL = pytest.mark.parametrize("to_all", [True, False], ids=["group", "alone"])
-
-
-def ended(sweeping: subprocess.Popen, by: signal.Signals, to_all: bool) -> str:
-    """What a sweep said that was ended by a signal, to all its processes or to the first alone."""
-    (os.killpg if to_all else os.kill)(sweeping.pid, by)
-    _, said = sweeping.communicate(timeout=60)
-    wait_for(lambda: not processes_of_group(sweeping.pid))
-    return said
+def evaluate(fmu: Path, folder: Path, values: dict[str, float], samples: int) -> pd.Series:
+    """A scenario as a sweep runs it."""
+    vary = {name: [value] for name, value in values.items()}
+    swept = sweep(fmu=fmu, output=folder / "one", vary=vary, samples=samples, workers=1, fresh=True)
+    assert (swept.good, swept.refused) == (1, 0)
+    return pd.read_parquet(swept.results).iloc[0]
 
 
 class TestScenario:
     """One scenario against formulas."""
 
     @pytest.mark.parametrize("V", [0.1, 0.5])
-    def test_stiff_contact_gives_the_coulomb_limit(self, fmu_path: Path, V: float) -> None:
-        row = evaluate(fmu_path, {"V": V, "vibration.V_1": 1.44}, 64)
+    def test_stiff_contact_gives_the_coulomb_limit(self, fmu_path: Path, tmp_path: Path, V: float) -> None:
+        row = evaluate(fmu_path, tmp_path, {"V": V, "vibration.V_1": 1.44}, 64)
         mean = 55.0 * 2 / np.pi * np.arcsin(V / 1.44)
         path = quad(
             lambda t: abs(V + 1.44 * np.cos(2 * np.pi * t)), 0, 1, points=[np.arccos(-V / 1.44) / 2 / np.pi]
@@ -177,12 +134,12 @@ class TestScenario:
         # Sliding dissipates F_C times the path, but for the two reversals.
         assert row["W_period"] == pytest.approx(55.0 * path[0] / 20e3, rel=1e-3)
 
-    def test_moving_separation(self, fmu_path: Path) -> None:
+    def test_moving_separation(self, fmu_path: Path, tmp_path: Path) -> None:
         """Row 2 of Table 2, identified; the mean stiffness is 1.5068 times that at rest."""
         start = start_values(TABLE_2[1], IDENTIFIED)
-        row = evaluate(fmu_path, start, 64)
+        row = evaluate(fmu_path, tmp_path, start, 64)
         assert row["F_mean"] == pytest.approx(21.56, abs=0.01)
-        at_rest = evaluate(fmu_path, {**start, "vibration.a_d": 0.0}, 4)["sigma_mean"]
+        at_rest = evaluate(fmu_path, tmp_path, {**start, "vibration.a_d": 0.0}, 4)["sigma_mean"]
         assert row["sigma_mean"] / at_rest == pytest.approx(1.506797919, rel=1e-8)
         assert row["F_min"] < row["F_mean"] < row["F_max"]
 
@@ -196,172 +153,14 @@ class TestScenario:
              "contact.stiffnessScale": 1e-3},
         ],
     )  # fmt: skip
-    def test_mean_of_the_reference(self, fmu_path: Path, values: dict[str, float]) -> None:
+    def test_mean_of_the_reference(self, fmu_path: Path, tmp_path: Path, values: dict[str, float]) -> None:
         mean = float(periodic_mean(scene_of(values)))
-        assert evaluate(fmu_path, values, 8)["F_mean"] == pytest.approx(mean, abs=55e-6)
+        assert evaluate(fmu_path, tmp_path, values, 8)["F_mean"] == pytest.approx(mean, abs=55e-6)
 
-    def test_number_of_samples_leaves_the_mean(self, fmu_path: Path) -> None:
+    def test_number_of_samples_leaves_the_mean(self, fmu_path: Path, tmp_path: Path) -> None:
         start = start_values(TABLE_2[1], IDENTIFIED)
-        means = [evaluate(fmu_path, start, samples)["F_mean"] for samples in (1, 7, 64)]
+        means = [evaluate(fmu_path, tmp_path, start, samples)["F_mean"] for samples in (1, 7, 64)]
         assert means == pytest.approx([means[0]] * 3, abs=55e-6)
-
-
-class TestPlan:
-    def scenarios(self, fmu_path: Path, *arguments: str) -> pd.DataFrame:
-        return table_of(sweep.scenarios_of(sweep.arguments(list(arguments)), fmu_path))
-
-    def test_grid(self, fmu_path: Path) -> None:
-        table = self.scenarios(
-            fmu_path, "--vary", "V=1:100:3:log", "--vary", "friction.model=Dahl,Coulomb", "--set", "d=15e-6"
-        )
-        assert table.to_dict("list") == {
-            "V": pytest.approx([1, 1, 10, 10, 100, 100]),
-            "friction.model": ["Dahl", "Coulomb"] * 3,
-            "d": [15e-6] * 6,
-        }
-
-    def test_random_is_repeatable_and_within_bounds(self, fmu_path: Path) -> None:
-        arguments = "--random", "500", "--vary", "V=1e-3:1:log", "--vary", "d=10e-6:18e-6"
-        table = self.scenarios(fmu_path, *arguments, "--seed", "1")
-        pd.testing.assert_frame_equal(table, self.scenarios(fmu_path, *arguments, "--seed", "1"))
-        assert not table.equals(self.scenarios(fmu_path, *arguments, "--seed", "2"))
-        assert table["V"].between(1e-3, 1).all()
-        assert table["d"].between(10e-6, 18e-6).all()
-        assert 0.4 < (table["V"] < 10**-1.5).mean() < 0.6  # evenly over the decades
-
-    def test_csv(self, fmu_path: Path, tmp_path: Path) -> None:
-        path = tmp_path / "scenarios.csv"
-        path.write_text("V, solver.method\n0.1, cvode\n\n0.2,rk4\n")
-        table = self.scenarios(fmu_path, "--csv", str(path))
-        assert table.to_dict("list") == {"V": [0.1, 0.2], "solver.method": ["cvode", "rk4"]}
-
-    @pytest.mark.parametrize(
-        ("content", "message"),
-        [
-            ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
-            ("V,d\n0.1,\n", "row 2, column d: '' is not a number"),
-            ("V\nnan\n", "row 2, column V: 'nan' is not a finite number"),
-            ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
-            ("V,V\n1,2\n", "row 1, column 2: V is there twice"),
-            ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
-            ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
-            ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
-            (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
-            (f"V\n{'x' * 131070}\n", f"row 2, column V: '{'x' * 40}...' is not a number"),
-            ("V\n", "has no row below the header"),
-            ("", "is empty; row 1 must name the variables"),
-            ('V\n"0.1\n', "is not a CSV file"),
-        ],
-    )  # fmt: skip
-    def test_malformed_csv_names_row_and_column(
-        self, fmu_path: Path, tmp_path: Path, content: str, message: str
-    ) -> None:
-        path = tmp_path / "scenarios.csv"
-        path.write_text(content)
-        with pytest.raises(UserError, match=re.escape(f"{path}: {message}")):
-            self.scenarios(fmu_path, "--csv", str(path))
-
-    @pytest.mark.parametrize(
-        ("arguments", "message"),
-        [
-            ([], "nothing to sweep"),
-            (["--vary", "v=1"], "--vary v: v is no variable of the FMU; did you mean V?"),
-            (["--vary", "V"], "--vary V: is not of the form NAME=VALUE"),
-            (["--vary", "V=1:2"], "'1:2' is neither low:high:count"),
-            (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
-            (["--vary", "V=0:1:3:log"], "must begin above 0"),
-            (["--vary", "V=0:1:²"], "the count '²' is not a whole number"),
-            (["--vary", f"V=0:1:{'9' * 5000}"], "is not a whole number"),
-            (
-                ["--vary", "V=1", "--samples", "100000000000"],
-                "must be at most 1000000",
-            ),
-            (["--vary", "V=1", "--settle", "inf"], "--settle inf: must be at most"),
-            (
-                ["--vary", "V=0:1", "--random", "99999999999"],
-                "must be at most 10000000",
-            ),
-            (["--vary", "V=0:1:-3"], "the count '-3' is not a whole number"),
-            (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
-            (["--vary", "V=1", "--set", "V=2"], "--set V: is given twice"),
-            (["--vary", "V=0:1:100000", "--vary", "d=1:2:1000"], "the most that a sweep runs is 10000000"),
-            (["--vary", "V=1", "--workers", "0"], "--workers 0: must be at least 1"),
-            (["--vary", "V=1", "--settle", "nan"], "--settle nan: must be at least 0"),
-            (["--random", "3", "--vary", "V=0:1:3"], "'0:1:3' is neither low:high"),
-            (["--csv", "none.csv", "--vary", "V=1"], "--csv does not go with --vary"),
-        ],
-    )
-    def test_wrong_arguments(self, fmu_path: Path, arguments: list[str], message: str) -> None:
-        with pytest.raises(UserError, match=re.escape(message)):
-            self.scenarios(fmu_path, *arguments)
-
-
-class TestSpans:
-    def test_missing(self) -> None:
-        assert missing(10, [(4, 6), (0, 2), (6, 7)]) == [(2, 4), (7, 10)]
-        assert missing(10, []) == [(0, 10)]
-        assert missing(3, [(0, 3)]) == []
-
-    def test_chunks_cover_the_spans_once_in_order(self) -> None:
-        chunks = Chunks([(2, 700), (900, 5000)], None, 2)
-        numbers: list[int] = []
-        for first, stop in chunks:
-            assert first < stop
-            numbers += range(first, stop)
-            chunks.learn(stop - first, 1e-3 * (stop - first))
-        assert numbers == [*range(2, 700), *range(900, 5000)]
-
-    def test_size_follows_what_a_scenario_takes(self) -> None:
-        chunks = Chunks([(0, 10**6)], None, 2)
-        pieces = iter(chunks)
-        for seconds, size in ((1e-4, 10_000), (1e-3, 1000), (100.0, 1)):  # a second's work
-            for _ in range(10):
-                first, stop = next(pieces)
-                chunks.learn(stop - first, seconds * (stop - first))
-            assert stop - first == size
-        fixed = iter(Chunks([(0, 95)], 30, 2))
-        assert [stop - first for first, stop in fixed] == [30, 30, 30, 5]
-
-    def test_size_falls_towards_the_end(self) -> None:
-        """Else one worker would still run a whole chunk when the others have nothing left."""
-        chunks, sizes = Chunks([(0, 100_000)], None, 2), []
-        for first, stop in chunks:
-            sizes.append(stop - first)
-            chunks.learn(stop - first, 1e-4 * (stop - first))
-        assert max(sizes) == 10_000
-        assert max(sizes[-3:]) <= 10_000 / 8
-        assert [stop - first for first, stop in Chunks([(0, 10)], None, 2)] == [3, 2, 2, 1, 1, 1]
-
-
-class TestStop:
-    """Asked for at any place, it is raised at those where nothing is cut in two."""
-
-    def test_is_raised_at_the_end_at_the_latest(self) -> None:
-        before, passed = signal.getsignal(signal.SIGINT), []
-
-        def held() -> None:
-            with held_back():
-                signal.raise_signal(signal.SIGINT)
-                passed.append("signal")
-
-        with pytest.raises(KeyboardInterrupt):
-            held()
-        assert passed == ["signal"]
-        assert signal.getsignal(signal.SIGINT) is before
-
-    def test_ends_a_wait_and_lets_events_through_before(self) -> None:
-        events = []
-
-        def held() -> None:
-            with held_back() as stop:
-                stop.add("event")
-                events.append(stop.wait())
-                threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGTERM)).start()
-                events.append(stop.wait())
-
-        with pytest.raises(KeyboardInterrupt):
-            held()
-        assert events == ["event"]
 
 
 class TestRuns:
@@ -374,22 +173,75 @@ class TestRuns:
         assert list(good["scenario"]) == [2, 3]
         assert list(bad["scenario"]) == [0, 1]
         assert all("d = -1e-06 m" in reason for reason in bad["reason"])
-        assert len(pd.read_csv(output / "failed.csv")) == 2
+        assert pd.read_csv(output / "failed.csv").equals(bad)
         again = run(fmu_path, output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2")
         assert again.returncode == 0
-        assert "nothing to do" in again.stdout
+        assert again.stdout == f"nothing to do: {output} holds all 2 results (2 failed scenarios apart)\n"
         other = run(fmu_path, output, "--vary", "V=0.1,0.3")
-        assert other.returncode != 0
+        assert other.returncode == 1
         assert other.stderr.startswith("error: ") and "holds another sweep" in other.stderr
+        assert len(other.stderr.splitlines()) == 1
+        fresh = run(fmu_path, output, "--vary", "V=0.1,0.3", "--fresh")
+        assert fresh.returncode == 0, fresh.stderr
+        assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
+        assert list(pd.read_parquet(output / "results.parquet")["V"]) == [0.1, 0.3]
 
-    def test_goes_on_after_a_kill(
+    def test_groups_and_workers_leave_the_numbers(self, fmu_path: Path, tmp_path: Path) -> None:
+        """Each scenario has its own, whoever runs it with which others."""
+        tables = []
+        for group, workers in (("250", "1"), ("33", "2"), ("1000", "3")):
+            output = tmp_path / group
+            done = run(fmu_path, output, *GRID, "--samples", "2", "--group", group, "--workers", workers)
+            assert done.returncode == 0, done.stderr
+            assert f"on {workers} workers" in done.stdout
+            tables.append(without_times(output / "results.parquet"))
+            assert len(list((output / "results.parquet").iterdir())) == -(-1000 // int(group))
+        assert tables[0].equals(tables[1]) and tables[0].equals(tables[2])
+
+    def test_killed_at_any_moment(
         self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
     ) -> None:
-        output = tmp_path / "sweep"
-        arguments = (*GRID, "--chunk", "10", "--workers", "2", "--samples", "16")
-        first = started(command(fmu_path, output, *arguments), env=environment())
-        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 3)
-        os.killpg(first.pid, signal.SIGKILL)
+        """Again and again, at random moments from the start on; no row is lost or done twice."""
+        output, arguments, random = tmp_path / "sweep", [*MANY, "--group", "500"], np.random.default_rng(5)
+        kept = 0
+        for kills in range(10):
+            sweeping = started(command(fmu_path, output, *arguments, "--workers", str(1 + kills % 2)))
+            if kills % 2:
+                there = len(parts(output))
+                while len(parts(output)) == there and sweeping.poll() is None:
+                    time.sleep(0.01)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                sweeping.wait(random.uniform(0.0, 0.3 if kills % 2 else 2.0))
+            sweeping.kill()
+            sweeping.wait()
+            if (output / "results.parquet").exists():
+                break
+            assert kept_rows(output) >= kept  # what was there stays
+            kept = kept_rows(output)
+        assert kept > 0
+        done = run(fmu_path, output, *arguments, "--workers", "2")
+        assert done.returncode == 0, done.stderr
+        assert sorted(path.name for path in output.iterdir()) == [
+            "failed.csv", "failed.parquet", "results.parquet", "sweep.json"
+        ]  # fmt: skip
+        good, bad = (pd.read_parquet(output / name) for name in ("results.parquet", "failed.parquet"))
+        assert np.array_equal(np.union1d(good["scenario"], bad["scenario"]), np.arange(100_000))
+        assert len(good) + len(bad) == 100_000
+        assert (bad["d"] < 0.0).all() and (good["d"] >= 0.0).all() and len(bad) > 0
+        for row in (0, 1234, len(good) - 1):
+            values = {name: good[name][row] for name in ("V", "d", "friction.model", "vibration.V_1")}
+            assert good["F_mean"][row] == sampled_period(fmu, values, 1e6, 1)["F_mean"]
+        coulomb = good[good["friction.model"] == "Coulomb"]
+        expected = 55.0 * 2 / np.pi * np.arcsin(coulomb["V"] / 1.44)
+        assert np.allclose(coulomb["F_mean"], expected, rtol=1e-9, atol=0.0)
+
+    def test_killed_sweep_loses_a_group_of_each_worker(
+        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
+    ) -> None:
+        output, arguments = tmp_path / "sweep", (*GRID, "--group", "10", "--samples", "16", "--workers", "2")
+        first = started(command(fmu_path, output, *arguments))
+        wait_for(lambda: len(parts(output)) >= 3)
+        first.kill()
         first.wait()
         kept = kept_rows(output)
         assert 30 <= kept < 1000
@@ -401,171 +253,76 @@ class TestRuns:
         check_grid(output, fmu)
         assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
 
-    def test_hundred_thousand_scenarios_and_a_kill(
-        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
-    ) -> None:
-        """Chunks of a size of their own before and after; no row is lost, done twice or out of order."""
-        count, output = 100_000, tmp_path / "sweep"
-        arguments = [
-            "--random", str(count), "--seed", "3", "--vary", "V=0.01:1:log", "--vary", "d=13e-6:15e-6",
-            "--vary", "friction.model=Dahl,Coulomb", "--set", "vibration.V_1=1.44",
-            "--samples", "1", "--workers", "2",
-        ]  # fmt: skip
-        first = started(command(fmu_path, output, *arguments), env=environment())
-        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 12)
-        os.killpg(first.pid, signal.SIGKILL)
-        first.wait()
-        kept = kept_rows(output)
-        assert 0 < kept < count
-        damaged = max(output.glob("parts/*.parquet"))  # as a failing disk leaves it
-        lost = len(pd.read_parquet(damaged))
-        damaged.write_bytes(damaged.read_bytes()[:-20])
-        second = run(fmu_path, output, *arguments)
-        assert second.returncode == 0, second.stderr
-        assert f"{kept - lost} scenarios were there from an earlier run" in second.stdout
-        table = pd.read_parquet(output / "results.parquet")
-        assert np.array_equal(table["scenario"], np.arange(count))
-        scenarios = table_of(sweep.scenarios_of(sweep.arguments(arguments), fmu_path))
-        assert table[list(scenarios)].equals(scenarios)
-        for row in (0, 1234, 99_999):
-            values = {name: table[name][row] for name in scenarios}
-            assert table["F_mean"][row] == sampled_period(fmu, values, 1e6, 1)["F_mean"]
-        coulomb = table[table["friction.model"] == "Coulomb"]
-        expected = 55.0 * 2 / np.pi * np.arcsin(coulomb["V"] / 1.44)
-        assert np.allclose(coulomb["F_mean"], expected, rtol=1e-9, atol=0.0)
+    def test_damaged_part_is_run_again(self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path) -> None:
+        """As a failing disk leaves it, in a whole sweep; and with refused scenarios that are gone."""
+        output, arguments = tmp_path / "sweep", (*GRID, "--group", "100", "--samples", "16")
+        assert run(fmu_path, output, *arguments).returncode == 0
+        damaged = max((output / "results.parquet").iterdir())
+        content = damaged.read_bytes()
+        middle = len(content) // 2
+        for damage in (
+            content[:-20],
+            content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
+        ):
+            damaged.write_bytes(damage)
+            again = run(fmu_path, output, *arguments)
+            assert "900 scenarios were there from an earlier run\n100 scenarios in" in again.stdout, (
+                again.stderr
+            )
+            check_grid(output, fmu)
+        arguments = ("--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--samples", "1", "--group", "2")
+        assert run(fmu_path, tmp_path / "failed", *arguments).returncode == 0
+        for part in (tmp_path / "failed" / "failed.parquet").iterdir():
+            part.unlink()
+        again = run(fmu_path, tmp_path / "failed", *arguments)
+        assert "2 scenarios were there from an earlier run\n2 scenarios in" in again.stdout, again.stderr
+        assert list(pd.read_parquet(tmp_path / "failed" / "failed.parquet")["scenario"]) == [0, 1]
 
-    @TO_ALL
-    @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-    def test_nothing_is_left_but_the_rows(
-        self, tmp_path: Path, endless: Callable[..., subprocess.Popen], by: signal.Signals, to_all: bool
-    ) -> None:
-        """Control-C on a terminal reaches the workers too. What is killed leaves only its folder."""
-        output, temporary = tmp_path / "sweep", tmp_path / "temporary"
-        temporary.mkdir()
-        sweeping = endless(output, {"TMPDIR": str(temporary)})
-        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 4)
-        said = ended(sweeping, by, to_all)
-        assert list(temporary.iterdir()) == []
-        left = sorted(path.name for path in output.iterdir())
-        if by == signal.SIGKILL:
-            assert said == ""
-            assert left == ["lock", "parts", "sweep.json", "work"]
-        else:
-            assert len(said.splitlines()) == 1 and said.startswith("stopped; what was computed is kept"), said
-            assert left == ["parts", "sweep.json"]
-            assert all(path.suffix == ".parquet" for path in (output / "parts").iterdir())
-
-    @TO_ALL
     @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
+    def test_control_c(
+        self, fmu_path: Path, tmp_path: Path, started: Callable[..., subprocess.Popen], by: signal.Signals
+    ) -> None:
+        """One line, exit status 130, whole groups and nothing else; soon, in the midst of large groups."""
+        output = tmp_path / "sweep"
+        sweeping = started(
+            command(fmu_path, output, "--random", "10000000", "--vary", "V=0.01:1", "--workers", "2",
+                    "--samples", "1"),
+            stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        wait_for(lambda: len(parts(output)) >= 2)
+        sweeping.send_signal(by)
+        _, said = sweeping.communicate(timeout=20)
+        assert sweeping.returncode == 130
+        assert len(said.splitlines()) == 1
+        assert said.startswith(f"stopped; what was computed is kept in {output}; the same sweep"), said
+        assert sorted(path.name for path in output.iterdir()) == ["parts", "sweep.json"]
+        assert all(path.suffix == ".parquet" for path in (output / "parts").iterdir())
+
     def test_nothing_is_left_of_a_start(
-        self, tmp_path: Path, endless: Callable[..., subprocess.Popen], by: signal.Signals, to_all: bool
+        self, fmu_path: Path, tmp_path: Path, started: Callable[..., subprocess.Popen]
     ) -> None:
         output = tmp_path / "sweep"
-        sweeping = endless(output)
-        wait_for((output / "work").exists)
-        said = ended(sweeping, by, to_all)
+        slow = "--vary V=0.01:1:10 --set solver.method=cvode --set vibration.V_1=1.44 --settle 1e5 --group 10"
+        sweeping = started(command(fmu_path, output, *slow.split()), stderr=subprocess.PIPE, text=True)
+        wait_for((output / "parts").exists)
+        sweeping.send_signal(signal.SIGINT)
+        _, said = sweeping.communicate(timeout=20)
         assert len(said.splitlines()) == 1 and said.startswith("stopped; "), said
         assert not output.exists()
 
-    def test_dask_cluster_that_loses_a_worker(
-        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
-    ) -> None:
-        """Workers know nothing of this project: its code and the FMU come with the work."""
-        dask, contact = Path(sys.executable).parent / "dask", tmp_path / "scheduler.json"
-        quiet = {"env": without_project(tmp_path), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
-        started([dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-                 "--scheduler-file", contact], **quiet)  # fmt: skip
-        wait_for(contact.exists)
-        workers = [
-            started([dask, "worker", "--scheduler-file", contact, "--host", "127.0.0.1", "--nthreads", "1",
-                     "--no-nanny", "--no-dashboard", "--name", name], **quiet)
-            for name in ("one", "two")
-        ]  # fmt: skip
-        address = pd.read_json(contact, typ="series")["address"]
-        with Client(address, timeout=10) as client:
-            client.wait_for_workers(2, timeout=60)
-        output = tmp_path / "sweep"
-        arguments = (*GRID, "--chunk", "10", "--scheduler", address, "--samples", "16")
-        sweeping = started(
-            command(fmu_path, output, *arguments), env=environment(), stdout=subprocess.PIPE, text=True
-        )
-        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 6)
-        workers[0].kill()
-        assert kept_rows(output) < 900
-        printed, _ = sweeping.communicate(timeout=120)
-        assert sweeping.returncode == 0
-        assert "1000 scenarios in" in printed and "on 2 workers" in printed
-        assert workers[1].poll() is None
-        check_grid(output, fmu)
-
-    @pytest.mark.slow
-    def test_scheduler_that_goes_away(
+    def test_two_at_once(
         self, fmu_path: Path, tmp_path: Path, started: Callable[..., subprocess.Popen]
     ) -> None:
-        contact = tmp_path / "scheduler.json"
-        quiet = {"env": without_project(tmp_path), "cwd": tmp_path, "stderr": subprocess.DEVNULL}
-        dask = Path(sys.executable).parent / "dask"
-        scheduler = started([dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-                             "--scheduler-file", contact], **quiet)  # fmt: skip
-        wait_for(contact.exists)
-        started([dask, "worker", "--scheduler-file", contact, "--nthreads", "1", "--no-nanny",
-                 "--no-dashboard"], **quiet)  # fmt: skip
-        address = pd.read_json(contact, typ="series")["address"]
-        with Client(address, timeout=10) as client:
-            client.wait_for_workers(1, timeout=60)
         output = tmp_path / "sweep"
-        arguments = (*GRID, "--chunk", "10", "--scheduler", address, "--samples", "16")
-        sweeping = started(
-            command(fmu_path, output, *arguments), env=environment(), stderr=subprocess.PIPE, text=True
-        )
-        wait_for(lambda: len(list(output.glob("parts/*.parquet"))) >= 3)
-        scheduler.kill()
-        _, said = sweeping.communicate(timeout=120)
-        assert sweeping.returncode == 1
-        assert len(said.strip().splitlines()) == 1, said
-        assert said.startswith(
-            "error: the connection to the scheduler was lost; what was computed is kept in"
-        )
-        kept = kept_rows(output)
-        assert kept >= 30
-        rest = run(fmu_path, output, *GRID, "--samples", "16", "--workers", "2")
-        assert f"{kept} scenarios were there from an earlier run" in rest.stdout, rest.stderr
-
-    def test_scenario_that_kills_its_worker(self, tmp_path: Path) -> None:
-        """It alone is given up."""
-
-        kept: dict[int, str | None] = {}
-        with sweep_cluster.connected(None, 1, tmp_path) as client:
-            for (first, stop), results in sweep_cluster.run(
-                client, deadly, b"", lambda span: {"number": np.arange(*span)}, Chunks([(0, 9)], 4, 1)
-            ):
-                for row in range(stop - first):
-                    assert first + row not in kept
-                    kept[first + row] = results.reasons.get(row)
-        assert sorted(kept) == list(range(9))
-        assert kept.pop(3) == "every process that ran this scenario died"
-        assert not any(kept.values())
+        started(command(fmu_path, output, "--random", "100000000", "--vary", "V=0.01:1", "--workers", "1"))
+        wait_for((output / "parts").exists)
+        second = run(fmu_path, output, "--random", "100000000", "--vary", "V=0.01:1")
+        assert second.returncode == 1
+        assert second.stderr == f"error: {output}: another sweep is writing there\n"
+        assert (output / "parts").exists()
 
 
 class TestNothingHalfWritten:
-    @pytest.mark.parametrize(
-        ("arguments", "message"),
-        [
-            (["--scheduler", "tcp://127.0.0.1:1"], "--scheduler tcp://127.0.0.1:1: nothing answers there"),
-            (["--scheduler", "rubbish"], "--scheduler rubbish: missing port number"),
-            (["--set", "vibration.v_1=1"], "did you mean vibration.V_1?"),
-        ],
-    )
-    def test_one_line_and_no_files(
-        self, fmu_path: Path, tmp_path: Path, arguments: list[str], message: str
-    ) -> None:
-        done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", *arguments)
-        assert done.returncode == 1
-        assert done.stdout == ""
-        assert len(done.stderr.strip().splitlines()) == 1, done.stderr
-        assert done.stderr.startswith("error: ") and message in done.stderr
-        assert list(tmp_path.iterdir()) == []
-
     def test_not_an_fmu(self, tmp_path: Path) -> None:
         (tmp_path / "text.fmu").write_text("no zip")
         done = run(tmp_path / "text.fmu", tmp_path / "sweep", "--vary", "V=0.1,0.2")
@@ -579,29 +336,46 @@ class TestNothingHalfWritten:
         done = run(fmu_path, tmp_path, "--vary", "V=0.1,0.2")
         assert done.returncode == 1
         assert len(done.stderr.splitlines()) == 1
-        assert done.stderr.startswith(f"error: {tmp_path / 'sweep.json'}: is damaged; choose another")
+        assert done.stderr.startswith(
+            f"error: {tmp_path / 'sweep.json'}: is damaged or missing; choose another"
+        )
         assert (tmp_path / "sweep.json").read_text(encoding="latin-1") == record
+        assert run(fmu_path, tmp_path, "--vary", "V=0.1,0.2", "--fresh").returncode == 0
 
-    def test_no_loopback(self, fmu_path: Path, tmp_path: Path) -> None:
-        """In a network of its own whose loopback is down, as in some containers."""
-        alone = ["unshare", "--net", "--map-root-user"]
-        if subprocess.run([*alone, "true"], capture_output=True).returncode:
-            pytest.skip("no network namespaces here")
-        done = subprocess.run(
-            [*alone, *command(fmu_path, tmp_path / "sweep", "--vary", "V=0.1", "--workers", "1")],
-            capture_output=True, text=True, timeout=120, env={**environment(), "TMPDIR": str(tmp_path)},
-        )  # fmt: skip
+    def test_results_without_a_record(self, fmu_path: Path, tmp_path: Path) -> None:
+        assert run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2").returncode == 0
+        (tmp_path / "sweep" / "sweep.json").unlink()
+        done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2")
         assert done.returncode == 1
-        assert len(done.stderr.splitlines()) == 1, done.stderr
-        assert done.stderr.startswith("error: worker processes here can't be reached through the loopback")
-        assert list(tmp_path.iterdir()) == []
+        assert "sweep.json: is damaged or missing" in done.stderr
+
+    def test_fresh_leaves_what_no_sweep_wrote(self, fmu_path: Path, tmp_path: Path) -> None:
+        (tmp_path / "parts").mkdir()
+        (tmp_path / "parts" / "mine.txt").write_text("mine")
+        done = run(fmu_path, tmp_path, "--vary", "V=0.1,0.2", "--fresh")
+        assert done.returncode == 1
+        assert done.stderr == f"error: {tmp_path}: can't be written: Directory not empty\n"
+        assert (tmp_path / "parts" / "mine.txt").read_text() == "mine"
 
     def test_unwritable_output(self, fmu_path: Path, tmp_path: Path) -> None:
         (tmp_path / "file").write_text("in the way")
         done = run(fmu_path, tmp_path / "file" / "sweep", "--vary", "V=0.1,0.2")
         assert done.returncode == 1
-        assert (
-            done.stderr.strip()
-            == f"error: {tmp_path / 'file' / 'sweep'}: can't be written to: Not a directory"
-        )
+        assert done.stderr == f"error: {tmp_path / 'file' / 'sweep'}: can't be written: Not a directory\n"
         assert (tmp_path / "file").read_text() == "in the way"
+
+    def test_full_disk(self, fmu_path: Path, tmp_path: Path) -> None:
+        """A limit of the size of files gives the error that a full disk gives, in the midst of a write."""
+
+        arguments = ["--random", "50001", "--vary", "V=0.01:1", "--vary", "d=13e-6:15e-6", "--samples", "1"]
+        arguments += ["--group", "50000"]
+        for limit, what in ((1000, "friction-batch-"), (1_000_000, "0000000000-0000049999.parquet")):
+
+            def limited(limit: int = limit) -> None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+            done = run(fmu_path, tmp_path / "sweep", *arguments, "--workers", "1", preexec_fn=limited)
+            assert done.returncode == 1
+            assert done.stderr.endswith(": can't be written: File too large\n")
+            assert what in done.stderr and len(done.stderr.splitlines()) == 1
+            assert not (tmp_path / "sweep").exists()

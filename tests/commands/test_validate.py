@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from frictionlab.fmu import FrictionFmu
-from frictionlab.project import ROOT
-from frictionlab.validate import command, longitudinal, loop, measurements, normal
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.validate import command, elements, longitudinal, measurements, normal, record
+from workshop.project import ROOT
 
 PAGE = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
 
 
 def row(cells: list[str]) -> str:
     return " | ".join(cells)
+
+
+def percent(part: float) -> str:
+    return f"{100 * part:.1f} %"
 
 
 def test_the_dry_rows(fmu_path: Path) -> None:
@@ -36,10 +41,17 @@ def test_the_dry_rows(fmu_path: Path) -> None:
             assert np.all(data.vibrated > 3.7 * fit.most)
     assert f"{1e-6 * fit.stiffness:.2f} N/µm" in PAGE
     assert f"within a factor of {fit.factor:.2f}" in PAGE
-    assert f"{longitudinal.static_friction(data, fit.stiffness):.2f} N either" in PAGE
-    ratio = longitudinal.constant_ratio(data)
-    assert row([f"{force:.4f}" for force in ratio.model]) in PAGE
-    assert f"misses by {longitudinal.rms(ratio.model, data.vibrated):.3f} N" in PAGE
+    assert f"{longitudinal.static_friction(data, fit.stiffness):.2f} N for" in PAGE
+    assert f"yields by F_C/k = {1e6 * longitudinal.yielding(data, fit.stiffness):.2f} µm" in PAGE
+    misfit = longitudinal.rms(fit.model, data.vibrated)
+    assert f"{100 * misfit / data.vibrated.mean():.0f} % of the mean vibrated friction" in PAGE
+    assert f"{100 * misfit / data.without.mean():.0f} % of F_C" in PAGE
+    for baseline in (longitudinal.constant_ratio(data), longitudinal.logarithm(data)):
+        cells = [f"{force:.4f}" for force in baseline.model]
+        cells += [
+            f"{longitudinal.rms(model, data.vibrated):.3f}" for model in (baseline.model, baseline.predicted)
+        ]
+        assert row(cells) in PAGE, baseline.law
 
 
 def test_the_oiled_rows_follow_no_law(fmu_path: Path) -> None:
@@ -52,24 +64,112 @@ def test_the_oiled_rows_follow_no_law(fmu_path: Path) -> None:
     assert f"by a factor of {fit.factor:.2f}" in PAGE
 
 
-def test_normal_vibration(fmu_path: Path) -> None:
+def test_a_baseline_predicts_a_row_without_having_seen_it() -> None:
+    data = measurements.sliding("dry")
+    baseline = longitudinal.logarithm(data)
+    others = np.arange(1, len(data.V))
+    slope, offset = np.polyfit(np.log(data.V[others]), data.vibrated[others], 1)
+    assert baseline.predicted[0] == pytest.approx(offset + slope * math.log(data.V[0]))
+
+
+def test_under_normal_vibration_a_constant_limit_predicts_nothing(fmu_path: Path) -> None:
     data = measurements.normal_vibration()
     held = normal.reduction(fmu_path, "Dahl", data.f, data.V, 2.0, np.array([1e-6]), "Constant")
     assert held == pytest.approx(np.zeros(2), abs=1e-6)
-    for law in normal.LAWS:
-        fits = [normal.fit(fmu_path, data, law, float(swing)) for swing in normal.SWINGS]
-        cells = ["none reaches 62 %" if f.predicted is None else f"{100 * f.predicted:.1f} %" for f in fits]
-        assert row(cells) in PAGE, law
+
+
+@pytest.mark.parametrize("law", normal.LAWS)
+def test_normal_vibration(fmu_path: Path, law: str) -> None:
+    data = measurements.normal_vibration()
+    fits = [normal.fit(fmu_path, data, law, float(swing)) for swing in normal.SWINGS]
+    for predicted in ([fit.predicted for fit in fits], [fit.between for fit in fits]):
+        assert row(["-" if p is None else percent(p) for p in predicted]) in PAGE
+
+
+def test_the_record_is_what_its_page_says() -> None:
+    data = measurements.record()
+    from_mean, from_last, work = record.scatter(data)
+    assert f"{percent(from_mean)} from the mean cycle" in PAGE
+    assert f"{percent(from_last)} from the one before" in PAGE
+    assert f"work by {percent(work)}" in PAGE
+    assert f"sliding friction, {record.sliding_friction(data):.2f} N" in PAGE
+    assert abs(record.tare(data)) < 5e-4
+    creep = np.ptp(data.between(*record.UNLOADING).position)
+    assert f"creeps by {1e6 * creep:.1f} µm" in PAGE
 
 
 @pytest.mark.slow
-def test_the_loop(fmu: FrictionFmu) -> None:
-    data = measurements.loop()
+def test_the_cycles_and_the_unloading(fmu: FrictionFmu) -> None:
+    data = measurements.record()
+    fits = {law: record.fit(fmu, data, law) for law in record.LAWS}
     for law in ("Dahl", "ElasticPlastic"):
-        fit = loop.fit(fmu, data, law)
-        cells = [f"{1e-3 * fit.stiffness:.2f}", f"{fit.F_C:.3f}"]
-        cells += [f"{100 * fit.rms_fitted:.1f} %", f"{100 * fit.rms_predicted:.1f} %", f"{fit.work:.3f}"]
+        fit = fits[law]
+        cells = [f"{1e-3 * fit.stiffness:.2f}", f"{fit.mu:.3f}"]
+        cells += [percent(fit.rms_fitted), percent(fit.rms_predicted), f"{fit.work:.3f}"]
         assert row(cells) in PAGE, law
+    assert f"Coulomb (rms {100 * fits['Coulomb'].rms_predicted:.0f} %)" in PAGE
+
+    part = data.between(*record.UNLOADING)
+    dahl, elastic_plastic = fits["Dahl"], fits["ElasticPlastic"]
+    without = record.without_bound(data, dahl)
+    for name, friction in (
+        ("ElasticPlastic, limit µ F_n", elastic_plastic.unloading),
+        ("µ F_n alone, µ of ElasticPlastic", -elastic_plastic.mu * part.load),
+        ("Dahl, limit µ F_n in Eq. 2 alone", without),
+        ("ElasticPlastic, constant limit", elastic_plastic.constant_limit),
+        ("Dahl, constant limit", dahl.constant_limit),
+    ):
+        assert unloading_row(data, name, friction) in PAGE
+    assert f"{record.over_the_load(data, part.friction)[0]:.3f} to" in PAGE
+
+    assert without == pytest.approx(in_short_pieces(part, dahl, bounded=False), abs=2e-3)
+
+
+@pytest.mark.slow
+def test_a_bounded_bristle_unloads(fmu: FrictionFmu) -> None:
+    data = measurements.record()
+    dahl = record.fit(fmu, data, "Dahl")
+    expected = in_short_pieces(data.between(*record.UNLOADING), dahl, bounded=True)
+    assert dahl.unloading == pytest.approx(expected, abs=2e-3)
+    assert unloading_row(data, "Dahl, limit µ F_n, bounded by it", dahl.unloading) in PAGE
+
+
+def unloading_row(data: measurements.Record, name: str, friction: np.ndarray) -> str:
+    ratios = [f"{ratio:.3f}" for ratio in record.over_the_load(data, friction)]
+    return row([name, percent(record.misfit_of_unloading(data, friction)), *ratios])
+
+
+def in_short_pieces(part: measurements.Record, fit: record.RecordFit, bounded: bool) -> np.ndarray:
+    """Dahl's force at the samples [N], the limit held over a fiftieth of each interval.
+
+    Its closed form over a path dx at a held limit L is F -> s L + (F - s L) exp(-k |dx| / L), s = sgn dx.
+    """
+    pieces = 50
+    load = np.maximum(part.load, record.LEAST_LOAD)
+    forces = [float(fit.unloading[0])]
+    for dx, begin, end in zip(np.diff(part.position), load, load[1:], strict=False):
+        F = forces[-1]
+        for limit in fit.mu * (begin + (end - begin) * (np.arange(pieces) + 0.5) / pieces):
+            final = math.copysign(limit, dx)
+            F = final + (F - final) * math.exp(-fit.stiffness * abs(dx) / pieces / limit)
+            F = min(max(F, -limit), limit) if bounded else F
+        forces.append(F)
+    return np.array(forces)
+
+
+@pytest.mark.slow
+def test_more_elements_hardly_help_and_a_tilt_does() -> None:
+    for fit in elements.fits(measurements.record()):
+        assert row([percent(fit.rms_fitted), percent(fit.rms_predicted)]) in PAGE, fit.name
+    assert f"{fit.tilt:.3f} N/N" in PAGE
+
+
+def test_elements_in_parallel_share_one_element_s_force() -> None:
+    part = record.fitted_cycles(measurements.record())
+    one = elements.forces(part, (np.array([4e4]), np.array([0.47]), 0.0))
+    halves = elements.forces(part, (np.array([2e4, 2e4]), np.array([0.235, 0.235]), 0.0))
+    assert halves == pytest.approx(one)
+    assert np.max(np.abs(one) / part.load) == pytest.approx(0.47)
 
 
 def test_the_command_prints_its_tables_and_draws(

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
-from frictionlab.fmu import Session
-from frictionlab.reference.solution import Contact, Scene
-from frictionlab.reference.start_values import start_values_of
+from frictioncontact.fmu import Session
+from workshop.reference.solution import Contact, Scene
+from workshop.reference.start_values import start_values_of
 
 LAWS = ("Dahl", "LuGre", "ElasticPlastic", "Coulomb")
 
@@ -39,6 +39,11 @@ class LawStep:
         if self.rates:
             session.set_rates(**self.rates)
         session.step(self.h)
+
+
+def is_bounded(scene: Scene) -> bool:
+    """Whether the limit bounds a bristle that relaxes: the fast reference makes these rows."""
+    return scene.limit == "Load" and scene.friction in ("Dahl", "LuGre")
 
 
 @dataclass(frozen=True)

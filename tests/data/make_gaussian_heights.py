@@ -11,7 +11,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from frictionlab.project import ROOT
+from workshop.project import ROOT
 
 PATH = ROOT / "data" / "gaussian_heights.csv"
 

@@ -1,6 +1,6 @@
 """Makes laws_<law>.csv: 500 random scenes a law, of one to four steps, and what the reference gives.
 
-    python tests/data/make_laws.py [LAW ...]
+    PYTHONPATH=tests python tests/data/make_laws.py [LAW ...]
 
 The law Settled is 100 scenes of the laws with a state that start settled, be it after 1e12 periods and more.
 Takes ten minutes. The seeds are fixed: the files change only with the reference or the distributions below.
@@ -18,13 +18,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from data.laws import is_bounded
+from reference import fast_reference
 
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.contact import normal_force, rest_separation, stiffness
-from frictionlab.reference.coulomb import mean_limit, path
-from frictionlab.reference.settled import settled
-from frictionlab.reference.solution import MP, Contact, Scene
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.contact import normal_force, rest_separation, stiffness
+from workshop.reference.coulomb import mean_limit, path
+from workshop.reference.settled import settled
+from workshop.reference.solution import MP, Contact, Scene
 
 SEEDS = {"Dahl": 11, "LuGre": 12, "ElasticPlastic": 13, "Coulomb": 14, "Settled": 15}
 COUNTS = {"Settled": 100}
@@ -197,13 +199,23 @@ def rows_of(law: str, number: int) -> list[dict[str, str]]:
     spread = 1.0 if draw.chance(0.75) else 3.0
     delta = delta_0 = float(f"{draw.uniform(-spread, spread) * resting_limit(steps[0][0])[0] / stiff:.9g}")
     if law == "Settled":
-        delta = settled(steps[0][0], steps[0][0].start, delta_0)
+        first, h = steps[0]
+        if is_bounded(first):
+            delta = fast_reference.advance(first, h, delta_0, settled=True).delta_start
+        else:
+            delta = settled(first, first.start, delta_0)
     begin = delta
     usual, rows, work, heat = Scene(), [], 0, 0
     for now, h in steps:
         t1 = MP.mpf(now.start) + MP.mpf(h)
-        step = reference.advance(now, now.start, h, delta)
-        delta, work, heat = step.delta, work + step.work, heat + step.heat
+        if is_bounded(now):
+            fast = fast_reference.advance(now, h, float(delta))
+            delta, work, heat = fast.delta, work + fast.work, heat + fast.heat
+            force, mean = fast.F_t, fast.F_t_mean
+        else:
+            step = reference.advance(now, now.start, h, delta)
+            delta, work, heat = step.delta, work + step.work, heat + step.heat
+            force, mean = reference.force(now, t1, delta), multiprecision(step.impulse) / MP.mpf(h)
         row = {"scene": str(number), "start": repr(now.start), "h": repr(h)}
         row |= {name: given(getattr(now, name), getattr(usual, name)) for name in INPUTS}
         if not rows:
@@ -212,8 +224,8 @@ def rows_of(law: str, number: int) -> list[dict[str, str]]:
             row |= {"settled": text(begin)} if law == "Settled" else {}
             row |= {"tolerance": f"1e-{3 + number % 10}", "delta_0": repr(delta_0)}
         results = {
-            "F_t": reference.force(now, t1, delta),
-            "F_t_mean": multiprecision(step.impulse) / MP.mpf(h),
+            "F_t": force,
+            "F_t_mean": mean,
             "W_f": work,
             "Q_f": heat,
             "delta": delta,

@@ -13,9 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.solution import MP, Contact, Scene
+from frictioncontact.files import whole_file
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.solution import MP, Contact, Scene
 
 SEED = 20240607
 COUNT = 500
@@ -108,8 +109,7 @@ def row_of(scene: Scene, h: float, delta_0: float, tolerance: float) -> dict[str
 def main() -> None:
     random = np.random.default_rng(SEED)
     path = Path(__file__).with_name("sweep.csv")
-    partial = path.with_suffix(".partial")
-    with partial.open("w", newline="") as file:
+    with whole_file(path) as unfinished, unfinished.open("w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         for k in range(COUNT):
@@ -119,7 +119,6 @@ def main() -> None:
             tolerance = float(f"1e-{3 + k % 10}")
             writer.writerow(row_of(scene, h, delta_0, tolerance))
             print(f"\r{k + 1} of {COUNT}", end="", file=sys.stderr, flush=True)
-    partial.replace(path)
     print(file=sys.stderr)
 
 

@@ -6,8 +6,8 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from frictionlab.reference.solution import Contact, Scene
-from frictionlab.reference.start_values import start_values_of
+from workshop.reference.solution import Contact, Scene
+from workshop.reference.start_values import start_values_of
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictionlab.bench.coupling import Belt, transition
-from frictionlab.fmu import FrictionFmu
-from frictionlab.project import ROOT
+from frictioncontact.fmu import FrictionFmu
+from workshop.bench.coupling import Belt, transition
+from workshop.project import ROOT
 
-systems = pytest.importorskip("frictionlab.systems", reason="libcosimpy is not installed")
+systems = pytest.importorskip("workshop.systems", reason="libcosimpy is not installed")
 DESCRIPTION = (ROOT / "examples" / "stick-slip" / "SystemStructure.ssd").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
 SPEED = 1e-6  # m/s, from which the swing starts: the bristle does not creep at it

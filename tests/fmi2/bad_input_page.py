@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from bad_calls import GROUPS
-from fmi_library import MODEL_EXCHANGE, Instance, Library
-from test_call_order import TABLE
+from bad_model_exchange import ALL_GROUPS
+from fmi_library import Instance, Library
+from test_call_order import MODEL_EXCHANGE_TABLE, TABLE
 
-from frictionlab.build import build_fmu
-from frictionlab.fmu import FrictionFmu
-from frictionlab.project import ROOT
+from frictioncontact.fmu import FrictionFmu
+from workshop.build import build_fmu
+from workshop.project import ROOT
 
 PAGE = ROOT / "docs" / "bad-input.md"
 STATUS = ("fmi2OK", "fmi2Warning", "fmi2Discard", "fmi2Error", "fmi2Fatal", "fmi2Pending")
@@ -37,9 +37,10 @@ x: allowed. -: `fmi2Error`, with a message such as
 
     {example}
 
-and nothing changes. Functions of model exchange are refused everywhere; fmi2GetStatus, fmi2GetIntegerStatus
-and fmi2GetStringStatus are refused in every state, since no step is ever pending. Without an instance (NULL)
-every function returns `fmi2Error` and `fmi2FreeInstance` does nothing.
+and nothing changes. A function of one interface is refused everywhere by an instance for the other;
+fmi2GetStatus, fmi2GetIntegerStatus and fmi2GetStringStatus are refused in every state, since no step is ever
+pending. Without an instance (NULL) every function returns `fmi2Error` and `fmi2FreeInstance` does nothing. An
+instance for co-simulation:
 
 """
 
@@ -55,10 +56,14 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("%%", "%")
 
 
+def _indented(table: str) -> list[str]:
+    return ["    " + line for line in table.strip("\n").splitlines()]
+
+
 def _instantiation(library: Library) -> list[str]:
     cases = {
         "another FMU's guid": {"guid": "{00000000-0000-0000-0000-000000000000}"},
-        "fmuType = fmi2ModelExchange": {"kind": MODEL_EXCHANGE},
+        "fmuType = 17": {"kind": 17},
         "an empty instance name": {"name": ""},
         "no instance name": {"name": None},
     }
@@ -76,10 +81,10 @@ def page(folder: Path) -> str:
     """The text of the page, from the unpacked FMU."""
     library = Library(folder)
     lines = [HEAD]
-    for group, calls in GROUPS.items():
+    for group, calls in ALL_GROUPS.items():
         lines += [f"## {group}\n", "| call | in state | status | message |", "|---|---|---|---|"]
         for bad in calls:
-            with Instance(library) as instance:
+            with Instance(library, kind=bad.kind) as instance:
                 bad.setup(instance)
                 instance.bring_to(bad.state)
                 bad.prepare(instance)
@@ -92,7 +97,14 @@ def page(folder: Path) -> str:
         instance.bring_to("step complete")
         instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
         lines.append(ORDER.strip("\n").format(example=instance.last_message.text))
-    lines += ["", "    " + "\n    ".join(TABLE.strip("\n").splitlines())]
+    lines += [
+        "",
+        *_indented(TABLE),
+        "",
+        "An instance for model exchange:",
+        "",
+        *_indented(MODEL_EXCHANGE_TABLE),
+    ]
     lines += [INSTANTIATION.rstrip("\n"), "", *_instantiation(library), ""]
     return "\n".join(lines)
 

@@ -8,8 +8,12 @@ from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, 
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
+from fmpy.model_description import ScalarVariable
+
+from workshop import description
+
+STATES, INDICATORS = 3, 4
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 MODEL_EXCHANGE, CO_SIMULATION = range(2)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED_STATUS = range(4)
@@ -24,6 +28,17 @@ class Callbacks(ctypes.Structure):
         ("freeMemory", c_void_p),
         ("stepFinished", c_void_p),
         ("componentEnvironment", c_void_p),
+    ]
+
+
+class EventInfo(ctypes.Structure):
+    _fields_ = [
+        ("newDiscreteStatesNeeded", c_int),
+        ("terminateSimulation", c_int),
+        ("nominalsOfContinuousStatesChanged", c_int),
+        ("valuesOfContinuousStatesChanged", c_int),
+        ("nextEventTimeDefined", c_int),
+        ("nextEventTime", c_double),
     ]
 
 
@@ -60,7 +75,7 @@ SIGNATURES: dict[str, list[Any]] = {
     "fmi2GetBooleanStatus": [c_int, POINTER(c_int)],
     "fmi2GetStringStatus": [c_int, POINTER(c_char_p)],
     "fmi2EnterEventMode": [],
-    "fmi2NewDiscreteStates": [c_void_p],
+    "fmi2NewDiscreteStates": [POINTER(EventInfo)],
     "fmi2EnterContinuousTimeMode": [],
     "fmi2CompletedIntegratorStep": [c_int, POINTER(c_int), POINTER(c_int)],
     "fmi2SetTime": [c_double],
@@ -96,15 +111,10 @@ class Library:
     """One loaded FMU, from the folder it was unpacked to."""
 
     def __init__(self, folder: Path) -> None:
-        root = ElementTree.parse(folder / "modelDescription.xml").getroot()
-        self.guid: str = root.attrib["guid"]
-        self.log_categories = [
-            category.attrib["name"] for category in root.iterfind("LogCategories/Category")
-        ]
-        self.variables = {
-            variable.name: variable
-            for variable in map(_variable, root.iterfind("ModelVariables/ScalarVariable"))
-        }
+        model = description.read(folder)
+        self.guid: str = model.guid
+        self.log_categories = [category.name for category in model.logCategories]
+        self.variables = {variable.name: variable for variable in map(_variable, model.modelVariables)}
         self.dll = ctypes.CDLL(str(folder / "binaries" / "linux64" / "FrictionContact.so"))
         for name, arguments in SIGNATURES.items():
             getattr(self.dll, name).argtypes = [c_void_p, *arguments]
@@ -127,18 +137,16 @@ class Library:
         return [v.name for v in self.variables.values() if v.causality == causality and v.kind == kind]
 
 
-def _variable(element: ElementTree.Element) -> Variable:
-    typed = element[0]
-    bounds = [None if typed.get(key) is None else float(typed.attrib[key]) for key in ("min", "max")]
+def _variable(variable: ScalarVariable) -> Variable:
     return Variable(
-        name=element.attrib["name"],
-        reference=int(element.attrib["valueReference"]),
-        kind=typed.tag,
-        causality=element.attrib["causality"],
-        variability=element.attrib["variability"],
-        start=typed.get("start"),
-        min=bounds[0],
-        max=bounds[1],
+        name=variable.name,
+        reference=variable.valueReference,
+        kind=variable.type,
+        causality=variable.causality,
+        variability=variable.variability,
+        start=variable.start,
+        min=None if variable.min is None else float(variable.min),
+        max=None if variable.max is None else float(variable.max),
     )
 
 
@@ -156,6 +164,7 @@ class Instance:
         with_logger: bool = True,
     ) -> None:
         self.library = library
+        self.kind = kind
         self.messages: list[LogMessage] = []
         self._logger = LOGGER(self._log) if with_logger else LOGGER()
         self._callbacks = Callbacks(logger=self._logger)
@@ -188,22 +197,69 @@ class Instance:
 
     # life cycle
 
-    def initialize(self, start: float = 0.0, stop: float | None = None) -> None:
-        """From instantiated to step complete; a failure is the test's."""
+    def set_up(self, start: float, stop: float | None) -> None:
         assert self.call("fmi2SetupExperiment", 0, 0.0, start, int(stop is not None), stop or 0.0) == OK
+
+    def initialize(self, start: float = 0.0, stop: float | None = None) -> None:
+        """From instantiated to step complete, or to event mode; a failure is the test's."""
+        if start != 0.0 or stop is not None:
+            self.set_up(start, stop)
         assert self.call("fmi2EnterInitializationMode") == OK
         assert self.call("fmi2ExitInitializationMode") == OK, self.messages
 
     def bring_to(self, state: str) -> None:
-        """To instantiated, initialization, step complete or terminated."""
+        """To instantiated, initialization, step complete, event mode, continuous-time mode or terminated."""
         if state == "instantiated":
             return
         if state == "initialization":
             assert self.call("fmi2EnterInitializationMode") == OK
             return
         self.initialize()
+        if state == "continuous-time mode":
+            self.new_discrete_states()
+            assert self.call("fmi2EnterContinuousTimeMode") == OK
         if state == "terminated":
             assert self.call("fmi2Terminate") == OK
+
+    # model exchange
+
+    def new_discrete_states(self) -> EventInfo:
+        info = EventInfo()
+        assert self.call("fmi2NewDiscreteStates", byref(info)) == OK, self.messages
+        return info
+
+    def event(self) -> EventInfo:
+        """From continuous-time mode through an event and back."""
+        assert self.call("fmi2EnterEventMode") == OK, self.messages
+        info = self.new_discrete_states()
+        assert self.call("fmi2EnterContinuousTimeMode") == OK
+        return info
+
+    def states(self) -> list[float]:
+        """delta, W_f, Q_f."""
+        x = (c_double * STATES)()
+        assert self.call("fmi2GetContinuousStates", x, STATES) == OK, self.messages
+        return list(x)
+
+    def put_states(self, *x: float) -> int:
+        return self.call("fmi2SetContinuousStates", (c_double * len(x))(*x), len(x))
+
+    def rates(self) -> list[float]:
+        rates = (c_double * STATES)()
+        assert self.call("fmi2GetDerivatives", rates, STATES) == OK, self.messages
+        return list(rates)
+
+    def indicators(self) -> list[float]:
+        z = (c_double * INDICATORS)()
+        assert self.call("fmi2GetEventIndicators", z, INDICATORS) == OK, self.messages
+        return list(z)
+
+    def step_completed(self) -> bool:
+        """Whether the FMU wants an event."""
+        event, end = (c_int * 1)(), (c_int * 1)()
+        assert self.call("fmi2CompletedIntegratorStep", 1, event, end) == OK, self.messages
+        assert end[0] == 0
+        return bool(event[0])
 
     def step(self, t: float, h: float) -> int:
         return self.call("fmi2DoStep", t, h, 1)

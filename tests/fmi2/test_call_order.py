@@ -7,7 +7,20 @@ from collections.abc import Callable
 from ctypes import byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 
 import pytest
-from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, SIGNATURES, TERMINATED_STATUS, Instance, Library
+from fmi_library import (
+    CO_SIMULATION,
+    ERROR,
+    INDICATORS,
+    LAST_SUCCESSFUL_TIME,
+    MODEL_EXCHANGE,
+    OK,
+    SIGNATURES,
+    TERMINATED_STATUS,
+    EventInfo,
+    Instance,
+    Library,
+)
+from fmi_library import STATES as CONTINUOUS_STATES
 
 # FMI 2.0, section 4.2.4, the columns of the states that a synchronous slave without fmi2Discard can be in.
 TABLE = """
@@ -53,15 +66,73 @@ fmi2GetEventIndicators              -               -                -          
 fmi2GetContinuousStates             -               -                -              -
 fmi2GetNominalsOfContinuousStates   -               -                -              -
 """
-STATES = ["instantiated", "initialization", "step complete", "terminated"]
-ROWS = {line.split()[0]: line.split()[1:] for line in TABLE.strip().splitlines()[1:]}
-CASES = [
-    pytest.param(function, state, cell == "x", id=f"{function}-{state.replace(' ', '_')}")
-    for function, cells in ROWS.items()
-    for state, cell in zip(STATES, cells, strict=True)
-]
+# FMI 2.0, section 3.2.3.
+MODEL_EXCHANGE_TABLE = """
+                               instantiated   initialization   event mode   continuous-time mode   terminated
+fmi2SetDebugLogging                 x               x              x                x                  x
+fmi2SetupExperiment                 x               -              -                -                  -
+fmi2EnterInitializationMode         x               -              -                -                  -
+fmi2ExitInitializationMode          -               x              -                -                  -
+fmi2Terminate                       -               -              x                x                  -
+fmi2Reset                           x               x              x                x                  x
+fmi2GetReal                         -               x              x                x                  x
+fmi2GetInteger                      -               x              x                x                  x
+fmi2GetBoolean                      -               x              x                x                  x
+fmi2GetString                       -               x              x                x                  x
+fmi2SetReal                         x               x              x                x                  -
+fmi2SetInteger                      x               x              x                -                  -
+fmi2SetBoolean                      x               x              x                -                  -
+fmi2SetString                       x               x              x                -                  -
+fmi2GetFMUstate                     x               x              x                x                  x
+fmi2SetFMUstate                     x               x              x                x                  x
+fmi2FreeFMUstate                    x               x              x                x                  x
+fmi2SerializedFMUstateSize          x               x              x                x                  x
+fmi2SerializeFMUstate               x               x              x                x                  x
+fmi2DeSerializeFMUstate             x               x              x                x                  x
+fmi2GetDirectionalDerivative        -               x              x                x                  x
+fmi2SetRealInputDerivatives         -               -              -                -                  -
+fmi2GetRealOutputDerivatives        -               -              -                -                  -
+fmi2DoStep                          -               -              -                -                  -
+fmi2CancelStep                      -               -              -                -                  -
+fmi2GetStatus                       -               -              -                -                  -
+fmi2GetRealStatus                   -               -              -                -                  -
+fmi2GetIntegerStatus                -               -              -                -                  -
+fmi2GetBooleanStatus                -               -              -                -                  -
+fmi2GetStringStatus                 -               -              -                -                  -
+fmi2EnterEventMode                  -               -              x                x                  -
+fmi2NewDiscreteStates               -               -              x                -                  -
+fmi2EnterContinuousTimeMode         -               -              x                -                  -
+fmi2CompletedIntegratorStep         -               -              -                x                  -
+fmi2SetTime                         -               -              x                x                  -
+fmi2SetContinuousStates             -               -              -                x                  -
+fmi2GetDerivatives                  -               -              x                x                  x
+fmi2GetEventIndicators              -               x              x                x                  x
+fmi2GetContinuousStates             -               x              x                x                  x
+fmi2GetNominalsOfContinuousStates   x               -              x                x                  x
+"""
 
-MODEL_EXCHANGE = set(list(ROWS)[list(ROWS).index("fmi2EnterEventMode") :])
+
+def rows(table: str) -> dict[str, list[str]]:
+    return {line.split()[0]: line.split()[1:] for line in table.strip().splitlines()[1:]}
+
+
+STATES = {
+    CO_SIMULATION: ["instantiated", "initialization", "step complete", "terminated"],
+    MODEL_EXCHANGE: ["instantiated", "initialization", "event mode", "continuous-time mode", "terminated"],
+}
+TABLES = {CO_SIMULATION: rows(TABLE), MODEL_EXCHANGE: rows(MODEL_EXCHANGE_TABLE)}
+NAMES = {CO_SIMULATION: "co-simulation", MODEL_EXCHANGE: "model exchange"}
+PLACES = [
+    pytest.param(kind, state, id=f"{NAMES[kind]}-{state}".replace(" ", "_"))
+    for kind in STATES
+    for state in STATES[kind]
+]
+CASES = [
+    pytest.param(kind, function, state, cell == "x", id=f"{NAMES[kind]}-{function}-{state}".replace(" ", "_"))
+    for kind, table in TABLES.items()
+    for function, cells in table.items()
+    for state, cell in zip(STATES[kind], cells, strict=True)
+]
 
 # Legal in their state, but without an answer in a slave that never leaves a step pending.
 ALWAYS_REFUSED = {"fmi2GetStatus", "fmi2GetIntegerStatus", "fmi2GetStringStatus"}
@@ -72,14 +143,15 @@ def good_arguments(instance: Instance, function: str) -> tuple[object, ...]:
     real = (c_double * 1)(0.01)
     one_input = (c_uint * 1)(instance.library.variables["V"].reference)
     one_output = (c_uint * 1)(instance.library.variables["F_t"].reference)
-    tunable = (c_uint * 1)(instance.library.variables["F_C"].reference)
+    states = (c_double * CONTINUOUS_STATES)()
+    indicators = (c_double * INDICATORS)()
     if function.startswith(("fmi2GetFMU", "fmi2SetFMU", "fmi2FreeFMU", "fmi2Serialize", "fmi2DeSerialize")):
         return state_arguments(instance, function)
     arguments: dict[str, tuple[object, ...]] = {
         "fmi2SetDebugLogging": (0, 0, None),
         "fmi2SetupExperiment": (0, 0.0, 0.0, 0, 0.0),
         "fmi2GetReal": (one_output, 1, (c_double * 1)()),
-        "fmi2SetReal": (tunable, 1, (c_double * 1)(50.0)),
+        "fmi2SetReal": (one_input, 1, (c_double * 1)(0.02)),
         "fmi2GetDirectionalDerivative": (one_output, 1, one_input, 1, real, (c_double * 1)()),
         "fmi2SetRealInputDerivatives": (one_input, 1, (c_int * 1)(1), real),
         "fmi2GetRealOutputDerivatives": (one_output, 1, (c_int * 1)(1), (c_double * 1)()),
@@ -89,14 +161,14 @@ def good_arguments(instance: Instance, function: str) -> tuple[object, ...]:
         "fmi2GetIntegerStatus": (0, (c_int * 1)()),
         "fmi2GetBooleanStatus": (TERMINATED_STATUS, (c_int * 1)()),
         "fmi2GetStringStatus": (1, (c_char_p * 1)()),
-        "fmi2NewDiscreteStates": (None,),
+        "fmi2NewDiscreteStates": (byref(EventInfo()),),
         "fmi2CompletedIntegratorStep": (1, (c_int * 1)(), (c_int * 1)()),
         "fmi2SetTime": (0.0,),
-        "fmi2SetContinuousStates": (real, 1),
-        "fmi2GetDerivatives": (real, 1),
-        "fmi2GetEventIndicators": (real, 1),
-        "fmi2GetContinuousStates": (real, 1),
-        "fmi2GetNominalsOfContinuousStates": (real, 1),
+        "fmi2SetContinuousStates": (states, CONTINUOUS_STATES),
+        "fmi2GetDerivatives": (states, CONTINUOUS_STATES),
+        "fmi2GetEventIndicators": (indicators, INDICATORS),
+        "fmi2GetContinuousStates": (states, CONTINUOUS_STATES),
+        "fmi2GetNominalsOfContinuousStates": (states, CONTINUOUS_STATES),
     }
     if function in ("fmi2GetInteger", "fmi2SetInteger", "fmi2GetBoolean", "fmi2SetBoolean"):
         return (None, 0, None)
@@ -126,17 +198,24 @@ def assert_usable(instance: Instance, state: str) -> None:
         assert instance.call("fmi2ExitInitializationMode") == OK
     elif state == "step complete":
         assert instance.step(0.0, 1e-5) == OK
+    elif state == "event mode":
+        assert instance.call("fmi2EnterContinuousTimeMode") == OK
+    elif state == "continuous-time mode":
+        instance.event()
     else:
         assert instance.step(0.0, 1e-5) == ERROR
         instance.get("F_t")
 
 
 def test_the_table_has_every_function() -> None:
-    assert set(ROWS) == set(SIGNATURES)
+    assert all(set(table) == set(SIGNATURES) for table in TABLES.values())
 
 
-@pytest.mark.parametrize(("function", "state", "legal"), CASES)
-def test_call_in_state(instance: Instance, function: str, state: str, legal: bool) -> None:
+@pytest.mark.parametrize(("kind", "function", "state", "legal"), CASES)
+def test_call_in_state(
+    new_instance: Callable[..., Instance], kind: int, function: str, state: str, legal: bool
+) -> None:
+    instance = new_instance(kind=kind)
     instance.bring_to(state)
     arguments = good_arguments(instance, function)
     before = instance.fingerprint()
@@ -151,9 +230,9 @@ def test_call_in_state(instance: Instance, function: str, state: str, legal: boo
     assert instance.last_message.category == "logStatusError"
     assert instance.last_message.status == ERROR
     assert instance.last_message.text.startswith(f"{function}: ")
-    if function in MODEL_EXCHANGE:
-        assert "model exchange" in instance.last_message.text
-    else:
+    if "x" not in TABLES[kind][function] and function != "fmi2CancelStep":
+        assert f"this instance is for {NAMES[kind]}" in instance.last_message.text
+    elif function != "fmi2CancelStep":
         assert ("not allowed in state" in instance.last_message.text) == (not legal)
     assert instance.fingerprint() == before
     assert_usable(instance, state)
@@ -169,7 +248,33 @@ def test_a_refusal_names_the_state_and_the_allowed_ones(instance: Instance) -> N
     instance.call("fmi2ExitInitializationMode")
     assert instance.last_message.text.endswith("only in: initialization mode")
     instance.call("fmi2SetTime", 0.0)
-    assert "model exchange" in instance.last_message.text
+    assert (
+        instance.last_message.text
+        == "fmi2SetTime: belongs to model exchange; this instance is for co-simulation"
+    )
+
+
+def test_a_refusal_names_the_states_of_its_own_interface(new_instance: Callable[..., Instance]) -> None:
+    instance = new_instance(kind=MODEL_EXCHANGE)
+    assert instance.call("fmi2Terminate") == ERROR
+    assert instance.last_message.text == (
+        "fmi2Terminate: not allowed in state 'instantiated', only in: event mode, continuous-time mode"
+    )
+    assert instance.call("fmi2DoStep", 0.0, 1e-5, 1) == ERROR
+    assert (
+        instance.last_message.text
+        == "fmi2DoStep: belongs to co-simulation; this instance is for model exchange"
+    )
+
+
+def test_a_state_of_the_other_interface_is_refused(new_instance: Callable[..., Instance]) -> None:
+    stepped, exchanged = new_instance(), new_instance(kind=MODEL_EXCHANGE)
+    state = stepped.save()
+    before = exchanged.fingerprint()
+    assert exchanged.restore(state) == ERROR
+    assert "one of co-simulation; this instance is for model exchange" in exchanged.last_message.text
+    assert exchanged.fingerprint() == before
+    assert stepped.drop(state) == OK
 
 
 @pytest.mark.parametrize("function", sorted(SIGNATURES))
@@ -185,23 +290,24 @@ def test_functions_without_an_instance(library: Library) -> None:
     library.dll.fmi2FreeInstance(None)
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_free_in_every_state(instance: Instance, state: str) -> None:
+@pytest.mark.parametrize(("kind", "state"), PLACES)
+def test_free_in_every_state(new_instance: Callable[..., Instance], kind: int, state: str) -> None:
+    instance = new_instance(kind=kind)
     instance.bring_to(state)
     instance.free()
     assert not [message for message in instance.messages if message.status == ERROR]
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_reset_gives_a_fresh_instance(new_instance: Callable[..., Instance], state: str) -> None:
-    used = new_instance()
+@pytest.mark.parametrize(("kind", "state"), PLACES)
+def test_reset_gives_a_fresh_instance(new_instance: Callable[..., Instance], kind: int, state: str) -> None:
+    used = new_instance(kind=kind)
     assert used.set({"V": 0.3, "contact.R": 2e-6, "solver.tolerance": 1e-8}) == OK
     assert used.choose({"contact.model": 2}) == OK
     used.bring_to(state)
     if state == "step complete":
         assert used.step(0.0, 1e-4) == OK
     assert used.call("fmi2Reset") == OK
-    assert used.fingerprint() == new_instance().fingerprint()
+    assert used.fingerprint() == new_instance(kind=kind).fingerprint()
 
 
 def test_a_saved_state_carries_the_place_in_the_call_order(instance: Instance) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from fmi_library import CO_SIMULATION, MODEL_EXCHANGE, OK, Instance, Library
+from fmi_library import CO_SIMULATION, OK, Instance, Library
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
@@ -20,8 +20,7 @@ OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
             "the guid is {00000000-0000-0000-0000-000000000000}",
         ),
         ({"guid": ""}, "the guid is"),
-        ({"kind": MODEL_EXCHANGE}, "only fmi2CoSimulation"),
-        ({"kind": 17}, "fmuType = 17"),
+        ({"kind": 17}, "fmuType = 17 is neither fmi2ModelExchange (0) nor fmi2CoSimulation (1)"),
         ({"name": ""}, "the instance name is missing"),
         ({"name": None}, "the instance name is missing"),
     ],

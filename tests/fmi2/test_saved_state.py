@@ -183,7 +183,11 @@ def offsets(library: Library) -> dict[str, int]:
     places["time_rest"] = at + 8
     places["next_rate of V"] = at + 8 * 8
     places["next_rate_set"] = at + 8 * 12
-    places["state"] = places["next_rate_set"] + 4
+    places["regime"] = places["next_rate_set"] + 4
+    places["seen_time"] = places["regime"] + 2 * 4
+    places["nominal_energy"] = places["seen_time"] + 10 * 8
+    places["interface"] = places["nominal_energy"] + 8
+    places["state"] = places["interface"] + 4
     places["outputs_stale"] = places["state"] + 4
     places["start_time"] = places["state"] + 16
     return places
@@ -195,7 +199,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
     data = instance.fingerprint()
     places = offsets(library)
     assert data[:8] == b"FRICTION"
-    assert struct.unpack_from("<II", data, 8) == (2, len(data))
+    assert struct.unpack_from("<II", data, 8) == (3, len(data))
     assert data[GUID_AT:BODY_AT].decode() == library.guid
     assert struct.unpack_from("<d", data, places["V"]) == (0.125,)
     assert struct.unpack_from("<i", data, places["solver.method"]) == (1,)
@@ -217,7 +221,13 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
         ("time_rest", struct.pack("<d", float("inf")), "time"),
         ("next_rate of V", struct.pack("<d", float("inf")), "rate"),
         ("next_rate_set", struct.pack("<i", 2), "rate"),
+        ("regime", struct.pack("<i", 1), "what model exchange keeps"),  # Dahl has no bound here
+        ("seen_time", struct.pack("<d", float("nan")), "what model exchange keeps"),
+        ("nominal_energy", struct.pack("<d", float("inf")), "what model exchange keeps"),
+        ("interface", struct.pack("<i", 1), "state"),  # of model exchange, and between two steps
+        ("interface", struct.pack("<i", 3), "state"),
         ("state", struct.pack("<i", 1 << 4), "state"),
+        ("state", struct.pack("<i", 1 << 10), "state"),
         ("outputs_stale", struct.pack("<i", 2), "state"),
         ("start_time", struct.pack("<d", float("-inf")), "state"),
     ],

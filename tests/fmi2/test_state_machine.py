@@ -64,7 +64,7 @@ class Model:
     def step_is_legal(self, t: float, h: float) -> bool:
         if self.state != "step complete" or not (math.isfinite(h) and h >= 0 and t == self.time):
             return False
-        if self.stop is not None and t + h > self.stop * (1 + 1e-6):
+        if self.stop is not None and t + h > self.stop * (1 + 1e-9):
             return False
         return all(self.allows(name, value) for name, value in self.after_rates(h).items())
 

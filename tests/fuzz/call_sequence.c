@@ -6,50 +6,9 @@
 //     anything else            is never returned
 // A step that succeeds is taken back and done again: the bits must be the same.
 #include "host.h"
+#include "input.h"
 
 enum { INSTANCES = 2, SLOTS = 3, CALLS_MOST = 40 };
-
-typedef struct {
-    const uint8_t* at;
-    const uint8_t* end;
-} Bytes;
-
-static unsigned next_byte(Bytes* input) { return input->at < input->end ? *input->at++ : 0; }
-
-static double next_real(Bytes* input) {
-    static const double telling[] = {
-        0.0,   -0.0,   1.0,    -1.0,   0.005,  -0.005, 14e-6, 20e-6,  1e-6,
-        1e-12, 1e-9,   1e-7,   5e-5,   1e-4,   1e-3,   0.01,  0.5,    2.0,
-        55.0,  1e3,    2e4,    1e6,    2.5e6,  58e9,   1e9,   1e12,   1e100,
-        1e300, -1e300, 1e-300, 5e-324, 1.7e-5, 0.44,   3.0,   1.5707, 1.7976931348623157e308};
-    const unsigned count = sizeof telling / sizeof *telling;
-    const unsigned choice = next_byte(input) % (count + 8);
-    if (choice < count) {
-        return telling[choice];
-    }
-    switch (choice - count) {
-    case 0:
-        return (double)NAN;
-    case 1:
-        return (double)INFINITY;
-    case 2:
-        return -(double)INFINITY;
-    case 3: {
-        double value = 0.0;
-        for (size_t i = 0; i < sizeof value; i++) {
-            ((unsigned char*)&value)[i] = (unsigned char)next_byte(input);
-        }
-        return value;
-    }
-    default:
-        return 1e-3 * (double)(next_byte(input) * 256 + next_byte(input)) - 20.0;
-    }
-}
-
-static fmi2ValueReference next_reference(Bytes* input) {
-    const unsigned byte = next_byte(input);
-    return byte < 250 ? byte % fc_variables_count : byte == 250 ? 4294967295u : byte;
-}
 
 typedef struct {
     Fmi2Instance instance[INSTANCES];
@@ -81,28 +40,6 @@ static fmi2Status step(Bytes* input, Bench* bench, fmi2Component c) {
     }
     HOLD(fmi2FreeFMUstate(c, &before) == fmi2OK, "a saved state can be freed");
     return status;
-}
-
-static fmi2Status set_reals(Bytes* input, fmi2Component c) {
-    fmi2ValueReference vr[3];
-    double value[3];
-    const size_t count = next_byte(input) % 4;
-    for (size_t i = 0; i < count; i++) {
-        vr[i] = next_reference(input);
-        value[i] = next_real(input);
-    }
-    return fmi2SetReal(c, vr, count, value);
-}
-
-static fmi2Status choose(Bytes* input, fmi2Component c) {
-    static const size_t enumerations[] = {
-        offsetof(FcVariables, solver.method),  offsetof(FcVariables, friction.model),
-        offsetof(FcVariables, contact.model),  offsetof(FcVariables, initialState),
-        offsetof(FcVariables, friction.limit), offsetof(FcVariables, contact.input)};
-    const unsigned byte = next_byte(input);
-    const fmi2ValueReference vr = reference_of(enumerations[byte < 64 ? 0 : byte / 8 % 6]);
-    const int item = (int)(byte % 8);
-    return fmi2SetInteger(c, &vr, 1, &item);
 }
 
 // An input, or F_t, which is none.
@@ -163,7 +100,7 @@ static fmi2Status call(Bytes* input, Bench* bench, Fmi2Instance* instance) {
         return fmi2Reset(c);
     case 5:
         fmi2_instance_free(instance);
-        instantiate(instance);
+        instantiate_for(instance, fmi2CoSimulation);
         return fmi2OK;
     case 6:
         vr = next_reference(input);
@@ -227,7 +164,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Bytes input = {data, data + size};
     Bench bench = {.time = 0.0};
     for (int i = 0; i < INSTANCES; i++) {
-        instantiate(&bench.instance[i]);
+        instantiate_for(&bench.instance[i], fmi2CoSimulation);
     }
     for (int calls = 0; input.at < input.end && calls < CALLS_MOST; calls++) {
         Fmi2Instance* instance = &bench.instance[*input.at < 128 ? 0 : 1];

@@ -30,8 +30,9 @@ typedef struct {
         }                                                                                                    \
     } while (0)
 
-static void instantiate(Fmi2Instance* instance) {
-    HOLD(fmi2_instance_make(instance, &fmi2_linked, "fuzzed", fc_guid, NULL), "instantiation succeeds");
+static void instantiate_for(Fmi2Instance* instance, fmi2Type interface) {
+    HOLD(fmi2_instance_make_for(instance, &fmi2_linked, interface, "fuzzed", fc_guid, NULL),
+         "instantiation succeeds");
 }
 
 // What the FMU said since the last look: errors have a short message.
@@ -60,7 +61,7 @@ static int same_state(const StateBytes* a, const StateBytes* b) {
 
 // Whether a step is short work: the slow methods and moving inputs under vibration take a time in proportion to h.
 // A step that is refused anyway is.
-static int is_short_work(fmi2Component c, double h) {
+static inline int is_short_work(fmi2Component c, double h) {
     const fmi2ValueReference reals[] = {reference_of(offsetof(FcVariables, vibration.f)),
                                         reference_of(offsetof(FcVariables, vibration.V_1)),
                                         reference_of(offsetof(FcVariables, vibration.a_d)),
@@ -80,21 +81,30 @@ static int is_short_work(fmi2Component c, double h) {
     return !(periods > (method == FC_METHOD_CVODE ? 0.25 : 3.0));
 }
 
-static void check_outputs(fmi2Component c) {
-    fmi2ValueReference vr[64];
+// Whether the variables can be read; if so, they are finite numbers.
+static void check_reals(fmi2Component c, const fmi2ValueReference* vr, size_t count) {
     double value[64];
-    size_t count = 0;
-    for (unsigned i = 0; i < fc_variables_count && count < 64; i++) {
-        if (fc_variables[i].type == FC_TYPE_REAL) {
-            vr[count++] = i;
-        }
-    }
     if (fmi2GetReal(c, vr, count, value) != fmi2OK) {
         return; // not in this state, or the values set do not go together: the message says so
     }
     for (size_t i = 0; i < count; i++) {
         HOLD(isfinite(value[i]), fc_variables[vr[i]].name);
     }
+}
+
+static void check_outputs(fmi2Component c) {
+    fmi2ValueReference vr[64];
+    fmi2ValueReference rates[4];
+    size_t count = 0, rate_count = 0;
+    for (unsigned i = 0; i < fc_variables_count && count < 64; i++) {
+        if (fc_variable_is_rate(&fc_variables[i])) {
+            rates[rate_count++] = i;
+        } else if (fc_variables[i].type == FC_TYPE_REAL) {
+            vr[count++] = i;
+        }
+    }
+    check_reals(c, vr, count);
+    check_reals(c, rates, rate_count);
 }
 
 #endif

@@ -51,7 +51,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         return 0;
     }
     Fmi2Instance instance;
-    instantiate(&instance);
+    instantiate_for(&instance, fmi2CoSimulation);
     fmi2Component c = instance.component;
     HOLD(fmi2EnterInitializationMode(c) == fmi2OK && fmi2ExitInitializationMode(c) == fmi2OK,
          "it initializes");

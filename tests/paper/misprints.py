@@ -7,7 +7,7 @@ import math
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from frictionlab.parameters import E_FULL, Surfaces
+from frictioncontact.parameters import E_FULL, Surfaces
 
 
 def closed_form_area(surfaces: Surfaces, d: float, E: float = E_FULL) -> float:

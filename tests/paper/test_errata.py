@@ -13,16 +13,14 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import i0
 
-from frictionlab.contact.heights import area, load, stiffness
-from frictionlab.fmu import FrictionFmu
-from frictionlab.identify.command import EXAMPLE
-from frictionlab.identify.data import read
-from frictionlab.identify.experiment import Rows
-from frictionlab.identify.fit import fit
-from frictionlab.identify.parameter import parameter
-from frictionlab.paper.claims import mean_changes
-from frictionlab.paper.equations import force_eq_23, force_eq_25
-from frictionlab.parameters import (
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.gap.heights import area, load, stiffness
+from frictioncontact.identification.command import EXAMPLE
+from frictioncontact.identification.data import read
+from frictioncontact.identification.experiment import Rows
+from frictioncontact.identification.fit import fit
+from frictioncontact.identification.parameter import parameter
+from frictioncontact.parameters import (
     COULOMB_FORCE,
     E_FULL,
     E_REDUCED,
@@ -36,9 +34,11 @@ from frictionlab.parameters import (
     Surfaces,
     start_values,
 )
-from frictionlab.periodic import periodic_mean
-from frictionlab.regimes.mean import coulomb_limit, soft_limit
-from frictionlab.report.text import IDENTIFY_INTRO
+from frictioncontact.periodic import periodic_mean
+from workshop.paper.claims import mean_changes
+from workshop.paper.equations import force_eq_23, force_eq_25
+from workshop.regimes.mean import coulomb_limit, soft_limit
+from workshop.report.text import IDENTIFY_INTRO
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
 SURFACES = Surfaces()
@@ -210,6 +210,9 @@ def test_14_where_the_printed_means_come_from() -> None:
     assert [round(force) for force in (row_1, row_4, row_5)] == [55, 48, 54]
     mean = mean_over_cycle(lambda d: frozen(d, E_FULL), SEPARATION, A_D)
     stated(14, f"{row_1:.2f}, {row_4:.2f} and {row_5:.2f} N", f"{mean:.2f} N")
+    reductions = [100 * (1 - row / row_1) for row in (row_4, row_5)]
+    assert [round(reduction) for reduction in reductions] == [12, 1]
+    stated(14, "{:.1f} and {:.1f} %".format(*reductions))
 
 
 def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:

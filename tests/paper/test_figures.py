@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frictionlab.figure import Figure, Level, Line
-from frictionlab.fmu import FrictionFmu
-from frictionlab.paper import figures as paper_figures
-from frictionlab.report import panels as report_plotly
+from frictioncontact.fmu import FrictionFmu
+from workshop.figure import Figure, Level, Line
+from workshop.paper import figures as paper_figures
+from workshop.report import panels as report_plotly
 
 
 @pytest.fixture(scope="module")

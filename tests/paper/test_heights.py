@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 from misprints import closed_form_area
 
-from frictionlab.contact.heights import (
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.gap.heights import (
     area,
     exponential,
     height_integral,
@@ -17,9 +19,7 @@ from frictionlab.contact.heights import (
     separation,
     stiffness,
 )
-from frictionlab.fmu import FrictionFmu
-from frictionlab.parameters import E_FULL, E_REDUCED, Surfaces
-from frictionlab.project import UserError
+from frictioncontact.parameters import E_FULL, E_REDUCED, Surfaces
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 TABLE_1 = Surfaces()

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictionlab.parameters import COULOMB_FORCE, FREQUENCY
-from frictionlab.reference.constant import periodic_mean
-from frictionlab.regimes.mean import (
+from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
+from workshop.reference.constant import periodic_mean
+from workshop.regimes.mean import (
     PARAMETERS,
     REGIMES,
     V_1,

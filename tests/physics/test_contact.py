@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frictionlab import parameters as scenarios
-from frictionlab.fmu import FrictionFmu, Session, simulate
-from frictionlab.reference import contact as reference_contact
-from frictionlab.reference.solution import MP, Contact
+from frictioncontact import parameters as scenarios
+from frictioncontact.fmu import FrictionFmu, Session, simulate
+from workshop.reference import contact as reference_contact
+from workshop.reference.solution import MP, Contact
 
 E_FULL, E_REDUCED = scenarios.E_FULL, scenarios.E_REDUCED
 UM = 1e-6

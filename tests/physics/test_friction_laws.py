@@ -7,9 +7,13 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import iv
 
-from frictionlab.fmu import FrictionError, FrictionFmu, Session, Value
+from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
+from workshop.project import ROOT
+
+PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 
 SETTLED = {"initialState": "Settled"}
 
@@ -85,6 +89,23 @@ def test_lugre_without_static_excess_is_dahl_bit_for_bit(
             session.step(13e-6)
             results.append(session.read(["F_t", "F_t_mean", "W_f", "Q_f", "delta"]).tolist())
     assert results[0] == results[1]
+
+
+@pytest.mark.parametrize("scene", [{}, VIBRATING, VIBRATING | {"friction.limit": "Load"}])
+def test_elastic_plastic_with_a_static_ratio_of_1_has_no_stribeck_velocity(
+    fmu: FrictionFmu, scene: dict[str, Value]
+) -> None:
+    """Bit for bit, at a Stribeck velocity far below V and at one far above."""
+    results = []
+    for V_S in (0.01, 1e-9, 1e3):
+        stribeck = {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.0, "friction.V_S": V_S}
+        with fmu.session({**scene, **stribeck}) as session:
+            for h in (7e-6, 13e-6, 1e-3):
+                session.step(h)
+            session.set_rates(V=10.0)
+            session.step(6e-5)
+            results.append(session.read(["F_t", "F_t_mean", "W_f", "Q_f", "delta"]).tolist())
+    assert results[0] == results[1] == results[2]
 
 
 def test_lugre_breaks_away_above_its_sliding_friction(fmu: FrictionFmu) -> None:
@@ -205,6 +226,44 @@ def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:
             total += position
         means.append(total / per_cycle)
     return means
+
+
+def test_damping_under_vibration_changes_the_force_and_the_heat_and_not_the_mean(fmu: FrictionFmu) -> None:
+    """Against scipy's integration of Eq. 2; docs/physics.md states the numbers."""
+    sigma, V, V_1, T, F_C, sigma_1 = 2.54e6, 0.5, 1.44, 1 / 20e3, 55.0, 500.0
+
+    def velocity(t: np.ndarray | float) -> np.ndarray:
+        return V + V_1 * np.cos(2 * math.pi * t / T)
+
+    def rate(t: np.ndarray | float, delta: np.ndarray) -> np.ndarray:
+        return velocity(t) - sigma * np.abs(velocity(t)) * delta / F_C
+
+    t = T * np.linspace(19.0, 20.0, 2001)  # in the periodic state
+    options = {"t_eval": t, "rtol": 1e-9, "atol": 1e-16, "max_step": T / 400}
+    delta = solve_ivp(rate, (0.0, t[-1]), [0.0], **options).y[0]
+    expected, found = {}, {}
+    for damping in (0.0, sigma_1):
+        force = sigma * delta + damping * rate(t, delta)
+        heat = np.trapezoid(force * velocity(t), t)
+        expected[damping] = [force.min() / F_C, force.max() / F_C, np.trapezoid(force, t) / T / F_C, heat]
+        scene = {"contact.model": "Constant", "contact.sigma": sigma, "vibration.V_1": V_1, "V": V}
+        with fmu.session(scene | SETTLED | {"friction.sigma_1": damping}) as session:
+            forces, means, heat = [session.get("F_t")], [], session.get("Q_f")
+            for _ in range(500):
+                session.step(T / 500)
+                forces.append(session.get("F_t"))
+                means.append(session.get("F_t_mean"))
+            found[damping] = [
+                min(forces) / F_C,
+                max(forces) / F_C,
+                np.mean(means) / F_C,
+                session.get("Q_f") - heat,
+            ]
+        assert found[damping] == pytest.approx(expected[damping], rel=2e-3)
+    text = " ".join(PHYSICS.split())
+    assert "from {:.1f} to {:.1f} F_C".format(*found[sigma_1][:2]) in text
+    assert "from {:.2f} to {:.2f} F_C".format(*found[0.0][:2]) in text
+    assert f"the heat {found[sigma_1][3] / found[0.0][3]:.0f} times" in text
 
 
 def test_a_stuck_mass_creeps_with_dahl_and_not_with_elastic_plastic(fmu: FrictionFmu) -> None:

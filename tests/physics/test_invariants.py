@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from frictionlab.fmu import OUTPUTS, FrictionFmu
+from frictioncontact.fmu import OUTPUTS, FrictionFmu
 
 TOLERANCE = 1e-8
 # A power of two: its period, and any number of them, are exact in time.

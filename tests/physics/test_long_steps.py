@@ -6,7 +6,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from mpmath import mp, mpf
 
-from frictionlab.fmu import FrictionError, FrictionFmu
+from frictioncontact.fmu import FrictionError, FrictionFmu
 
 F = 20e3  # Hz
 LARGEST = 2.0**46 / F  # s, 3.5e9

@@ -9,10 +9,10 @@ import pytest
 from playground_page import Playground
 from playwright.sync_api import Browser
 
-from frictionlab.browser import chromium, find_browser
-from frictionlab.description import description
-from frictionlab.playground.page import XML, page_text
-from frictionlab.presets import Preset, possible, presets
+from workshop.browser import chromium, find_browser
+from workshop.description import description
+from workshop.playground.page import XML, page_text
+from workshop.presets import Preset, possible, presets
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from frictionlab.fmu import FrictionFmu, Value
+from frictioncontact.fmu import FrictionFmu, Value
 
 SAMPLES = 240  # a period
 PERIODS = 2

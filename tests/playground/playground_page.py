@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
-from frictionlab.presets import Preset
+from workshop.presets import Preset
 
 
 class Playground:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.playground import command
-from frictionlab.project import UserError
+from frictioncontact.errors import UserError
+from workshop.playground import command
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> None:
@@ -52,6 +52,6 @@ def test_a_missing_compiler_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_pat
 
 
 def test_help_is_a_screen() -> None:
-    words = [sys.executable, "-m", "frictionlab.playground.command", "--help"]
+    words = [sys.executable, "-m", "workshop.playground.command", "--help"]
     text = subprocess.run(words, check=True, capture_output=True, text=True).stdout
     assert "scripts/playground" in text and "--output" in text

@@ -7,9 +7,9 @@ import pytest
 from native_wave import wave
 from playground_page import Playground
 
-from frictionlab.description import description
-from frictionlab.fmu import FrictionError, FrictionFmu
-from frictionlab.playground.page import XML
+from frictioncontact.fmu import FrictionError, FrictionFmu
+from workshop.description import description
+from workshop.playground.page import XML
 
 LIMIT = 1e-12  # of the largest force
 VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}
@@ -112,7 +112,7 @@ def test_a_refusal_is_the_fmu_s_own_message_at_the_control(
     assert playground.wave() == before
 
 
-@pytest.mark.parametrize("text", ["", "ten", "1e", "NaN", "0x"])
+@pytest.mark.parametrize("text", ["", "ten", "1e", "NaN", "0x", "0x10", "0b1", "Infinity", "1 2"])
 def test_what_is_no_number_is_told_so(playground: Playground, text: str) -> None:
     playground.load(START)
     before = playground.wave()
@@ -122,6 +122,64 @@ def test_what_is_no_number_is_told_so(playground: Playground, text: str) -> None
     field.blur()
     assert playground.refusal("V").endswith("is not a number")
     assert playground.wave() == before
+
+
+@pytest.mark.parametrize("text", ["1,234", "0,5"])
+def test_a_comma_has_two_meanings_and_is_refused(playground: Playground, text: str) -> None:
+    playground.load(START)
+    before = playground.wave()
+    field = playground.page.locator('[data-variable="V"] input[type=text]')
+    field.fill(text)
+    field.press("Enter")
+    assert playground.refusal("V").startswith(f"{text} is not a number: write the decimal point as .")
+    assert playground.wave() == before
+
+
+def test_a_minus_sign_as_it_is_printed_is_understood(playground: Playground) -> None:
+    playground.load(START)
+    playground.enter("V", "\u22125e1")
+    assert playground.refusal("V") == ""
+    assert playground.wave()["velocity_m_per_s"][120] == pytest.approx(-0.05 - 1.44)
+
+
+def test_pointing_at_the_map_of_a_refused_scene_changes_nothing(playground: Playground) -> None:
+    playground.load(START)
+    playground.finish()
+    playground.enter("d", "0")
+    refusal = playground.refusal("d")
+    assert "d = 0 m is below its minimum" in refusal
+    box = playground.page.locator("#map svg").bounding_box()
+    assert box is not None
+    playground.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    playground.page.mouse.down()
+    playground.page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.4 * box["height"])
+    playground.page.mouse.up()
+    playground.settle()
+    assert playground.refusal("d") == refusal
+
+
+@pytest.mark.parametrize("speed", ["1e30", "1e100", "1e300"])
+def test_a_speed_beyond_all_use_is_refused_by_name(playground: Playground, speed: str) -> None:
+    """Before any step, which would take as many evaluations as are allowed. The unit shown is mm/s."""
+    playground.load(START)
+    playground.enter("vibration.V_1", speed)
+    assert "the speed must stay at most 1e+15 m/s" in playground.refusal("vibration.V_1")
+
+
+def test_wrong_words_of_an_address_are_told_and_no_part_of_the_scene(playground: Playground) -> None:
+    """On a page that shows a scene already."""
+    for words, message in (("x=1", "x is no variable of this FMU"), ("V=NaN", "V: NaN is not a number")):
+        playground.load(START)
+        playground.page.evaluate(
+            "words => { document.body.dataset.address = 'busy'; location.hash = words; }", words
+        )
+        playground.settle()
+        assert playground.page.locator("#refusal").inner_text() == message
+        for kind in ("fmpy", "Python", ".ssv", "Link"):
+            text = playground.text(kind)
+            assert "NaN" not in text and "x=1" not in text
+        playground.enter("V", "20")
+        assert playground.page.locator("#refusal").inner_text() == ""
 
 
 def test_an_address_with_foreign_words_shows_the_message(playground: Playground) -> None:

@@ -13,10 +13,10 @@ import pytest
 from lxml import etree
 from playground_page import Playground
 
-from frictionlab.description import description
-from frictionlab.fmu import FrictionFmu
-from frictionlab.playground.page import XML
-from frictionlab.presets import Preset
+from frictioncontact.fmu import FrictionFmu
+from workshop.description import description
+from workshop.playground.page import XML
+from workshop.presets import Preset
 
 SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
 VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}

@@ -10,9 +10,9 @@ from axe_playwright_python.sync_playwright import Axe
 from playground_page import Playground
 from playwright.sync_api import Browser
 
-from frictionlab.description import description
-from frictionlab.playground.browser import PAINTED, SCHEMES, SIZES
-from frictionlab.playground.page import XML
+from workshop.description import description
+from workshop.playground.browser import PAINTED, SCHEMES, SIZES
+from workshop.playground.page import XML
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

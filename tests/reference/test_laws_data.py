@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from data.laws import LAWS, LawScene, law_scenes
 
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.settled import settled
-from frictionlab.reference.solution import MP, Scene
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.settled import settled
+from workshop.reference.solution import MP, Scene
 
 
 def first_scenes(law: str) -> list[Scene]:
@@ -61,14 +62,19 @@ def check(scene: LawScene) -> None:
         force = float(reference.force(step.scene, start + h, delta))
         assert force == pytest.approx(step.F_t, abs=1e-14 * step.limit, rel=1e-14)
         mean = float(multiprecision(got.impulse) / h)
-        assert mean == pytest.approx(step.F_t_mean, abs=1e-14 * step.limit, rel=1e-14)
-        assert float(work) == pytest.approx(step.W_f, abs=1e-14 * step.limit_path, rel=1e-14)
-        assert float(heat) == pytest.approx(step.Q_f, abs=1e-14 * step.limit_path, rel=1e-14)
+        # to so much the rate of a soft bristle's bound is known, of which the damping takes part
+        rate = 1e-18 * abs(float(delta)) * 2 * np.pi * step.scene.f
+        damping, path = step.scene.sigma_1 * rate, step.limit_path / step.limit
+        heat_of_rate = damping * path + step.limit * rate * step.h
+        assert mean == pytest.approx(step.F_t_mean, abs=1e-14 * step.limit + damping, rel=1e-14)
+        assert float(work) == pytest.approx(step.W_f, abs=1e-14 * step.limit_path + damping * path, rel=1e-14)
+        assert float(heat) == pytest.approx(step.Q_f, abs=1e-14 * step.limit_path + heat_of_rate, rel=1e-14)
 
 
 @pytest.mark.parametrize("law", [*LAWS, "Settled"])
 def test_the_reference_gives_it_again(law: str) -> None:
-    for scene in law_scenes(law)[:: 50 if law != "Settled" else 10]:
+    """Also the rows of a bristle that relaxes within bounds, which the fast reference made."""
+    for scene in law_scenes(law)[:: 40 if law != "Settled" else 7]:
         check(scene)
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frictionlab.parameters import E_FULL
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.contact import (
+from frictioncontact.parameters import E_FULL
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.contact import (
     area,
     critical_interference,
     hardness,
@@ -17,8 +17,8 @@ from frictionlab.reference.contact import (
     rest_separation,
     stiffness,
 )
-from frictionlab.reference.settled import settled
-from frictionlab.reference.solution import MP, Contact, Scene
+from workshop.reference.settled import settled
+from workshop.reference.solution import MP, Contact, Scene
 
 UM = 1e-6
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, start_values
-from frictionlab.reference import collocation as reference_collocation
-from frictionlab.reference import constant as reference_constant
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.solution import EXTENDED, MP, MULTIPRECISION, Contact, Scene
-from frictionlab.reference.start_values import scene_of
+from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, start_values
+from workshop.reference import collocation as reference_collocation
+from workshop.reference import constant as reference_constant
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.solution import EXTENDED, MP, MULTIPRECISION, Contact, Scene
+from workshop.reference.start_values import scene_of
 
 STIFF = Contact()
 SOFT = Contact(stiffnessScale=1e-8)  # 6e4 N/m at 14 um

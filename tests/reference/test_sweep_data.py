@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from data.sweep import SWEEP, SweepRow
 
-from frictionlab.reference import collocation as reference_collocation
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.solution import MP
+from workshop.reference import collocation as reference_collocation
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.solution import MP
 
 
 def test_it_holds_500_scenes_of_every_kind() -> None:

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from frictionlab.description import description
-from frictionlab.fmu import FrictionFmu
-from frictionlab.presets import possible, presets
-from frictionlab.related.experiments import XML, Experiment, experiments
-from frictionlab.related.files import CHECKSUMS, EXPERIMENTS, FOLDER, LAYERED, MANIFEST, STANDARD, files
-from frictionlab.related.results import COLUMNS, rows
+from frictioncontact.fmu import FrictionFmu
+from workshop.description import description
+from workshop.presets import possible, presets
+from workshop.related.experiments import Experiment, experiments
+from workshop.related.files import CHECKSUMS, EXPERIMENTS, FOLDER, LAYERED, MANIFEST, STANDARD, files
+from workshop.related.results import COLUMNS, rows
 
 SSV_SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
 # The roles that FMI-LS-REF 1.0.0-alpha.1 knows and that stand here.
@@ -69,7 +69,7 @@ def test_parameter_sets_are_those_of_the_presets(packed: dict[str, bytes]) -> No
     """Valid by the standard's schema; names, types and values the FMU's."""
     schema = etree.XMLSchema(etree.parse(SSV_SCHEMA))
     sets = {name.removesuffix(".ssv"): packed[name] for name in packed if name.endswith(".ssv")}
-    expected = {preset.id: preset for preset in possible(presets(), description(XML)["variables"])}
+    expected = {preset.id: preset for preset in possible(presets(), description()["variables"])}
     assert sets.keys() == expected.keys() and len(sets) >= 13
     for name, content in sets.items():
         root = etree.parse(BytesIO(content)).getroot()

@@ -7,8 +7,8 @@ import re
 import zipfile
 from pathlib import Path
 
-from frictionlab.related.files import FOLDER, MANIFEST
-from frictionlab.related.page import page
+from workshop.related.files import FOLDER, MANIFEST
+from workshop.related.page import page
 
 PAGE = "documentation/fmi-ls-ref.html"
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from fmpy.model_description import ModelDescription
 
-from frictionlab.parameters import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
-from frictionlab.release.targets import build
+from frictioncontact.parameters import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
+from workshop.release.targets import build
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 METHODS = ("collocation", "cvode", "backwardEuler", "trapezoid", "rk4", "explicitEuler")

@@ -13,11 +13,11 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from frictionlab.project import UserError
-from frictionlab.release import inspect as release_inspect
-from frictionlab.release.inspect import Library, check, inspect
-from frictionlab.release.targets import CACHE, zig
-from frictionlab.release.universal import universal
+from frictioncontact.errors import UserError
+from workshop.release import inspect as release_inspect
+from workshop.release.inspect import Library, check, inspect
+from workshop.release.targets import CACHE, zig
+from workshop.release.universal import universal
 
 PLATFORMS = [
     "linux64",

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from frictionlab.fmu_docs import page as fmu_documentation
+from workshop.fmu_docs import page as fmu_documentation
 
 ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from scenario_runs import OUTPUTS, build_host, largest_difference, run
 
-from frictionlab.fmu import FrictionFmu, simulate
-from frictionlab.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
+from frictioncontact.fmu import FrictionFmu, simulate
+from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 
 WINE = next(filter(None, map(shutil.which, ("wine64", "wine", "/usr/lib/wine/wine64"))), None)
 QEMU = next(filter(None, map(shutil.which, ("qemu-aarch64", "qemu-aarch64-static"))), None)

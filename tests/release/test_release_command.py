@@ -15,9 +15,12 @@ from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 from rich.progress import Progress
 
-from frictionlab.project import UserError
-from frictionlab.release import command as release
-from frictionlab.release import targets as release_targets
+from frictioncontact.batch.runner import SIGNATURES
+from frictioncontact.errors import UserError
+from workshop import description
+from workshop.release import command as release
+from workshop.release import inspect as release_inspect
+from workshop.release import targets as release_targets
 
 QUIET = {"transient": True, "disable": True}
 
@@ -33,8 +36,30 @@ def released(tmp_path_factory: pytest.TempPathFactory, copy_compiled: Callable[.
 
 def test_file_is_valid_and_alone(released: Path) -> None:
     assert validate_fmu(str(released)) == []
-    beside = {"FrictionContact.fmu", "SHA256SUMS", "playground.html"}
+    beside = {"FrictionContact.fmu", "SHA256SUMS", "playground.html", *packages(released.parent)}
     assert {path.name for path in released.parent.iterdir()} == beside
+
+
+def packages(folder: Path) -> list[str]:
+    """Names of the sdist and of the wheel for x86-64 Linux."""
+    version = description.read().version
+    names = [
+        f"frictioncontact-{version}.tar.gz",
+        f"frictioncontact-{version}-py3-none-manylinux2014_x86_64.whl",
+    ]
+    assert all((folder / name).is_file() for name in names)
+    return names
+
+
+def test_the_wheel_holds_the_released_files(released: Path, tmp_path: Path) -> None:
+    """And a batch host with every function that Python calls."""
+    wheel = released.with_name(packages(released.parent)[1])
+    with zipfile.ZipFile(wheel) as archive:
+        for name in ("FrictionContact.fmu", "playground.html"):
+            inside = archive.read(f"frictioncontact/bundled/{name}")
+            assert inside == released.with_name(name).read_bytes()
+        host = Path(archive.extract("frictioncontact/bundled/friction_batch.so", tmp_path))
+    assert SIGNATURES.keys() <= release_inspect.check("linux64", host, "batch_").exports
 
 
 def test_the_page_of_the_live_fmu_is_inside_and_beside(released: Path) -> None:
@@ -50,7 +75,7 @@ def test_the_checksums_beside_it_are_those_of_sha256sum(released: Path) -> None:
 
 
 def test_it_is_one_of_ours(released: Path) -> None:
-    command = [sys.executable, "-m", "frictionlab.release.command", "--check", str(released)]
+    command = [sys.executable, "-m", "workshop.release.command", "--check", str(released)]
     run = subprocess.run(command, check=True, capture_output=True, text=True)
     assert len(run.stdout.splitlines()) == 4
     assert all(line.startswith("ok  ") for line in run.stdout.splitlines())
@@ -127,7 +152,7 @@ def test_missing_toolchain_from_the_command_line(tmp_path: Path) -> None:
     (tmp_path / "ziglang").mkdir()
     (tmp_path / "ziglang" / "__init__.py").touch()
     run = subprocess.run(
-        [sys.executable, "-m", "frictionlab.release.command", "-o", str(tmp_path / "a.fmu")],
+        [sys.executable, "-m", "workshop.release.command", "-o", str(tmp_path / "a.fmu")],
         env={**os.environ, "PYTHONPATH": str(tmp_path)},
         capture_output=True,
         text=True,
@@ -176,5 +201,5 @@ def test_a_file_that_is_not_valid(
     monkeypatch.setattr(release, "validate_fmu", lambda path: ["a made-up problem\nof two lines"])
     assert refuse(released) == "the validator finds: a made-up problem of two lines"
     assert released.read_bytes() == before
-    beside = {"FrictionContact.fmu", "SHA256SUMS", "playground.html"}
+    beside = {"FrictionContact.fmu", "SHA256SUMS", "playground.html", *packages(released.parent)}
     assert {path.name for path in released.parent.iterdir()} == beside

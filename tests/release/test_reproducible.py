@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.release.command import compile_platforms
+from workshop.release.command import compile_platforms
 
 
 @pytest.mark.slow

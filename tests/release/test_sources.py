@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from fmpy import supported_platforms
 
-from frictionlab.fmu import FrictionError, FrictionFmu, simulate
+from frictioncontact.fmu import FrictionError, FrictionFmu, simulate
 
 
 @pytest.fixture

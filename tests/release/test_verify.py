@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.project import UserError
-from frictionlab.release.verify import SUMS, verify, write_sums
+from frictioncontact.errors import UserError
+from workshop.release.verify import SUMS, verify, write_sums
 
 Entries = dict[str, bytes]
 SOURCE = "sources/friction_contact.c"

@@ -1,30 +1,22 @@
-"""Scenes whose cost tells whether the step control works, and their costs: fifteen, and those of the laws.
+"""Scenes whose cost tells whether the step control works, and their committed numbers of evaluations.
 
     PYTHONPATH=tests .venv/bin/python tests/solver/step_control.py
 
-measures them anew on the built FMU and writes step_control*.csv.
-
-To be done when a method has been changed deliberately: the accuracy tests say whether its results are
-right, these numbers only that it still takes the work it took. A spoilt step control often costs work and
-no accuracy.
+counts them anew on the built FMU and writes step_control.csv. The accuracy tests say whether results are
+right; these numbers say what they cost, for a spoilt step control often costs work and no accuracy.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
 from pathlib import Path
 
-from data.laws import LawScene, law_scenes
-from data.sweep import SWEEP
-
-from frictionlab.fmu import FrictionFmu, Value
-from frictionlab.project import ROOT
+from frictioncontact.fmu import FrictionFmu, Value
+from workshop.project import ROOT
 
 TABLE = Path(__file__).with_suffix(".csv")
-TABLE_OF_LAWS = Path(__file__).with_name("step_control_of_laws.csv")
 PERIOD = 1.0 / 20e3
 SLIDER: Mapping[str, Value] = {"V": 0.005, "vibration.V_1": 1.44}
 NORMAL: Mapping[str, Value] = {"vibration.a_d": 1.1e-6, "vibration.phase_d": 0.7}
@@ -87,6 +79,7 @@ SCENES = {
     "bells of the Stribeck curve, in layers": Scene(
         {**BELLS, "contact.stiffnessScale": 1e-4}, 0.93 * PERIOD, 10
     ),
+    "cvode": Scene({**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-6, "solver.method": "cvode"}, PERIOD),
 }
 
 
@@ -100,80 +93,16 @@ def evaluations(fmu: FrictionFmu, scene: Scene) -> float:
         return session.get("solver.evaluations")
 
 
-def _at_a_tolerance(law: str, tolerance: float | None) -> Callable[[FrictionFmu], list[list[float]]]:
-    return lambda fmu: [_of_law_scene(fmu, scene, tolerance) for scene in law_scenes(law)]
-
-
-# What is measured of each scene of tests/data, at its own tolerance if none is named.
-FAMILIES: Mapping[str, Callable[[FrictionFmu], list[list[float]]]] = {
-    "Dahl": _at_a_tolerance("Dahl", None),
-    "Dahl at 1e-2": _at_a_tolerance("Dahl", 1e-2),
-    "LuGre": _at_a_tolerance("LuGre", None),
-    "LuGre at 1e-2": _at_a_tolerance("LuGre", 1e-2),
-    "ElasticPlastic": _at_a_tolerance("ElasticPlastic", None),
-    "Coulomb": _at_a_tolerance("Coulomb", None),
-    "Settled": _at_a_tolerance("Settled", None),
-    "cvode": lambda fmu: _with_cvode(fmu),
-}
-
-
-def _of_law_scene(fmu: FrictionFmu, scene: LawScene, tolerance: float | None) -> list[float]:
-    """Of the start, and of each step."""
-    start = scene.start_values | {"solver.tolerance": tolerance or scene.tolerance}
-    with fmu.session(start, start=scene.steps[0].scene.start) as session:
-        counts = [session.get("solver.evaluations")]
-        for step in scene.steps:
-            step.take(session)
-            counts.append(session.get("solver.evaluations"))
-    return [counts[0], *(after - before for before, after in pairwise(counts))]
-
-
-def _with_cvode(fmu: FrictionFmu) -> list[list[float]]:
-    """Of a step at 1e-5, where it is a short one."""
-    counts = []
-    for row in SWEEP:
-        if row.h * row.scene.f < 3.0:
-            start = row.start_values | {"solver.method": "cvode", "solver.tolerance": 1e-5}
-            with fmu.session(start, start=row.scene.start) as session:
-                if row.rates:
-                    session.set_rates(**row.rates)
-                session.step(row.h)
-                counts.append([session.get("solver.evaluations")])
-    return counts
-
-
 def committed() -> dict[str, float]:
     with TABLE.open(newline="") as rows:
         return {row["scene"]: float(row["evaluations"]) for row in csv.DictReader(rows)}
 
 
-def committed_of_laws() -> dict[str, list[list[float]]]:
-    counts: dict[str, list[list[float]]] = {}
-    with TABLE_OF_LAWS.open(newline="") as rows:
-        for row in csv.DictReader(rows):
-            counts.setdefault(row["family"], []).append(
-                [float(count) for count in row["evaluations"].split()]
-            )
-    return counts
-
-
-def write_table(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    with path.open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(rows)
-
-
 def main() -> None:
-    with FrictionFmu(ROOT / "build" / "FrictionContact.fmu") as fmu:
-        own = [(name, f"{evaluations(fmu, scene):g}") for name, scene in SCENES.items()]
-        of_laws = [
-            (family, number, " ".join(f"{count:g}" for count in counts))
-            for family, measure in FAMILIES.items()
-            for number, counts in enumerate(measure(fmu))
-        ]
-    write_table(TABLE, ("scene", "evaluations"), own)
-    write_table(TABLE_OF_LAWS, ("family", "scene", "evaluations"), of_laws)
+    with FrictionFmu(ROOT / "build" / "FrictionContact.fmu") as fmu, TABLE.open("w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("scene", "evaluations"))
+        writer.writerows((name, f"{evaluations(fmu, scene):g}") for name, scene in SCENES.items())
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 from data.sweep import SWEEP, SweepRow
 
-from frictionlab.fmu import FrictionFmu
+from frictioncontact.fmu import FrictionFmu
 
 FLOOR = 1e-10
 TOLERANCES = sorted({row.tolerance for row in SWEEP})

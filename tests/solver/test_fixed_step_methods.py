@@ -11,11 +11,11 @@ import re
 import numpy as np
 import pytest
 
-from frictionlab.fmu import FrictionError, FrictionFmu
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.solution import MP
-from frictionlab.reference.start_values import scene_of
+from frictioncontact.fmu import FrictionError, FrictionFmu
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.solution import MP
+from workshop.reference.start_values import scene_of
 
 ORDERS = {"explicitEuler": 1, "backwardEuler": 1, "trapezoid": 2, "rk4": 4}
 EXPLICIT = {"explicitEuler": 2.0, "rk4": 2.785293563405282}

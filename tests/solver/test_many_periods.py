@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from frictionlab.fmu import FrictionFmu
-from frictionlab.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
 
 COUNT = 10_000
 ONE_MILLION = 1_000_000

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import pytest
 
-from frictionlab.fmu import FrictionFmu
-from frictionlab.reference import solution as reference
-from frictionlab.reference.arithmetic import multiprecision
-from frictionlab.reference.solution import MP, Contact, Scene
-from frictionlab.reference.start_values import start_values_of
+from frictioncontact.fmu import FrictionFmu
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import multiprecision
+from workshop.reference.solution import MP, Contact, Scene
+from workshop.reference.start_values import start_values_of
 
 FREQUENCY = 16384.0  # Hz, so that the dips are at exact times
 DEPTHS = [0.0, 1e-14, -1e-14, 1e-11, -1e-11, 1e-8, -1e-8, 1e-5, -1e-5, 1e-2, -1e-2]

@@ -4,7 +4,7 @@
 
 #include "model/constants.h"
 #include "random.h"
-#include "solver/bound.h"
+#include "solver/stick_slip/bound.h"
 #include "table_1.h"
 
 static const double F = 20e3;          // Hz

@@ -1,9 +1,8 @@
 // The error of a panel that is told beforehand, against its true one: the equation integrated in long double.
-#include "solver/bounded_panel.h"
+#include "solver/panels/gauss_panel.h"
 
 #include "check.h"
 #include "random.h"
-#include "solver/gauss_panel.h"
 #include "table_1.h"
 
 static const double F_C = 55.0;
@@ -100,13 +99,13 @@ static State exact(const FcScene* scene, double h, double delta_0) {
 static double excess(const Panel* panel, int n, double start) {
     const FcScene* scene = &panel->scene;
     const double stiffness = fc_scene_largest_stiffness(scene, panel->h);
-    const FcMotion motion = fc_motion(scene, panel->h, stiffness, F_C);
+    const FcInterval interval = fc_interval_make(scene, scene, panel->h, 1e-3);
     const double X = fc_drive_displacement(&scene->drive, 0.0, panel->h);
     const FcTrajectories from = {.delta_0 = start * fc_scene_smallest_limit(scene, panel->h) / stiffness,
                                  .speed = 1.0};
     FcPanel of;
-    fc_gauss_panel_unjudged(scene, 0.0, panel->h, n, &from, &of);
-    const double bound = fc_panel_bound(&motion, n, panel->h, of.z);
+    fc_gauss_panel(scene, 0.0, panel->h, n, &from, &of);
+    const double bound = fc_panel_bound(&interval.pace, n, panel->h, of.z);
     if (bound > 0.15 || of.z > 7.0 || of.z < 1e-3) {
         return 0.0;
     }

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from frictionlab.build import build_targets
+from workshop.build import build_targets
 
 PROGRAMS = sorted(path.stem for path in Path(__file__).parent.glob("test_*.c"))
 TOOLS = Path(sys.executable).parent

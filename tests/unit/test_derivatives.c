@@ -63,9 +63,13 @@ static void make_random(Case* one, int k) {
     one->scene = fc_scene_make(&one->contact, &at_E, &one->friction, 55.0, &drive);
 }
 
+// Of LuGre the bound is staticRatio times the limit without its curve.
 static double bound(const FcScene* scene, double t) {
     const FcCoefficients at = fc_scene_coefficients(scene, t);
-    return at.limit / at.sigma;
+    const FcFriction* friction = scene->friction;
+    const double ratio = at.V / friction->V_S;
+    const double curve = 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio);
+    return at.limit / at.sigma * (friction->model == FC_LUGRE ? friction->staticRatio / curve : 1.0);
 }
 
 // The deflection after t [s] from delta on: on the bound while it slips, else by one step of Runge and Kutta.
@@ -88,8 +92,9 @@ static double force_later(const FcScene* scene, double delta, double side, doubl
 static double fastest(const FcScene* scene) {
     const FcLogRates rates = fc_scene_log_rates(scene, 0.0);
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double of_V = fabs(fc_drive_V_rate(&scene->drive, 0.0) / at.V);
-    return scene->drive.omega + fabs(rates.sigma) + fabs(rates.limit) + of_V - fc_coefficients_rate(&at);
+    const double of_V =
+        fabs(fc_drive_V_rate(&scene->drive, 0.0)) * (1.0 / fabs(at.V) + 2.0 / scene->friction->V_S);
+    return scene->drive.omega + fabs(rates.sigma) + fabs(rates.limit) + of_V + fc_relaxation_rate(&at);
 }
 
 // Of any law, sizes of its parts: the elastic one, that of damping and the viscous one [N].
@@ -238,7 +243,7 @@ int main(void) {
         }
         double delta = 0.9 * (2.0 * random_01() - 1.0) * bound(&one.scene, 0.0);
         double side = 0.0;
-        if (one.friction.model == FC_ELASTIC_PLASTIC && random_01() < 0.6) {
+        if (fc_is_bounded(&one.friction) && random_01() < 0.6) {
             delta = copysign(bound(&one.scene, 0.0), V);
             side = fc_scene_slip_side(&one.scene, 0.0, delta);
             if (side == 0.0) {

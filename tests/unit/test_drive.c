@@ -387,17 +387,21 @@ static void integrals_of_V(void) {
                         .start = 0.21 * (i / 28) / F};
         const FcDrive drive = drive_of(c);
         long double displacement = 0.0;
+        long double integral = 0.0; // of the displacement
         long double square = 0.0;
         for (int k = 0; k <= POINTS; k++) {
             const long double t = start + (long double)h * k / POINTS;
             const long double V = c.V + c.V_rate * t + c.V_1 * cosl(drive.theta_0 + drive.omega * t);
             const long double w = weight[k % 4] * (k == 0 || k == POINTS ? 0.5L : 1.0L) * h / POINTS;
             displacement += w * V;
+            integral += w * V * (start + (long double)h - t);
             square += w * V * V;
         }
         const double speed = 0.9 + h * fabs(V_rate);
         CHECK_WITHIN(fc_drive_displacement(&drive, start, start + h), (double)displacement,
                      2e-15 * speed * h);
+        CHECK_WITHIN(fc_drive_displacement_integral(&drive, start, start + h), (double)integral,
+                     2e-15 * speed * h * h);
         CHECK_WITHIN(fc_drive_square(&drive, start, start + h), (double)square, 4e-15 * speed * speed * h);
     }
 }

@@ -1,11 +1,11 @@
 // What is left at the interval's end of an error in the force: never told to be less than it is.
-#include "solver/mesh.h"
+#include "solver/stretches/mesh.h"
 
 #include <math.h>
 
 #include "check.h"
 #include "random.h"
-#include "solver/section.h"
+#include "solver/stretches/section.h"
 #include "table_1.h"
 
 static const double OMEGA = 6.283185307179586 * 20e3;
@@ -18,7 +18,7 @@ static double relaxes_between(const FcScene* scene, double start, double end) {
     double sum = 0.0;
     for (int i = 0; i < PARTS; i++) { // middles
         const FcCoefficients at = fc_scene_coefficients(scene, start + (i + 0.5) * (end - start) / PARTS);
-        sum -= fc_coefficients_rate(&at) * (end - start) / PARTS;
+        sum += fc_relaxation_rate(&at) * (end - start) / PARTS;
     }
     return sum;
 }
@@ -47,32 +47,31 @@ static void fades_at_least_as_told(void) {
         const double start = fc_drive_next_event(&drive, 0.0, 2.0 * PERIOD).time;
         const double end = fc_drive_next_event(&drive, start, 2.0 * PERIOD).time;
         const double displacement = fc_drive_displacement(&drive, start, end);
-        FcStretch stretch = {.start = start,
+        const double tolerance = random_log(1e-12, 1e-2);
+        const FcInterval interval = fc_interval_make(&scene, &scene, end, tolerance);
+        const FcCoefficients here = fc_scene_coefficients(&scene, start);
+        FcStretch stretch = {.interval = &interval,
+                             .start = start,
                              .end = end,
                              .event = end,
                              .reversal = true,
                              .displacement = displacement,
-                             .bells = {.after = start, .before = end}};
-        const FcCoefficients here = fc_scene_coefficients(&scene, start);
-        const double most =
-            fc_scene_largest_stiffness(&scene, end) / fc_scene_smallest_limit(&scene, end); // 1/m
+                             .per_path = here.sigma / here.limit,
+                             .peaks = fc_no_peaks(start, end)};
         FcSection sections[FC_MOST_SECTIONS];
         double evaluations = 0.0;
-        CHECK(fc_sections(&scene, &scene, &stretch, here.sigma / here.limit, most, sections, &evaluations) ==
-              1);
+        CHECK(fc_sections(&stretch, sections, &evaluations) == 1);
         if (!sections[0].is_measured) {
             continue;
         }
         looked_at++;
-        const double tolerance = random_log(1e-12, 1e-2);
-        const FcMesh mesh = fc_mesh_make(&scene, end, tolerance);
         const double t = start + (end - start) * random_01();
         const double gone = relaxes_between(&scene, start, t);
         const double left = exp(-relaxes_between(&scene, t, end));
         const FcPlace at = {.t = t, .path = fabs(fc_drive_displacement(&drive, t, end)), .gone = gone};
-        const double by_path = fc_mesh_left_at_end(&mesh, &stretch, &at, t, gone);
+        const double by_path = fc_left_at_end(&stretch, &at, t, gone);
         stretch.relaxes = sections[0].z.whole;
-        const double told = fc_mesh_left_at_end(&mesh, &stretch, &at, t, gone);
+        const double told = fc_left_at_end(&stretch, &at, t, gone);
         CHECK(told >= left * (1.0 - 1e-6) || (told == 0.0 && left <= tolerance * tolerance));
         CHECK(told <= by_path);
         sharper += told < 0.5 * by_path;

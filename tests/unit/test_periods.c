@@ -1,5 +1,5 @@
 // Periods: which intervals a step asks for, and how their maps are put together.
-#include "solver/periods.h"
+#include "solver/methods/periods.h"
 
 #include <string.h>
 
@@ -38,17 +38,22 @@ typedef struct {
     double V_rate, V_1, h;
 } Case;
 
-static bool step(Case c, FcStepResult* result, FcMessage* message) {
+static const FcSolverOptions options = {.tolerance = 1e-6, .step_size = 1e-8};
+
+static FcScene scene_of(Case c) {
     static const FcContactParameters contact = {.model = FC_CONTACT_CONSTANT, .sigma = 1e6, .R_q = 1.0};
-    static const FcSolverOptions options = {.tolerance = 1e-6, .step_size = 1e-8};
     memset(&asked, 0, sizeof asked);
     const FcDrive drive = fc_drive_make((FcLinearInput){2.0, c.V_rate}, (FcLinearInput){1.0, 0.5 * c.V_rate},
                                         (FcLinearInput){8.0, 0.25 * c.V_rate}, (FcLinearInput){1.0, 0.0},
                                         (FcVibration){F, c.V_1, 0.0, 0.0}, 0.0, 0.0);
     static const FcFriction friction = {.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT};
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, drive.E.value);
-    const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
-    return fc_periods_step(quarter, &scene, &options, c.h, 1.0, result, message);
+    return fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
+}
+
+static bool step(Case c, FcStepResult* result, FcMessage* message) {
+    const FcScene scene = scene_of(c);
+    return fc_periods_step((FcIntegration){quarter, NULL}, &scene, &options, c.h, 1.0, result, message);
 }
 
 static void a_short_step_is_one_interval(void) {
@@ -88,6 +93,24 @@ static void a_billion_periods_cost_two_intervals(void) {
     CHECK(asked.calls == 2 && asked.duration[1] == 0.0);
     CHECK_NEAR(asked.delta_0[1], 8.0 * PERIOD, 1e-15); // where 1/4 delta = V / F
     CHECK_NEAR(result.impulse, 0x1p30 * PERIOD, 1e-12);
+}
+
+// 1/4 delta = V / F where it settles; the impulse of a period is its duration, and with delta times a force per deflection.
+static FcMap quarter_with_slope(const FcScene* scene, const FcSolverOptions* of, double duration,
+                                double delta_0, FcMapScope scope, double* evaluations) {
+    FcMap map = quarter(scene, of, duration, delta_0, scope, evaluations);
+    map.impulse_slope = 3.0 * duration;
+    return map;
+}
+
+static void the_settled_force_takes_one_interval(void) {
+    const FcScene scene = scene_of((Case){0.0, 1.0, 0.0});
+    double evaluations = 0.0;
+    const double force = fc_periods_settled_force((FcIntegration){quarter_with_slope, NULL}, &scene, &options,
+                                                  1.0, &evaluations);
+    CHECK(asked.calls == 1 && asked.duration[0] == PERIOD && asked.scope[0] == FC_MAP_ANY_START);
+    CHECK_NEAR(force, 1.0 + 3.0 * 8.0 * PERIOD, 1e-15);
+    CHECK(evaluations == evaluations_each);
 }
 
 static void moving_inputs_are_gone_through_one_by_one(void) {
@@ -131,6 +154,7 @@ int main(void) {
     a_short_step_is_one_interval();
     equal_periods_are_a_power();
     a_billion_periods_cost_two_intervals();
+    the_settled_force_takes_one_interval();
     moving_inputs_are_gone_through_one_by_one();
     too_much_work_is_refused();
     return check_result();

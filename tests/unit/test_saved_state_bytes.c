@@ -4,7 +4,6 @@
 
 #include "check.h"
 #include "fmi2/saved_state.h"
-#include "fmi2/values.h"
 #include "fmi2/variables.h"
 
 enum { MOST_BYTES = 4096 };
@@ -37,7 +36,16 @@ static FcSavedState full_state(void) {
         friction->next_rate[input] = -2.5 - input;
     }
     friction->next_rate_set = 1;
-    saved.experiment = (FcExperiment){.mode = FC_STEP_COMPLETE,
+    FcHybrid* hybrid = &friction->hybrid;
+    hybrid->seen_time = 0.75;
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        hybrid->seen[input] = 7.5 + input;
+        hybrid->speed[input] = -9.5 - input;
+    }
+    hybrid->nominal_delta = 1e-7;
+    hybrid->nominal_energy = 1e-5;
+    saved.experiment = (FcExperiment){.interface = FC_CO_SIMULATION,
+                                      .mode = FC_STEP_COMPLETE,
                                       .tolerance_is_set = 1,
                                       .has_stop_time = 1,
                                       .start_time = -7.0,
@@ -90,7 +98,10 @@ static void every_byte_of_a_number_counts(fmi2Component c) {
     const size_t first = offsetof(FcFrictionState, time);
     const size_t last = offsetof(FcFrictionState, next_rate_set) + sizeof(int);
     check_counts(c, offsetof(FcSavedState, friction) + first, last - first);
-    check_counts(c, offsetof(FcSavedState, experiment), sizeof(FcExperiment));
+    check_counts(c, offsetof(FcSavedState, friction) + offsetof(FcFrictionState, hybrid), sizeof(FcHybrid));
+    const size_t experiment = offsetof(FcSavedState, experiment);
+    check_counts(c, experiment, offsetof(FcExperiment, has_stop_time) + sizeof(int));
+    check_counts(c, experiment + offsetof(FcExperiment, start_time), 2 * sizeof(double));
 }
 
 // Each number beside the variables, infinite alone.
@@ -102,7 +113,12 @@ static void infinite_numbers_are_refused(fmi2Component c) {
                               offsetof(FcFrictionState, rate),
                               offsetof(FcFrictionState, rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
                               offsetof(FcFrictionState, next_rate),
-                              offsetof(FcFrictionState, next_rate) + (FC_INPUT_COUNT - 1) * sizeof(double)};
+                              offsetof(FcFrictionState, next_rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
+                              offsetof(FcFrictionState, hybrid.seen_time),
+                              offsetof(FcFrictionState, hybrid.seen),
+                              offsetof(FcFrictionState, hybrid.speed) + (FC_INPUT_COUNT - 1) * sizeof(double),
+                              offsetof(FcFrictionState, hybrid.nominal_delta),
+                              offsetof(FcFrictionState, hybrid.nominal_energy)};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         FcSavedState saved = full_state();
         const double infinite = INFINITY;
@@ -169,6 +185,19 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
         put_real(&layout, friction->next_rate[input]);
     }
     put(&layout, (unsigned)friction->next_rate_set, 4);
+    const FcHybrid* hybrid = &friction->hybrid;
+    put(&layout, (unsigned)hybrid->regime, 4);
+    put(&layout, (unsigned)hybrid->changed, 4);
+    put_real(&layout, hybrid->seen_time);
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        put_real(&layout, hybrid->seen[input]);
+    }
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        put_real(&layout, hybrid->speed[input]);
+    }
+    put_real(&layout, hybrid->nominal_delta);
+    put_real(&layout, hybrid->nominal_energy);
+    put(&layout, (unsigned)saved->experiment.interface, 4);
     put(&layout, (unsigned)saved->experiment.mode, 4);
     put(&layout, (unsigned)saved->experiment.outputs_stale, 4);
     put(&layout, (unsigned)saved->experiment.tolerance_is_set, 4);
@@ -190,7 +219,7 @@ static bool is_read(fmi2Component c, const Layout* layout, size_t size) {
 static void bytes_are_as_documented(fmi2Component c) {
     FcSavedState saved = full_state();
     const Bytes written = bytes_of(c, &saved);
-    const Layout layout = layout_of(&saved, 2, written.size);
+    const Layout layout = layout_of(&saved, 3, written.size);
     CHECK(layout.size == written.size && memcmp(layout.bytes, written.bytes, written.size) == 0);
     CHECK(is_read(c, &layout, layout.size));
     char too_few[MOST_BYTES];
@@ -201,15 +230,15 @@ static void bytes_are_as_documented(fmi2Component c) {
 // Other versions, other sizes, bytes cut off or too many, and each byte damaged with the hash put right or not.
 static void other_bytes_are_refused(fmi2Component c) {
     const FcSavedState saved = full_state();
-    const size_t size = layout_of(&saved, 2, 0).size;
+    const size_t size = layout_of(&saved, 3, 0).size;
     for (unsigned version = 0; version < 5; version++) {
         const Layout layout = layout_of(&saved, version, size);
-        CHECK(is_read(c, &layout, size) == (version == 2));
+        CHECK(is_read(c, &layout, size) == (version == 3));
     }
-    const Layout good = layout_of(&saved, 2, size);
+    const Layout good = layout_of(&saved, 3, size);
     for (size_t given = 0; given < size + 20; given++) {
         CHECK(is_read(c, &good, given) == (given == size));
-        const Layout layout = layout_of(&saved, 2, given);
+        const Layout layout = layout_of(&saved, 3, given);
         CHECK(is_read(c, &layout, size) == (given == size));
     }
     for (size_t i = 0; i < size; i++) {
@@ -225,13 +254,14 @@ static void other_bytes_are_refused(fmi2Component c) {
 }
 
 static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
-    const Layout layout = layout_of(saved, 2, layout_of(saved, 2, 0).size);
+    const Layout layout = layout_of(saved, 3, layout_of(saved, 3, 0).size);
     return is_read(c, &layout, layout.size);
 }
 
-// A flag is 0 or 1, a mode one of four; each alone.
+// A flag is 0 or 1, a mode one that the interface has; each alone.
 static void impossible_flags_are_refused(fmi2Component c) {
     const size_t flags[] = {offsetof(FcSavedState, friction) + offsetof(FcFrictionState, next_rate_set),
+                            offsetof(FcSavedState, friction) + offsetof(FcFrictionState, hybrid.changed),
                             offsetof(FcSavedState, experiment) + offsetof(FcExperiment, outputs_stale),
                             offsetof(FcSavedState, experiment) + offsetof(FcExperiment, tolerance_is_set),
                             offsetof(FcSavedState, experiment) + offsetof(FcExperiment, has_stop_time)};
@@ -242,12 +272,26 @@ static void impossible_flags_are_refused(fmi2Component c) {
             CHECK(is_read_with(c, &saved) == (value == 0 || value == 1));
         }
     }
-    for (int mode = -2; mode < 70; mode++) {
+    for (int interface = -1; interface < 5; interface++) {
+        const bool steps = interface == FC_CO_SIMULATION;
+        const bool exchanges = interface == FC_MODEL_EXCHANGE;
+        for (int mode = -2; mode <= 2 * FC_CONTINUOUS_TIME_MODE; mode++) {
+            FcSavedState saved = full_state();
+            saved.experiment.interface = interface;
+            saved.experiment.mode = mode;
+            const bool common =
+                mode == FC_INSTANTIATED || mode == FC_INITIALIZATION_MODE || mode == FC_TERMINATED;
+            const bool running = mode == FC_EVENT_MODE || mode == FC_CONTINUOUS_TIME_MODE;
+            CHECK(is_read_with(c, &saved) == (((steps || exchanges) && common) ||
+                                              (steps && mode == FC_STEP_COMPLETE) || (exchanges && running)));
+        }
+    }
+    for (int regime = -2; regime <= 2; regime++) { // only a bounded bristle slips
         FcSavedState saved = full_state();
-        saved.experiment.mode = mode;
-        const bool is_known = mode == FC_INSTANTIATED || mode == FC_INITIALIZATION_MODE ||
-                              mode == FC_STEP_COMPLETE || mode == FC_TERMINATED;
-        CHECK(is_read_with(c, &saved) == is_known);
+        saved.friction.hybrid.regime = regime;
+        CHECK(is_read_with(c, &saved) == (regime >= -1 && regime <= 1));
+        saved.friction.variables.friction.limit = FC_LIMIT_CONSTANT;
+        CHECK(is_read_with(c, &saved) == (regime == 0));
     }
     FcSavedState saved = full_state();
     saved.experiment.start_time = INFINITY;

@@ -1,5 +1,5 @@
 // The integral of the lag against the bristle's equation in some million steps, each exact for coefficients that stand still.
-#include "solver/settled_lag.h"
+#include "solver/stretches/settled_lag.h"
 
 #include "check.h"
 #include "random.h"
@@ -11,7 +11,7 @@ typedef struct {
     FcContactParameters contact;
     FcFriction friction;
     FcScene scene;
-    FcMesh mesh;
+    FcInterval interval;
     FcStretch stretch;
 } Slider;
 
@@ -33,11 +33,16 @@ static void draw(Slider* slider) {
     const double end = fc_drive_next_event(&drive, start, 1e-4).time;
     const FcVelocity V[] = {fc_drive_velocity(&drive, start), fc_drive_velocity(&drive, end)};
     const FcCoefficients at[] = {fc_scene_coefficients(scene, start), fc_scene_coefficients(scene, end)};
-    slider->mesh = fc_mesh_make(scene, end, 1e-3);
-    slider->stretch = (FcStretch){
-        .start = start, .end = end, .event = end, .reversal = true, .at_start = at[0], .at_end = at[1]};
-    slider->stretch.w_a = slider->stretch.back = fc_mesh_layer(&V[0], at[0].sigma / LIMIT);
-    slider->stretch.w_b = fc_mesh_layer(&V[1], at[1].sigma / LIMIT);
+    slider->interval = fc_interval_make(scene, scene, end, 1e-3);
+    slider->stretch = (FcStretch){.interval = &slider->interval,
+                                  .start = start,
+                                  .end = end,
+                                  .event = end,
+                                  .reversal = true,
+                                  .at_start = at[0],
+                                  .at_end = at[1]};
+    slider->stretch.w_a = slider->stretch.back = fc_layer(&V[0], at[0].sigma / LIMIT);
+    slider->stretch.w_b = fc_layer(&V[1], at[1].sigma / LIMIT);
 }
 
 typedef struct {
@@ -54,12 +59,12 @@ static Exact exact(const Slider* slider, double t, double end) {
     Exact sum = {0.0, 0.0};
     while (t < end) {
         const FcCoefficients here = fc_scene_coefficients(scene, t);
-        const double relaxes = 1.0 / fmax(-fc_coefficients_rate(&here), 1.0 / slider->stretch.w_b);
+        const double relaxes = 1.0 / fmax(fc_relaxation_rate(&here), 1.0 / slider->stretch.w_b);
         const double h = fmin(0.02 * relaxes, end - t);
         const FcCoefficients at = fc_scene_coefficients(scene, t + 0.5 * h);
         const double D = side * LIMIT / at.sigma;
-        const double gone = -expm1(fc_coefficients_rate(&at) * h);
-        const double middle = delta + (D - delta) * -expm1(0.5 * fc_coefficients_rate(&at) * h);
+        const double gone = -expm1(-fc_relaxation_rate(&at) * h);
+        const double middle = delta + (D - delta) * -expm1(-0.5 * fc_relaxation_rate(&at) * h);
         const double after = delta + (D - delta) * gone;
         sum.time += h * (side * at.sigma * middle / LIMIT - 1.0);
         sum.drag += at.V * (after - delta);
@@ -79,11 +84,10 @@ static void lag_is_that_of_the_equation(void) {
         const double t = stretch->start + length * (k % 3 == 0 ? 0.5 : k % 3 == 1 ? 0.2 : 0.06);
         const double end = k % 4 == 3 ? stretch->end - 0.2 * length : stretch->end;
         const FcCoefficients at_t = fc_scene_coefficients(&slider.scene, t);
-        FcLagSpan span = {.mesh = &slider.mesh,
-                          .stretch = stretch,
+        FcLagSpan span = {.stretch = stretch,
                           .t = t,
                           .end = end,
-                          .rate = -fc_coefficients_rate(&at_t),
+                          .rate = fc_relaxation_rate(&at_t),
                           .V_at_t = fc_drive_velocity(&slider.scene.drive, t),
                           .V_at_end = fc_drive_velocity(&slider.scene.drive, end),
                           .at_end = fc_scene_coefficients(&slider.scene, end),

@@ -1,5 +1,5 @@
 // Turning points of both bounds, piece by piece, against dense samples of how the bounds approach.
-#include "solver/turning_points.h"
+#include "solver/stick_slip/turning_points.h"
 
 #include "check.h"
 #include "random_bound.h"
@@ -62,13 +62,10 @@ static Place place_of(const FcBoundMotion* at, int side) {
 }
 
 // Pieces follow each other, and end at turning points where they say so.
-static Turns go_through(const FcScene* scene, double end, int side, bool foreseen) {
+static Turns go_through(const FcScene* scene, double end, int side) {
     Turns turns = {0};
     FcTurningPoints points;
     fc_turning_points_start(&points, scene, TOLERANCE, end);
-    if (foreseen) {
-        fc_turning_points_foresee(&points, -FC_NO_BOUND, FC_NO_BOUND);
-    }
     while (points.at->t < end && turns.count < MOST) {
         const double reached = points.at->t;
         FcPiece piece;
@@ -92,9 +89,8 @@ static Turns go_through(const FcScene* scene, double end, int side, bool foresee
     return turns;
 }
 
-// Between two samples a bound ceases to come nearer, or also starts to: a turning point lies there. Returns how many do.
-static int none_is_missed(const FcScene* scene, const Turns* turns, double end, int first, int last,
-                          bool starts_too) {
+// Between two samples a bound ceases or starts to come nearer: a turning point lies there. Returns how many do.
+static int none_is_missed(const FcScene* scene, const Turns* turns, double end, int first, int last) {
     int seen = 0;
     for (int which = first; which <= last; which++) {
         FcBoundMotion before = fc_bound_motion(scene, 0.0);
@@ -102,7 +98,7 @@ static int none_is_missed(const FcScene* scene, const Turns* turns, double end, 
             const FcBoundMotion now = fc_bound_motion(scene, end * i / SAMPLES);
             const bool ceases = approach(&before, which) > 0.0 && !(approach(&now, which) > 0.0);
             const bool starts = approach(&before, which) < 0.0 && !(approach(&now, which) < 0.0);
-            if (ceases || (starts && starts_too)) {
+            if (ceases || starts) {
                 CHECK(turns_near(turns, before.t - NEXT_TO * end, now.t + NEXT_TO * end));
                 seen++;
             }
@@ -118,14 +114,12 @@ static void make_inputs_move(FcScene* scene, double end) {
     scene->drive.E.rate = random_01() < 0.2 ? (random_01() - 0.5) * E / end : 0.0;
 }
 
-// V put right so that a bound only touches the bristle: V - D' has a double root, which no halving parts. Its cell is
-// halved twelve times, and both halves of what is left may be.
-static void a_touch_costs_few_halvings(void) {
+// V put right so that a bound only touches the bristle: V - D' has a double root, which no division parts.
+static void a_touch_costs_few_divisions(void) {
     double dearest = 0.0;
     for (int i = 0; i < 400; i++) {
         FcScene scene = random_scene();
         const double end = random_log(0.6, 2.0) / F;
-        scene.drive.d.rate = 1e-12 * D_MEAN / end; // moves, so that no turn is known beforehand
         if (fc_bound_is_constant(&scene)) {
             continue;
         }
@@ -155,14 +149,14 @@ static void a_touch_costs_few_halvings(void) {
         const double missed = random_01() < 0.5 ? 0.0 : 1e-13 * (2.0 * random_01() - 1.0);
         scene.drive.V.value -= approach(&touched, 0) * (1.0 + missed);
         const double cells = ceil(end / (1.5 * fc_bound_common_smooth_time(&scene, end)));
-        const Turns turns = go_through(&scene, end, 0, false);
+        const Turns turns = go_through(&scene, end, 0);
         dearest = fmax(dearest, turns.evaluations - cells);
     }
-    CHECK(dearest > 20.0 && dearest < 80.0);
+    CHECK(dearest < 200.0);
 }
 
 int main(void) {
-    a_touch_costs_few_halvings();
+    a_touch_costs_few_divisions();
     int seen = 0;
     for (int i = 0; i < SCENES; i++) {
         FcScene scene = random_scene();
@@ -173,14 +167,12 @@ int main(void) {
         if (fc_bound_is_constant(&scene)) {
             continue;
         }
-        const Turns all = go_through(&scene, end, 0, false);
-        const Turns receding = go_through(&scene, end, 0, true);
-        seen += none_is_missed(&scene, &all, end, 0, 1, true);
-        none_is_missed(&scene, &receding, end, 0, 1, false);
+        const Turns all = go_through(&scene, end, 0);
+        seen += none_is_missed(&scene, &all, end, 0, 1);
         if (i % 4 == 0) {
             const int side = i % 8 == 0 ? 1 : -1;
-            const Turns near = go_through(&scene, end, side, false);
-            none_is_missed(&scene, &near, end, side > 0 ? 0 : 1, side > 0 ? 0 : 1, true);
+            const Turns near = go_through(&scene, end, side);
+            none_is_missed(&scene, &near, end, side > 0 ? 0 : 1, side > 0 ? 0 : 1);
         }
     }
     CHECK(seen > 1000);

@@ -1,12 +1,12 @@
 // Into how many panels a part of a stretch is cut: hardly one of them is refused, and none is taken where Radau panels are cheaper.
-#include "solver/gauss_pieces.h"
+#include "solver/stretches/section.h"
 
 #include <math.h>
 
 #include "check.h"
 #include "random.h"
-#include "solver/gauss_panel.h"
-#include "solver/judge.h"
+#include "solver/panels/gauss_panel.h"
+#include "solver/panels/judge.h"
 #include "table_1.h"
 
 static const double F_C = 55.0;
@@ -55,7 +55,7 @@ static void stiff_stretches_are_left_to_radau_panels(void) {
 }
 
 // Between two reversals, V being a sine that starts at one, of a settled bristle: of the panels that were planned, how many
-// miss by their own estimates, as solver/collocation.c judges them.
+// miss by their own estimates, as stretches/crossing.c judges them.
 static void hardly_a_panel_is_refused(void) {
     int taken = 0;
     int refused = 0;
@@ -75,7 +75,7 @@ static void hardly_a_panel_is_refused(void) {
         double z[4];
         for (int i = 0; i < 4; i++) {
             const FcCoefficients at = fc_scene_coefficients(&scene, (0.125 + 0.25 * i) * HALF_PERIOD);
-            z[i] = -fc_coefficients_rate(&at) * HALF_PERIOD;
+            z[i] = fc_relaxation_rate(&at) * HALF_PERIOD;
         }
         const double halves[] = {0.25 * (z[0] + z[1]), 0.25 * (z[2] + z[3])};
         const FcRelaxation relaxes = {halves[0] + halves[1], fmax(halves[0], halves[1]),

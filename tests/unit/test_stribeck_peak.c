@@ -1,6 +1,6 @@
-// The bells of the Stribeck curve: beyond them the curve is not seen, and they are not wider than that asks for. Against
+// The Stribeck peaks: beyond them the curve is not seen, and they are not wider than that asks for. Against
 // V at dense samples, in contacts so stiff that the force follows its limit.
-#include "solver/stribeck_bell.h"
+#include "solver/stretches/stribeck_peak.h"
 
 #include "check.h"
 #include "random.h"
@@ -48,59 +48,60 @@ static double least_dip(const FcDrive* drive, double start, double end) {
 }
 
 typedef struct {
-    int bells, whole, none;
+    int peaks, whole, none;
 } Seen;
 
-static void check_stretch(const FcBellInterval* interval, double start, double end, Seen* seen) {
+static void check_stretch(const FcInterval* interval, double start, double end, Seen* seen) {
     const FcScene* scene = interval->scene;
-    const FcBellEdge a = fc_bell_edge(scene, start);
-    const FcBellEdge b = fc_bell_edge(scene, end);
+    const FcPeakEdge a = fc_peak_edge(scene, start);
+    const FcPeakEdge b = fc_peak_edge(scene, end);
     const double displacement = fc_drive_displacement(&scene->drive, start, end);
-    const FcBells bells = fc_bells(interval, &a, &b, 55.0 / contact.sigma, displacement, 1.0);
+    const FcPeaks peaks = fc_peaks(interval, &a, &b, 55.0 / contact.sigma, displacement, 1.0);
     const double seen_from = NOT_SEEN * interval->tolerance;
-    const double least = sqrt(log(interval->excess / seen_from)); // reach for a force of the limit
-    const double most = sqrt(log(interval->excess * pow(friction.staticRatio, 2.0) / seen_from));
-    CHECK(bells.reach >= least * (1.0 - 1e-12) && bells.reach <= most * (1.0 + 1e-12));
-    CHECK_NEAR(bells.digits, bells.reach * bells.reach / log(10.0) + log10(10.0 * NOT_SEEN), 1e-4);
-    CHECK(bells.after >= start && bells.before <= end);
-    if (bells.after == end) {
-        CHECK(bells.before == end);
+    const double least =
+        sqrt(log((friction.staticRatio - 1.0) / seen_from)); // reach for a force of the limit
+    const double most = sqrt(log((friction.staticRatio - 1.0) * pow(friction.staticRatio, 2.0) / seen_from));
+    CHECK(peaks.reach >= least * (1.0 - 1e-12) && peaks.reach <= most * (1.0 + 1e-12));
+    CHECK_NEAR(peaks.digits, peaks.reach * peaks.reach / log(10.0) + log10(10.0 * NOT_SEEN), 1e-4);
+    CHECK(peaks.after >= start && peaks.before <= end);
+    if (peaks.after == end) {
+        CHECK(peaks.before == end);
         for (int i = 0; i <= 2; i++) {
-            CHECK(fc_in_bell(&bells, start + 0.49 * i * (end - start)));
+            CHECK(fc_in_peak(&peaks, start + 0.49 * i * (end - start)));
         }
     } else {
-        CHECK(bells.after < bells.before);
-        CHECK(!fc_in_bell(&bells, bells.after) && fc_in_bell(&bells, bells.before) == true);
+        CHECK(peaks.after < peaks.before);
+        CHECK(!fc_in_peak(&peaks, peaks.after) && fc_in_peak(&peaks, peaks.before) == true);
     }
-    double unseen = 0.0; // the largest outside the bells
+    double unseen = 0.0; // the largest outside the peaks
     double lowest = INFINITY;
     for (int i = 1; i < SAMPLES; i++) {
-        const double t = bells.after + (bells.before - bells.after) * i / SAMPLES;
+        const double t = peaks.after + (peaks.before - peaks.after) * i / SAMPLES;
         unseen = fmax(unseen, curve(scene, t));
         lowest = fmin(lowest, fabs(fc_drive_V(&scene->drive, start + (end - start) * i / SAMPLES)));
     }
-    CHECK(bells.after == end || unseen <= seen_from * (1.0 + 1e-9));
+    CHECK(peaks.after == end || unseen <= seen_from * (1.0 + 1e-9));
     // not wider than by one growth
-    const double speed = bells.reach * friction.V_S;
+    const double speed = peaks.reach * friction.V_S;
     const bool may_dip = fabs(scene->drive.V.rate) < scene->drive.vibration.V_1 * scene->drive.omega &&
                          speed > least_dip(&scene->drive, start, end);
-    if (bells.after == end) {
-        CHECK(may_dip || fmin(fabs(a.at.V), fabs(b.at.V)) < speed); // two bells that meet, or one
+    if (peaks.after == end) {
+        CHECK(may_dip || fmin(fabs(a.at.V), fabs(b.at.V)) < speed); // two peaks that meet, or one
         seen->whole++;
         return;
     }
     CHECK(!may_dip);
-    if (bells.after > start) {
+    if (peaks.after > start) {
         CHECK(fabs(a.at.V) < speed);
-        CHECK(fabs(fc_drive_V(&scene->drive, start + (bells.after - start) / GROWTH * 0.999)) < speed ||
-              bells.after - start <= 1.001 * fc_velocity_time_of_change(&a.at, speed - fabs(a.at.V)));
+        CHECK(fabs(fc_drive_V(&scene->drive, start + (peaks.after - start) / GROWTH * 0.999)) < speed ||
+              peaks.after - start <= 1.001 * fc_velocity_time_of_change(&a.at, speed - fabs(a.at.V)));
     }
-    if (bells.before < end) {
+    if (peaks.before < end) {
         CHECK(fabs(b.at.V) < speed);
-        CHECK(fabs(fc_drive_V(&scene->drive, end - (end - bells.before) / GROWTH * 0.999)) < speed ||
-              end - bells.before <= 1.001 * fc_velocity_time_of_change(&b.at, speed - fabs(b.at.V)));
+        CHECK(fabs(fc_drive_V(&scene->drive, end - (end - peaks.before) / GROWTH * 0.999)) < speed ||
+              end - peaks.before <= 1.001 * fc_velocity_time_of_change(&b.at, speed - fabs(b.at.V)));
     }
-    *(bells.after > start || bells.before < end ? &seen->bells : &seen->none) += 1;
+    *(peaks.after > start || peaks.before < end ? &seen->peaks : &seen->none) += 1;
 }
 
 int main(void) {
@@ -108,8 +109,7 @@ int main(void) {
     for (int i = 0; i < SCENES; i++) {
         const double h = random_log(0.05, 2.0) / F;
         const FcScene scene = random_scene(h);
-        const FcBellInterval interval = fc_bell_interval(&scene, h, random_log(1e-12, 1e-3));
-        CHECK_NEAR(interval.per_path, contact.sigma / 55.0, 1e-15);
+        const FcInterval interval = fc_interval_make(&scene, &scene, h, random_log(1e-12, 1e-3));
         CHECK_NEAR(interval.saturation, 55.0 / contact.sigma * friction.staticRatio, 1e-15);
         double start = 0.0;
         while (start < h) {
@@ -118,6 +118,6 @@ int main(void) {
             start = next.time;
         }
     }
-    CHECK(seen.bells > 1000 && seen.whole > 1000 && seen.none > 300);
+    CHECK(seen.peaks > 1000 && seen.whole > 1000 && seen.none > 300);
     return check_result();
 }

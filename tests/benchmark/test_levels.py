@@ -1,0 +1,23 @@
+"""bench/levels: where simpler laws and contacts fail."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas
+import pytest
+
+from workshop.bench import levels
+
+
+def test_the_table_of_scenes_shows_where_simpler_models_fail(
+    fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    levels.main(["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path)])
+    assert "presliding" in capsys.readouterr().out
+    table = pandas.read_csv(tmp_path / "levels.csv", index_col="scene")
+    errors = table.map(lambda cell: max(map(float, cell.split(", "))))
+    assert (errors["default at 1e-3"] <= 1e-3).all()
+    assert errors["Coulomb"]["presliding hysteresis"] > 0.1
+    assert errors["Coulomb"]["stick-slip on a belt"] > 0.1
+    assert errors["contact Constant"]["soft contact, V and d vibrate"] > 0.1

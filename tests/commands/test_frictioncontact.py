@@ -1,0 +1,102 @@
+"""The command `frictioncontact`, and the same commands from scripts/, which build first."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+
+import pytest
+
+from frictioncontact import __main__ as entry
+from frictioncontact import command
+from workshop import __main__ as clone
+from workshop import build
+from workshop.project import ROOT
+
+ROOMS = {name: room for name, (room, _) in entry.COMMANDS.items() if room}
+
+
+def usage(room: str, capsys: pytest.CaptureFixture[str]) -> str:
+    with pytest.raises(SystemExit) as ended:
+        importlib.import_module(f"frictioncontact.{room}.command").arguments(["--help"])
+    assert ended.value.code == 0
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_help_says_what_it_is_called(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = usage(ROOMS[name], capsys)
+    assert text.startswith(f"usage: frictioncontact {name} ") and "scripts/" not in text
+    monkeypatch.setattr(command, "called_as", "scripts/other")
+    text = usage(ROOMS[name], capsys)
+    assert text.startswith("usage: scripts/other ") and f"frictioncontact {name}" not in text
+
+
+@pytest.mark.parametrize("name", [name for name in ROOMS if name not in ("simulate", "playground")])
+def test_scripts_call_what_users_call(name: str) -> None:
+    script = "run" if name == "table2" else name
+    text = (ROOT / "scripts" / script).read_text(encoding="utf-8")
+    assert f"run_module frictioncontact.{ROOMS[name]}.command" in text
+
+
+def test_scripts_build_before_unless_an_fmu_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And refuse wrong arguments before they build."""
+    built = []
+    monkeypatch.setattr(build, "build_fmu", lambda: built.append("built"))
+    monkeypatch.setattr(command, "called_as", None)
+    identify = importlib.import_module("frictioncontact.identification.command")
+    for arguments, builds in ((["--fmu", "mine.fmu"], 0), ([], 1)):
+        monkeypatch.setattr(sys, "argv", ["identify", *arguments])
+        clone.prepare(identify, "identification")
+        assert len(built) == builds
+        assert command.called_as == "scripts/identify"
+    monkeypatch.setattr(sys, "argv", ["identify", "--nonsense"])
+    with pytest.raises(SystemExit):
+        clone.prepare(identify, "identification")
+    assert "usage: scripts/identify" in capsys.readouterr().err and len(built) == 1
+    monkeypatch.setattr(sys, "argv", ["gap"])
+    clone.prepare(importlib.import_module("frictioncontact.gap.command"), "gap")
+    assert len(built) == 1
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "frictioncontact", *arguments], capture_output=True, text=True, timeout=120
+    )
+
+
+def test_the_commands_are_listed() -> None:
+    done = run()
+    assert done.returncode == 0
+    assert all(f"  {name} " in done.stdout for name in entry.COMMANDS)
+
+
+def test_a_command_that_is_none() -> None:
+    done = run("simulte")
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: 'simulte' is no command; these are: table2, simulate, ")
+
+
+def test_a_subcommand_gets_its_arguments() -> None:
+    done = run("gap", "--load", "100")
+    assert done.returncode == 0 and "start values: d 1.62784943e-05" in done.stdout
+
+
+def test_version_names_package_and_fmu(fmu_path: object) -> None:
+    lines = run("version").stdout.splitlines()
+    assert lines[0].startswith("frictioncontact 0.") and lines[1].endswith("FrictionContact.fmu")
+
+
+def test_a_sweep_without_its_extra_says_how_to_get_it() -> None:
+    program = (
+        "import sys; sys.modules['pyarrow'] = None; sys.argv = ['frictioncontact', 'sweep', '--help'];"
+        "from frictioncontact.__main__ import main; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 1 and done.stdout == ""
+    assert done.stderr == "error: sweeps need pyarrow: pip install 'frictioncontact[sweep]'\n"

@@ -1,0 +1,194 @@
+"""fc.simulate and its command: the reference's numbers wherever samples lie; one line for what is wrong."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import frictioncontact as fc
+from frictioncontact.fmu import FrictionFmu, Value
+from frictioncontact.simulation import command
+from workshop.reference import solution as reference
+from workshop.reference.solution import MP
+from workshop.reference.start_values import scene_of
+
+SOFT: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 2.5e6, "solver.tolerance": 1e-8}
+STEP, COUNT = 3e-5, 8
+# Uneven samples: before the first row, at a row, between rows, a jump, and none over the last rows.
+TIME = [-1e-5, 1.3e-5, 3e-5, 3.7e-5, 9.1e-5, 9.1e-5, 1.6e-4]
+VELOCITY = [0.1, 0.4, -0.2, 0.3, 0.5, -0.6, 0.2]
+
+
+def pieces(time: list[float], values: list[float], end: float) -> list[tuple[float, float, float, float]]:
+    """Begin, end, value at the begin and slope of each straight piece of the samples from 0 to end."""
+    times, samples = [*time, max(end, time[-1]) + 1.0], [*values, values[-1]]
+    if time[0] > 0.0:
+        times, samples = [-1.0, *times], [values[0], *samples]
+    found = []
+    for a, b, left, right in zip(times[:-1], times[1:], samples[:-1], samples[1:], strict=True):
+        begin, stop = max(a, 0.0), min(b, end)
+        if stop > begin:
+            slope = (right - left) / (b - a)
+            found.append((begin, stop, left + slope * (begin - a), slope))
+    return found
+
+
+def right(values: dict[str, Value], time: list[float], velocity: list[float]) -> np.ndarray:
+    """F_t and its mean over each of COUNT rows [N], by the reference over every straight piece."""
+    scene, delta, rows = scene_of(values), MP.mpf(0), []
+    for k in range(COUNT):
+        impulse = MP.mpf(0)
+        for begin, end, value, slope in pieces(time, velocity, (k + 1) * STEP):
+            if end <= k * STEP:
+                continue
+            at = max(begin, k * STEP)
+            now = replace(scene, V=value + slope * (at - begin), V_rate=slope, start=MP.mpf(at))
+            delta, part = reference.advance(now, MP.mpf(at), end - at, delta)[:2]
+            impulse += part
+        rows.append((float(reference.force(now, MP.mpf(end), delta)), float(impulse) / STEP))
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("law", ["Dahl", "LuGre", "ElasticPlastic"])
+@pytest.mark.parametrize("shift", [0.0, 2e-5], ids=["begins before", "begins after"])
+def test_inputs_are_linear_between_samples_that_fall_anywhere(fmu_path: Path, law: str, shift: float) -> None:
+    values = {**SOFT, "friction.model": law}
+    time = [t + shift for t in TIME]
+    got = fc.simulate(
+        values, stop=COUNT * STEP, step=STEP, inputs={"time": time, "V": VELOCITY}, fmu=fmu_path
+    )
+    expected = right(values, time, VELOCITY)
+    assert got["F_t"][1:].to_numpy() == pytest.approx(expected[:, 0], abs=1e-6 * 55.0)
+    assert got["F_t_mean"][1:].to_numpy() == pytest.approx(expected[:, 1], abs=1e-6 * 55.0)
+
+
+def test_a_frame_of_inputs_and_a_last_row_that_is_shorter(fmu_path: Path) -> None:
+    """A constant sigma and V: F = F_C (1 - exp(-sigma V t / F_C)), Eq. 2."""
+    inputs = pd.DataFrame({"time": [0.0], "V": [0.3]})
+    table = fc.simulate(SOFT, stop=1e-4, step=3e-5, inputs=inputs, outputs=["F_t"], fmu=fmu_path)
+    assert list(table.columns) == ["time", "F_t"]
+    assert table["time"].to_numpy() == pytest.approx([0.0, 3e-5, 6e-5, 9e-5, 1e-4], rel=1e-15)
+    exact = -55.0 * np.expm1(-2.5e6 * 0.3 / 55.0 * table["time"].to_numpy())
+    assert table["F_t"].to_numpy() == pytest.approx(exact, abs=1e-6 * 55.0)
+
+
+def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
+    """With samples inside the rows: W_f / V at a constant V."""
+    inputs = {"time": np.linspace(0.0, 1e-4, 8), "V": np.full(8, 0.3)}
+    table = fc.simulate(SOFT, stop=1e-4, step=5e-5, inputs=inputs, fmu=fmu_path)
+    mean = np.diff(table["W_f"]) / 0.3 / 5e-5
+    assert table["F_t_mean"][1:].to_numpy() == pytest.approx(mean, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"start": {"v": 1.0}}, "start: v is no variable of the FMU; did you mean V?"),
+        ({"start": {"F_t": 1.0}}, "start: F_t is an output of the FMU and can't be set"),
+        ({"start": {"V": "fast"}}, "start: V = 'fast' is not a finite number"),
+        ({"start": {"V": float("nan")}}, "start: V = 'nan' is not a finite number"),
+        ({"start": {"friction.model": "Dal"}}, "start: friction.model: 'Dal' is not one of Dahl, "),
+        ({"start": {"friction.model": 9}}, "start: friction.model = 9 is not one of Dahl, "),
+        ({"start": {"d": -1e-6}}, "d = -1e-06 m is below its minimum"),
+        ({"outputs": ["F"]}, "outputs: F is no variable of the FMU; did you mean F_t?"),
+        (
+            {"outputs": ["friction.model"]},
+            "outputs: friction.model is of type Enumeration; only Real is read",
+        ),
+        ({"stop": 0.0}, "stop = 0.0: must be a positive number of seconds"),
+        ({"step": 1e-12}, "step = 1e-12 s: stop / step must be at most"),
+        ({"inputs": {"V": [1.0]}}, "inputs: needs a column time [s] and at least one of V, d, E, load"),
+        ({"inputs": {"time": [0.0], "F_C": [1.0]}}, "inputs: F_C is no input of the FMU; these are: V, d"),
+        ({"inputs": {"time": [0.0, 1.0], "V": [1.0]}}, "inputs: V has 1 values and time has 2"),
+        ({"inputs": {"time": [1.0, 0.5], "V": [1.0, 1.0]}}, "inputs: time falls from 1 to 0.5 s at sample 1"),
+        ({"inputs": {"time": [0.0, 1.0], "V": [1.0, np.inf]}}, "inputs: V = inf at sample 1 is not a finite"),
+        ({"inputs": {"time": [0.0], "V": ["x"]}}, "inputs: V is not a row of numbers"),
+        ({"inputs": {"time": [], "V": []}}, "inputs: no samples"),
+        ({"inputs": {"time": np.array(["2026-01-01"], "M8[s]"), "V": [1.0]}}, "inputs: time holds dates"),
+        ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V = nan at sample 0 is"),
+        ({"inputs": "drive.csv"}, "inputs: must be a mapping of names to samples, or a pandas frame"),
+        ({"fmu": "absent.fmu"}, "absent.fmu: No such file"),
+        ({"fmu": "."}, ".: Is a directory"),
+        ({"start": [("V", 1.0)]}, "start = \"[('V', 1.0)]\": must be a mapping of names to values"),
+        (
+            {"start": {"V": 10**400}},
+            f"start: V = '{10**39}...' is not a finite number",
+        ),
+        ({"step": 5e-324}, "step = 4.94066e-324 s: stop / step must be at most"),
+        ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence of names"),
+        ({"outputs": None}, "outputs = None: must be a sequence of names"),
+        ({"outputs": [3]}, "outputs: 3 is no variable of the FMU"),
+    ],
+)
+def test_what_is_wrong_is_named(fmu_path: Path, arguments: dict, message: str) -> None:
+    with pytest.raises(fc.UserError, match="^(fmi2SetReal: )?" + re.escape(message)):
+        fc.simulate(**{"stop": 1e-3, "step": 1e-4, "fmu": fmu_path, **arguments})
+
+
+def test_a_refused_reading_has_the_fmu_s_own_words(fmu: FrictionFmu) -> None:
+    with fmu.session() as session:
+        session.set("V", 1e300)
+        with pytest.raises(fc.FrictionError, match="at most 1e\\+15 m/s"):
+            session.get("F_t_settled")
+        with pytest.raises(fc.FrictionError, match="at most 1e\\+15 m/s"):
+            session.read(["F_t", "F_t_settled"])
+
+
+def test_the_command_prints_or_writes_the_same_table(
+    fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--set", "V=0.5", "--set", "friction.model=LuGre", "--stop", "1e-3", "--step", "5e-4"]
+    command.main([*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path)])
+    printed = capsys.readouterr().out.split()
+    command.main(
+        [*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path), "--output", str(tmp_path / "out.csv")]
+    )
+    written = pd.read_csv(tmp_path / "out.csv")
+    table = fc.simulate(
+        {"V": 0.5, "friction.model": "LuGre"}, stop=1e-3, step=5e-4, outputs=["F_t", "W_f"], fmu=fmu_path
+    )
+    pd.testing.assert_frame_equal(written, table, check_exact=True)
+    assert printed[:3] == ["time", "F_t", "W_f"] and len(printed) == 3 * 4
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time,V\n0,0.1\n1e-5,x\n", "line 3, V: 'x' is not a number"),
+        ("time,V\n0\n", "line 2: has 1 cells where the header has 2"),
+        ("", "no header row"),
+        ("time,V,V\n0,1,2\n", "column 'V' is there twice"),
+        ("time,speed\n0,1\n", "inputs: speed is no input of the FMU"),
+    ],
+)
+def test_wrong_files_of_inputs(fmu_path: Path, tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text(text)
+    with pytest.raises(SystemExit, match=re.escape(message)):
+        command.main(["--stop", "1", "--step", "1", "--inputs", str(path), "--fmu", str(fmu_path)])
+
+
+def test_an_fmu_that_is_replaced_is_read_anew(fmu: FrictionFmu, fmu_path: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.fmu"
+    copy.write_bytes(fmu_path.read_bytes())
+    assert len(fc.simulate(stop=1e-3, step=1e-3, fmu=copy)) == 2
+    copy.write_text("no archive")
+    with pytest.raises(fc.UserError, match=r"copy\.fmu is not an FMU"):
+        fc.simulate(stop=1e-3, step=1e-3, fmu=copy)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a named pipe")
+def test_a_pipe_is_written_to_and_stays(fmu_path: Path, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    end = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    command.main(["--stop", "1e-3", "--step", "1e-3", "--fmu", str(fmu_path), "--output", str(pipe)])
+    assert os.read(end, 7) == b"time,F_"
+    os.close(end)
+    assert pipe.is_fifo() and list(tmp_path.iterdir()) == [pipe]

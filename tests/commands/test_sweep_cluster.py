@@ -1,0 +1,144 @@
+"""scripts/sweep --cluster: the workers of a Dask cluster, which need this package and may get lost."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from deadly import deadly
+from distributed import Client
+from test_sweep import GRID, check_grid, command, environment, kept_rows, parts, run, started, wait_for
+
+from frictioncontact.fmu import FrictionFmu
+from frictioncontact.sweeps import workers
+from frictioncontact.sweeps.group import Job
+from frictioncontact.sweeps.scenarios import Scenarios
+
+__all__ = ["started"]
+DASK = Path(sys.executable).parent / "dask"
+Started = Callable[..., subprocess.Popen]
+
+
+def without_project(folder: Path) -> dict[str, str]:
+    """An environment in which `import frictioncontact` fails, as on a machine that lacks this project."""
+    (folder / "hidden").mkdir()
+    (folder / "hidden" / "frictioncontact.py").write_text("raise ImportError('this project is not here')\n")
+    return {**environment(), "PYTHONPATH": str(folder / "hidden")}
+
+
+class Cluster:
+    """A scheduler and workers of one thread each, as their user starts them."""
+
+    def __init__(self, started: Started, folder: Path) -> None:
+        self._started, self._contact = started, folder / "scheduler.json"
+        self._options = {"cwd": folder, "stderr": subprocess.DEVNULL}
+        self._env = {**environment(), "PYTHONPATH": str(Path(__file__).parent)}
+        self.scheduler = started(
+            [DASK, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+             "--scheduler-file", self._contact], **self._options, env=self._env,
+        )  # fmt: skip
+        wait_for(lambda: self._contact.exists() and self._contact.read_text().endswith("}"))
+        self.address = pd.read_json(self._contact, typ="series")["address"]
+
+    def worker(self, env: dict[str, str] | None = None, nanny: str = "--no-nanny") -> subprocess.Popen:
+        return self._started(
+            [DASK, "worker", "--scheduler-file", self._contact, "--host", "127.0.0.1", "--nthreads", "1",
+             nanny, "--no-dashboard"], **self._options, env=env or self._env,
+        )  # fmt: skip
+
+    def wait_for_workers(self, count: int) -> None:
+        with Client(self.address, timeout=10) as client:
+            client.wait_for_workers(count, timeout=60)
+
+
+@pytest.fixture
+def cluster(started: Started, tmp_path: Path) -> Iterator[Cluster]:
+    (tmp_path / "cluster").mkdir()
+    return Cluster(started, tmp_path / "cluster")
+
+
+def test_cluster_that_loses_a_worker(
+    cluster: Cluster, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Started
+) -> None:
+    one, two = cluster.worker(), cluster.worker()
+    cluster.wait_for_workers(2)
+    output = tmp_path / "sweep"
+    arguments = (*GRID, "--group", "10", "--cluster", cluster.address, "--samples", "16")
+    sweeping = started(command(fmu_path, output, *arguments), stdout=subprocess.PIPE, text=True)
+    wait_for(lambda: len(parts(output)) >= 6)
+    one.kill()
+    assert kept_rows(output) < 900
+    printed, _ = sweeping.communicate(timeout=120)
+    assert sweeping.returncode == 0
+    assert "1000 scenarios in" in printed and "on 2 workers" in printed
+    assert two.poll() is None
+    check_grid(output, fmu)
+
+
+def test_workers_without_the_package(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
+    cluster.worker(without_project(tmp_path))
+    cluster.wait_for_workers(1)
+    done = run(fmu_path, tmp_path / "sweep", *GRID, "--cluster", cluster.address)
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+    assert done.stderr.startswith(f"error: --cluster {cluster.address}: tcp://127.0.0.1:")
+    assert "lacks frictioncontact" in done.stderr and "this project is not here" in done.stderr
+    assert "pip install frictioncontact==" in done.stderr
+    assert not (tmp_path / "sweep").exists()
+
+
+@pytest.mark.parametrize(
+    ("address", "message"),
+    [("tcp://127.0.0.1:1", "nothing answers there"), ("rubbish", "missing port number")],
+)
+def test_no_scheduler(fmu_path: Path, tmp_path: Path, address: str, message: str) -> None:
+    done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", address)
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+    assert done.stderr.startswith(f"error: --cluster {address}: {message}")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_workers(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
+    done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", "--scheduler", cluster.address)
+    assert done.returncode == 1
+    assert done.stderr == f"error: --cluster {cluster.address}: has no workers\n"
+
+
+@pytest.mark.slow
+def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Path, started: Started) -> None:
+    cluster.worker()
+    cluster.wait_for_workers(1)
+    output = tmp_path / "sweep"
+    arguments = (*GRID, "--group", "10", "--samples", "16")
+    sweeping = started(
+        command(fmu_path, output, *arguments, "--cluster", cluster.address), stderr=subprocess.PIPE, text=True
+    )
+    wait_for(lambda: len(parts(output)) >= 3)
+    cluster.scheduler.kill()
+    _, said = sweeping.communicate(timeout=120)
+    assert sweeping.returncode == 1
+    assert len(said.strip().splitlines()) == 1, said
+    assert said.startswith("error: the connection to the scheduler was lost; what was computed is kept in")
+    kept = kept_rows(output)
+    assert kept >= 30
+    rest = run(fmu_path, output, *arguments, "--workers", "2")
+    assert f"{kept} scenarios were there from an earlier run" in rest.stdout, rest.stderr
+
+
+def test_scenario_that_kills_its_workers(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its group is given up; the others are run."""
+    cluster.worker(nanny="--nanny")
+    cluster.wait_for_workers(1)
+    monkeypatch.setattr(workers, "run_group", deadly)
+    job = Job(b"", Scenarios(9, {}), 1e6, 1)
+    groups = [(int(first), int(first) + 1) for first in np.arange(9)]
+    with workers.cluster(job, cluster.address) as staff:
+        done = dict(staff.run(groups))
+    assert sorted(done) == groups
+    assert [group for group, part in done.items() if part is None] == [(3, 4)]

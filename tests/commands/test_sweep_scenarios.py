@@ -1,0 +1,210 @@
+"""What scripts/sweep runs: grids, random draws and CSV files as the rows of a table; what it refuses."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncontact.errors import UserError
+from frictioncontact.sweeps import command
+from frictioncontact.sweeps.run import scenarios_of, sweep
+from frictioncontact.sweeps.scenarios import MOST_SCENARIOS, Range, Scenarios, uniform
+
+
+def scenarios(fmu_path: Path, *arguments: str) -> Scenarios:
+    given = command.wanted(command.arguments(list(arguments)))
+    names = ("vary", "random", "seed", "csv", "set")
+    return scenarios_of("the FMU", fmu_path.read_bytes(), *(given[name] for name in names))
+
+
+def rows(scenarios: Scenarios, first: int, stop: int) -> pd.DataFrame:
+    """Scenarios first to stop - 1, as results show them."""
+    columns = scenarios.columns.items()
+    return pd.DataFrame(
+        {name: column.shown(column.rows(first, stop)).to_numpy(False) for name, column in columns}
+    )
+
+
+def table(fmu_path: Path, *arguments: str) -> pd.DataFrame:
+    made = scenarios(fmu_path, *arguments)
+    return rows(made, 0, made.count)
+
+
+def test_grid(fmu_path: Path) -> None:
+    made = table(
+        fmu_path, "--vary", "V=1:100:3:log", "--vary", "friction.model=Dahl,Coulomb", "--set", "d=15e-6"
+    )
+    assert made.to_dict("list") == {
+        "V": pytest.approx([1, 1, 10, 10, 100, 100]),
+        "friction.model": ["Dahl", "Coulomb"] * 3,
+        "d": [15e-6] * 6,
+    }
+
+
+def test_random_is_repeatable_and_within_bounds(fmu_path: Path) -> None:
+    arguments = "--random", "500", "--vary", "V=1e-3:1:log", "--vary", "d=10e-6:18e-6"
+    made = table(fmu_path, *arguments, "--seed", "1")
+    pd.testing.assert_frame_equal(made, table(fmu_path, *arguments, "--seed", "1"))
+    assert not made.equals(table(fmu_path, *arguments, "--seed", "2"))
+    assert made["V"].between(1e-3, 1).all()
+    assert made["d"].between(10e-6, 18e-6).all()
+    assert 0.4 < (made["V"] < 10**-1.5).mean() < 0.6  # evenly over the decades
+
+
+def test_csv(fmu_path: Path, tmp_path: Path) -> None:
+    path = tmp_path / "scenarios.csv"
+    path.write_text("V, solver.method\n0.1, cvode\n\n0.2,rk4\n")
+    made = table(fmu_path, "--csv", str(path))
+    assert made.to_dict("list") == {"V": [0.1, 0.2], "solver.method": ["cvode", "rk4"]}
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
+        ("V,d\n0.1,\n", "row 2, column d: '' is not a number"),
+        ("V\nnan\n", "row 2, column V: 'nan' is not a finite number"),
+        ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
+        ("V,V\n1,2\n", "row 1, column 2: V is there twice"),
+        ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
+        ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
+        ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
+        (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
+        (f"V\n{'x' * 131070}\n", f"row 2, column V: '{'x' * 40}...' is not a number"),
+        ("V\n", "has no row below the header"),
+        ("", "is empty; row 1 must name the variables"),
+        ('V\n"0.1\n', "is not a CSV file"),
+    ],
+)  # fmt: skip
+def test_malformed_csv_names_row_and_column(
+    fmu_path: Path, tmp_path: Path, content: str, message: str
+) -> None:
+    path = tmp_path / "scenarios.csv"
+    path.write_text(content)
+    with pytest.raises(UserError, match=re.escape(f"{path}: {message}")):
+        table(fmu_path, "--csv", str(path))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "nothing to sweep"),
+        (["--vary", "v=1"], "--vary v: v is no variable of the FMU; did you mean V?"),
+        (["--vary", "V"], "--vary V: is not of the form NAME=VALUE"),
+        (["--vary", "V=1:2"], "'1:2' is neither low:high:count"),
+        (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
+        (["--vary", "V=0:1:3:log"], "must begin above 0"),
+        (["--vary", "V=0:1:²"], "the count '²' is not a whole number"),
+        (["--vary", f"V=0:1:{'9' * 5000}"], "is not a whole number"),
+        (
+            ["--vary", "V=1", "--samples", "100000000000"],
+            "--samples 100000000000: must be a whole number from 1 to 1000000",
+        ),
+        (["--vary", "V=1", "--settle", "inf"], "--settle: inf is not a finite number"),
+        (["--vary", "V=0:1", "--random", "99999999999"], "must be a whole number from 1 to 1000000000"),
+        (["--vary", "V=0:1", "--random", "0"], "--random 0: must be a whole number"),
+        (["--vary", "V=0:1", "--random", "5", "--seed", "-1"], "--seed -1: must be at least 0"),
+        (
+            ["--vary", "V=1", "--group", "1000001"],
+            "--group 1000001: must be a whole number from 1 to 1000000",
+        ),
+        (["--random", "100001", "--vary", "V=0:1", "--group", "1"], "would be more than 100000 files"),
+        (["--vary", "V=0:1:-3"], "the count '-3' is not a whole number"),
+        (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
+        (["--vary", "V=1", "--set", "V=2"], "--set V: is given twice"),
+        (["--vary", "V=0:1:1000000", "--vary", "d=1:2:1001"], "the most that a sweep runs is 1000000000"),
+        (["--vary", "V=1", "--workers", "0"], "--workers 0: must be a whole number from 1 to 1000"),
+        (["--vary", "V=1", "--settle", "nan"], "--settle: nan is not a finite number"),
+        (["--random", "3", "--vary", "V=0:1:3"], "'0:1:3' is neither low:high"),
+        (["--vary", "V=1", "--settle", "-1"], "--settle: -1 must be at least 0"),
+        (["--csv", "none.csv", "--vary", "V=1"], "--csv does not go with --vary"),
+        (
+            ["--vary", "friction.model=1:4:4"],
+            "'1:4:4' is a range, but its values are names: Dahl,Coulomb",
+        ),
+        (["--random", "5", "--vary", "friction.model=1:4"], "'1:4' is a range, but its values are names"),
+    ],
+)
+def test_wrong_arguments(fmu_path: Path, tmp_path: Path, arguments: list[str], message: str) -> None:
+    options = command.arguments([*arguments, "--fmu", str(fmu_path), "--output", str(tmp_path / "out")])
+    with pytest.raises(UserError, match=re.escape(message)):
+        command.run(options)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments"),
+    [
+        ("grid", ["--vary", "V=0.01:1:24999:log", "--vary", "d=12e-6:16e-6:20000", "--vary",
+                  "friction.model=Dahl,Coulomb"]),
+        ("random", ["--random", str(MOST_SCENARIOS), "--vary", "V=0.01:1:log", "--vary", "d=12e-6:16e-6",
+                    "--vary", "friction.model=Dahl,Coulomb"]),
+    ],
+)  # fmt: skip
+def test_a_row_depends_on_its_number_alone(fmu_path: Path, kind: str, arguments: list[str]) -> None:
+    """Of some 1e9, at places all over."""
+    made = scenarios(fmu_path, *arguments, "--set", "vibration.V_1=1.44")
+    assert made.count == (MOST_SCENARIOS if kind == "random" else 24999 * 20000 * 2)
+    for place in (0, 39_999, 123_456_789, made.count - 40):
+        whole = rows(made, place, place + 40)
+        for first, stop in ((0, 1), (3, 17), (17, 40)):
+            piece = rows(made, place + first, place + stop)
+            assert piece.equals(whole[first:stop].reset_index(drop=True))
+    last = rows(made, made.count - 1, made.count)
+    if kind == "grid":
+        assert last.to_dict("list") == {
+            "V": [1.0], "d": [16e-6], "friction.model": ["Coulomb"], "vibration.V_1": [1.44]
+        }  # fmt: skip
+
+
+def test_draws_are_those_of_numpys_own_stream() -> None:
+    whole = np.random.Generator(np.random.Philox(np.random.SeedSequence(7, spawn_key=(2,)))).random(1000)
+    for first, stop in ((0, 1000), (1, 2), (4, 9), (5, 6), (6, 11), (7, 8), (999, 1000)):
+        assert np.array_equal(uniform(7, 2, first, stop), whole[first:stop])
+    assert abs(np.corrcoef(uniform(7, 0, 0, 10**5), uniform(7, 1, 0, 10**5))[0, 1]) < 0.016  # 5 sigma
+
+
+@pytest.mark.parametrize("logarithmic", [False, True])
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.3), (1e-300, 1e300), (0.7, 0.7), (1e-9, 1e3)])
+def test_ranges_keep_their_ends(low: float, high: float, logarithmic: bool) -> None:
+    spread = Range(low, high, logarithmic, 1001)
+    values = spread.at(np.arange(1001))
+    assert (values[0], values[-1]) == (low, high)
+    assert (np.diff(values) >= 0.0).all()
+    expected = (np.geomspace if logarithmic else np.linspace)(low, high, 1001)
+    assert np.allclose(values, expected, rtol=1e-12, atol=0.0)
+
+
+def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:
+    """Sequences of numbers and of names, as `sweep` takes them beside the texts of the command."""
+    swept = sweep(
+        fmu=fmu_path, output=tmp_path / "out",
+        vary={"V": np.array([0.1, 0.2]), "friction.model": ["Dahl", "LuGre"]},
+        set={"vibration.V_1": 1.44}, samples=1, workers=1,
+    )  # fmt: skip
+    made = pd.read_parquet(swept.results)
+    assert made["V"].tolist() == [0.1, 0.1, 0.2, 0.2]
+    assert made["friction.model"].tolist() == ["Dahl", "LuGre"] * 2
+    assert (swept.good, swept.refused, swept.new, swept.workers) == (4, 0, 4, 1)
+    with pytest.raises(UserError, match="--vary V: has no values"):
+        sweep(fmu=fmu_path, output=tmp_path / "none", vary={"V": []})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"vary": ["V"]}, "vary = \"['V']\": must be a mapping of names to values"),
+        ({"vary": {"V": 0.3}}, "--vary V: 0.3 is neither a text nor a sequence of values"),
+        ({"vary": {"V": "0:1"}, "random": 5, "seed": 1.5}, "--seed 1.5: must be a whole number"),
+        ({"vary": {"V": "0:1"}, "random": 5, "set": ["d"]}, "set = \"['d']\": must be a mapping of names"),
+        ({"vary": {"V": [0.3]}, "settle": [1, 2]}, "--settle [1, 2]: must be one number"),
+    ],
+)
+def test_wrong_types_from_python_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
+    with pytest.raises(UserError, match="^" + re.escape(message)):
+        sweep(output="nowhere", fmu=fmu_path, **arguments)
+    assert not Path("nowhere").exists()

@@ -1,0 +1,293 @@
+"""Model exchange by its raw functions: rates and their derivatives, events, nominal values, saved states."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from ctypes import c_double
+
+import numpy as np
+import pytest
+from fmi_library import ERROR, MODEL_EXCHANGE, OK, STATES, Instance
+
+DAHL, ELASTIC_PLASTIC, LUGRE = 1, 3, 4
+RATES = ("der(delta)", "der(W_f)", "der(Q_f)")
+UNKNOWNS = ("F_t", "F_t_mean", "F_n", "sigma", "A_r", "delta", "W_f", "Q_f", *RATES)
+CONTINUOUS = "continuous-time mode"
+BLOCK = {"contact.sigma": 2.5e6, "F_C": 50.0}  # bound at 20 um with contact.model = Constant
+
+
+def started(
+    new_instance: Callable[..., Instance], choices: dict[str, int], values: dict[str, float]
+) -> Instance:
+    instance = new_instance(kind=MODEL_EXCHANGE)
+    assert instance.choose(choices) == OK
+    assert instance.set(values) == OK
+    instance.bring_to(CONTINUOUS)
+    return instance
+
+
+def block(new_instance: Callable[..., Instance], law: int, **values: float) -> Instance:
+    """A contact of constant stiffness and limit."""
+    return started(new_instance, {"friction.model": law, "contact.model": 2}, {**BLOCK, **values})
+
+
+def random_scene(number: int) -> tuple[dict[str, int], dict[str, float], float]:
+    """Choices, values and a deflection over that of the limit; every law, contact, limit and input."""
+    rng = np.random.default_rng([31, number])
+    choices = {
+        "friction.model": (DAHL, ELASTIC_PLASTIC, LUGRE)[number % 3],
+        "contact.model": int(rng.integers(1, 4)),
+        "friction.limit": int(rng.integers(1, 3)),
+        "contact.input": int(rng.integers(1, 3)),
+    }
+    values = {
+        "V": rng.choice([-1, 1]) * 10 ** rng.uniform(-2, 0),
+        "d": rng.uniform(10e-6, 18e-6),
+        "E": rng.uniform(2e10, 2e11),
+        "contact.stiffnessScale": 10 ** rng.uniform(-6, -3),
+        "friction.staticRatio": rng.uniform(1.0, 2.0),
+        "friction.V_S": 10 ** rng.uniform(-2, 0),
+        "friction.sigma_1": 10 ** rng.uniform(0, 2),
+        "friction.sigma_2": 10 ** rng.uniform(0, 2),
+        "vibration.V_1": rng.choice([0.0, 10 ** rng.uniform(-2, 0)]),
+        "vibration.a_d": rng.choice([0.0, 10 ** rng.uniform(-8, -6)]),
+        "vibration.phase_d": rng.uniform(0, 2 * math.pi),
+    }
+    return choices, values, float(rng.choice([0.5, -0.5, 1.5, -1.5]))
+
+
+def derivative_errors(instance: Instance) -> float:
+    """The largest difference of a directional derivative to a central one, over the variable's size."""
+    now = np.array(instance.get(*UNKNOWNS))
+    sizes = {"V": abs(instance.get("V")[0]) + instance.get("vibration.V_1")[0], "delta": abs(now[5])}
+    sizes |= {name: abs(instance.get(name)[0]) for name in ("d", "E", "load")}
+    sizes |= {"W_f": 1e-3, "Q_f": 1e-3}
+    speed, power = sizes["V"], abs(now[0]) * sizes["V"]
+    least = np.array([1e-300] * 8 + [speed, power, power])  # a rate may be a difference of such, and 0
+    worst = 0.0
+    for name, size in sizes.items():
+        status, exact = instance.directional(UNKNOWNS, {name: size})
+        assert status == OK
+        start = instance.get(name)[0]
+        ends = []
+        step = 1e-5
+        for x in (start + step * size, start - step * size):
+            assert instance.set({name: x}) == OK
+            ends.append(np.array(instance.get(*UNKNOWNS)))
+        assert instance.set({name: start}) == OK
+        difference = (ends[0] - ends[1]) / (2 * step)
+        scale = np.maximum.reduce([np.abs(now), np.abs(difference), least])
+        worst = max(worst, float((np.abs(exact - difference) / scale).max()))
+    return worst
+
+
+@pytest.mark.parametrize("number", range(48))
+def test_every_derivative_by_every_input_and_state(
+    new_instance: Callable[..., Instance], number: int
+) -> None:
+    """Central differences of the FMU's own values in the same regime; half the starts lie beyond a bound."""
+    choices, values, part = random_scene(number)
+    instance = started(new_instance, choices, values)
+    assert instance.call("fmi2SetTime", 1.3e-5) == OK
+    F_n, sigma = instance.get("F_n", "sigma")
+    limit = 55.0 if choices["friction.limit"] == 1 else 0.176 * F_n
+    assert instance.put_states(part * limit / sigma, 1e-3, 1e-3) == OK
+    instance.event()
+    assert derivative_errors(instance) < 1e-6
+
+
+def test_rates_are_power_and_heat(new_instance: Callable[..., Instance]) -> None:
+    """W_f' = F_t V, and Q_f' = W_f' - sigma delta delta'; delta' by Eq. 2."""
+    instance = block(new_instance, DAHL, V=0.1)
+    assert instance.put_states(8e-6, 0.0, 0.0) == OK
+    expected = 0.1 * (1 - 2.5e6 * 8e-6 / 50.0)
+    F_t = 2.5e6 * 8e-6
+    assert instance.rates() == pytest.approx([expected, 0.1 * F_t, 0.1 * F_t - F_t * expected], rel=1e-14)
+    assert instance.get(*RATES) == instance.rates()
+    assert instance.get("F_t", "F_t_mean") == pytest.approx([F_t, F_t], rel=1e-15)
+    calls = instance.get("solver.evaluations")[0]
+    instance.rates()
+    assert instance.get("solver.evaluations")[0] == calls + 1
+
+
+def test_states_set_as_variables_are_the_states(new_instance: Callable[..., Instance]) -> None:
+    """As CasADi sets them."""
+    one, other = (block(new_instance, LUGRE, V=0.1) for _ in range(2))
+    assert one.put_states(3e-6, 2e-3, 1e-3) == OK
+    assert other.set({"Q_f": 1e-3, "delta": 3e-6, "W_f": 2e-3}) == OK
+    assert one.fingerprint() == other.fingerprint()
+
+
+def test_rates_of_the_same_names_in_co_simulation(new_instance: Callable[..., Instance]) -> None:
+    instance = new_instance()
+    assert instance.set({"V": 0.1, "vibration.V_1": 0.02, "friction.sigma_2": 3.0}) == OK
+    assert instance.choose({"friction.model": LUGRE}) == OK
+    instance.initialize()
+    exchanged = new_instance(kind=MODEL_EXCHANGE)
+    assert exchanged.set({"V": 0.1, "vibration.V_1": 0.02, "friction.sigma_2": 3.0}) == OK
+    assert exchanged.choose({"friction.model": LUGRE}) == OK
+    exchanged.bring_to(CONTINUOUS)
+    for step in range(5):
+        assert instance.step(step * 1e-5, 1e-5) == OK
+        assert exchanged.call("fmi2SetTime", (step + 1) * 1e-5) == OK
+        assert exchanged.put_states(*instance.get("delta", "W_f", "Q_f")) == OK
+        assert instance.get(*RATES) == pytest.approx(exchanged.rates(), rel=1e-12)
+
+
+@pytest.mark.parametrize("state", ["initialization", "step complete"])
+def test_derivatives_of_rates_in_co_simulation(new_instance: Callable[..., Instance], state: str) -> None:
+    instance = new_instance()
+    assert instance.choose({"friction.model": LUGRE, "contact.input": 2}) == OK
+    values = {"friction.staticRatio": 1.4, "friction.V_S": 0.1, "vibration.V_1": 0.02, "delta_0": 2e-9}
+    assert instance.set({"V": 0.1, "contact.stiffnessScale": 1e-5, "friction.sigma_1": 20.0, **values}) == OK
+    instance.bring_to(state)
+    for name in ("V", "E", "load"):
+        status, exact = instance.directional(RATES, {name: 1.0})
+        assert status == OK
+        start = instance.get(name)[0]
+        step = 1e-5 * start
+        ends = []
+        for x in (start + step, start - step):
+            assert instance.set({name: x}) == OK
+            ends.append(np.array(instance.get(*RATES)))
+        assert instance.set({name: start}) == OK
+        difference = (ends[0] - ends[1]) / (2 * step)
+        assert exact == pytest.approx(difference, rel=1e-6, abs=1e-8 * np.abs(ends[0]).min() / start)
+
+
+def test_a_bristle_reaches_its_bound_and_leaves_it(new_instance: Callable[..., Instance]) -> None:
+    """Stick, slip, stick: each event moves the indicators back above 0, and asks for no second one."""
+    instance = block(new_instance, ELASTIC_PLASTIC, V=0.1)
+    assert all(z > 0 for z in instance.indicators())
+    assert instance.put_states(20e-6 * (1 - 1e-9), 0.0, 0.0) == OK
+    assert all(z > 0 for z in instance.indicators())
+    assert instance.put_states(20e-6 * (1 + 1e-9), 0.0, 0.0) == OK
+    assert instance.indicators()[1] < 0
+    assert instance.step_completed()
+    assert instance.event().valuesOfContinuousStatesChanged
+    assert instance.states()[0] == pytest.approx(20e-6, rel=1e-15)
+    assert all(z > 0 for z in instance.indicators()) and not instance.step_completed()
+    assert instance.rates() == pytest.approx([0.0, 5.0, 5.0], rel=1e-15)
+    assert instance.set({"V": 1e-12}) == OK
+    assert all(z > 0 for z in instance.indicators())
+    assert instance.set({"V": -1e-12}) == OK
+    assert instance.indicators()[3] < 0 and instance.step_completed()
+    instance.event()
+    assert all(z > 0 for z in instance.indicators())
+    assert instance.rates()[0] == -1e-12
+    assert not instance.event().valuesOfContinuousStatesChanged
+
+
+def test_rounding_of_an_event_starts_no_second_one(new_instance: Callable[..., Instance]) -> None:
+    """The bristle is put onto the bound, to a few roundings, in either regime."""
+    for V in (0.1, -0.1, 0.0):
+        for rounding in (-4e-16, -1e-16, 0.0, 1e-16, 4e-16):
+            instance = block(new_instance, ELASTIC_PLASTIC, V=V)
+            assert instance.put_states(20e-6 * (1 + rounding), 0.0, 0.0) == OK
+            instance.event()
+            assert all(z > 0 for z in instance.indicators())
+
+
+def test_what_lies_beyond_the_bound_becomes_heat(new_instance: Callable[..., Instance]) -> None:
+    """As the first step of co-simulation does with delta_0: sigma (delta_0^2 - D^2) / 2."""
+    instance = block(new_instance, ELASTIC_PLASTIC, V=0.1, delta_0=30e-6)
+    delta, W_f, Q_f = instance.states()
+    assert (delta, W_f) == (pytest.approx(20e-6, rel=1e-15), 0.0)
+    assert Q_f == pytest.approx(0.5 * 2.5e6 * (30e-6**2 - 20e-6**2), rel=1e-14)
+
+
+def test_a_load_that_falls_on_a_bristle_at_rest(new_instance: Callable[..., Instance]) -> None:
+    """V is 0 and the bound comes nearer: the bristle goes with it, and the host gets no thousand events."""
+    choices = {"friction.model": ELASTIC_PLASTIC, "friction.limit": 2, "contact.input": 2, "contact.model": 2}
+    instance = started(new_instance, choices, {"V": 0.0, "load": 100.0, "delta_0": 17e-6 / 2.5, **BLOCK})
+    events = 0
+    for step in range(1, 1001):
+        assert instance.call("fmi2SetTime", step * 1e-3) == OK
+        assert instance.set({"load": 100.0 - 0.05 * step}) == OK
+        if instance.step_completed() or min(instance.indicators()[1:]) <= 0:
+            instance.event()
+            events += 1
+    assert instance.get("F_t")[0] == pytest.approx(0.176 * 50.0, rel=1e-12)
+    assert 1 <= events <= 3
+
+
+def test_an_indicator_of_the_kink(new_instance: Callable[..., Instance]) -> None:
+    """V with its vibration in Dahl and LuGre; ElasticPlastic has no kink."""
+    for law, expected in ((DAHL, 0.3 - 0.2), (LUGRE, 0.3 - 0.2), (ELASTIC_PLASTIC, 1.0)):
+        instance = block(new_instance, law, V=0.3, **{"vibration.V_1": 0.2, "vibration.f": 1.0})
+        assert instance.call("fmi2SetTime", 0.5) == OK
+        assert instance.indicators()[0] == pytest.approx(expected, rel=1e-14)
+
+
+def nominals(instance: Instance) -> list[float]:
+    x = (c_double * STATES)()
+    assert instance.call("fmi2GetNominalsOfContinuousStates", x, STATES) == OK
+    return list(x)
+
+
+def test_nominal_values_are_the_scene_s(new_instance: Callable[..., Instance]) -> None:
+    """delta: F / sigma; the energies: F times that, or times the amplitude of a vibration if larger."""
+    instance = block(new_instance, DAHL)
+    assert nominals(instance) == pytest.approx([20e-6, 1e-3, 1e-3], rel=1e-14)
+    assert instance.call("fmi2EnterEventMode") == OK
+    assert not instance.new_discrete_states().nominalsOfContinuousStatesChanged
+    assert instance.set({"F_C": 100.0, "vibration.V_1": 50.0}) == OK
+    assert instance.new_discrete_states().nominalsOfContinuousStatesChanged
+    amplitude = 50.0 / (2 * math.pi * 20e3)
+    assert nominals(instance) == pytest.approx([40e-6, 100 * amplitude, 100 * amplitude], rel=1e-14)
+    by_load = started(
+        new_instance,
+        {"friction.limit": 2, "contact.input": 2, "contact.model": 2},
+        {"load": 200.0, "vibration.a_d": 1e-6, **BLOCK},
+    )
+    assert nominals(by_load)[0] == pytest.approx(0.176 * 200.0 / 2.5e6, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [DAHL, ELASTIC_PLASTIC, LUGRE])
+def test_a_saved_state_replays_to_the_bit(new_instance: Callable[..., Instance], law: int) -> None:
+    """In the same instance and, from its bytes, in another; the regime is part of it."""
+
+    def run(instance: Instance) -> list[float]:
+        seen = []
+        for step in range(1, 40):
+            rates = instance.rates()
+            assert instance.call("fmi2SetTime", step * 2e-6) == OK
+            x = [a + 2e-6 * b for a, b in zip(instance.states(), rates, strict=True)]
+            assert instance.put_states(*x) == OK
+            if instance.step_completed():
+                instance.event()
+            seen += [*instance.get("F_t", *RATES), *instance.indicators()]
+        return seen
+
+    choices = {"friction.model": law, "contact.model": 2, "friction.limit": 2}
+    values = {"V": 0.5, "vibration.a_d": 1e-6, "vibration.V_1": 1.0, "delta_0": 21e-6, **BLOCK}
+    instance = started(new_instance, choices, values)
+    state = instance.save()
+    data = instance.serialize(state)
+    first = run(instance)
+    assert instance.restore(state) == OK
+    assert run(instance) == first
+    assert instance.drop(state) == OK
+    other = new_instance(kind=MODEL_EXCHANGE)
+    status, state = other.deserialize(data)
+    assert status == OK and other.restore(state) == OK and other.drop(state) == OK
+    assert run(other) == first
+
+
+def test_settled_starts_where_co_simulation_starts(new_instance: Callable[..., Instance]) -> None:
+    values = {"V": 0.1, "vibration.V_1": 0.5, "contact.stiffnessScale": 1e-4}
+    both = [new_instance(), new_instance(kind=MODEL_EXCHANGE)]
+    for instance in both:
+        assert instance.set(values) == OK and instance.choose({"initialState": 2}) == OK
+        instance.initialize()
+    assert both[0].get("delta", "F_t") == both[1].get("delta", "F_t")
+
+
+def test_coupled_inputs_that_do_not_go_together_can_be_mended(new_instance: Callable[..., Instance]) -> None:
+    instance = block(new_instance, DAHL, **{"vibration.a_d": 1e-6})
+    assert instance.set({"d": 0.5e-6}) == OK
+    assert instance.call("fmi2GetDerivatives", (c_double * STATES)(), STATES) == ERROR
+    assert not instance.step_completed()
+    assert instance.set({"d": 5e-6}) == OK
+    assert all(map(math.isfinite, instance.rates()))

@@ -1,0 +1,117 @@
+"""F_t_settled at the FMI boundary: computed when asked for, wherever outputs may be read, without a trace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from ctypes import c_double
+
+import pytest
+from fmi_library import ERROR, OK, Instance, Library
+
+from workshop import description
+
+VIBRATING = {
+    "V": 0.5,
+    "vibration.V_1": 1.44,
+    "vibration.a_d": 1.1e-6,
+    "contact.stiffnessScale": 4.4e-7,
+    "friction.sigma_2": 3.0,
+}
+INPUTS = ("V", "d", "E", "load")
+
+
+def ask(instance: Instance) -> list[float]:
+    """The mean and its derivatives."""
+    slopes = [instance.directional(["F_t_settled"], {name: 1.0}) for name in INPUTS]
+    assert all(status == OK for status, _ in slopes)
+    return [*instance.get("F_t_settled"), *(slope for _, (slope,) in slopes)]
+
+
+@pytest.mark.parametrize("law", [1, 2, 3, 4])
+@pytest.mark.parametrize("initial", [1, 2])
+def test_asking_leaves_no_trace(new_instance: Callable[..., Instance], law: int, initial: int) -> None:
+    asked, other = new_instance(), new_instance()
+    for each in (asked, other):
+        assert each.choose({"friction.model": law, "friction.limit": 2, "initialState": initial}) == OK
+        assert each.set(VIBRATING | {"friction.staticRatio": 1.2}) == OK
+        assert each.call("fmi2EnterInitializationMode") == OK
+    first = ask(asked)
+    assert asked.fingerprint() == other.fingerprint()
+    for each in (asked, other):
+        assert each.call("fmi2ExitInitializationMode") == OK
+    assert ask(asked) == first
+    for k in range(6):
+        for each in (asked, other):
+            assert each.set({"V": 0.5 - 0.2 * (k % 3)}) == OK
+            assert each.set_input_rates({"V": 30.0, "d": 1e-3}) == OK
+        now = ask(asked)
+        assert asked.fingerprint() == other.fingerprint()
+        for each in (asked, other):
+            assert each.step(k * 1.3e-5, 1.3e-5) == OK
+        assert asked.fingerprint() == other.fingerprint()
+    assert asked.get("F_t", "F_t_mean", "W_f", "Q_f") == other.get("F_t", "F_t_mean", "W_f", "Q_f")
+    assert now != first
+    state = asked.save()
+    last = ask(asked)
+    assert asked.step(6 * 1.3e-5, 1e-3) == OK
+    assert asked.restore(state) == OK and asked.drop(state) == OK
+    assert ask(asked) == last
+    assert asked.call("fmi2Terminate") == OK
+    assert asked.get("F_t_settled") == last[:1]
+
+
+def test_one_call_may_ask_for_it_more_than_once_and_beside_others(instance: Instance) -> None:
+    assert instance.set(VIBRATING) == OK
+    instance.initialize()
+    V, first, F_t, second = instance.get("V", "F_t_settled", "F_t", "F_t_settled")
+    assert (V, F_t) == (0.5, instance.get("F_t")[0]) and first == second == instance.get("F_t_settled")[0]
+
+
+def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
+    assert instance.set(VIBRATING) == OK
+    instance.initialize()
+    _, *slopes = ask(instance)
+    direction = {"V": 0.3, "d": -2e-7, "E": 4e8, "load": 7.0}
+    parts = [slope * along for slope, along in zip(slopes, direction.values(), strict=True)]
+    outputs = ["F_t_settled", "F_t", "F_t_settled"]
+    status, (settled, _, again) = instance.directional(outputs, direction)
+    assert status == OK and settled == again == pytest.approx(sum(parts), rel=1e-12)
+    assert instance.directional(["F_t_settled"], {"V": 0.0}) == (OK, [0.0])
+
+
+def test_what_it_refuses(instance: Instance) -> None:
+    value = (c_double * 1)(1.0)
+    assert instance.call("fmi2SetReal", instance.references(["F_t_settled"]), 1, value) == ERROR
+    assert instance.last_message.text == "fmi2SetReal: F_t_settled is an output variable and can't be set"
+    instance.initialize()
+    assert instance.output_rate("F_t_settled")[0] == ERROR
+    assert "F_t_settled has no derivative in time here" in instance.last_message.text
+
+
+@pytest.mark.slow
+def test_a_derivative_that_takes_too_long_is_refused(instance: Instance) -> None:
+    """At a stiffness beyond all measure, and the finest tolerance: more evaluations than are granted."""
+    instance.initialize()
+    assert instance.set(VIBRATING | {"V": 0.0, "E": 1e300}) == OK
+    before = instance.fingerprint()
+    assert instance.directional(["F_t_settled"], {"V": 1.0})[0] == ERROR
+    assert "F_t_settled or its derivative needs more than 1e+08 evaluations" in instance.last_message.text
+    assert instance.fingerprint() == before
+    assert math.isfinite(instance.get("F_t_settled")[0])
+
+
+def test_the_model_description_says_what_it_depends_on(library: Library) -> None:
+    model = description.read()
+    (output,) = (each for each in model.outputs if each.variable.name == "F_t_settled")
+    assert [each.name for each in output.dependencies] == list(INPUTS)
+    assert output.dependenciesKind == ["dependent"] * 4
+    (unknown,) = (each for each in model.initialUnknowns if each.variable.name == "F_t_settled")
+    names = {each.name for each in unknown.dependencies}
+    parameters = set(library.names("parameter")) | set(library.names("parameter", "Enumeration"))
+    assert names - set(INPUTS) == parameters - {
+        "initialState",
+        "solver.method",
+        "solver.stepSize",
+        "friction.sigma_1",
+    }

@@ -1,0 +1,71 @@
+// What the bytes of a fuzzer's input mean: numbers, variables, and the calls that set them.
+#ifndef FC_FUZZ_INPUT_H
+#define FC_FUZZ_INPUT_H
+
+#include "host.h"
+
+typedef struct {
+    const uint8_t* at;
+    const uint8_t* end;
+} Bytes;
+
+static unsigned next_byte(Bytes* input) { return input->at < input->end ? *input->at++ : 0; }
+
+static double next_real(Bytes* input) {
+    static const double telling[] = {
+        0.0,   -0.0,   1.0,    -1.0,   0.005,  -0.005, 14e-6, 20e-6,  1e-6,
+        1e-12, 1e-9,   1e-7,   5e-5,   1e-4,   1e-3,   0.01,  0.5,    2.0,
+        55.0,  1e3,    2e4,    1e6,    2.5e6,  58e9,   1e9,   1e12,   1e100,
+        1e300, -1e300, 1e-300, 5e-324, 1.7e-5, 0.44,   3.0,   1.5707, 1.7976931348623157e308};
+    const unsigned count = sizeof telling / sizeof *telling;
+    const unsigned choice = next_byte(input) % (count + 8);
+    if (choice < count) {
+        return telling[choice];
+    }
+    switch (choice - count) {
+    case 0:
+        return (double)NAN;
+    case 1:
+        return (double)INFINITY;
+    case 2:
+        return -(double)INFINITY;
+    case 3: {
+        double value = 0.0;
+        for (size_t i = 0; i < sizeof value; i++) {
+            ((unsigned char*)&value)[i] = (unsigned char)next_byte(input);
+        }
+        return value;
+    }
+    default:
+        return 1e-3 * (double)(next_byte(input) * 256 + next_byte(input)) - 20.0;
+    }
+}
+
+static fmi2ValueReference next_reference(Bytes* input) {
+    const unsigned byte = next_byte(input);
+    return byte < 250 ? byte % fc_variables_count : byte == 250 ? 4294967295u : byte;
+}
+
+static fmi2Status set_reals(Bytes* input, fmi2Component c) {
+    fmi2ValueReference vr[3];
+    double value[3];
+    const size_t count = next_byte(input) % 4;
+    for (size_t i = 0; i < count; i++) {
+        vr[i] = next_reference(input);
+        value[i] = next_real(input);
+    }
+    return fmi2SetReal(c, vr, count, value);
+}
+
+static fmi2Status choose(Bytes* input, fmi2Component c) {
+    static const size_t enumerations[] = {
+        offsetof(FcVariables, solver.method),  offsetof(FcVariables, friction.model),
+        offsetof(FcVariables, contact.model),  offsetof(FcVariables, initialState),
+        offsetof(FcVariables, friction.limit), offsetof(FcVariables, contact.input)};
+    const unsigned byte = next_byte(input);
+    const fmi2ValueReference vr = reference_of(enumerations[byte < 64 ? 0 : byte / 8 % 6]);
+    const int item = (int)(byte % 8);
+    return fmi2SetInteger(c, &vr, 1, &item);
+}
+
+#endif

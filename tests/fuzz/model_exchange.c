@@ -1,0 +1,224 @@
+// Fuzzes sequences of FMI calls on an instance for model exchange, legal or not, with good and bad values, beside one for
+// co-simulation whose states it is offered.
+//
+// Each byte of the input is a call or a part of its arguments. After every call:
+//     fmi2OK or fmi2Warning    all variables, rates and indicators that can be read are finite numbers
+//     fmi2Error                at least one message, and the state is the one before, to the last bit
+//     anything else            is never returned
+// Rates and indicators that are asked for again, or after going elsewhere and back, are the same bits.
+#include "host.h"
+#include "input.h"
+
+enum { SLOTS = 3, CALLS_MOST = 60, STATES = 3, INDICATORS = 4 };
+
+typedef struct {
+    Fmi2Instance exchange;
+    Fmi2Instance simulation;
+    fmi2FMUstate slot[SLOTS];
+} Bench;
+
+static void check_finite(const double* value, int count, const char* what) {
+    for (int i = 0; i < count; i++) {
+        HOLD(isfinite(value[i]), what);
+    }
+}
+
+static fmi2Status rates(fmi2Component c) {
+    double first[STATES], again[STATES];
+    const fmi2Status status = fmi2GetDerivatives(c, first, STATES);
+    if (status == fmi2OK) {
+        check_finite(first, STATES, "a rate is a number");
+        HOLD(fmi2GetDerivatives(c, again, STATES) == fmi2OK && memcmp(first, again, sizeof first) == 0,
+             "rates asked for again are the same");
+    }
+    return status;
+}
+
+static fmi2Status indicators(fmi2Component c) {
+    double first[INDICATORS], again[INDICATORS];
+    const fmi2Status status = fmi2GetEventIndicators(c, first, INDICATORS);
+    if (status == fmi2OK) {
+        check_finite(first, INDICATORS, "an indicator is a number");
+        HOLD(fmi2GetEventIndicators(c, again, INDICATORS) == fmi2OK &&
+                 memcmp(first, again, sizeof first) == 0,
+             "indicators asked for again are the same");
+    }
+    return status;
+}
+
+// As an integrator tries a step: elsewhere and back.
+static fmi2Status try_step(Bytes* input, fmi2Component c) {
+    double x[STATES], tried[STATES], here[STATES], back[STATES];
+    const double t = next_real(input), elsewhere = next_real(input);
+    fmi2Status status = fmi2SetTime(c, t);
+    if (status != fmi2OK || fmi2GetContinuousStates(c, x, STATES) != fmi2OK ||
+        fmi2GetDerivatives(c, here, STATES) != fmi2OK) {
+        return status;
+    }
+    for (int i = 0; i < STATES; i++) {
+        tried[i] = x[i] + 1e-7 * here[i];
+    }
+    if (fmi2SetTime(c, elsewhere) == fmi2OK && fmi2SetContinuousStates(c, tried, STATES) == fmi2OK) {
+        rates(c);
+    }
+    if (fmi2SetTime(c, t) == fmi2OK && fmi2SetContinuousStates(c, x, STATES) == fmi2OK) {
+        HOLD(fmi2GetDerivatives(c, back, STATES) == fmi2OK && memcmp(here, back, sizeof here) == 0,
+             "the rates are where they were");
+    }
+    return fmi2OK;
+}
+
+static fmi2Status put_states(Bytes* input, fmi2Component c) {
+    double x[STATES];
+    for (int i = 0; i < STATES; i++) {
+        x[i] = next_real(input);
+    }
+    return fmi2SetContinuousStates(c, x, next_byte(input) % 16 ? STATES : next_byte(input) % 8);
+}
+
+static fmi2Status update(fmi2Component c) {
+    fmi2EventInfo info;
+    const fmi2Status status = fmi2NewDiscreteStates(c, &info);
+    if (status == fmi2OK) {
+        HOLD(!info.newDiscreteStatesNeeded && !info.terminateSimulation && !info.nextEventTimeDefined,
+             "an event needs one look");
+        double z[INDICATORS];
+        HOLD(fmi2GetEventIndicators(c, z, INDICATORS) != fmi2OK || (z[1] > 0.0 && z[2] > 0.0 && z[3] > 0.0),
+             "no indicator asks for a second event");
+    }
+    return status;
+}
+
+static fmi2Status complete(fmi2Component c) {
+    fmi2Boolean event, end;
+    return fmi2CompletedIntegratorStep(c, fmi2True, &event, &end);
+}
+
+static fmi2Status nominals(fmi2Component c) {
+    double x[STATES];
+    const fmi2Status status = fmi2GetNominalsOfContinuousStates(c, x, STATES);
+    for (int i = 0; status == fmi2OK && i < STATES; i++) {
+        HOLD(isfinite(x[i]) && x[i] > 0.0, "a nominal value is a number above 0");
+    }
+    return status;
+}
+
+static fmi2Status directional(Bytes* input, fmi2Component c) {
+    const fmi2ValueReference unknown = next_reference(input);
+    const fmi2ValueReference known = next_reference(input);
+    const double direction = next_real(input);
+    double slope = 0.0;
+    const fmi2Status status = fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &direction, &slope);
+    HOLD(status != fmi2OK || isfinite(slope), "a directional derivative is a number");
+    return status;
+}
+
+static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
+    char bytes[STATE_SIZE_MOST];
+    size_t size = 0;
+    fmi2FMUstate* from = &bench->slot[next_byte(input) % SLOTS];
+    if (!*from || fmi2SerializedFMUstateSize(c, *from, &size) != fmi2OK) {
+        return fmi2OK;
+    }
+    HOLD(fmi2SerializeFMUstate(c, *from, bytes, size) == fmi2OK, "a state can be written");
+    HOLD(fmi2DeSerializeFMUstate(c, bytes, size, from) == fmi2OK, "and read");
+    return fmi2OK;
+}
+
+static fmi2Status on_states(Bytes* input, Bench* bench, fmi2Component c) {
+    fmi2FMUstate* slot = &bench->slot[next_byte(input) % SLOTS];
+    switch (next_byte(input) % 5) {
+    case 0:
+        return fmi2GetFMUstate(c, slot);
+    case 1:
+        return fmi2GetFMUstate(bench->simulation.component, slot);
+    case 2:
+        return fmi2FreeFMUstate(c, slot);
+    case 3:
+        return carry_state(input, bench, c);
+    default:
+        return fmi2SetFMUstate(c, *slot);
+    }
+}
+
+static fmi2Status call(Bytes* input, Bench* bench) {
+    fmi2Component c = bench->exchange.component;
+    fmi2ValueReference vr = 0;
+    double real = 0.0;
+    switch (next_byte(input) % 24) {
+    case 0:
+        return fmi2SetupExperiment(c, fmi2False, 0.0, next_real(input), (int)(next_byte(input) % 2),
+                                   next_real(input));
+    case 1:
+        return fmi2EnterInitializationMode(c);
+    case 2:
+        return fmi2ExitInitializationMode(c);
+    case 3:
+        return next_byte(input) % 8 ? fmi2OK : fmi2Terminate(c);
+    case 4:
+        return next_byte(input) % 8 ? fmi2OK : fmi2Reset(c);
+    case 5:
+        return choose(input, c);
+    case 6:
+        return on_states(input, bench, c);
+    case 7:
+        return directional(input, c);
+    case 8:
+        vr = next_reference(input);
+        return fmi2GetReal(c, &vr, 1, &real);
+    case 9:
+        return fmi2DoStep(c, 0.0, next_real(input), fmi2True);
+    case 10:
+    case 11:
+        return fmi2EnterEventMode(c);
+    case 12:
+    case 13:
+        return update(c);
+    case 14:
+    case 15:
+        return fmi2EnterContinuousTimeMode(c);
+    case 16:
+        return complete(c);
+    case 17:
+        return fmi2SetTime(c, next_real(input));
+    case 18:
+        return put_states(input, c);
+    case 19:
+        return next_byte(input) % 2 ? rates(c) : indicators(c);
+    case 20:
+        return nominals(c);
+    case 21:
+        return try_step(input, c);
+    default:
+        return set_reals(input, c);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+    Bytes input = {data, data + size};
+    Bench bench = {.slot = {NULL}};
+    instantiate_for(&bench.exchange, fmi2ModelExchange);
+    instantiate_for(&bench.simulation, fmi2CoSimulation);
+    fmi2Component c = bench.exchange.component;
+    for (int calls = 0; input.at < input.end && calls < CALLS_MOST; calls++) {
+        const StateBytes before = state_of(c);
+        new_errors(&bench.exchange);
+        const fmi2Status status = call(&input, &bench);
+        HOLD(status == fmi2OK || status == fmi2Error, "the status is one of two");
+        if (status == fmi2Error) {
+            const StateBytes after = state_of(c);
+            HOLD(new_errors(&bench.exchange) > 0, "an error comes with a message");
+            HOLD(same_state(&before, &after), "an error changes nothing");
+        } else {
+            check_outputs(c);
+        }
+    }
+    for (int i = 0; i < SLOTS; i++) {
+        HOLD(fmi2FreeFMUstate(c, &bench.slot[i]) == fmi2OK, "a slot can be freed");
+    }
+    fmi2_instance_free(&bench.exchange);
+    fmi2_instance_free(&bench.simulation);
+    return 0;
+}

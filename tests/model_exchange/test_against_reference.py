@@ -1,0 +1,69 @@
+"""Model exchange by CVODE against the reference, in fmpy's own loop, and against co-simulation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from model_exchange.exchange_scenes import ExchangeScene, drawn, errors, run
+from reference.fast_reference import advance
+
+from frictioncontact.fmu import FrictionFmu
+
+TOLERANCE = 1e-7  # of the host, for every step; the error of a run is the sum of some of them
+ALLOWED = 100 * TOLERANCE
+# Of a bristle that slips while inputs move its bound and sigma, over the work of the limit.
+ALLOWED_HEAT = 0.1
+
+
+@pytest.mark.parametrize("number", range(36))
+def test_scenes(fmu: FrictionFmu, number: int) -> None:
+    """Vibrating or not, inputs held or linear, every law with a state."""
+    scene = drawn(number, fmu)
+    found = errors(scene, run(scene, fmu, TOLERANCE))
+    assert found.F_t < ALLOWED and found.W_f < ALLOWED
+    assert found.Q_f < (ALLOWED_HEAT if scene.inputs_move_a_bound else ALLOWED)
+
+
+def held(fmu: FrictionFmu, count: int) -> list[ExchangeScene]:
+    scenes = (drawn(number, fmu) for number in range(1000))
+    chosen = (scene for scene in scenes if scene.is_held)
+    return [next(chosen) for _ in range(count)]
+
+
+def by_fmpy(
+    fmu: FrictionFmu, scene: ExchangeScene, interface: str, tolerance: float
+) -> dict[str, np.ndarray]:
+    names = ["F_t", "W_f", "Q_f"]
+    start = scene.start_values()
+    for name, value in start.items():
+        if isinstance(value, str):
+            items = fmu.variables[name].declaredType.items
+            start[name] = next(int(item.value) for item in items if item.name == value)
+    result = simulate_fmu(
+        str(fmu.path),
+        fmi_type=interface,
+        stop_time=scene.h,
+        output_interval=scene.h / 40,
+        start_values=start,
+        relative_tolerance=tolerance,
+        output=names,
+        record_events=False,
+    )
+    return {name: result[name] for name in names}
+
+
+def test_fmpy_and_co_simulation(fmu: FrictionFmu) -> None:
+    """fmpy sets inputs between its steps only, so they are held here."""
+    for scene in held(fmu, 18):
+        exchanged = by_fmpy(fmu, scene, "ModelExchange", TOLERANCE)
+        stepped = by_fmpy(fmu, scene, "CoSimulation", 1e-9)
+        truth = advance(scene.scene, scene.h, scene.delta_0)
+        found = errors(scene, {name: values[-1] for name, values in exchanged.items()})
+        assert max(found) < ALLOWED, scene.number
+        for name, values in stepped.items():
+            scale = truth.limit * (1.0 if name == "F_t" else truth.path)
+            assert exchanged[name] == pytest.approx(values, rel=0, abs=2 * ALLOWED * scale), (
+                scene.number,
+                name,
+            )

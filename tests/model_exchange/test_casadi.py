@@ -1,0 +1,87 @@
+"""CasADi's importer of model exchange: it takes rates and directional derivatives, and knows no events."""
+
+from __future__ import annotations
+
+import casadi
+import numpy as np
+import pytest
+from model_exchange.exchange_scenes import ExchangeScene, drawn, errors
+
+from frictioncontact.fmu import FrictionFmu, Value
+
+TOLERANCE = 1e-8
+ALLOWED = 300 * TOLERANCE  # over all steps; CasADi asks for one tolerance of states of very different sizes
+
+
+def without_bound(fmu: FrictionFmu, count: int) -> list[ExchangeScene]:
+    """Dahl and LuGre with a constant limit, held inputs, most of them vibrating."""
+    scenes = (drawn(number, fmu) for number in range(1000))
+    chosen = (
+        each
+        for each in scenes
+        if each.scene.friction != "ElasticPlastic" and each.scene.limit == "Constant" and each.is_held
+    )
+    return [next(chosen) for _ in range(count)]
+
+
+def builder(fmu: FrictionFmu, start_values: dict[str, Value]) -> casadi.DaeBuilder:
+    dae = casadi.DaeBuilder("contact", str(fmu.directory))
+    for name, value in start_values.items():
+        if isinstance(value, str):
+            items = fmu.variables[name].declaredType.items
+            value = next(int(item.value) for item in items if item.name == value)
+        dae.set(name, float(value))
+    return dae
+
+
+def integrated(fmu: FrictionFmu, scene: ExchangeScene) -> dict[str, float]:
+    """By CasADi's CVODES, in states of the size 1."""
+    dae = builder(fmu, scene.start_values())
+    contact = dae.create("contact", ["t", "x", "u"], ["ode", "y"])
+    own = scene.scene
+    length = own.F_C / own.contact.sigma
+    energy = own.F_C * max(abs(own.V), own.V_1) * scene.h
+    sizes = casadi.DM([{"delta": length, "W_f": energy, "Q_f": energy}[name] for name in dae.x()])
+    inputs = casadi.DM([getattr(own, name) for name in dae.u()])
+    t, x = casadi.MX.sym("t"), casadi.MX.sym("x", 3)
+    rates, _ = contact(t, sizes * x, inputs)
+    solver = casadi.integrator(
+        "solver",
+        "cvodes",
+        {"t": t, "x": x, "ode": rates / sizes},
+        0.0,
+        scene.h,
+        {"reltol": TOLERANCE, "abstol": TOLERANCE, "max_num_steps": 1_000_000},
+    )
+    start = casadi.DM([scene.delta_0 if name == "delta" else 0.0 for name in dae.x()])
+    end = sizes * solver(x0=start / sizes)["xf"]
+    _, outputs = contact(scene.h, end, inputs)
+    return dict(zip(dae.y(), np.array(outputs).ravel(), strict=True))
+
+
+def test_integration_without_events(fmu: FrictionFmu) -> None:
+    """A kink of |V| that no event marks costs CVODES steps, and no accuracy."""
+    for scene in without_bound(fmu, 9):
+        assert max(errors(scene, integrated(fmu, scene))) < ALLOWED, scene.number
+
+
+def test_jacobians(fmu: FrictionFmu) -> None:
+    """Exact ones, by differences of CasADi's own evaluations."""
+    start = {
+        "friction.model": "LuGre",
+        "friction.staticRatio": 1.4,
+        "vibration.V_1": 0.5,
+        "vibration.a_d": 1e-6,
+    }
+    dae = builder(fmu, {**start, "contact.stiffnessScale": 1e-4, "friction.sigma_1": 20.0})
+    contact = dae.create("contact", ["t", "x", "u"], ["ode"])
+    t, u = 3e-6, np.array([0.1, 14e-6, 58e9, 312.0])
+    x = np.array([2e-8 if name == "delta" else 1e-4 for name in dae.x()])
+    by_x, by_u = (np.array(block) for block in contact.jacobian()(t, x, u, 0)[1:])
+    for exact, at, steps in ((by_x, x, 1e-6 * x), (by_u, u, 1e-6 * u)):
+        for k, step in enumerate(steps):
+            moved = np.outer([1.0, -1.0], step * (np.arange(len(at)) == k)) + at
+            ends = [np.array(contact(t, *((m, u) if at is x else (x, m)))).ravel() for m in moved]
+            difference = (ends[0] - ends[1]) / (2 * step)
+            scale = np.abs(ends[0]).max() / abs(at[k])
+            assert exact[:, k] == pytest.approx(difference, rel=1e-6, abs=1e-7 * scale)

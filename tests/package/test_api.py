@@ -1,0 +1,113 @@
+"""fc.identify and fc.advise: what the commands print, from Python values, and one line for what is wrong."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from matplotlib import rcParams
+from matplotlib.figure import Figure
+
+import frictioncontact as fc
+from frictioncontact.advice import command as advise_command
+from frictioncontact.identification import command as identify_command
+from workshop.project import ROOT
+
+DRY = ROOT / "data" / "dry.csv"
+LAW = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+
+
+@pytest.fixture(scope="module")
+def dry(fmu_path: Path) -> fc.Identification:
+    return fc.identify(DRY, fit="contact.sigma", start=LAW, fmu=fmu_path)
+
+
+def test_a_fit_finds_the_stiffness_of_the_documents(dry: fc.Identification) -> None:
+    """7.76 MN/m (7.56 to 7.96), as docs/validation.md has it by another route: a search over stiffnesses."""
+    assert dry.values["contact.sigma"] == pytest.approx(7.76e6, rel=1e-3)
+    assert dry.intervals["contact.sigma"] == pytest.approx((7.56e6, 7.96e6), rel=1e-3)
+    assert list(dry.values) == ["contact.sigma"]
+
+
+def test_it_prints_what_the_command_prints(
+    dry: fc.Identification, fmu_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = [f"{name}={value}" for name, value in LAW.items()]
+    identify_command.main(
+        [str(DRY), "--fit", "contact.sigma", "--set", words[0], "--set", words[1], "--quick"]
+        + ["--fmu", str(fmu_path)]
+    )
+    printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert printed == [line.rstrip() for line in str(dry).splitlines()]
+    assert "7.758" in str(dry)
+
+
+def test_a_frame_is_a_file(dry: fc.Identification, fmu_path: Path) -> None:
+    frame = pd.read_csv(DRY, comment="#")
+    found = fc.identify(frame, {"contact.sigma": (1e5, 1e9)}, start=LAW, fmu=fmu_path)
+    assert found.values["contact.sigma"] == pytest.approx(dry.values["contact.sigma"], rel=1e-3)
+
+
+def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None:
+    before = dict(rcParams)
+    figure = dry.plot()
+    assert isinstance(figure, Figure) and len(figure.axes) == 2
+    assert dict(rcParams) == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"data": "nowhere.csv"}, "nowhere.csv: No such file"),
+        ({"data": pd.DataFrame({"V": [1.0]})}, "data, line 1, column 1: heading 'V' is not of the form"),
+        ({"fit": ["F_t"]}, "F_t can't be fitted; these can: V, d, E"),
+        ({"fit": ["contact.sigma", "contact.sigma"]}, "contact.sigma is to be fitted twice"),
+        ({"fit": {"contact.sigma": (2.0, 1.0)}}, "contact.sigma = 2..1: the range is empty"),
+        ({"start": {"friction.modl": 1}}, "start: friction.modl is no variable of the FMU; did you mean"),
+        (
+            {"uncertain": {"speed": 1.0}},
+            "the uncertainty of speed: speed is no variable that a file may hold",
+        ),
+        ({"bootstrap": 3}, "bootstrap 3: must be at least 40"),
+        ({"bootstrap": "100"}, "bootstrap = '100': must be a whole number"),
+        ({"fit": []}, "fit: names no parameter"),
+        ({"fit": 3}, "fit = 3: must be a name, names, or a mapping of names"),
+        ({"fit": {"F_C": "x"}}, "F_C = 'x' is not a number"),
+        ({"fit": {"F_C": (1.0, 2.0, 3.0)}}, "F_C = (1.0, 2.0, 3.0): a range is (low, high)"),
+        ({"start": "V"}, "start = 'V': must be a mapping of names to values"),
+        ({"data": {"V [m/s]": [1.0]}}, "data: must be the path of a CSV file, or a pandas frame"),
+    ],
+)
+def test_wrong_fits_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
+    with pytest.raises(fc.UserError, match="^" + re.escape(message)):
+        fc.identify(**{"data": DRY, "fit": "contact.sigma", "fmu": fmu_path, **arguments})
+
+
+def test_advice_is_what_the_command_prints(fmu_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = {"V": 0.05, "vibration.V_1": 1.44, "friction.model": "LuGre"}
+    found = fc.advise(scene, accuracy=1e-4, step=1e-3, output="F_t_mean", fmu=fmu_path)
+    words = [f"{name}={value}" for name, value in scene.items()]
+    options = ["--accuracy", "1e-4", "--step", "1e-3", "--output-of", "F_t_mean"]
+    advise_command.main([*options, *words, "--fmu", str(fmu_path)])
+    assert capsys.readouterr().out.startswith(f"{found}\n")
+    assert set(found.settings) == {"solver.tolerance"} and found.error <= 1e-4 * 55.0
+    assert found.start_values == {**scene, **found.settings}
+    fc.simulate(found.start_values, stop=1e-3, step=1e-3, fmu=fmu_path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"scene": {"v": 1.0}}, "scene: v is no variable of the FMU; did you mean V?"),
+        ({"scene": {"solver.tolerance": 1e-3}}, "solver.tolerance does not describe a scene; these do: V, d"),
+        ({"accuracy": 2.0}, "accuracy 2: must lie between 1e-10 and 1"),
+        ({"output": "W_f"}, "output W_f: must be one of both, F_t, F_t_mean"),
+        ({"inputs": {"time": [0.0, 1.0, 3.0], "V": [0.0] * 3}}, "inputs: time must grow in even steps"),
+        ({"inputs": {"time": [0.0], "V": [0.0]}}, "inputs: needs at least two samples"),
+    ],
+)
+def test_wrong_questions_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
+    with pytest.raises(fc.UserError, match="^" + re.escape(message)):
+        fc.advise(**{"fmu": fmu_path, **arguments})

@@ -1,0 +1,152 @@
+"""The wheel where users are: an empty folder, a fresh environment, no compiler, no rights beside it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from frictioncontact import resources
+from workshop.project import ROOT
+
+pytest.importorskip("lief", reason="the release's packages are not installed: scripts/setup release")
+from workshop.release.wheel import packed
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name != "posix", reason="the rights are POSIX's"),
+]
+PAGE = "<title>a page</title>"  # tests/playground tests the real one
+NOBODY = (
+    {"user": 65534, "group": 65534, "extra_groups": ()} if os.name == "posix" and os.geteuid() == 0 else {}
+)
+
+
+@pytest.fixture(scope="module")
+def wheel(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("wheel")
+    page = folder / "playground.html"
+    page.write_text(PAGE, encoding="utf-8")
+    return packed("wheel", folder / "made", [fmu_path, resources.batch_host(), page])
+
+
+class User:
+    """Who may write in one folder, and has on the path what is installed there."""
+
+    def __init__(self, folder: Path) -> None:
+        self.bin, self.work = folder / "environment" / "bin", folder / "work"
+        for path in (folder, self.work):
+            path.mkdir(exist_ok=True)
+            if NOBODY:
+                os.chown(path, 65534, 65534)
+        self.run(python_of_all(), "-m", "venv", str(folder / "environment"))
+
+    def run(self, *command: str) -> str:
+        environment = {"PATH": str(self.bin), "HOME": str(self.work), "LANG": "C.UTF-8", "COLUMNS": "120"}
+        done = subprocess.run(
+            [str(self.bin / command[0]) if "/" not in command[0] else command[0], *command[1:]],
+            cwd=self.work, env=environment, capture_output=True, text=True, **NOBODY,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+
+def python_of_all() -> str:
+    """A Python of this version that who has no rights can start."""
+    name = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    for path in (sys.executable, shutil.which(name, path="/usr/local/bin:/usr/bin:/bin")):
+        with contextlib.suppress(OSError, TypeError):
+            if subprocess.run([path, "-c", "import venv, ensurepip"], cwd="/", **NOBODY).returncode == 0:
+                return str(path)
+    pytest.skip(f"no {name} that other users can start")
+
+
+@pytest.fixture(scope="module")
+def user(wheel: Path) -> Iterator[User]:
+    """With the wheel installed, its dependencies as the clone pins them."""
+    with tempfile.TemporaryDirectory(prefix="frictioncontact-user-") as temporary:
+        yield installed(wheel, Path(temporary))
+
+
+def installed(wheel: Path, folder: Path) -> User:
+    folder.chmod(0o755)  # pytest's own folders are closed to others
+    user, found = User(folder / "home"), folder / "found"
+    pins = [
+        line
+        for name in ("requirements.txt", "requirements-dev.txt", "constraints.txt")
+        for line in (ROOT / name).read_text(encoding="utf-8").splitlines()
+        if "==" in line
+    ]
+    constraints = folder / "constraints.txt"
+    constraints.write_text("\n".join(pins) + "\n")
+    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*pip, "-d", str(found), "-c", str(constraints), str(wheel)], check=True)
+    user.run(
+        "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index",
+        "--no-compile", "--find-links", str(found), str(found / wheel.name),
+    )  # fmt: skip
+    return user
+
+
+def test_what_is_inside(wheel: Path) -> None:
+    assert re.fullmatch(r"frictioncontact-[\d.]+-py3-none-\w+\.whl", wheel.name)
+    assert "any" not in wheel.name
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        metadata = archive.read(next(name for name in names if name.endswith("METADATA"))).decode()
+    bundled = {name.removeprefix("frictioncontact/bundled/") for name in names if "/bundled/" in name}
+    assert {
+        "FrictionContact.fmu",
+        resources.batch_host().name,
+        "playground.html",
+        "data/table2.csv",
+    } <= bundled
+    assert "data/measurements/friction-record.csv.gz" in bundled
+    assert "frictioncontact/py.typed" in names
+    assert not [name for name in names if name.startswith(("workshop", "tests"))]
+    for licence in ("LICENSE", "sundials-license.txt", "LICENSE-FrictionModels.txt"):
+        assert any(name.endswith(licence) and "dist-info/licenses" in name for name in names), licence
+    assert "License-Expression: BSD-3-Clause" in metadata
+
+
+def test_no_compiler_is_there(user: User) -> None:
+    for tool in ("cc", "gcc", "clang", "make"):
+        assert shutil.which(tool, path=str(user.bin)) is None
+
+
+def test_the_lines_of_the_readme(user: User) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    (code, printed) = re.findall(r"```python\n(.*?)```\n+```text\n(.*?)```", text, re.DOTALL)[0]
+    (user.work / "readme.py").write_text(code, encoding="utf-8")
+    assert user.run("python", "readme.py") == printed
+    assert len(code.splitlines()) <= 8
+
+
+def test_table_2(user: User) -> None:
+    printed = user.run("frictioncontact", "table2")
+    table = [line.split("│")[1:-1] for line in printed.splitlines() if line.startswith("│")]
+    assert [float(cells[8]) for cells in table] == [55.00, 21.56, 26.44, 55.00, 55.00, 27.44]
+    assert (user.work / "table2.csv").is_file()
+    assert not (user.work / "table2.png").exists()  # matplotlib is an extra
+
+
+def test_every_command_that_needs_no_extra(user: User) -> None:
+    version = user.run("frictioncontact", "version")
+    assert str(user.bin.parent) in version
+    assert "usage: frictioncontact gap" in user.run("frictioncontact", "gap", "--help")
+    user.run("frictioncontact", "simulate", "--stop", "1e-3", "--step", "5e-4", "--output", "out.csv")
+    assert len((user.work / "out.csv").read_text().splitlines()) == 4
+    assert "stiffnessScale" in user.run("frictioncontact", "identify", "--quick")
+    assert "Promise" in user.run("frictioncontact", "advise", "--quick", "V=0.5")
+    user.run("frictioncontact", "playground", "--output", "page.html")
+    assert (user.work / "page.html").read_text(encoding="utf-8") == PAGE
+    assert "Longitudinal vibration" in user.run("frictioncontact", "validate", "--quick")

@@ -1,0 +1,263 @@
+"""F_t_settled, the mean force of a settled period, and its derivatives: against reference and formulas."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from reference.fast_reference import advance
+from scipy.integrate import solve_ivp
+
+from frictioncontact.batch import simulate_many
+from frictioncontact.fmu import FrictionError, FrictionFmu, Value
+from workshop.reference.solution import Scene
+from workshop.reference.start_values import scene_of
+
+F_C = 55.0
+LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
+BY_LOAD = {"friction.limit": "Load", "contact.input": "Load", "load": 200.0}
+VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "vibration.phase_d": 3.9}
+SOFT = {"contact.stiffnessScale": 4.4e-7}
+
+
+def drawn(law: str, number: int) -> dict[str, Value]:
+    """The start values of a seeded scene that vibrates."""
+    rng = np.random.default_rng([LAWS.index(law), number])
+
+    def between(low: float, high: float) -> float:
+        return float(low * (high / low) ** rng.random())
+
+    V_1 = between(1e-2, 3.0)
+    scene: dict[str, Value] = {
+        "friction.model": law,
+        "friction.limit": str(rng.choice(["Constant", "Load"])),
+        "contact.input": str(rng.choice(["Separation", "Load"])),
+        "contact.model": str(rng.choice(["Asperities", "Constant", "Mindlin"])),
+        "contact.stiffnessScale": between(1e-8, 1e-1),
+        "contact.sigma": between(1e4, 1e12),
+        "friction.staticRatio": 1.0 + between(1e-2, 2.0),
+        "friction.V_S": V_1 * between(1e-2, 3.0),
+        "friction.sigma_1": between(1e-2, 10.0),
+        "friction.sigma_2": between(1e-2, 10.0),
+        "vibration.V_1": V_1,
+        "vibration.a_d": float(rng.choice([0.0, between(1e-8, 3e-6)])),
+        "vibration.phase_d": float(rng.uniform(-4.0, 4.0)),
+        "V": V_1 * float(rng.uniform(-2.0, 2.0)),
+        "load": between(1.0, 1e3),
+        "delta_0": between(1e-10, 1e-6),
+    }
+    return scene
+
+
+def expected(values: dict[str, Value], **changed: float) -> tuple[float, float]:
+    """The reference's mean over a period from where delta_0 settles, and its mean limit [N]."""
+    scene = replace(scene_of(values), **changed)
+    period = 1 / scene.f
+    step = advance(scene, period, float(values.get("delta_0", 0.0)), settled=True)
+    # a period of the damping gives back what rounding leaves
+    return step.F_t_mean - scene.sigma_1 * (step.delta - step.delta_start) / period, step.limit
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-11])
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_to_its_tolerance(fmu: FrictionFmu, law: str, tolerance: float) -> None:
+    for number in range(16):
+        values = drawn(law, number)
+        mean, limit = expected(values)
+        with fmu.session(values | {"solver.tolerance": tolerance}) as session:
+            assert abs(session.get("F_t_settled") - mean) < max(tolerance, 1e-10) * limit, (number, values)
+
+
+def scale_of(scene: Scene, name: str) -> float:
+    """How far the input moves before the force is another one."""
+    if name == "d":
+        return scene.contact.R_q / scene.contact.lambda_
+    return scene.V_1 if name == "V" else getattr(scene, name)
+
+
+def reference_slope(values: dict[str, Value], name: str, step: float) -> float:
+    """Central difference of order 6."""
+    scene, total = scene_of(values), 0.0
+    start, h = getattr(scene, name), step * scale_of(scene, name)
+    for k, weight in enumerate((3 / 4, -3 / 20, 1 / 60), start=1):
+        above, below = (expected(values, **{name: start + side * k * h})[0] for side in (1, -1))
+        total += weight * (above - below) / h
+    return total
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_derivatives_against_differences_of_the_reference(fmu: FrictionFmu, law: str) -> None:
+    """Where two differences of the reference agree: elsewhere they step over a kink."""
+    graded = 0
+    for number in range(6):
+        values = drawn(law, number)
+        scene, (_, limit) = scene_of(values), expected(values)
+        with fmu.session(values) as session:
+            for name in ("V", "E", "load" if scene.input == "Load" else "d"):
+                coarse, fine = (reference_slope(values, name, step) for step in (4e-3, 1e-3))
+                unit = abs(fine) + limit / scale_of(scene, name)
+                if abs(fine - coarse) < 1e-9 * unit:
+                    graded += 1
+                    assert abs(session.slope("F_t_settled", name) - fine) < 1e-8 * unit, (
+                        number,
+                        name,
+                        values,
+                    )
+            assert session.slope("F_t_settled", "d" if scene.input == "Load" else "load") == 0.0
+    assert graded >= 12
+
+
+@pytest.mark.parametrize("zeta", [-0.9, 0.0, 0.3, 0.999, 1.0 - 1e-6])
+def test_coulomb_is_the_arc_sine(fmu: FrictionFmu, zeta: float) -> None:
+    """(2 / pi) F_C asin(V / V_1) + sigma_2 V, and its derivative."""
+    V_1, sigma_2 = 0.8, 3.0
+    values = {"friction.model": "Coulomb", "V": zeta * V_1, "vibration.V_1": V_1, "friction.sigma_2": sigma_2}
+    with fmu.session(values) as session:
+        mean = 2 / math.pi * F_C * math.asin(zeta) + sigma_2 * zeta * V_1
+        assert session.get("F_t_settled") == pytest.approx(mean, rel=1e-12, abs=1e-12)
+        by_V = 2 / math.pi * F_C / (V_1 * math.sqrt((1 - zeta) * (1 + zeta))) + sigma_2
+        assert session.slope("F_t_settled", "V") == pytest.approx(by_V, rel=1e-7)
+
+
+@pytest.mark.parametrize("V", [1e-300, -1e-300, 3e-3, -3e-3, 1e15])
+@pytest.mark.parametrize("law", LAWS)
+def test_without_vibration_it_is_steady_sliding(fmu: FrictionFmu, law: str, V: float) -> None:
+    has_curve, excess, V_S = law in ("LuGre", "ElasticPlastic"), 0.4, 0.01
+    values = {
+        "friction.model": law,
+        "friction.staticRatio": 1.0 + excess,
+        "friction.V_S": V_S,
+        "friction.sigma_1": 30.0,
+        "friction.sigma_2": 2.0,
+        "V": V,
+    }
+    curve = excess * math.exp(-((V / V_S) ** 2)) if has_curve else 0.0
+    with fmu.session(values) as session:
+        steady = math.copysign(F_C * (1 + curve), V) + 2.0 * V
+        assert session.get("F_t_settled") == pytest.approx(steady, rel=1e-14)
+        by_V = -2 * abs(V) / V_S**2 * F_C * curve + 2.0
+        assert session.slope("F_t_settled", "V") == pytest.approx(by_V, abs=1e-8 * F_C / V_S)
+        assert session.slope("F_t_settled", "E") == session.slope("F_t_settled", "d") == 0.0
+    with fmu.session(values | BY_LOAD) as session:
+        steady = math.copysign(0.176 * 200.0 * (1 + curve), V)
+        assert session.get("F_t_settled") == pytest.approx(steady + 2.0 * V, rel=1e-12)
+        if abs(V) < 1.0:
+            assert session.slope("F_t_settled", "load") == pytest.approx(steady / 200.0, rel=1e-9)
+
+
+def test_where_nothing_moves_it_is_the_force_of_delta_0(fmu: FrictionFmu) -> None:
+    for law in LAWS:
+        constant = {"friction.model": law, "contact.model": "Constant", "contact.sigma": 1e6, "V": 0.0}
+        with fmu.session(constant | {"delta_0": 1e-5}) as session:
+            session.step(1e-3)
+            assert session.get("F_t_settled") == pytest.approx(0.0 if law == "Coulomb" else 10.0, rel=1e-15)
+    with fmu.session(constant | BY_LOAD | {"friction.model": "ElasticPlastic", "delta_0": 1e-2}) as session:
+        assert session.get("F_t_settled") == pytest.approx(0.176 * 200.0, rel=1e-12)
+
+
+def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) -> None:
+    """ElasticPlastic that swings by sigma a below its limit: around sigma delta_0 at V = 0, else around
+    F_C - sigma a + sigma V T / 2, since it slips once a period and is carried on by V T until then."""
+    f, sigma, swing = 20e3, 1e6, 1e-5
+    values = {
+        "friction.model": "ElasticPlastic",
+        "contact.model": "Constant",
+        "contact.sigma": sigma,
+        "vibration.V_1": 2 * math.pi * f * swing,
+        "delta_0": 7e-6,
+    }
+    for V, mean in ((0.0, sigma * 7e-6), (1e-300, F_C - sigma * swing), (-1e-300, sigma * swing - F_C)):
+        with fmu.session(values | {"V": V}, start=0.37 / f) as session:
+            assert session.get("F_t_settled") == pytest.approx(mean, rel=1e-9)
+            assert session.slope("F_t_settled", "V") == pytest.approx(sigma / f / 2, rel=1e-3)
+
+
+def test_it_is_the_same_at_every_time_and_after_every_past(fmu: FrictionFmu) -> None:
+    with fmu.session(VIBRATING | SOFT) as session:
+        first = session.get("F_t_settled")
+        for V in (0.9, -0.2, 0.5):
+            session.set("V", V)
+            session.set_rates(V=300.0, d=1e-3)
+            session.step(1.7e-4)
+            assert session.get("F_t_settled") != first
+        session.set("V", 0.5)
+        session.set("d", 14e-6)
+        assert session.get("F_t_settled") == first
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_long_steps_lead_there(fmu: FrictionFmu, law: str) -> None:
+    values = VIBRATING | SOFT | {"friction.model": law, "friction.limit": "Load", "friction.staticRatio": 1.2}
+    with fmu.session(values) as session:
+        session.step(1000 / 20e3)
+        session.step(1 / 20e3)
+        assert session.get("F_t_settled") == pytest.approx(session.get("F_t_mean"), abs=2e-6 * F_C)
+
+
+def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, periods: int) -> np.ndarray:
+    """V [m/s] of a mass that a force pulls over Dahl's bristle, vibration and all, after each period: RK4."""
+    h, V, delta, after = 1 / f / 100, 0.0, 0.0, []
+
+    def rate(t: float, V: float, delta: float) -> tuple[float, float]:
+        total = V + V_1 * math.cos(2 * math.pi * f * t)
+        return (pull - sigma * delta) / mass, total - sigma * abs(total) * delta / F_C
+
+    for k in range(100 * periods):
+        t = k * h
+        a_1, b_1 = rate(t, V, delta)
+        a_2, b_2 = rate(t + h / 2, V + h / 2 * a_1, delta + h / 2 * b_1)
+        a_3, b_3 = rate(t + h / 2, V + h / 2 * a_2, delta + h / 2 * b_2)
+        a_4, b_4 = rate(t + h, V + h * a_3, delta + h * b_3)
+        V += h / 6 * (a_1 + 2 * a_2 + 2 * a_3 + a_4)
+        delta += h / 6 * (b_1 + 2 * b_2 + 2 * b_3 + b_4)
+        if k % 100 == 99:
+            after.append(V)
+    return np.array(after)
+
+
+@pytest.mark.parametrize("mass", [0.1, 1.0])
+def test_a_mass_follows_it_but_for_the_ripple(fmu: FrictionFmu, mass: float) -> None:
+    """Within twice F_C / (2 pi f m), the velocity of the ripple, of a mass that sees the vibration."""
+    pull, sigma, V_1, f, periods = 40.0, 2.5e6, 1.44, 20e3, 300
+    contact = {"contact.model": "Constant", "contact.sigma": sigma, "vibration.V_1": V_1}
+    with fmu.session(contact) as session:
+
+        def acceleration(_: float, V: np.ndarray) -> list[float]:
+            session.set("V", V[0])
+            return [(pull - session.get("F_t_settled")) / mass]
+
+        times = np.arange(1, periods + 1) / f
+        mean = solve_ivp(acceleration, (0.0, times[-1]), [0.0], t_eval=times, rtol=1e-8, atol=1e-10).y[0]
+    error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
+    ripple = F_C / (2 * math.pi * f * mass)
+    assert 0.01 * ripple < error < 2 * ripple
+
+
+def test_extreme_inputs_give_a_number_or_say_what_is_wrong(fmu: FrictionFmu) -> None:
+    refused: list[str] = []
+    for law in LAWS:
+        for V in (0.0, 5e-324, -1e-300, 1e10, 1e15):
+            for change in (BY_LOAD, {"d": 0.4}, {"d": 1.1000001e-6}, {"E": 1.0}, {"E": 1e15}):
+                for vibration in ({}, VIBRATING, {"vibration.V_1": 1e-300}):
+                    values = vibration | SOFT | change | {"friction.model": law, "V": V}
+                    try:
+                        with fmu.session(values) as session:
+                            slopes = [session.slope("F_t_settled", name) for name in ("V", "d", "E", "load")]
+                            got = [session.get("F_t_settled"), *slopes]
+                    except FrictionError as error:
+                        refused.append(str(error))
+                        continue
+                    assert all(map(math.isfinite, got)), (values, got)
+    assert refused and all(re.search(r"\b(V|d|E|load|F_t_settled)\b", text) for text in refused)
+
+
+def test_many_scenarios_on_all_processors_give_the_bits_of_one(fmu: FrictionFmu) -> None:
+    V = np.linspace(-2.0, 2.0, 41)
+    values = VIBRATING | SOFT | {"friction.model": "LuGre", "friction.staticRatio": 1.3}
+    many = simulate_many(values | {"V": V}, {"mean": "F_t_settled"}, fmu=fmu.path)["mean"]
+    for each, mean in zip(V, many, strict=True):
+        with fmu.session(values | {"V": float(each)}) as session:
+            assert session.get("F_t_settled") == mean

@@ -1,0 +1,163 @@
+"""The web site: it builds without a warning, and works in a browser that opens it from a folder."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from lxml import html
+from playwright.sync_api import Browser, Page, expect
+
+from frictioncontact.errors import UserError
+from workshop import description
+from workshop.browser import chromium, find_browser
+from workshop.project import ROOT
+from workshop.site.check import SIZES, broken_links, complaints, context, pages, watched
+from workshop.site.command import build
+
+pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
+pytestmark = pytest.mark.filterwarnings("ignore::sphinx.deprecation.RemovedInSphinx11Warning")  # of the theme
+expect.set_options(timeout=30_000)  # ms; the machine may have much other work
+
+
+@pytest.fixture(scope="module")
+def older(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site of an older version: one page."""
+    folder = tmp_path_factory.mktemp("older") / "0.1.0"
+    folder.mkdir()
+    (folder / "index.html").write_text("<!DOCTYPE html><title>0.1.0</title><p>The first version")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def site(older: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("web") / "site"
+    build(folder, [older])
+    return folder
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    if find_browser() is None:
+        pytest.skip("no Chromium is installed")
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture(params=SIZES)
+def page(browser: Browser, site: Path, request: pytest.FixtureRequest) -> Iterator[Page]:
+    """A window of each size. Fails the test if a page had an error or asked for more than the folder has."""
+    heard: list[str] = []
+    with context(browser, request.param) as window:
+        yield watched(window, site, heard)
+    assert heard == []
+
+
+def test_every_page_is_there(site: Path) -> None:
+    documents = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/README.md")]
+    assert len(documents) > 15
+    for document in documents:
+        made = (site / document.relative_to(ROOT)).with_suffix(".html")
+        title = re.search(r"^# (.*)$", document.read_text(encoding="utf-8"), re.MULTILINE)[1]
+        shown = html.parse(str(made)).find(".//h1").text_content()
+        assert shown.startswith(title.replace("`", "")), document
+    assert (site / "index.html").read_bytes() == (site / "README.html").read_bytes()
+
+
+def test_the_version_stands_on_every_page(site: Path) -> None:
+    version = description.read().version
+    for path in {*pages(site)} - {site / "playground.html", site / "0.1.0" / "index.html"}:
+        assert f"FrictionContact {version}" in path.read_text(encoding="utf-8"), path
+
+
+def test_no_path_of_this_machine_is_on_a_page(site: Path) -> None:
+    for path in [*pages(site), site / "searchindex.js"]:
+        assert str(ROOT) not in path.read_text(encoding="utf-8"), path
+
+
+def test_older_versions_are_linked(site: Path) -> None:
+    assert '<a href="0.1.0/index.html">' in (site / "CHANGELOG.html").read_text(encoding="utf-8")
+    assert (site / "0.1.0" / "index.html").is_file()
+
+
+def test_links_lead_to_files_and_anchors(site: Path) -> None:
+    assert len(pages(site)) > 20
+    assert list(broken_links(site)) == []
+
+
+def test_faults_are_found(tmp_path: Path) -> None:
+    faults = {
+        '<a href="no.html">': "leads nowhere",
+        '<a href="fault.html#no">': "no such anchor",
+        '<a href="../outside.html">': "leads nowhere",
+        '<img src="https://example.org/a.png">': "loaded from outside",
+        '<script src="//example.org/a.js"></script>': "loaded from outside",
+    }
+    folder = tmp_path / "site"
+    folder.mkdir()
+    (tmp_path / "outside.html").touch()
+    (folder / "fault.html").write_text(f"<!DOCTYPE html>{''.join(faults)}<a href='fault.html'>")
+    for line, found in zip(broken_links(folder), faults.values(), strict=True):
+        assert found in line
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_no_page_has_an_error_or_asks_for_anything(site: Path, browser: Browser, size: str) -> None:
+    assert complaints(browser, site, size) == []
+
+
+def test_complaints_are_heard(browser: Browser, tmp_path: Path) -> None:
+    (tmp_path / "a.html").write_text(
+        '<!DOCTYPE html><div style="width: 5000px">.</div><script>undefined.x</script>'
+        '<img src="http://127.0.0.1:9/a.png"><script>console.error("no")</script>'
+    )
+    heard = " ".join(complaints(browser, tmp_path, "phone"))
+    for words in ("script error", "request: http://127.0.0.1:9", "console: no", "wider than a phone"):
+        assert words in heard
+
+
+def test_search_finds_a_page_and_its_section(page: Page, site: Path) -> None:
+    page.goto((site / "index.html").as_uri())
+    page.locator(".search-button__button:visible").first.click()
+    field = page.locator("dialog input[type=search]")
+    field.fill("elasticplastic")
+    field.press("Enter")
+    hits = page.locator("ul.search li a")
+    expect(page.locator("#search-results")).to_contain_text("matching the search query")
+    addresses = hits.evaluate_all("all => all.map((link) => link.href)")
+    assert any("docs/validation.html" in address for address in addresses)
+    hits.first.click()
+    expect(page.locator("article")).to_contain_text("ElasticPlastic")
+
+
+def test_the_playground_lives_in_its_page(page: Page, site: Path) -> None:
+    page.goto((site / "docs" / "playground.html").as_uri())
+    frame = page.frame_locator("iframe.playground")
+    frame.locator("body[data-worker=done]").wait_for()
+    expect(frame.get_by_text("21.56").first).to_be_visible()  # N, row 2 of Table 2 in the README
+
+
+def test_the_menu_of_a_phone_leads_on(browser: Browser, site: Path) -> None:
+    with context(browser, "phone") as window:
+        page = window.new_page()
+        page.goto((site / "index.html").as_uri())
+        link = page.get_by_role("link", name="Errata", exact=True)
+        assert not link.is_visible()
+        page.locator("button.primary-toggle").click()
+        link.click()
+        expect(page.locator("article h1")).to_contain_text("What the paper prints")
+
+
+def test_docstrings_become_the_page_of_python(site: Path) -> None:
+    text = html.parse(str(site / "docs" / "api.html")).getroot().text_content()
+    assert "simulate_many" in text
+    assert "Parameters" in text and "threads" in text
+
+
+def test_a_folder_with_something_else_stays(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").touch()
+    with pytest.raises(UserError, match="no site"):
+        build(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]

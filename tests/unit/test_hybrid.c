@@ -1,0 +1,93 @@
+// What model exchange keeps of a contact: how fast the inputs are seen to move, and the heat of what is taken onto a bound.
+#include "hybrid.h"
+
+#include <string.h>
+
+#include "check.h"
+#include "solver/solver.h"
+#include "table_1.h"
+
+static const double SIGMA = 2.5e6; // N/m
+static const double MU = 0.176;
+
+// ElasticPlastic of constant stiffness, pressed by a load [N].
+static FcFrictionContact pressed(double load) {
+    FcFrictionContact contact;
+    memset(&contact, 0, sizeof contact);
+    FcVariables* v = &contact.state.variables;
+    v->d = 14e-6;
+    v->E = 58e9;
+    v->load = load;
+    v->F_C = 55.0;
+    v->initialState = FC_STATE_GIVEN;
+    v->friction = (FcFriction){
+        .model = FC_ELASTIC_PLASTIC, .limit = FC_LIMIT_LOAD, .mu = MU, .staticRatio = 1.0, .V_S = 0.01};
+    v->contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_LOAD);
+    v->vibration.f = 20e3;
+    v->solver.method = FC_METHOD_COLLOCATION;
+    v->solver.tolerance = 1e-6;
+    FcMessage message;
+    CHECK(fc_hybrid_allows(&contact, &message));
+    CHECK(fc_friction_contact_initialize(&contact, 0.0, &message));
+    fc_hybrid_start(&contact);
+    return contact;
+}
+
+static void the_speed_of_inputs_is_that_between_two_steps(void) {
+    FcFrictionContact contact = pressed(100.0);
+    FcHybrid* hybrid = &contact.state.hybrid;
+    fc_hybrid_set_time(&contact, 0.5);
+    contact.state.variables.load = 90.0;
+    CHECK(!fc_hybrid_step_completed(&contact));
+    CHECK_NEAR(hybrid->speed[FC_INPUT_LOAD], -20.0, 1e-14);
+    CHECK(hybrid->speed[FC_INPUT_V] == 0.0 && hybrid->speed[FC_INPUT_D] == 0.0);
+    fc_hybrid_set_time(&contact, nextafter(0.5, 1.0)); // too short to tell a speed
+    contact.state.variables.load = 90.0 + 1e-13;
+    fc_hybrid_step_completed(&contact);
+    CHECK_NEAR(hybrid->speed[FC_INPUT_LOAD], -20.0, 1e-14);
+    contact.state.variables.load = 40.0; // a jump at an event is no motion
+    fc_hybrid_event_ends(&contact);
+    fc_hybrid_set_time(&contact, 1.5);
+    fc_hybrid_step_completed(&contact);
+    CHECK(hybrid->speed[FC_INPUT_LOAD] == 0.0);
+}
+
+// The bound falls below a bristle at rest, which then slips along it until the load stands still.
+static void a_bound_that_falls_takes_the_bristle_along(void) {
+    FcFrictionContact contact = pressed(100.0);
+    FcVariables* v = &contact.state.variables;
+    v->delta = MU * 95.0 / SIGMA;
+    fc_hybrid_set_time(&contact, 0.1);
+    v->load = 90.0;
+    CHECK(fc_hybrid_step_completed(&contact));
+    fc_hybrid_event_begins(&contact);
+    bool changed;
+    bool nominals_changed;
+    FcMessage message;
+    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message));
+    fc_hybrid_event_ends(&contact);
+    const double D = MU * 90.0 / SIGMA;
+    CHECK(changed && nominals_changed && contact.state.hybrid.regime == FC_SLIPS_FORWARD);
+    CHECK_NEAR(v->delta, D, 1e-13);
+    CHECK_NEAR(v->Q_f, 0.5 * SIGMA * (MU * 95.0 / SIGMA * (MU * 95.0 / SIGMA) - D * D), 1e-12);
+    fc_hybrid_set_time(&contact, 0.2);
+    CHECK(fc_hybrid_step_completed(&contact)); // the load stands still: nothing pushes any more
+    fc_hybrid_event_begins(&contact);
+    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message));
+    CHECK(contact.state.hybrid.regime == FC_FREE && !nominals_changed);
+    fc_friction_contact_free(&contact);
+}
+
+static void coulomb_is_refused(void) {
+    FcFrictionContact contact = pressed(100.0);
+    contact.state.variables.friction.model = FC_COULOMB;
+    FcMessage message = {""};
+    CHECK(!fc_hybrid_allows(&contact, &message) && strstr(message.text, "Coulomb"));
+}
+
+int main(void) {
+    the_speed_of_inputs_is_that_between_two_steps();
+    a_bound_that_falls_takes_the_bristle_along();
+    coulomb_is_refused();
+    return check_result();
+}
