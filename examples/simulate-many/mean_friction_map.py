@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from frictionlab import style
-from frictionlab.batch import simulate_many
-from frictionlab.build import build_fmu
-from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
-from frictionlab.project import ROOT
+from frictioncontact import style
+from frictioncontact.batch import simulate_many
+from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, SEPARATION, STIFFNESS_PRINTED
+from workshop.build import build_fmu
+from workshop.project import ROOT
 
 parser = argparse.ArgumentParser(
     description="Mean friction over stiffness and velocity, a million scenarios."
@@ -56,11 +56,11 @@ scenarios = {
 # %%
 began, processor_began = time.perf_counter(), time.process_time()
 results = simulate_many(
-    options.fmu or build_fmu(),
     scenarios,
     {"mean": "F_t_mean", "work": ("W_f", "change"), "heat": ("Q_f", "change")},
     settled=True,
     progress=True,
+    fmu=options.fmu or build_fmu(),
 )
 mean = results["mean"] / COULOMB_FORCE
 elapsed, processor = time.perf_counter() - began, time.process_time() - processor_began

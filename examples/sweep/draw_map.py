@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frictionlab import style
-from frictionlab.parameters import COULOMB_FORCE, FREQUENCY, STIFFNESS_PRINTED
+from frictioncontact import style
+from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, STIFFNESS_PRINTED
 
 V_1 = 1.44  # m/s
 

@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from frictionlab import style
-from frictionlab.build import build_fmu
-from frictionlab.parameters import E_REDUCED, SEPARATION
-from frictionlab.project import ROOT, UserError
-from frictionlab.reference.contact import Contact, stiffness
-from frictionlab.systems import parameters, run_libcosim, write_ssp
+from frictioncontact import style
+from frictioncontact.errors import UserError
+from frictioncontact.parameters import E_REDUCED, SEPARATION
+from workshop.build import build_fmu
+from workshop.project import ROOT
+from workshop.reference.contact import Contact, stiffness
+from workshop.systems import parameters, run_libcosim, write_ssp
 
 HERE = Path(__file__).resolve().parent
 DURATION = 0.1  # s
