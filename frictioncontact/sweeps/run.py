@@ -187,9 +187,9 @@ def scenarios_of(
         raise UserError(f"--seed {seed}: must be a whole number")
     if seed < 0:
         raise UserError(f"--seed {seed}: must be at least 0")
-    for name, values in vary.items():
+    for column, values in vary.items():
         if not isinstance(values, Iterable):
-            raise UserError(f"--vary {name}: {values!r} is neither a text nor a sequence of values")
+            raise UserError(f"--vary {column}: {values!r} is neither a text nor a sequence of values")
     variables = Variables(description_and_library(content, name)[0])
     if csv is not None:
         scenarios = from_csv(variables, Path(csv))

@@ -205,13 +205,14 @@ class TestRuns:
         output, arguments, random = tmp_path / "sweep", [*MANY, "--group", "500"], np.random.default_rng(5)
         kept = 0
         for kills in range(10):
+            computing = kills % 2 == 0
             sweeping = started(command(fmu_path, output, *arguments, "--workers", str(1 + kills % 2)))
-            if kills % 2:
+            if computing:
                 there = len(parts(output))
                 while len(parts(output)) == there and sweeping.poll() is None:
                     time.sleep(0.01)
             with contextlib.suppress(subprocess.TimeoutExpired):
-                sweeping.wait(random.uniform(0.0, 0.3 if kills % 2 else 2.0))
+                sweeping.wait(random.uniform(0.0, 0.1 if computing else 2.0))
             sweeping.kill()
             sweeping.wait()
             if (output / "results.parquet").exists():

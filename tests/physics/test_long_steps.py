@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from fmpy.fmi1 import FMICallException
 from mpmath import mp, mpf
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
@@ -115,7 +114,7 @@ def test_a_start_that_tells_no_phase_is_refused(fmu: FrictionFmu) -> None:
     with fmu.session({"V": 0.1}, start=1e10) as session:
         session.step(1e5)
         session.set("vibration.V_1", 0.4)
-        with pytest.raises(FMICallException):
+        with pytest.raises(FrictionError, match="too large"):
             session.get("F_t")
         session.set("vibration.f", 1e3)
         session.step(1e5)
