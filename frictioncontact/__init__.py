@@ -2,12 +2,18 @@
 
     import frictioncontact as fc
 
-    fc.simulate({"V": 0.5, "vibration.V_1": 1.44}, stop=1e-3, step=5e-5)      one scene, as a table
-    fc.simulate_many({"V": velocities}, ["F_t_mean"])                         thousands of scenes
-    fc.identify("mine.csv", fit=["contact.stiffnessScale"])                   parameters from measurements
-    fc.advise({"V": 0.5, "vibration.V_1": 1.44}, accuracy=1e-3)               what to set for an accuracy
-    fc.sweep(output="sweep", random=10**6, vary={"V": "0.01:1:log"})         millions of scenes, into Parquet
-    fc.FMU                                                                    the .fmu file, for other tools
+    # one scene, as a table
+    fc.simulate({"V": 0.5, "vibration.V_1": 1.44}, stop=1e-3, step=5e-5)
+    # thousands of scenes
+    fc.simulate_many({"V": velocities}, ["F_t_mean"])
+    # parameters from measurements
+    fc.identify("mine.csv", fit=["contact.stiffnessScale"])
+    # what to set for an accuracy
+    fc.advise({"V": 0.5, "vibration.V_1": 1.44}, accuracy=1e-3)
+    # millions of scenes, into Parquet
+    fc.sweep(output="sweep", random=10**6, vary={"V": "0.01:1:log"})
+    # the .fmu file, for other tools
+    fc.FMU
 
 Variables have their names in the FMU, all values are in SI units. What is wrong with them is a UserError in
 one line. Modules are imported when what they hold is first used.
