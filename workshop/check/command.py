@@ -73,7 +73,8 @@ def _tool(name: str, package: str) -> str:
 
 
 def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | None = None) -> None:
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
+    parallel = ("-n", "logical", "--maxprocesses", "8", "--dist", "loadfile")
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *parallel, *tests]
     _run(command, {"FRICTION_FMU": str(fmu), **(environment or {})})
 
 
