@@ -13,7 +13,7 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -29,7 +29,8 @@ PERCENT = re.compile(r"^\[\s*(\d+)%\] (.*)")
 def presets() -> dict[str, Path]:
     """The build presets and the folders that they build in."""
     listed = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
-    return {preset["name"]: Path(preset["binaryDir"].replace("${sourceDir}", str(ROOT))) for preset in listed}
+    folders = {preset["name"]: preset["binaryDir"] for preset in listed if not preset.get("hidden")}
+    return {name: Path(folder.replace("${sourceDir}", str(ROOT))) for name, folder in folders.items()}
 
 
 def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path:
@@ -41,34 +42,40 @@ def build_fmu(preset: str = "default", progress: Progress | None = None) -> Path
 
 
 def build_targets(
-    preset: str, targets: Sequence[str], progress: Progress | None = None, options: Sequence[str] = ()
+    preset: str,
+    targets: Sequence[str],
+    progress: Progress | None = None,
+    options: Sequence[str] = (),
+    environment: Mapping[str, str] | None = None,
+    anew: bool = False,
 ) -> Path:
     """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
 
     Commands that are started together build one after the other. What a killed build left, and what came with
-    a copied or renamed project, is built anew.
+    a copied or renamed project, is built anew, as is all where that is asked for.
     """
     if progress is None:
         with progress_bar() as own:
-            return build_targets(preset, targets, own, options)
+            return build_targets(preset, targets, own, options, environment, anew)
     folder = presets()[preset]
     task = progress.add_task("Waiting for another build", total=100)
     with _locked(folder):
         progress.update(task, description="Configuring")
         cmake = [sys.executable, "-m", "cmake"]
         unfinished = folder / "unfinished"
-        anew = unfinished.exists() or _is_of_another_folder(folder)
+        anew = anew or unfinished.exists() or _is_of_another_folder(folder)
         settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
         settings += shlex.split(os.environ.get("CMAKE_ARGS", ""))
         _run(
             [*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])],
+            environment,
             progress,
             task,
             unfinished,
         )
         chosen = ["--target", *targets] if targets else []
         chosen += ["--parallel", str(os.cpu_count() or 1), *(["--clean-first"] if anew else [])]
-        _run([*cmake, "--build", str(folder), *chosen], progress, task, unfinished)
+        _run([*cmake, "--build", str(folder), *chosen], environment, progress, task, unfinished)
     progress.remove_task(task)
     return folder
 
@@ -101,12 +108,24 @@ def _is_folder(entry: re.Match[str] | None, folder: Path) -> bool:
     return entry is not None and Path(entry[1]).exists() and Path(entry[1]).samefile(folder)
 
 
-def _run(command: list[str], progress: Progress, task: TaskID, unfinished: Path) -> None:
+def _run(
+    command: list[str],
+    environment: Mapping[str, str] | None,
+    progress: Progress,
+    task: TaskID,
+    unfinished: Path,
+) -> None:
     """Runs a command of CMake. The file `unfinished` stays if it is killed; if it fails, it tidies up."""
     lines: list[str] = []
     unfinished.touch()
     with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+        command,
+        cwd=ROOT,
+        env={**os.environ, **(environment or {})},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
     ) as process:
         for line in process.stdout or ():
             lines.append(line)

@@ -17,7 +17,7 @@ METHODS = ("collocation", "cvode", "backwardEuler", "trapezoid", "rk4", "explici
 
 def build_host(platform: str, library: Path) -> Path:
     """run_scenarios for a platform, beside the library of that platform in CMake's folder."""
-    build(platform, "run_scenarios", library.parent)
+    build(platform, ["run_scenarios"])
     suffix = ".exe" if platform == "win64" else ""
     return library.parent / "tests" / "release" / f"run_scenarios{suffix}"
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import struct
 import subprocess
@@ -16,7 +15,7 @@ import pytest
 from frictioncontact.errors import UserError
 from workshop.release import inspect as release_inspect
 from workshop.release.inspect import Library, check, inspect
-from workshop.release.targets import CACHE, zig
+from workshop.release.targets import environment, zig
 from workshop.release.universal import universal
 
 PLATFORMS = [
@@ -52,8 +51,8 @@ def test_a_foreign_export_is_found(tmp_path: Path) -> None:
     source = tmp_path / "foreign.c"
     source.write_text("int fmi2One(void) { return 1; } int CVode(void) { return 2; }")
     compiler = [str(zig()), "cc", "-target", "x86_64-linux-gnu.2.17", "-shared", "-s"]
-    environment = {**os.environ, "ZIG_GLOBAL_CACHE_DIR": str(CACHE), "ZIG_LOCAL_CACHE_DIR": str(CACHE)}
-    subprocess.run([*compiler, str(source), "-o", str(tmp_path / "foreign.so")], env=environment, check=True)
+    command = [*compiler, str(source), "-o", str(tmp_path / "foreign.so")]
+    subprocess.run(command, env=environment(), check=True)
     with pytest.raises(UserError, match="linux64: CVode is exported"):
         check("linux64", tmp_path / "foreign.so")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -18,6 +19,7 @@ from rich.progress import Progress
 from frictioncontact.batch.runner import SIGNATURES
 from frictioncontact.errors import UserError
 from workshop import description
+from workshop.project import ROOT
 from workshop.release import command as release
 from workshop.release import inspect as release_inspect
 from workshop.release import targets as release_targets
@@ -26,10 +28,9 @@ QUIET = {"transient": True, "disable": True}
 
 
 @pytest.fixture(scope="module")
-def released(tmp_path_factory: pytest.TempPathFactory, copy_compiled: Callable[..., dict[str, Path]]) -> Path:
+def released(tmp_path_factory: pytest.TempPathFactory) -> Path:
     output = tmp_path_factory.mktemp("released") / "FrictionContact.fmu"
-    with pytest.MonkeyPatch.context() as patch, Progress(**QUIET) as progress:
-        patch.setattr(release, "compile_platforms", copy_compiled)
+    with Progress(**QUIET) as progress:
         release.make_release(output, ["linux64"], progress)
     return output
 
@@ -188,16 +189,18 @@ def test_code_that_does_not_compile(copy_project: Callable[[Path], Path], tmp_pa
     """The compiler's first error in one line."""
     broken = copy_project(tmp_path / "broken")
     (broken / "fmu_src" / "model" / "contact.c").write_text("int contact(void) { return surprise; }\n")
-    with pytest.raises(UserError, match=r"the build fails: .*contact\.c:1:.*surprise"):
-        release.compile_platforms(["linux64"], tmp_path / "work", root=broken)
+    command = [sys.executable, "-m", "workshop", "workshop.release.command", "--platforms", "linux64"]
+    settings = {"CMAKE_ARGS": f"-DFC_SUNDIALS_SOURCE={ROOT / 'build' / 'sundials-source'}"}
+    done = subprocess.run(
+        command, cwd=broken, env=release_targets.environment() | settings, capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    assert re.fullmatch(r"error: the build fails: .*contact\.c:1:.*surprise.*\n", done.stderr), done.stderr
 
 
-def test_a_file_that_is_not_valid(
-    monkeypatch: pytest.MonkeyPatch, released: Path, copy_compiled: Callable[..., dict[str, Path]]
-) -> None:
+def test_a_file_that_is_not_valid(monkeypatch: pytest.MonkeyPatch, released: Path) -> None:
     """An older release stays as it was."""
     before = released.read_bytes()
-    monkeypatch.setattr(release, "compile_platforms", copy_compiled)
     monkeypatch.setattr(release, "validate_fmu", lambda path: ["a made-up problem\nof two lines"])
     assert refuse(released) == "the validator finds: a made-up problem of two lines"
     assert released.read_bytes() == before

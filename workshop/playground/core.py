@@ -6,7 +6,6 @@ functions of a system, and a page has none.
 
 from __future__ import annotations
 
-import os
 import subprocess
 import tempfile
 from pathlib import Path
@@ -16,7 +15,7 @@ import fmpy
 from frictioncontact.errors import UserError
 from workshop.packing import model_description, variable_table
 from workshop.project import ROOT
-from workshop.release.targets import CACHE, zig
+from workshop.release.targets import environment, zig
 
 HOST = Path(__file__).with_name("assets") / "host.c"
 OPTIONS = (
@@ -39,9 +38,8 @@ def core() -> bytes:
 
 
 def _compile(arguments: list[str]) -> None:
-    environment = {**os.environ, "ZIG_GLOBAL_CACHE_DIR": str(CACHE), "ZIG_LOCAL_CACHE_DIR": str(CACHE)}
     run = subprocess.run(
-        [str(zig()), "cc", *arguments], env=environment, capture_output=True, text=True, errors="replace"
+        [str(zig()), "cc", *arguments], env=environment(), capture_output=True, text=True, errors="replace"
     )
     if run.returncode:
         lines = run.stderr.splitlines()

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 from fmpy.validation import validate_fmu
@@ -28,7 +28,7 @@ from workshop.fmu_docs.page import page as index_page
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release import inspect as release_inspect
-from workshop.release.targets import CACHE, SUFFIXES, build, zig
+from workshop.release.targets import SUFFIXES, build, zig
 from workshop.release.universal import universal
 from workshop.release.verify import SUMS, verify, write_sums
 from workshop.release.wheel import wheels
@@ -44,30 +44,24 @@ TOOLCHAIN_LICENSES = {
 
 
 def compile_platforms(
-    platforms: Iterable[str],
-    folder: Path,
-    cache: Path = CACHE,
-    root: Path = ROOT,
-    tell: Callable[[str], None] = lambda platform: None,
+    platforms: Iterable[str], progress: Progress | None = None, anew: bool = False
 ) -> dict[str, Path]:
-    """Libraries in folders of CMake under folder, one a platform, each inspected; root holds the sources.
+    """Libraries in CMake's folders, one a platform, each inspected; anew: whatever has been compiled before.
 
     Beside each lies the batch host, which goes into the wheels.
     """
     libraries = {}
     for platform in platforms:
-        tell(platform)
-        build(platform, "fmu_parts", folder / platform, cache, root)
-        libraries[platform] = folder / platform / f"FrictionContact{SUFFIXES[platform]}"
+        folder = build(platform, ["fmu_parts", "friction_batch"], progress, anew)
+        libraries[platform] = folder / f"FrictionContact{SUFFIXES[platform]}"
         release_inspect.check(platform, libraries[platform])
-        build(platform, "friction_batch", folder / platform, cache, root)
-        release_inspect.check(platform, batch_host(folder, platform), "batch_")
+        release_inspect.check(platform, batch_host(libraries[platform]), "batch_")
     return libraries
 
 
-def batch_host(folder: Path, platform: str) -> Path:
-    """What compile_platforms has made."""
-    return folder / platform / f"friction_batch{SUFFIXES[platform]}"
+def batch_host(library: Path) -> Path:
+    """Beside a platform's library."""
+    return library.with_name(f"friction_batch{library.suffix}")
 
 
 def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str, Path]:
@@ -130,8 +124,11 @@ def size_table(fmu: Path) -> str:
     return "\n".join(lines)
 
 
-def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> None:
-    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not."""
+def make_release(output: Path, platforms: Iterable[str], progress: Progress, anew: bool = False) -> None:
+    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not.
+
+    anew: every file is compiled, whatever has been compiled before.
+    """
     platforms = list(platforms)
     zig()
     try:
@@ -142,21 +139,21 @@ def make_release(output: Path, platforms: Iterable[str], progress: Progress) -> 
             pass
     except OSError as error:
         raise UserError(f"{output} can't be written: {error.strerror}") from None
+    libraries: dict[str, Path] = {}
     task = progress.add_task("Compiling", total=len(platforms) + 3)
-
-    def tell(platform: str) -> None:
+    for platform in platforms:
         progress.update(task, advance=1, description=f"Compiling for {platform}")
-
+        libraries.update(compile_platforms([platform], progress, anew))
     with tempfile.TemporaryDirectory(prefix="release-") as temporary:
         folder = Path(temporary)
-        libraries = compile_platforms(platforms, folder, tell=tell)
-        tell("a page")
+        progress.update(task, advance=1, description="Writing pages")
         files = documents(folder)
         progress.update(task, advance=1, description="Packing and validating")
         fmu, page = folder / "FrictionContact.fmu", files[f"documentation/{PLAYGROUND}"]
-        pack(fmu, with_universal_darwin(libraries, folder), folder / platforms[0], files)
-        tell("wheels")
-        hosts = {platform: batch_host(folder, platform) for platform in platforms}
+        parts = libraries[platforms[0]].parent
+        pack(fmu, with_universal_darwin(libraries, folder), parts, files)
+        progress.update(task, advance=1, description="Packing wheels")
+        hosts = {platform: batch_host(library) for platform, library in libraries.items()}
         made = wheels(fmu, page, hosts, folder / "wheels")
         targets = {output: fmu, **{output.with_name(path.name): path for path in (page, *made)}}
         for target, path in targets.items():
@@ -210,7 +207,7 @@ def _release(options: argparse.Namespace) -> None:
     output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
     platforms = options.platforms or (QUICK if options.quick else list(SUFFIXES))
     with progress_bar() as progress:
-        make_release(output, platforms, progress)
+        make_release(output, platforms, progress, anew=not options.quick)
     print(size_table(output))
     print(f"SUNDIALS {sundials_version()}")
     print(f"zig {importlib.metadata.version('ziglang')}")

@@ -5,11 +5,13 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
-import subprocess
-import sys
+from collections.abc import Sequence
 from pathlib import Path
 
+from rich.progress import Progress
+
 from frictioncontact.errors import UserError
+from workshop.build import build_targets
 from workshop.project import ROOT
 
 # Folders under binaries/, as FMI 2.0.5, section 2.3, and FMI 3.0, section 2.5.1.4.1, name them.
@@ -20,8 +22,6 @@ SUFFIXES = {
     "darwin64": ".dylib",
     "aarch64-darwin": ".dylib",
 }
-CACHE = ROOT / "build" / "zig-cache"
-CMAKE_ERROR = re.compile(r"CMake Error at [^\n]*:\n(.*?)(?:Call Stack|-- Configuring|\Z)", re.DOTALL)
 
 
 def zig() -> Path:
@@ -39,33 +39,21 @@ def zig() -> Path:
     raise UserError(f"the cross compiler is missing: no zig in the package ziglang, {folder}")
 
 
-def build(platform: str, target: str, folder: Path, cache: Path = CACHE, root: Path = ROOT) -> None:
-    """Builds a target of CMake for a platform in folder, which is made if it is new.
+def environment() -> dict[str, str]:
+    """Where zig keeps what it has compiled, unless the environment says otherwise."""
+    cache = str(ROOT / "build" / "zig-cache")
+    return {"ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache, **os.environ}
 
-    root holds the sources. platform: one of SUFFIXES. UserError holds the first error.
+
+def build(
+    platform: str, targets: Sequence[str], progress: Progress | None = None, anew: bool = False
+) -> Path:
+    """Builds targets of CMake for a platform, one of SUFFIXES, and gives CMake's folder.
+
+    UserError holds the compiler's first error.
     """
-    if not (folder / "Makefile").is_file():
-        options = {
-            "CMAKE_TOOLCHAIN_FILE": root / "cmake" / "zig.cmake",
-            "CMAKE_BUILD_TYPE": "Release",
-            "FMI_PLATFORM": platform,
-            "FC_SUNDIALS_SOURCE": ROOT / "build" / "sundials-source",
-            "Python3_EXECUTABLE": sys.executable,
-            "ZIG": zig(),
-        }
-        defined = [f"-D{name}={value}" for name, value in options.items()]
-        _cmake(["-S", str(root), "-B", str(folder), "-G", "Unix Makefiles", *defined], cache)
-    jobs = str(os.cpu_count() or 1)
-    _cmake(["--build", str(folder), "--target", target, "--parallel", jobs], cache)
-
-
-def _cmake(arguments: list[str], cache: Path) -> None:
-    environment = {**os.environ, "ZIG_GLOBAL_CACHE_DIR": str(cache), "ZIG_LOCAL_CACHE_DIR": str(cache)}
-    command = [sys.executable, "-m", "cmake", *arguments]
-    run = subprocess.run(command, env=environment, capture_output=True, text=True, errors="replace")
-    if run.returncode:
-        if match := CMAKE_ERROR.search(run.stderr):
-            raise UserError(" ".join(match[1].split()))
-        lines = run.stderr.splitlines()
-        errors = [line for line in lines if re.search(r"\berror:", line)] or lines
-        raise UserError(f"the build fails: {errors[0] if errors else f'exit status {run.returncode}'}")
+    try:
+        return build_targets(platform, targets, progress, [f"-DZIG={zig()}"], environment(), anew)
+    except UserError as error:
+        lines = [line for line in str(error).splitlines() if re.search(r"\berror:", line)]
+        raise UserError(f"the build fails: {lines[0]}" if lines else str(error)) from None
