@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from workshop.bench import stability, work_precision
 from workshop.bench.driver import Bench
 from workshop.bench.grade import Point
 from workshop.bench.periodic_means import SCENES, closed_form, harmonic_balance
@@ -61,27 +58,3 @@ def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> 
         for key in ("error_F_t", "error_F_t_mean"):
             slope = math.log(coarse[key] / fine[key]) / math.log(5)  # type: ignore[operator]
             assert slope == pytest.approx(order, abs=0.15)
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("bench")
-def test_both_commands_run_whole_with_quick(fmu_path: Path, tmp_path: Path) -> None:
-    options = ["--quick", "--build-dir", str(fmu_path.parent), "--output", str(tmp_path)]
-    work_precision.main(options)
-    stability.main(options)
-    names = [
-        "work-precision",
-        "work-precision-ratios",
-        "step-size",
-        "periods",
-        "periodic-means",
-        "stability",
-        "coupled-errors",
-    ]
-    for name in names:
-        with (tmp_path / f"{name}.csv").open(newline="") as file:
-            assert len(list(csv.DictReader(file))) > 2
-    for name in ("work-precision", "step-size", "periods", "stability", "coupled"):
-        assert (tmp_path / f"{name}.svg").stat().st_size > 1000
-        assert (tmp_path / f"{name}.png").stat().st_size > 1000
-    assert "scipy" in (tmp_path / "machine.json").read_text()
