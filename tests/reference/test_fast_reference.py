@@ -73,9 +73,9 @@ def bounded_step(law: str, number: int) -> tuple[Scene, float, float]:
 
 @pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
 def test_a_bounded_bristle_is_the_same_in_python(law: str) -> None:
-    """100 random steps of each law: two references that share the law and no code."""
+    """40 random steps of each law: two references that share the law and no code."""
     slips = 0
-    for number in range(100):
+    for number in range(40):
         scene, h, delta_0 = bounded_step(law, number)
         one, fast = python.advance(scene, scene.start, h, delta_0), advance(scene, h, delta_0)
         slips += law != "ElasticPlastic" and advance(scene, h, delta_0, binds=False).delta != fast.delta
@@ -88,7 +88,7 @@ def test_a_bounded_bristle_is_the_same_in_python(law: str) -> None:
         assert abs(float(one.delta) - fast.delta) * fast.sigma <= 1e-12 * fast.limit, number
         for mine, other in ((one.work, fast.work), (one.heat, fast.heat)):
             assert abs(float(mine) - other) <= 1e-12 * max(work, abs(other)), number
-    assert law == "ElasticPlastic" or slips > 20
+    assert law == "ElasticPlastic" or slips > 8
 
 
 @pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
