@@ -61,12 +61,14 @@ FcPhase fc_drive_phase(const FcDrive* drive, double t) {
     return angle == 0.0 ? (FcPhase){0.0, 1.0} : (FcPhase){sin(angle), cos(angle)};
 }
 
-// 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
-double fc_drive_small_V(const FcDrive* drive, double t, FcPhase at_t) {
+// Where V nearly cancels V_1 |V| may be less than the rounding of either, by which the stiffest contacts would relax
+// otherwise: 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
+double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
     const double V_1 = drive->vibration.V_1;
     const double cosine = at_t.cosine;
-    if (fabs(cosine) < 0.9) {
-        return linear(drive->V, t) + V_1 * cosine;
+    const double V = linear(drive->V, t) + V_1 * cosine;
+    if (!(fabs(V) < 0.05 * V_1) || fabs(cosine) < 0.9) {
+        return V;
     }
     const double turn = copysign(V_1, cosine);
     return (drive->V.value + turn) +

@@ -61,13 +61,7 @@ typedef struct {
 FcDriveValues fc_drive_values(const FcDrive* drive, double t);
 FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
-// V [m/s] at the time t [s]. Where V nearly cancels V_1 |V| may be less than the rounding of either, by which the stiffest
-// contacts would relax otherwise: fc_drive_small_V keeps its digits.
-double fc_drive_small_V(const FcDrive* drive, double t, FcPhase at_t);
-static inline double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
-    const double V = drive->V.value + drive->V.rate * t + drive->vibration.V_1 * at_t.cosine;
-    return fabs(V) < 0.05 * drive->vibration.V_1 ? fc_drive_small_V(drive, t, at_t) : V;
-}
+double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m/s
 
 double fc_drive_V(const FcDrive* drive, double t);           // m/s
 double fc_drive_d(const FcDrive* drive, double t);           // m
