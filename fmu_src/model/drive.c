@@ -43,6 +43,10 @@ bool fc_drive_is_constant(const FcDrive* drive) {
     return !fc_drive_vibrates(drive) && !fc_drive_is_linear(drive);
 }
 
+bool fc_drive_V_is_constant(const FcDrive* drive) {
+    return drive->V.rate == 0.0 && drive->vibration.V_1 == 0.0;
+}
+
 static double theta(const FcDrive* drive, double t) { return drive->theta_0 + drive->omega * t; }
 
 static double linear(FcLinearInput input, double t) { return input.value + input.rate * t; }
@@ -122,8 +126,7 @@ FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
 }
 
 double fc_velocity_time_of_change(const FcVelocity* at, double change) {
-    const double rate = fabs(at->rate);
-    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * fabs(at->curvature) * change));
+    return fc_time_to_move(fabs(at->rate), fabs(at->curvature), change);
 }
 
 double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t) {

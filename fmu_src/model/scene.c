@@ -263,8 +263,7 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
 }
 
 double fc_scene_smallest_saturation(const FcScene* scene, double h) {
-    if (scene->at_E.model == FC_CONTACT_MINDLIN &&
-        fc_limit_follows_load(scene->friction)) { // both go with e^(-decay d)
+    if (fc_scene_ratio_is_constant(scene)) {
         const FcContactAtModulus end = contact_at(scene, h);
         return scene->friction->mu *
                fmin(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);

@@ -41,6 +41,11 @@ static inline bool fc_scene_depends_on_d(const FcScene* scene) {
     return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
 }
 
+// Whether g / sigma is no function of it: F_n and Mindlin's stiffness fall with d alike.
+static inline bool fc_scene_ratio_is_constant(const FcScene* scene) {
+    return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
+}
+
 // At the local time t [s].
 double fc_scene_d(const FcScene* scene, double t);      // m
 double fc_scene_d_rate(const FcScene* scene, double t); // m/s

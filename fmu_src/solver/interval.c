@@ -54,7 +54,7 @@ double fc_smooth_time(const FcInterval* interval, double t) {
         scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
     const double rate = pace->phase + pace->log_sigma + by_nearness * fabs(d_rate) + by_E + floating;
     const double curvature = by_nearness * drive->vibration.a_d * drive->omega * drive->omega;
-    return 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)); // rate x + curvature x^2 / 2 = 1
+    return fc_time_to_move(rate, curvature, 1.0);
 }
 
 FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,

@@ -8,7 +8,7 @@ double fc_layer(const FcVelocity* at, double per_path) {
     const double r = per_path * fabs(at->V);
     const double r_rate = per_path * fabs(at->rate);
     const double r_curvature = per_path * fabs(at->curvature);
-    const double root = 2.0 / (r + sqrt(r * r + 2.0 * r_rate));
+    const double root = fc_time_to_move(r, r_rate, 1.0);
     return r_curvature * root * root * root <= 6.0 ? root : cbrt(6.0 / r_curvature);
 }
 
