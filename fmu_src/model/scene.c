@@ -161,8 +161,8 @@ static double bound_at(const FcScene* scene, const FcCoefficients* at) {
     return at->limit * fc_bound_over_limit(scene->friction, at->V);
 }
 
-// A bristle that slips has the deflection of the bound but for what rounds at the end of a step: the phase, and a load
-// that has fallen by decades.
+// A bristle that slips has the deflection of the bound but for the rounding of the phase at the end of a step. What an input
+// that has fallen by decades rounds by may be more, which the step itself mends (fc_stick_slip_end).
 static const double ON_THE_BOUND = 1.0 - 1e-10;
 
 double fc_scene_slip_side(const FcScene* scene, double t, double delta) {

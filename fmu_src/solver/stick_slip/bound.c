@@ -270,5 +270,3 @@ double fc_bound_loss(const FcBoundMotion* at, double delta) {
     const double reached = fc_bound_reached(at, delta);
     return delta != reached ? 0.5 * at->sigma * (delta - reached) * (delta + reached) : 0.0;
 }
-
-double fc_bound(const FcScene* scene, double t) { return fc_bound_motion(scene, t).D; }

@@ -396,7 +396,7 @@ double fc_stick_slip_end(const FcScene* scene, double h, double delta) {
     if ((drive->E.rate == 0.0 && drive->load.rate == 0.0) || fc_bound_is_constant(&bound)) {
         return delta;
     }
-    const double D = fc_bound(&bound, h);
+    const double D = fc_bound_motion(&bound, h).D;
     const double fall =
         fmax(drive->E.value / fc_drive_E(drive, h), drive->load.value / fc_drive_load(drive, h));
     const double rounding = fmin(MOST_ROUNDING, ROUNDING_OF_INPUT * fall);
