@@ -264,7 +264,8 @@ static bool is_dip(const FcDrive* drive, double t) {
            fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
-static const double AWAY_FROM_GRAZING = 0.9; // of V_1: |V| below
+// Up to this |V|, over V_1, V goes through zero steeply enough for acos and its cosine to keep their digits.
+static const double AWAY_FROM_GRAZING = 0.9;
 
 // acos(-V / V_1), which loses half of its digits next to 1 and -1.
 static double angle_of_reversal(double V, double V_1) {

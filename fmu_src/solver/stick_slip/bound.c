@@ -5,11 +5,11 @@
 
 const double FC_NO_BOUND = 1e200;
 
-// Of the time to a pole: the longest panel of the quadratures then ends well before it.
+// The longest smooth time, over the time to a pole: the longest panel of the quadratures then ends well before the pole.
 static const double POLE = 0.12;
 // The shortest smooth time that is good for all places, over that of the phase alone.
 static const double SHORTEST_COMMON = 0.1;
-// Of the smooth time, for a central difference.
+// The step of a central difference, over the smooth time.
 static const double SMALL_PART = 1e-4;
 
 static bool nothing_moves(const FcScene* scene) {
@@ -45,7 +45,8 @@ static double ratio(const FcScene* scene, const FcContactAtModulus* at_E, double
 
 // Beyond this decay d, e^(-decay d) is 0 in rounding: sigma and g are, or stand still.
 static const double GONE = 750.0;
-// Of the time until d may be back from there: the longest panel of the quadratures then ends before.
+// The longest smooth time, over the time until d may be back from there: the longest panel of the quadratures then ends
+// before that.
 static const double RETURN = 0.08;
 
 // The least time [s] that d takes to fall by a distance [m].

@@ -18,8 +18,9 @@ static const double LONGEST[RULES][MOST_DIGITS + 1] = {
     {12, 10.9, 9.9, 9, 8.18, 7.43, 6.75, 6.13, 5.57, 5.06, 4.6, 4.18, 3.79, 3.45},
 };
 
-// Of the time to a zero of E or the load, where ln g has a pole, which the longest panels for few digits would reach.
-// This far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls like 3^(-2n).
+// No panel is longer than this part of the time to a zero of E or the load, where ln g has a pole, which the longest panels
+// for few digits would reach. This far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls
+// like 3^(-2n).
 static const double WAY_TO_POLE = 0.75;
 
 FcIntegrator fc_integrator(const FcScene* scene, double smooth_time, double tolerance) {
