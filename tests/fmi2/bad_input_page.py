@@ -21,10 +21,11 @@ FMI2_ERROR = 3
 HEAD = """\
 # What wrong calls and values get
 
-Each row is a call that a test makes (`tests/fmi2/bad_calls.py`) and the message that reached the logger, in the category
-`logStatusError`. Every one returns `fmi2Error` and nothing is written to stdout or stderr. The state afterwards is the state
-before, to the last bit: the test compares it with that of an instance that was never called wrongly, and lets both run on to
-equal results. `scripts/check bad-input` writes this page; a test holds it to what the FMU does.
+Each row is a call that a test makes (`tests/fmi2/bad_calls.py`) and the message that reached the logger, in
+the category `logStatusError`. Every one returns `fmi2Error` and nothing is written to stdout or stderr. The
+state afterwards is the state before, to the last bit: the test compares it with that of an instance that
+was never called wrongly, and lets both run on to equal results. `scripts/check bad-input` writes this page;
+a test holds it to what the FMU does.
 """
 
 ORDER = """
