@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-// A part of the bound and of the velocities, far above rounding and far below what a host's integrator tells apart.
+// Of the bound, and of the velocities: far above rounding, far below what a host's integrator tells apart.
 static const double HYSTERESIS = 1e-10;
 
 // A bristle that is so near to its bound lies on it.
