@@ -7,7 +7,7 @@
 #include "model/constants.h"
 #include "solver/methods/method.h"
 
-// Of the forces whose differences make a derivative: as fine as the solver goes.
+// The tolerance of the forces whose differences make a derivative, as fine as the solver goes.
 static const double TOLERANCE = 1e-12;
 
 // A derivative is good where its error is estimated as this of it, or as that of this over the force's scale.

@@ -535,7 +535,7 @@ static void commit(March* march, const Sums* part) {
     march->delta = part->end;
 }
 
-static void free_motion(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth);
+static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth);
 
 // The bristle is inside its bound at a and beyond it at b: goes on to where it meets it.
 static void go_to_bound(March* march, const Motion* motion, Real a, Real b, int side) {
@@ -574,15 +574,16 @@ static void go_to_bound(March* march, const Motion* motion, Real a, Real b, int 
         march->watch[0] = march->watch[1] = false;
         const Sums last = panel(w, motion, a, march->met_at, march->delta);
         march->met = 0;
-        free_motion(march, motion, a, march->met_at, &last, 0);
+        go_on(march, motion, a, march->met_at, &last, 0);
         march->met = side;
         march->watch[0] = kept[0];
         march->watch[1] = kept[1];
     }
 }
 
-// Over [a, b], of which one is the sum of a single panel; stops where a bound is met.
-static void free_motion(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth) {
+// Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a bristle that is free
+// stops where it meets a bound.
+static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
     const Sums left = panel(w, motion, a, middle, march->delta);
@@ -591,49 +592,28 @@ static void free_motion(March* march, const Motion* motion, Real a, Real b, cons
     add(&two, &right);
     const bool smallest = is_smallest(w, a, b, depth);
     if (!agree(w, one, &two, b - a) && !smallest) {
-        free_motion(march, motion, a, middle, &left, depth + 1);
-        if (march->met) {
-            return;
+        go_on(march, motion, a, middle, &left, depth + 1);
+        if (!march->met) {
+            const Sums again = motion->slip ? right : panel(w, motion, middle, b, march->delta);
+            go_on(march, motion, middle, b, &again, depth + 1);
         }
-        const Sums again = panel(w, motion, middle, b, march->delta);
-        free_motion(march, motion, middle, b, &again, depth + 1);
         return;
     }
     if (smallest) {
         w->unresolved += 1.0L;
     }
-    int side = side_met(march, middle, left.end);
-    if (side) {
-        go_to_bound(march, motion, a, middle, side);
+    const int side_left = motion->slip ? 0 : side_met(march, middle, left.end);
+    if (side_left) {
+        go_to_bound(march, motion, a, middle, side_left);
         return;
     }
-    side = side_met(march, b, two.end);
+    const int side_right = motion->slip ? 0 : side_met(march, b, two.end);
     commit(march, &left);
-    if (side) {
-        go_to_bound(march, motion, middle, b, side);
+    if (side_right) {
+        go_to_bound(march, motion, middle, b, side_right);
         return;
     }
     commit(march, &right);
-}
-
-static void slip_motion(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth) {
-    World* w = march->w;
-    const Real middle = 0.5L * (a + b);
-    const Sums left = panel(w, motion, a, middle, march->delta);
-    const Sums right = panel(w, motion, middle, b, left.end);
-    Sums two = left;
-    add(&two, &right);
-    const bool smallest = is_smallest(w, a, b, depth);
-    if (!agree(w, one, &two, b - a) && !smallest) {
-        slip_motion(march, motion, a, middle, &left, depth + 1);
-        slip_motion(march, motion, middle, b, &right, depth + 1);
-        return;
-    }
-    if (smallest) {
-        w->unresolved += 1.0L;
-    }
-    add(&march->sums, &two);
-    march->delta = two.end;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -882,8 +862,9 @@ static int march_over(World* w, Real delta, March* march) {
         }
         if (!slip) {
             const Sums one = panel(w, &motion, a, b, march->delta);
-            free_motion(march, &motion, a, b, &one, 0);
+            go_on(march, &motion, a, b, &one, 0);
             slip = march->met;
+            march->met = 0;
             if (slip) {
                 march->changed = a = march->met_at;
             }
@@ -891,7 +872,7 @@ static int march_over(World* w, Real delta, March* march) {
         if (slip && a < b) {
             motion.slip = slip;
             const Sums one = panel(w, &motion, a, b, march->delta);
-            slip_motion(march, &motion, a, b, &one, 0);
+            go_on(march, &motion, a, b, &one, 0);
         }
     }
     free(cuts.time);

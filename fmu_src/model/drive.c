@@ -43,6 +43,10 @@ bool fc_drive_is_constant(const FcDrive* drive) {
     return !fc_drive_vibrates(drive) && !fc_drive_is_linear(drive);
 }
 
+bool fc_drive_V_is_constant(const FcDrive* drive) {
+    return drive->V.rate == 0.0 && drive->vibration.V_1 == 0.0;
+}
+
 static double theta(const FcDrive* drive, double t) { return drive->theta_0 + drive->omega * t; }
 
 static double linear(FcLinearInput input, double t) { return input.value + input.rate * t; }
@@ -61,12 +65,14 @@ FcPhase fc_drive_phase(const FcDrive* drive, double t) {
     return angle == 0.0 ? (FcPhase){0.0, 1.0} : (FcPhase){sin(angle), cos(angle)};
 }
 
-// 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
-double fc_drive_small_V(const FcDrive* drive, double t, FcPhase at_t) {
+// Where V nearly cancels V_1 |V| may be less than the rounding of either, by which the stiffest contacts would relax
+// otherwise: 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
+double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
     const double V_1 = drive->vibration.V_1;
     const double cosine = at_t.cosine;
-    if (fabs(cosine) < 0.9) {
-        return linear(drive->V, t) + V_1 * cosine;
+    const double V = linear(drive->V, t) + V_1 * cosine;
+    if (!(fabs(V) < 0.05 * V_1) || fabs(cosine) < 0.9) {
+        return V;
     }
     const double turn = copysign(V_1, cosine);
     return (drive->V.value + turn) +
@@ -120,8 +126,7 @@ FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
 }
 
 double fc_velocity_time_of_change(const FcVelocity* at, double change) {
-    const double rate = fabs(at->rate);
-    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * fabs(at->curvature) * change));
+    return fc_time_to_move(fabs(at->rate), fabs(at->curvature), change);
 }
 
 double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t) {
@@ -259,7 +264,8 @@ static bool is_dip(const FcDrive* drive, double t) {
            fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
-static const double AWAY_FROM_GRAZING = 0.9; // of V_1: |V| below
+// Up to this |V|, over V_1, V goes through zero steeply enough for acos and its cosine to keep their digits.
+static const double AWAY_FROM_GRAZING = 0.9;
 
 // acos(-V / V_1), which loses half of its digits next to 1 and -1.
 static double angle_of_reversal(double V, double V_1) {

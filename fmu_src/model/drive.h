@@ -45,6 +45,7 @@ FcDrive fc_drive_later(const FcDrive* drive, double t);
 bool fc_drive_vibrates(const FcDrive* drive);  // an amplitude is not zero
 bool fc_drive_is_linear(const FcDrive* drive); // a rate is not zero
 bool fc_drive_is_constant(const FcDrive* drive);
+bool fc_drive_V_is_constant(const FcDrive* drive);
 
 // Of the vibration's angle 2 pi f t + theta_0. The sine comes first: the other way round gcc reads both at once as soon as
 // sincos has written them one by one, and the processor waits.
@@ -61,13 +62,7 @@ typedef struct {
 FcDriveValues fc_drive_values(const FcDrive* drive, double t);
 FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
-// V [m/s] at the time t [s]. Where V nearly cancels V_1 |V| may be less than the rounding of either, by which the stiffest
-// contacts would relax otherwise: fc_drive_small_V keeps its digits.
-double fc_drive_small_V(const FcDrive* drive, double t, FcPhase at_t);
-static inline double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
-    const double V = drive->V.value + drive->V.rate * t + drive->vibration.V_1 * at_t.cosine;
-    return fabs(V) < 0.05 * drive->vibration.V_1 ? fc_drive_small_V(drive, t, at_t) : V;
-}
+double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m/s
 
 double fc_drive_V(const FcDrive* drive, double t);           // m/s
 double fc_drive_d(const FcDrive* drive, double t);           // m
@@ -84,6 +79,12 @@ double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of
 double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h]
 
+// Time [s] in which what moves at a rate and with a curvature, neither negative, moves by that: the root of
+// rate x + curvature x^2 / 2 = change.
+static inline double fc_time_to_move(double rate, double curvature, double change) {
+    return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
+}
+
 // V and its derivatives.
 typedef struct {
     double V;         // m/s
@@ -93,7 +94,7 @@ typedef struct {
 FcVelocity fc_drive_velocity(const FcDrive* drive, double t);
 FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
-// Time [s] in which V moves by change [m/s]: the root of |V'| x + |V''| x^2 / 2 = change.
+// Time [s] in which V moves by change [m/s], fc_time_to_move of |V'| and |V''|.
 double fc_velocity_time_of_change(const FcVelocity* at, double change);
 
 // integral of V over [t0, t1] [m], exact.

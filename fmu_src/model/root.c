@@ -12,7 +12,7 @@ static double step_to_root(FcRootFunction at) {
     return -2.0 * at.value / (at.rate + slope);
 }
 
-// Of a bracket: the parabola at a is good up to there.
+// The parabola at a is good up to this part of the bracket.
 static const double NEAR = 0.25;
 
 // From a to the root of the parabola there, if it is near, else to that of the cubic t(f) through both ends, if the slopes

@@ -90,11 +90,11 @@ static FcCoefficients coefficients(const FcScene* scene, const FcContactResponse
 
 FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDriveValues now = fc_drive_values_at_phase(&scene->drive, t, at_t);
-    if (scene->at_E.model == FC_CONTACT_CONSTANT && !fc_limit_follows_load(scene->friction)) {
-        return coefficients(scene, &(FcContactResponse){.sigma = scene->at_E.stiffness_0}, now.V);
+    FcContactResponse response = {.sigma = scene->at_E.stiffness_0};
+    if (fc_scene_depends_on_d(scene)) {
+        const FcContactAtModulus at_E = contact_at(scene, t);
+        response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
     }
-    const FcContactAtModulus at_E = contact_at(scene, t);
-    const FcContactResponse response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
     return coefficients(scene, &response, now.V);
 }
 
@@ -107,7 +107,7 @@ double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coef
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDrive* drive = &scene->drive;
     FcLogRates rates = {0.0, 0.0};
-    if (scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction)) {
+    if (fc_scene_depends_on_d(scene)) {
         const double d_rate = d_rate_at_phase(scene, t, at_t);
         const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
         rates.sigma = by_d.sigma * d_rate;
@@ -161,8 +161,8 @@ static double bound_at(const FcScene* scene, const FcCoefficients* at) {
     return at->limit * fc_bound_over_limit(scene->friction, at->V);
 }
 
-// A bristle that slips has the deflection of the bound but for what rounds at the end of a step: the phase, and a load
-// that has fallen by decades.
+// A bristle that slips has the deflection of the bound but for the rounding of the phase at the end of a step. What an input
+// that has fallen by decades rounds by may be more, which the step itself mends (fc_stick_slip_end).
 static const double ON_THE_BOUND = 1.0 - 1e-10;
 
 double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
@@ -249,11 +249,7 @@ static double largest_d(const FcScene* scene, double h) {
 }
 
 double fc_scene_largest_stiffness(const FcScene* scene, double h) {
-    const FcDrive* drive = &scene->drive;
-    if (drive->E.rate == 0.0) {
-        return fc_contact_stiffness(&scene->at_E, fc_scene_smallest_d(scene, h));
-    }
-    const FcContactAtModulus stiffest = fc_contact_at_modulus(scene->contact, fc_drive_largest_E(drive, h));
+    const FcContactAtModulus stiffest = contact_at(scene, scene->drive.E.rate > 0.0 ? h : 0.0);
     return fc_contact_stiffness(&stiffest, fc_scene_smallest_d(scene, h));
 }
 
@@ -267,13 +263,23 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
 }
 
 double fc_scene_smallest_saturation(const FcScene* scene, double h) {
-    if (scene->at_E.model == FC_CONTACT_MINDLIN &&
-        fc_limit_follows_load(scene->friction)) { // both go with e^(-decay d)
+    if (fc_scene_ratio_is_constant(scene)) {
         const FcContactAtModulus end = contact_at(scene, h);
         return scene->friction->mu *
                fmin(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
     }
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
+}
+
+double fc_scene_largest_saturation(const FcScene* scene, double h) {
+    if (scene->floats || scene->drive.E.rate != 0.0) {
+        return INFINITY;
+    }
+    const FcFriction* friction = scene->friction;
+    const double d = largest_d(scene, h);
+    const double g = fc_limit_follows_load(friction) ? friction->mu * fc_contact_response(&scene->at_E, d).F_n
+                                                     : scene->F_C;
+    return g * fc_stribeck(friction, 0.0) / fc_contact_stiffness(&scene->at_E, d);
 }
 
 static bool contact_moves(const FcScene* scene) {

@@ -36,6 +36,16 @@ FcScene fc_scene_later(const FcScene* scene, double t);
 // The same with t at any phase.
 FcScene fc_scene_from(const FcScene* scene, double t);
 
+// Whether sigma or g are functions of the separation.
+static inline bool fc_scene_depends_on_d(const FcScene* scene) {
+    return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
+}
+
+// Whether g / sigma is no function of it: F_n and Mindlin's stiffness fall with d alike.
+static inline bool fc_scene_ratio_is_constant(const FcScene* scene) {
+    return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
+}
+
 // At the local time t [s].
 double fc_scene_d(const FcScene* scene, double t);      // m
 double fc_scene_d_rate(const FcScene* scene, double t); // m/s
@@ -92,6 +102,7 @@ double fc_scene_smallest_d(const FcScene* scene, double h);          // m
 double fc_scene_largest_stiffness(const FcScene* scene, double h);   // N/m
 double fc_scene_smallest_limit(const FcScene* scene, double h);      // N
 double fc_scene_smallest_saturation(const FcScene* scene, double h); // m, of g / sigma
+double fc_scene_largest_saturation(const FcScene* scene, double h);  // m, infinite where E or load move
 
 // Whether sigma, and g but for the Stribeck curve, stand still over the step.
 bool fc_scene_stiffness_is_constant(const FcScene* scene);

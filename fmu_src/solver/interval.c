@@ -14,14 +14,10 @@ double fc_digits(double x) {
     return -0.30103 * ((int)(bits >> 52 & 0x7ff) - 1023); // log10(2) times the exponent
 }
 
-static bool depends_on_d(const FcScene* scene) {
-    return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
-}
-
 static FcPace pace_of(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     FcPace pace = {.phase = drive->omega};
-    if (!depends_on_d(scene)) {
+    if (!fc_scene_depends_on_d(scene)) {
         return pace;
     }
     const double d_rate = fabs(drive->d.rate) + drive->vibration.a_d * drive->omega;
@@ -58,19 +54,7 @@ double fc_smooth_time(const FcInterval* interval, double t) {
         scene->floats ? 4.0 * scene->at_E.decay * fabs(d_rate - fc_drive_d_rate(drive, t)) : 0.0;
     const double rate = pace->phase + pace->log_sigma + by_nearness * fabs(d_rate) + by_E + floating;
     const double curvature = by_nearness * drive->vibration.a_d * drive->omega * drive->omega;
-    return 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature)); // rate x + curvature x^2 / 2 = 1
-}
-
-// At the largest separation. Not known where E or the surfaces move.
-static double largest_saturation(const FcScene* scene, double h) {
-    if (scene->floats || scene->drive.E.rate != 0.0) {
-        return INFINITY;
-    }
-    const double d = fc_drive_largest_d(&scene->drive, h);
-    const FcFriction* friction = scene->friction;
-    const double g = fc_limit_follows_load(friction) ? friction->mu * fc_contact_response(&scene->at_E, d).F_n
-                                                     : scene->F_C;
-    return g * fc_stribeck(friction, 0.0) / fc_contact_stiffness(&scene->at_E, d);
+    return fc_time_to_move(rate, curvature, 1.0);
 }
 
 FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
@@ -81,13 +65,15 @@ FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, d
         .beyond_peaks = beyond_peaks,
         .duration = duration,
         .tolerance = tolerance,
+        .pace = pace_of(scene, duration),
         .force = fc_scene_force_scale(scene),
-        .speed = fc_drive_largest_speed(&scene->drive, duration),
         .stiffness = fc_scene_largest_stiffness(scene, duration),
         .limit = fc_scene_smallest_limit(scene, duration),
-        .saturation = largest_saturation(scene, duration),
-        .pace = pace_of(scene, duration),
-        .moving_limit = fc_limit_follows_load(scene->friction) || fc_has_stribeck_curve(scene->friction),
+        .saturation = fc_scene_largest_saturation(scene, duration),
+        .constant_sigma = fc_scene_stiffness_is_constant(scene),
+        .speed = fc_drive_largest_speed(&scene->drive, duration),
+        .has_peaks = beyond_peaks != scene,
+        .moving_limit = fc_limit_follows_load(scene->friction) || beyond_peaks != scene,
     };
     interval.forgotten = 2.0 * 2.302585 * fc_digits(tolerance) * interval.saturation;
     return interval;

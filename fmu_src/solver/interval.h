@@ -28,7 +28,9 @@ typedef struct {
     double saturation; // m, largest g / sigma: over this path errors fade by e at least; infinite if unknown
     double forgotten;  // m, over this path they fade below the square of the tolerance
     FcPace pace;
-    bool moving_limit; // g is no constant
+    bool has_peaks;      // g has a Stribeck curve
+    bool moving_limit;   // g is no constant
+    bool constant_sigma; // sigma is one
 } FcInterval;
 
 // Keeps the pointers. beyond_peaks is the scene itself where it has no Stribeck curve.

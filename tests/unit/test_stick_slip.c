@@ -212,7 +212,7 @@ static void brute_force_agrees(void) {
     for (int i = 0; i < 200; i++) {
         const double h = random_log(0.02, 3.0) / F;
         const FcScene scene = scene_of(random_setup(h));
-        const double delta_0 = (2.0 * random_01() - 1.0) * 1.5 * fmin(fc_bound(&scene, 0.0), 1e3);
+        const double delta_0 = (2.0 * random_01() - 1.0) * 1.5 * fmin(fc_bound_motion(&scene, 0.0).D, 1e3);
         const StopOperator stop = stop_operator(&scene, h, delta_0, 100 + (int)(200.0 * h * F));
         const double g = (double)stop.limit;
         double lost_at_start;
@@ -246,7 +246,7 @@ static void many_periods_are_one_after_the_other(void) {
         const FcScene scene = scene_of(setup);
         const double periods = floor(2.0 + 60.0 * random_01());
         const double rest = 0.375 / F;
-        const double delta_0 = (2.0 * random_01() - 1.0) * 1.5 * fmin(fc_bound(&scene, 0.0), 1e3);
+        const double delta_0 = (2.0 * random_01() - 1.0) * 1.5 * fmin(fc_bound_motion(&scene, 0.0).D, 1e3);
         const FcStepResult all = step(&scene, periods / F + rest, delta_0);
         FcStepResult sum = {.delta = delta_0};
         double g = 0.0;
@@ -270,7 +270,7 @@ static void many_periods_are_one_after_the_other(void) {
 
         // The settled state is where 2^40 periods end, and a period leads back to it.
         const double settled = settled_within(FINEST, &scene, delta_0);
-        const double allowed = 1e-12 * fmin(fc_bound(&scene, 0.0), 1e3) + 1e-13 * setup.V_1 / F;
+        const double allowed = 1e-12 * fmin(fc_bound_motion(&scene, 0.0).D, 1e3) + 1e-13 * setup.V_1 / F;
         CHECK_WITHIN(step(&scene, 1099511627776.0 / F, delta_0).delta, settled, allowed);
         CHECK_WITHIN(step(&scene, 1.0 / F, settled).delta, settled, allowed);
     }
@@ -297,9 +297,9 @@ static void mindlin_with_a_load_has_a_constant_bound(void) {
     FcScene scene = scene_of(
         (Setup){.model = FC_CONTACT_MINDLIN, .limit = FC_LIMIT_LOAD, .sigma = 1e7, .V_1 = 1.0, .a_d = 1e-6});
     CHECK(fc_bound_is_constant(&scene));
-    CHECK_NEAR(fc_bound(&scene, 0.0), F_C / 1e7, 1e-14);
+    CHECK_NEAR(fc_bound_motion(&scene, 0.0).D, F_C / 1e7, 1e-14);
     scene.drive.d.value = 1.4e-3; // e^-700
-    CHECK_NEAR(fc_bound(&scene, 0.3 / F), F_C / 1e7, 1e-14);
+    CHECK_NEAR(fc_bound_motion(&scene, 0.3 / F).D, F_C / 1e7, 1e-14);
 }
 
 // Without stiffness there is no bound and no force.

@@ -100,7 +100,7 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
     if (!in_one) {
         cross_stretches(&crossed, start_phase, delta_0, scope);
     }
-    if (fc_scene_stiffness_is_constant(scene)) {
+    if (interval.constant_sigma) {
         take_work_from_heat(&map, interval.stiffness, scope == FC_MAP_THIS_START && !in_one ? delta_0 : 0.0);
     }
     *evaluations = crossed.evaluations;

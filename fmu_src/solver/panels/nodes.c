@@ -39,10 +39,6 @@ static inline Halvings halvings(double size) {
     return halved;
 }
 
-static bool depends_on_d(const FcScene* scene) {
-    return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
-}
-
 // d_middle + moved[] -> sigma and the limit without its factor by V.
 static inline __attribute__((always_inline)) void of_separation(const FcScene* scene, double d_middle,
                                                                 const double* moved, int count,
@@ -85,6 +81,7 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
     const FcDrive* drive = &scene->drive;
     const double middle = t + 0.5 * h;
     const FcPhase at_middle = fc_drive_phase(drive, middle);
+    const double V_middle = fc_drive_V_at_phase(drive, middle, at_middle);
     const double c = at_middle.cosine;
     const double s = at_middle.sine;
     double sin_later[FC_MOST_NODES];
@@ -107,14 +104,13 @@ static inline __attribute__((always_inline)) void with_series(const FcScene* sce
     }
     const double V_c = drive->vibration.V_1 * c;
     const double V_s = drive->vibration.V_1 * s;
-    const double V_middle = fc_drive_V_at_phase(drive, middle, at_middle);
     const double V_rate = drive->V.rate * h;
     for (int i = 0; i < count; i++) {
         at->V[i] = V_middle + V_rate * node[i] + (V_c * cos_later_less_1[i] - V_s * sin_later[i]);
         at->sigma[i] = scene->at_E.stiffness_0;
         at->limit[i] = scene->F_C;
     }
-    if (depends_on_d(scene)) {
+    if (fc_scene_depends_on_d(scene)) {
         // cos and sin of the separation's angle
         const double d_c = drive->vibration.a_d * (c * drive->cos_phase_d - s * drive->sin_phase_d);
         const double d_s = drive->vibration.a_d * (s * drive->cos_phase_d + c * drive->sin_phase_d);
@@ -150,7 +146,7 @@ void fc_node_coefficients(const FcScene* scene, double t, double h, const double
     const double half_angle = 0.5 * h * drive->omega;
     const double moves = 0.5 * h * fabs(drive->d.rate) + drive->vibration.a_d * fmin(half_angle, 2.0);
     const Halvings angle = halvings(half_angle);
-    const Halvings exponent = halvings(depends_on_d(scene) ? scene->at_E.decay * moves : 0.0);
+    const Halvings exponent = halvings(fc_scene_depends_on_d(scene) ? scene->at_E.decay * moves : 0.0);
     if (scene->floats || drive->E.rate != 0.0 || angle.count > MOST_HALVINGS ||
         exponent.count > MOST_HALVINGS) {
         with_library(scene, t, h, node, count, at);

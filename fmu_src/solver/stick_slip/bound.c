@@ -5,29 +5,22 @@
 
 const double FC_NO_BOUND = 1e200;
 
-// Of the time to a pole: the longest panel of the quadratures then ends well before it.
+// The longest smooth time, over the time to a pole: the longest panel of the quadratures then ends well before the pole.
 static const double POLE = 0.12;
 // The shortest smooth time that is good for all places, over that of the phase alone.
 static const double SHORTEST_COMMON = 0.1;
-// Of the smooth time, for a central difference.
+// The step of a central difference, over the smooth time.
 static const double SMALL_PART = 1e-4;
-
-// F_n and Mindlin's stiffness fall with d alike.
-static bool ratio_is_constant(const FcScene* scene) {
-    return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
-}
 
 static bool nothing_moves(const FcScene* scene) {
     return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
 }
 
-static bool V_moves(const FcDrive* drive) { return drive->V.rate != 0.0 || drive->vibration.V_1 != 0.0; }
-
 bool fc_bound_is_constant(const FcScene* scene) {
-    if (fc_has_stribeck_curve(scene->friction) && V_moves(&scene->drive)) {
+    if (fc_has_stribeck_curve(scene->friction) && !fc_drive_V_is_constant(&scene->drive)) {
         return false;
     }
-    return nothing_moves(scene) || (ratio_is_constant(scene) && scene->drive.E.rate == 0.0);
+    return nothing_moves(scene) || (fc_scene_ratio_is_constant(scene) && scene->drive.E.rate == 0.0);
 }
 
 bool fc_bound_may_fall(const FcScene* scene) {
@@ -44,21 +37,23 @@ bool fc_bound_may_fall(const FcScene* scene) {
 }
 
 static double ratio(const FcScene* scene, const FcContactAtModulus* at_E, double limit, double sigma) {
-    const double D =
-        ratio_is_constant(scene) ? scene->friction->mu * (at_E->load_0 / at_E->stiffness_0) : limit / sigma;
+    const double D = fc_scene_ratio_is_constant(scene)
+                         ? scene->friction->mu * (at_E->load_0 / at_E->stiffness_0)
+                         : limit / sigma;
     return D < FC_NO_BOUND ? D : FC_NO_BOUND;
 }
 
 // Beyond this decay d, e^(-decay d) is 0 in rounding: sigma and g are, or stand still.
 static const double GONE = 750.0;
-// Of the time until d may be back from there: the longest panel of the quadratures then ends before.
+// The longest smooth time, over the time until d may be back from there: the longest panel of the quadratures then ends
+// before that.
 static const double RETURN = 0.08;
 
 // The least time [s] that d takes to fall by a distance [m].
 static double time_to_fall(const FcScene* scene, double distance, double d_rate) {
     const double speed = fabs(d_rate);
     const double acceleration = scene->drive.vibration.a_d * scene->drive.omega * scene->drive.omega;
-    return 2.0 * distance / (speed + sqrt(speed * speed + 2.0 * acceleration * distance));
+    return fc_time_to_move(speed, acceleration, distance);
 }
 
 // The times [s] from now on to a zero of d, E or the load, at the least: 1/d^3 and ln E have poles there.
@@ -101,8 +96,7 @@ static double smooth_time_of_contact(const FcScene* scene, double t, double d, d
     const double pole = POLE * time_to_pole(scene, t, d, d_rate);
     const double rate = drive->omega + by_d * fabs(d_rate);
     const double curvature = by_d * drive->vibration.a_d * drive->omega * drive->omega;
-    // rate x + curvature x^2 / 2 = 1
-    double time = 2.0 / (rate + sqrt(rate * rate + 2.0 * curvature));
+    double time = fc_time_to_move(rate, curvature, 1.0);
     const double gone = GONE / scene->at_E.decay;
     if (d > gone && !scene->floats) {
         const double returning = RETURN * time_to_fall(scene, d - gone, d_rate);
@@ -277,5 +271,3 @@ double fc_bound_loss(const FcBoundMotion* at, double delta) {
     const double reached = fc_bound_reached(at, delta);
     return delta != reached ? 0.5 * at->sigma * (delta - reached) * (delta + reached) : 0.0;
 }
-
-double fc_bound(const FcScene* scene, double t) { return fc_bound_motion(scene, t).D; }

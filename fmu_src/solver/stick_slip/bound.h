@@ -56,9 +56,6 @@ double fc_bound_common_smooth_time(const FcScene* scene, double h);
 double fc_bound_reached(const FcBoundMotion* at, double delta);
 double fc_bound_loss(const FcBoundMotion* at, double delta);
 
-// D alone [m].
-double fc_bound(const FcScene* scene, double t);
-
 // Whether D stands still over the step.
 bool fc_bound_is_constant(const FcScene* scene);
 

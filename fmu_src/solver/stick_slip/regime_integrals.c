@@ -18,8 +18,9 @@ static const double LONGEST[RULES][MOST_DIGITS + 1] = {
     {12, 10.9, 9.9, 9, 8.18, 7.43, 6.75, 6.13, 5.57, 5.06, 4.6, 4.18, 3.79, 3.45},
 };
 
-// Of the time to a zero of E or the load, where ln g has a pole, which the longest panels for few digits would reach.
-// This far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls like 3^(-2n).
+// No panel is longer than this part of the time to a zero of E or the load, where ln g has a pole, which the longest panels
+// for few digits would reach. This far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls
+// like 3^(-2n).
 static const double WAY_TO_POLE = 0.75;
 
 FcIntegrator fc_integrator(const FcScene* scene, double smooth_time, double tolerance) {
@@ -65,29 +66,12 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
 static const FcGaussRule* const RULE[RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
 static const int NODES[RULES] = {4, 6, 8, 12};
 
-static void evaluate(const FcScene* scene, const Panel* panel, FcNodeCoefficients* at) {
-    switch (panel->rule) { // constants, for which fc_node_coefficients is compiled
-    case 0:
-        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_4.node, 4, at);
-        break;
-    case 1:
-        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_6.node, 6, at);
-        break;
-    case 2:
-        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_8.node, 8, at);
-        break;
-    default:
-        fc_node_coefficients(scene, panel->start, panel->length, FC_GAUSS_12.node, 12, at);
-        break;
-    }
-}
-
 static FcMap stick_panel(const FcScene* scene, const Panel* panel) {
     const FcGaussRule* rule = RULE[panel->rule];
     const int n = NODES[panel->rule];
     const double h = panel->length;
     FcNodeCoefficients at;
-    evaluate(scene, panel, &at);
+    fc_node_coefficients(scene, panel->start, h, rule->node, n, &at);
     double x[FC_MOST_NODES] = {0.0};
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++) {
@@ -140,7 +124,7 @@ static void add_slip_panel(const FcScene* scene, const Panel* panel, bool with_r
     const int n = NODES[panel->rule];
     const double h = panel->length;
     FcNodeCoefficients at;
-    evaluate(scene, panel, &at);
+    fc_node_coefficients(scene, panel->start, h, rule->node, n, &at);
     for (int i = 0; i < n; i++) {
         const double limit = rule->weight[i] * h * at.limit[i];
         sum->limit += limit;
@@ -172,9 +156,8 @@ static bool bound_follows_d(const FcScene* scene) {
 
 // Whether g stands still.
 static bool limit_is_constant(const FcScene* scene) {
-    const FcDrive* drive = &scene->drive;
-    const bool V_moves = drive->V.rate != 0.0 || drive->vibration.V_1 != 0.0;
-    return fc_scene_limit_is_constant(scene) && !(fc_has_stribeck_curve(scene->friction) && V_moves);
+    return fc_scene_limit_is_constant(scene) &&
+           (!fc_has_stribeck_curve(scene->friction) || fc_drive_V_is_constant(&scene->drive));
 }
 
 // Integral of g dD along the bound up to here, g following the load and D the separation:

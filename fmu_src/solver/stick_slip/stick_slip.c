@@ -12,7 +12,8 @@
 // A bristle nearer to the bound than this, over D, is on it: the end of a step loses as much in rounding.
 static const double ON_BOUND = 1e-14;
 
-// Of a bound that follows an input, over it and by how much the input has fallen since; and the most that passes for it.
+// The rounding of a bound that follows an input, over the bound and over how many times the input has fallen; and the most
+// that passes for rounding.
 static const double ROUNDING_OF_INPUT = 32.0 * DBL_EPSILON;
 static const double MOST_ROUNDING = 1e-3;
 
@@ -396,7 +397,7 @@ double fc_stick_slip_end(const FcScene* scene, double h, double delta) {
     if ((drive->E.rate == 0.0 && drive->load.rate == 0.0) || fc_bound_is_constant(&bound)) {
         return delta;
     }
-    const double D = fc_bound(&bound, h);
+    const double D = fc_bound_motion(&bound, h).D;
     const double fall =
         fmax(drive->E.value / fc_drive_E(drive, h), drive->load.value / fc_drive_load(drive, h));
     const double rounding = fmin(MOST_ROUNDING, ROUNDING_OF_INPUT * fall);

@@ -9,9 +9,9 @@
 static const double CELL = 1.5;
 // A root's tolerance where everything else is exact but for rounding.
 static const double ROUNDING = 1e-12;
-// Of the bound at the start of a cell: ln D moves by about 1 in it.
+// In a cell the bound is at least this part of what it is at the start, since ln D moves by about 1.
 static const double LEAST_BOUND = 0.25;
-// Of the bound at the start of a piece, in which a bristle relaxes.
+// A piece of a bristle that relaxes ends where the bound has fallen to this part of what it was at the start.
 static const double FARTHEST_FALL = 0.25;
 // A bristle within this of the bound, over D, may be on it.
 static const double NEAR_BOUND = 1e-6;

@@ -17,13 +17,14 @@ static const double MATTERS = 0.5;
 static const double PEAK_CHANGE = 2.0;
 // n nodes resolve e^z where z is less than half of n.
 static const double RESOLVED = 0.47;
-// Time, in panels of 4 nodes, of the Radau panels between two reversals half a period apart, up to FEW_DECADES of accuracy
-// and for each more; and of one panel.
+// The time of Radau panels, over that of a Gauss panel of 4 nodes: of those between two reversals half a period apart, up to
+// FEW_DECADES of accuracy and for each decade more; and of one panel.
 static const double RADAU = 7.0;
 static const double FEW_DECADES = 3.0;
 static const double RADAU_FOR_EACH = 2.3;
-static const double HALF_PERIOD = 0.5 * FC_PI;
 static const double RADAU_PANEL = 2.3;
+// Half of the angle [rad] by which the vibration turns in half a period.
+static const double HALF_PERIOD = 0.5 * FC_PI;
 
 // A panel that lasts for a whole stretch is accurate up to a tolerance of 10^-(one + phi sqrt(phi) + mu sqrt(mu) +
 // z sqrt(z)), about, with a scatter of half a decade (4 nodes) to one and a half (12): a plan of cost, judged afterwards. time: of a panel, over that
@@ -40,7 +41,7 @@ static const struct {
     {12, 1.93, -19.12, 6.23, 2.21, 3.30},
 };
 
-// The mean sees a piece by its share of the stretch: decades that each of so many is spared.
+// The mean sees each of n pieces by its share of the stretch, so each may have SPARED[n] decades of accuracy less.
 enum { MOST_PIECES = 12 };
 static const double SPARED[MOST_PIECES + 1] = {0, 0, .3, .48, .6, .7, .78, .85, .9, .95, 1, 1.04, 1.08};
 

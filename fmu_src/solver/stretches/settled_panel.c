@@ -82,11 +82,6 @@ static bool is_possible(const Span* span) {
            (!span->ends_at_event || span->stretch->reversal);
 }
 
-// With a constant V the integral of the lag is known, and only its second order is missed.
-static bool V_is_constant(const FcDrive* drive) {
-    return drive->V.rate == 0.0 && drive->vibration.V_1 == 0.0;
-}
-
 // Whether it is not worth while to integrate the lag: at half of its largest the second order is too large.
 static bool is_lag_too_large(const Span* span, double too_long, double allowed) {
     const double pace = span->interval->pace.phase + span->drift;
@@ -126,7 +121,8 @@ static Settled settled(const Span* span, double too_long, Course* course) {
     const double after = time_after(span, at->t);
     const double coulomb = interval->saturation / fc_stribeck(interval->scene->friction, 0.0); // m
     const double lag_lasts = 2.0 * span->drift * coulomb;
-    const bool known = V_is_constant(drive);
+    // With a constant V the integral of the lag is known, and only its second order is missed.
+    const bool known = fc_drive_V_is_constant(drive);
     const bool seen = !known && lag_lasts * LEAST_FADING * fc_least(after, span->end - at->t) >
                                     allowed_time * speed_at_start(span);
     if (seen && is_lag_too_large(span, too_long, allowed)) {
@@ -194,7 +190,7 @@ static bool find_lag(const Span* span, Settled as, const Course* course, const F
                                                span->interval->duration};
         return fc_settled_lag(&lag_span, lag, too_long, evaluations);
     }
-    if (V_is_constant(&span->interval->scene->drive)) {
+    if (fc_drive_V_is_constant(&span->interval->scene->drive)) {
         const double V = span->sign * speed_at_start(span);
         const double moves = 1.0 / span->sigma - 1.0 / end->sigma; // m/N
         *lag = (FcLag){span->sign * span->interval->scene->F_C * moves / V, -V * moves};

@@ -8,7 +8,7 @@ double fc_layer(const FcVelocity* at, double per_path) {
     const double r = per_path * fabs(at->V);
     const double r_rate = per_path * fabs(at->rate);
     const double r_curvature = per_path * fabs(at->curvature);
-    const double root = 2.0 / (r + sqrt(r * r + 2.0 * r_rate));
+    const double root = fc_time_to_move(r, r_rate, 1.0);
     return r_curvature * root * root * root <= 6.0 ? root : cbrt(6.0 / r_curvature);
 }
 
@@ -64,7 +64,7 @@ void fc_stretches_start(FcStretches* stretches, const FcInterval* interval, FcCo
     stretches->event = fc_drive_next_event(&scene->drive, 0.0, horizon(interval, 0.0));
     stretches->last_phase = fc_drive_phase(&scene->drive, interval->duration);
     look_ahead(stretches, 0.0, start_phase);
-    if (fc_has_stribeck_curve(scene->friction)) {
+    if (interval->has_peaks) {
         stretches->edge = fc_peak_edge(scene, 0.0);
     }
     *stretch = (FcStretch){.end = 0.0, .end_phase = start_phase, .at_end = start, .reversal = true};
@@ -101,7 +101,7 @@ bool fc_stretches_next(FcStretches* stretches, double deflection, FcStretch* str
         stretch->path_after = fabs(stretches->displacement);
     }
     stretch->peaks = fc_no_peaks(stretch->start, stretch->end);
-    if (fc_has_stribeck_curve(scene->friction)) {
+    if (interval->has_peaks) {
         const FcPeakEdge first = stretches->edge;
         stretches->edge = fc_peak_edge(scene, stretch->end);
         stretch->peaks = fc_peaks(interval, &first, &stretches->edge, deflection, stretch->displacement,
