@@ -128,8 +128,38 @@ static void look_at_inputs(FcFrictionContact* contact) {
     hybrid->seen_time = contact->state.time;
 }
 
+// Where the bound is that the bristle slips along, with its sign [m], and the bristle's force there [N]; false where none slips.
+static bool slips_along(FcFrictionContact* contact, double* bound, double* force) {
+    FcMessage unheard;
+    if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &unheard)) {
+        return false;
+    }
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    *bound = (double)regime_of(contact) * fc_regime_bound(&scene);
+    *force = fc_scene_stiffness(&scene, 0.0) * *bound;
+    return true;
+}
+
+// The rates do not see how inputs move the bound: delta lags behind it. What Q_f lags behind by is the integral of the
+// bristle's force over that lag, here by the trapezoidal rule from step to step.
+static void look_at_lag(FcFrictionContact* contact) {
+    FcHybrid* hybrid = &contact->state.hybrid;
+    double bound;
+    double force;
+    if (slips_along(contact, &bound, &force)) {
+        const double lag = bound - contact->state.variables.delta;
+        const double heat = hybrid->lag_heat - 0.5 * (force + hybrid->lag_force) * (lag - hybrid->lag);
+        if (isfinite(lag) && isfinite(force) && isfinite(heat)) {
+            hybrid->lag = lag;
+            hybrid->lag_force = force;
+            hybrid->lag_heat = heat;
+        }
+    }
+}
+
 bool fc_hybrid_step_completed(FcFrictionContact* contact) {
     look_at_inputs(contact);
+    look_at_lag(contact);
     FcEventIndicators z;
     FcMessage unheard;
     return fc_is_bounded(&contact->state.variables.friction) && fc_hybrid_indicators(contact, &z, &unheard) &&
@@ -154,11 +184,17 @@ static void move_to(FcFrictionContact* contact, double delta) {
 
 void fc_hybrid_event_begins(FcFrictionContact* contact) {
     look_at_inputs(contact);
-    FcMessage unheard;
-    if (regime_of(contact) != FC_FREE && fc_friction_contact_check(contact, &unheard)) {
-        const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-        move_to(contact, (double)regime_of(contact) * fc_regime_bound(&scene));
+    look_at_lag(contact);
+    FcHybrid* hybrid = &contact->state.hybrid;
+    FcVariables* v = &contact->state.variables;
+    double bound;
+    double force;
+    if (slips_along(contact, &bound, &force) && isfinite(bound) && isfinite(v->Q_f + hybrid->lag_heat)) {
+        hybrid->changed |= bound != v->delta || hybrid->lag_heat != 0.0;
+        v->delta = bound;
+        v->Q_f += hybrid->lag_heat;
     }
+    hybrid->lag = hybrid->lag_heat = hybrid->lag_force = 0.0;
 }
 
 // An input may have jumped at the event: a bristle that is now within its bound is free, one beyond is taken onto it.
@@ -199,6 +235,8 @@ void fc_hybrid_event_ends(FcFrictionContact* contact) {
     FcHybrid* hybrid = &contact->state.hybrid;
     hybrid->seen_time = contact->state.time;
     copy_inputs(&contact->state.variables, hybrid->seen);
+    look_at_lag(contact);
+    hybrid->lag_heat = 0.0; // what it starts from
 }
 
 bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message) {
