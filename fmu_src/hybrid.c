@@ -4,11 +4,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "solver/stick_slip/bound.h"
+
 // Of the bound, and of the velocities: far above rounding, far below what a host's integrator tells apart.
 static const double HYSTERESIS = 1e-10;
 
 // A bristle that is so near to its bound lies on it.
 static const double ON_THE_BOUND = 1.0 - 1e-12;
+
+// A bristle that turns back farther from its bound has not met it between two steps of an integrator.
+static const double NEAR_THE_BOUND = 0.9;
 
 // Shorter times [of the time itself] tell no speed: rounding rules.
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
@@ -80,6 +85,17 @@ static double push(FcFrictionContact* contact, int side) {
     return fc_regime_push(&moving, side) + HYSTERESIS * speed;
 }
 
+// Of a bristle of ElasticPlastic that sticks near a bound that moves: the velocity [m/s] at which it comes nearer. Where it
+// turns back it may have met the bound and left it again since the integrator's last step: an event there shows it.
+static double approach(FcFrictionContact* contact) {
+    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
+    const double delta = contact->state.variables.delta;
+    if (fc_bound_is_constant(&moving) || fabs(delta) < NEAR_THE_BOUND * fc_regime_bound(&moving)) {
+        return 1.0;
+    }
+    return fc_regime_push(&moving, delta < 0.0 ? -1 : 1);
+}
+
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
@@ -95,6 +111,9 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
         const double reached = v->delta / fc_regime_bound(&scene);
         z[1] = (1.0 - reached) + HYSTERESIS;
         z[2] = (1.0 + reached) + HYSTERESIS;
+        if (v->friction.model == FC_ELASTIC_PLASTIC) {
+            z[0] = approach(contact);
+        }
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {

@@ -37,7 +37,8 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
-//   0   V with its vibration [m/s], where |V| has a kink; 1 in ElasticPlastic, which has none
+//   0   V with its vibration [m/s], where |V| has a kink; in ElasticPlastic, which has none, the velocity at which a bristle that
+//       sticks comes nearer to a bound that moves, where it is near to it, else 1
 //   1   (D - delta) / D + hysteresis while a bounded bristle is free, else 1
 //   2   (D + delta) / D + hysteresis while a bounded bristle is free, else 1
 //   3   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
