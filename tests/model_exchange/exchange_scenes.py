@@ -22,7 +22,6 @@ from workshop.reference.start_values import start_values_of
 LAWS = ("Dahl", "LuGre", "ElasticPlastic")
 F, MU, LOAD, FREQUENCY = 55.0, 0.176, 312.0, 20e3
 OUTPUTS = 40  # points at which the host ends a step of its own
-LEAST_STEPS = 20  # of the host in a run
 FINER = 100.0  # the tolerance over the one that shows whose an error is
 
 
@@ -120,16 +119,14 @@ def errors(scene: ExchangeScene, values: Mapping[str, float]) -> Errors:
     )
 
 
-def run(
-    scene: ExchangeScene, fmu: FrictionFmu, tolerance: float, least_steps: int = LEAST_STEPS
-) -> dict[str, float]:
+def run(scene: ExchangeScene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:
     """The last outputs, after an event: a bristle that slips has then been taken onto its bound."""
     with Host(
         fmu,
         scene.start_values(),
         lambda t, own: scene.inputs(t),
         tolerance=tolerance,
-        longest_step=scene.h / least_steps,
+        longest_step=scene.h / 20,
     ) as host:
         for k in range(1, OUTPUTS + 1):
             host.advance(scene.h * k / OUTPUTS)
@@ -151,7 +148,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=60)
     parser.add_argument("--tolerance", type=float, default=1e-7)
-    parser.add_argument("--least-steps", type=int, default=LEAST_STEPS, help="of the host in a run")
     chosen = parser.parse_args()
     found: dict[tuple[str, bool], list[Errors]] = {}
     coarse, fine = [], []
@@ -159,7 +155,7 @@ def main() -> None:
         for number in range(chosen.scenes):
             scene = drawn(number, fmu)
             one, finer = (
-                errors(scene, run(scene, fmu, tolerance, chosen.least_steps))
+                errors(scene, run(scene, fmu, tolerance))
                 for tolerance in (chosen.tolerance, chosen.tolerance / FINER)
             )
             found.setdefault((scene.scene.friction, scene.inputs_move_a_bound), []).append(one)
