@@ -4,11 +4,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "solver/stick_slip/bound.h"
+
 // Of the bound, and of the velocities: far above rounding, far below what a host's integrator tells apart.
 static const double HYSTERESIS = 1e-10;
 
 // A bristle that is so near to its bound lies on it.
 static const double ON_THE_BOUND = 1.0 - 1e-12;
+
+// A bristle that turns back farther from its bound has not met it between two steps of an integrator.
+static const double NEAR_THE_BOUND = 0.9;
 
 // Shorter times [of the time itself] tell no speed: rounding rules.
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
@@ -80,6 +85,17 @@ static double push(FcFrictionContact* contact, int side) {
     return fc_regime_push(&moving, side) + HYSTERESIS * speed;
 }
 
+// Of a bristle of ElasticPlastic that sticks near a bound that moves: the velocity [m/s] at which it comes nearer. Where it
+// turns back it may have met the bound and left it again since the integrator's last step: an event there shows it.
+static double approach(FcFrictionContact* contact) {
+    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
+    const double delta = contact->state.variables.delta;
+    if (fc_bound_is_constant(&moving) || fabs(delta) < NEAR_THE_BOUND * fc_regime_bound(&moving)) {
+        return 1.0;
+    }
+    return fc_regime_push(&moving, delta < 0.0 ? -1 : 1);
+}
+
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
@@ -95,6 +111,9 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
         const double reached = v->delta / fc_regime_bound(&scene);
         z[1] = (1.0 - reached) + HYSTERESIS;
         z[2] = (1.0 + reached) + HYSTERESIS;
+        if (v->friction.model == FC_ELASTIC_PLASTIC) {
+            z[0] = approach(contact);
+        }
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {
@@ -128,8 +147,38 @@ static void look_at_inputs(FcFrictionContact* contact) {
     hybrid->seen_time = contact->state.time;
 }
 
+// Where the bound is that the bristle slips along, with its sign [m], and the bristle's force there [N]; false where none slips.
+static bool slips_along(FcFrictionContact* contact, double* bound, double* force) {
+    FcMessage unheard;
+    if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &unheard)) {
+        return false;
+    }
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    *bound = (double)regime_of(contact) * fc_regime_bound(&scene);
+    *force = fc_scene_stiffness(&scene, 0.0) * *bound;
+    return true;
+}
+
+// The rates do not see how inputs move the bound: delta lags behind it. What Q_f lags behind by is the integral of the
+// bristle's force over that lag, here by the trapezoidal rule from step to step.
+static void look_at_lag(FcFrictionContact* contact) {
+    FcHybrid* hybrid = &contact->state.hybrid;
+    double bound;
+    double force;
+    if (slips_along(contact, &bound, &force)) {
+        const double lag = bound - contact->state.variables.delta;
+        const double heat = hybrid->lag_heat - 0.5 * (force + hybrid->lag_force) * (lag - hybrid->lag);
+        if (isfinite(lag) && isfinite(force) && isfinite(heat)) {
+            hybrid->lag = lag;
+            hybrid->lag_force = force;
+            hybrid->lag_heat = heat;
+        }
+    }
+}
+
 bool fc_hybrid_step_completed(FcFrictionContact* contact) {
     look_at_inputs(contact);
+    look_at_lag(contact);
     FcEventIndicators z;
     FcMessage unheard;
     return fc_is_bounded(&contact->state.variables.friction) && fc_hybrid_indicators(contact, &z, &unheard) &&
@@ -154,11 +203,17 @@ static void move_to(FcFrictionContact* contact, double delta) {
 
 void fc_hybrid_event_begins(FcFrictionContact* contact) {
     look_at_inputs(contact);
-    FcMessage unheard;
-    if (regime_of(contact) != FC_FREE && fc_friction_contact_check(contact, &unheard)) {
-        const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-        move_to(contact, (double)regime_of(contact) * fc_regime_bound(&scene));
+    look_at_lag(contact);
+    FcHybrid* hybrid = &contact->state.hybrid;
+    FcVariables* v = &contact->state.variables;
+    double bound;
+    double force;
+    if (slips_along(contact, &bound, &force) && isfinite(bound) && isfinite(v->Q_f + hybrid->lag_heat)) {
+        hybrid->changed |= bound != v->delta || hybrid->lag_heat != 0.0;
+        v->delta = bound;
+        v->Q_f += hybrid->lag_heat;
     }
+    hybrid->lag = hybrid->lag_heat = hybrid->lag_force = 0.0;
 }
 
 // An input may have jumped at the event: a bristle that is now within its bound is free, one beyond is taken onto it.
@@ -199,6 +254,8 @@ void fc_hybrid_event_ends(FcFrictionContact* contact) {
     FcHybrid* hybrid = &contact->state.hybrid;
     hybrid->seen_time = contact->state.time;
     copy_inputs(&contact->state.variables, hybrid->seen);
+    look_at_lag(contact);
+    hybrid->lag_heat = 0.0; // what it starts from
 }
 
 bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message) {

@@ -6,7 +6,8 @@
 // rounding of an event's time starts no second event. The motion between two events depends on time, states, inputs and regime
 // alone. Whether a bristle is still pushed depends besides on how fast the inputs move its bound. That is estimated from the
 // inputs at the end of the last two steps of the integrator; an error of it enters the moment of sticking, and delta and
-// the force by its square.
+// the force by its square. From step to step the heat is summed, too, that the rates of a bristle that slips do not see: the
+// next event gives it to Q_f.
 #ifndef FC_HYBRID_H
 #define FC_HYBRID_H
 
@@ -36,7 +37,8 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
-//   0   V with its vibration [m/s], where |V| has a kink; 1 in ElasticPlastic, which has none
+//   0   V with its vibration [m/s], where |V| has a kink; in ElasticPlastic, which has none, the velocity at which a bristle that
+//       sticks comes nearer to a bound that moves, where it is near to it, else 1
 //   1   (D - delta) / D + hysteresis while a bounded bristle is free, else 1
 //   2   (D + delta) / D + hysteresis while a bounded bristle is free, else 1
 //   3   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
@@ -47,7 +49,8 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
 // the inputs do not go together, which the next evaluation says.
 bool fc_hybrid_step_completed(FcFrictionContact* contact);
 
-// An event begins, with the inputs as they were before it: a bristle that slips is taken onto its bound.
+// An event begins, with the inputs as they were before it: a bristle that slips is taken onto its bound, which inputs have
+// moved, and the heat of that way to Q_f.
 void fc_hybrid_event_begins(FcFrictionContact* contact);
 
 // The regime after the event. *changed says whether a state has changed since the event began, *nominals_changed whether

@@ -9,7 +9,7 @@
 //                   time and its rounding, roundings of W_f and Q_f, rates of the last step, rates of the next step:
 //                   8 bytes each; whether the latter were set: 4
 //                   of model exchange: regime, whether a state was changed: 4 bytes each; when the inputs were seen
-//                   last, they and their speeds, two nominal values: 8 bytes each
+//                   last, they and their speeds, two nominal values, the lag, its force and heat: 8 bytes each
 //                   interface, state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
 //                   8
 //     end - 8 8     FNV-1a hash of all the bytes before it
@@ -35,7 +35,7 @@ enum {
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FcHybrid) == (4 + 2 * FC_INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FcHybrid) == (7 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FcHybrid must be added to transfer_hybrid");
 _Static_assert(sizeof(FcFrictionState) ==
                    sizeof(FcVariables) + (5 + 2 * FC_INPUT_COUNT) * sizeof(double) + sizeof(FcHybrid),
@@ -101,6 +101,9 @@ static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
     }
     transfer_real(cursor, &hybrid->nominal_delta);
     transfer_real(cursor, &hybrid->nominal_energy);
+    transfer_real(cursor, &hybrid->lag);
+    transfer_real(cursor, &hybrid->lag_force);
+    transfer_real(cursor, &hybrid->lag_heat);
 }
 
 static void transfer_state(Cursor* cursor, FcSavedState* saved) {
@@ -259,7 +262,8 @@ static bool hybrid_is_sound(const FcFrictionState* state) {
     const bool regime = hybrid->regime == FC_FREE || (slips && fc_is_bounded(&state->variables.friction));
     return regime && is_flag(hybrid->changed) && isfinite(hybrid->seen_time) &&
            all_finite(hybrid->seen, FC_INPUT_COUNT) && all_finite(hybrid->speed, FC_INPUT_COUNT) &&
-           isfinite(hybrid->nominal_delta) && isfinite(hybrid->nominal_energy);
+           isfinite(hybrid->nominal_delta) && isfinite(hybrid->nominal_energy) && isfinite(hybrid->lag) &&
+           isfinite(hybrid->lag_force) && isfinite(hybrid->lag_heat);
 }
 
 // The name of the first part of the state with a value that it can't have; NULL if there is none.

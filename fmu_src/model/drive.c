@@ -306,7 +306,7 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
         return time < end ? reversal_of_held(drive, time, root, to_root < to_other ? 1.0 : -1.0)
                           : none_before(end);
     }
-    const double time = t + angle_ahead(now, V * V_1 > 0.0 ? FC_PI : 0.0, least) / drive->omega;
+    const double time = t + angle_ahead(now, (V > 0.0) == (V_1 > 0.0) ? FC_PI : 0.0, least) / drive->omega;
     return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
 }
 

@@ -186,7 +186,8 @@ def offsets(library: Library) -> dict[str, int]:
     places["regime"] = places["next_rate_set"] + 4
     places["seen_time"] = places["regime"] + 2 * 4
     places["nominal_energy"] = places["seen_time"] + 10 * 8
-    places["interface"] = places["nominal_energy"] + 8
+    places["lag_heat"] = places["nominal_energy"] + 3 * 8
+    places["interface"] = places["lag_heat"] + 8
     places["state"] = places["interface"] + 4
     places["outputs_stale"] = places["state"] + 4
     places["start_time"] = places["state"] + 16
@@ -224,6 +225,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
         ("regime", struct.pack("<i", 1), "what model exchange keeps"),  # Dahl has no bound here
         ("seen_time", struct.pack("<d", float("nan")), "what model exchange keeps"),
         ("nominal_energy", struct.pack("<d", float("inf")), "what model exchange keeps"),
+        ("lag_heat", struct.pack("<d", float("nan")), "what model exchange keeps"),
         ("interface", struct.pack("<i", 1), "state"),  # of model exchange, and between two steps
         ("interface", struct.pack("<i", 3), "state"),
         ("state", struct.pack("<i", 1 << 4), "state"),

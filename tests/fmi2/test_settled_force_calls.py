@@ -61,6 +61,40 @@ def test_asking_leaves_no_trace(new_instance: Callable[..., Instance], law: int,
     assert asked.get("F_t_settled") == last[:1]
 
 
+def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance]) -> None:
+    """What was asked for before a value changed is asked for again, from a law to the last input."""
+    changes: dict[str, float] = {
+        "V": 0.3,
+        "d": 15e-6,
+        "E": 50e9,
+        "F_C": 40.0,
+        "contact.R_q": 5e-6,
+        "contact.stiffnessScale": 2e-6,
+        "friction.sigma_2": 5.0,
+        "solver.tolerance": 1e-3,
+        "vibration.f": 1e4,
+        "vibration.V_1": 1.2,
+        "vibration.a_d": 5e-7,
+        "vibration.phase_d": 1.0,
+    }
+    asked, so_far = new_instance(), dict(VIBRATING)
+    assert asked.set(VIBRATING) == OK and asked.call("fmi2EnterInitializationMode") == OK
+    last = asked.get("F_t_settled")
+    steps = [("set", {name: value}) for name, value in changes.items()] + [("choose", {"friction.model": 4})]
+    steps.append(("set", {"friction.staticRatio": 1.5}))
+    chosen: dict[str, int] = {}
+    for how, change in steps:
+        (so_far if how == "set" else chosen).update(change)
+        fresh = new_instance()
+        assert fresh.choose(chosen) == OK and fresh.set(so_far) == OK
+        assert fresh.call("fmi2EnterInitializationMode") == OK
+        assert getattr(asked, how)(change) == OK
+        now = asked.get("F_t_settled")
+        assert now == fresh.get("F_t_settled") == asked.get("F_t_settled")
+        assert now != last or how == "choose", change
+        last = now
+
+
 def test_one_call_may_ask_for_it_more_than_once_and_beside_others(instance: Instance) -> None:
     assert instance.set(VIBRATING) == OK
     instance.initialize()

@@ -12,8 +12,6 @@ from frictioncontact.fmu import FrictionFmu
 
 TOLERANCE = 1e-7  # of the host, for every step; the error of a run is the sum of some of them
 ALLOWED = 100 * TOLERANCE
-# Of a bristle that slips while inputs move its bound and sigma, over the work of the limit.
-ALLOWED_HEAT = 0.1
 
 
 @pytest.mark.parametrize("number", range(36))
@@ -21,8 +19,14 @@ def test_scenes(fmu: FrictionFmu, number: int) -> None:
     """Vibrating or not, inputs held or linear, every law with a state."""
     scene = drawn(number, fmu)
     found = errors(scene, run(scene, fmu, TOLERANCE))
-    assert found.F_t < ALLOWED and found.W_f < ALLOWED
-    assert found.Q_f < (ALLOWED_HEAT if scene.inputs_move_a_bound else ALLOWED)
+    assert max(found) < ALLOWED
+
+
+@pytest.mark.parametrize("number", [320, 431])
+def test_a_bound_that_only_touches(fmu: FrictionFmu, number: int) -> None:
+    """A bristle that sticks meets its bound for a thousandth of a period, within one step of the host."""
+    scene = drawn(number, fmu)
+    assert max(errors(scene, run(scene, fmu, 1e-10))) < 1e-7  # an event not seen costs 6e-6 and more
 
 
 def held(fmu: FrictionFmu, count: int) -> list[ExchangeScene]:

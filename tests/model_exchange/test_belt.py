@@ -7,7 +7,7 @@ import math
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.exchange import LAWS, LawBelt, errors, exchange, reference
+from workshop.bench.exchange import LAWS, LawBelt, against_cost, errors, exchange, reference
 from workshop.exchange import Host
 
 
@@ -19,6 +19,16 @@ def test_stick_and_slip_against_the_whole_system(fmu: FrictionFmu, law: str) -> 
     for tolerance, allowed in ((1e-6, 1e-3), (1e-8, 1e-5), (1e-10, 1e-7)):
         of_F_t, of_x = errors(belt, exchange(fmu, belt, tolerance), truth)
         assert of_F_t < allowed and of_x < allowed, tolerance
+
+
+def test_the_chart_has_the_error_of_each_tolerance_over_the_time_per_call(fmu: FrictionFmu) -> None:
+    belt = LawBelt()
+    rows = against_cost(fmu)
+    (row,) = (row for row in rows if 1e-4 < float(str(row["error_F_t"])) < 1e-3)  # of 1e-6
+    run = exchange(fmu, belt, 1e-6)
+    assert (row["error_F_t"], row["error_x"]) == errors(belt, run, reference(belt))
+    assert row["H"] == belt.end / run.calls
+    assert len(rows) == 3 and rows[-1]["error_F_t"] < 1e-5
 
 
 def test_a_stuck_mass_does_not_creep(fmu: FrictionFmu) -> None:

@@ -122,6 +122,13 @@ def test_coulomb_is_the_arc_sine(fmu: FrictionFmu, zeta: float) -> None:
         assert session.slope("F_t_settled", "V") == pytest.approx(by_V, rel=1e-7)
 
 
+@pytest.mark.parametrize("zeta", [-1.0, 1.0])
+@pytest.mark.parametrize("V_1", [0.8, 1e-300])
+def test_coulomb_where_V_only_touches_zero(fmu: FrictionFmu, zeta: float, V_1: float) -> None:
+    with fmu.session({"friction.model": "Coulomb", "V": zeta * V_1, "vibration.V_1": V_1}) as session:
+        assert session.get("F_t_settled") == pytest.approx(zeta * F_C, rel=1e-12)
+
+
 @pytest.mark.parametrize("V", [1e-300, -1e-300, 3e-3, -3e-3, 1e15])
 @pytest.mark.parametrize("law", LAWS)
 def test_without_vibration_it_is_steady_sliding(fmu: FrictionFmu, law: str, V: float) -> None:

@@ -78,6 +78,38 @@ static void a_bound_that_falls_takes_the_bristle_along(void) {
     fc_friction_contact_free(&contact);
 }
 
+// While the bristle slips the load falls on, and sigma stays: what the bristle stored is heat, once an event takes it along.
+static void a_bristle_that_slips_gives_its_heat_at_the_next_event(void) {
+    FcFrictionContact contact = pressed(100.0);
+    FcVariables* v = &contact.state.variables;
+    v->V = 1e-3;
+    v->delta = MU * 100.0 / SIGMA;
+    bool changed;
+    bool nominals_changed;
+    FcMessage message;
+    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message));
+    fc_hybrid_event_ends(&contact);
+    CHECK(contact.state.hybrid.regime == FC_SLIPS_FORWARD);
+    const double start = v->delta;
+    const double Q_f = v->Q_f; // of rounding
+    for (int k = 1; k <= 4; k++) {
+        fc_hybrid_set_time(&contact, 0.1 * k);
+        v->load = 100.0 - 20.0 * k;
+        CHECK(!fc_hybrid_step_completed(&contact));
+        CHECK(v->Q_f == Q_f && v->delta == start);
+    }
+    fc_hybrid_event_begins(&contact);
+    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message) && changed);
+    fc_hybrid_event_ends(&contact);
+    CHECK(contact.state.hybrid.regime == FC_SLIPS_FORWARD);
+    const double end = MU * 20.0 / SIGMA;
+    CHECK_NEAR(v->delta, end, 1e-14);
+    CHECK_NEAR(v->Q_f, 0.5 * SIGMA * (start * start - end * end), 1e-12);
+    fc_hybrid_event_begins(&contact); // nothing has moved since
+    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message) && !changed);
+    fc_friction_contact_free(&contact);
+}
+
 static void coulomb_is_refused(void) {
     FcFrictionContact contact = pressed(100.0);
     contact.state.variables.friction.model = FC_COULOMB;
@@ -88,6 +120,7 @@ static void coulomb_is_refused(void) {
 int main(void) {
     the_speed_of_inputs_is_that_between_two_steps();
     a_bound_that_falls_takes_the_bristle_along();
+    a_bristle_that_slips_gives_its_heat_at_the_next_event();
     coulomb_is_refused();
     return check_result();
 }

@@ -44,6 +44,9 @@ static FcSavedState full_state(void) {
     }
     hybrid->nominal_delta = 1e-7;
     hybrid->nominal_energy = 1e-5;
+    hybrid->lag = 3e-8;
+    hybrid->lag_force = -17.0;
+    hybrid->lag_heat = 2e-7;
     saved.experiment = (FcExperiment){.interface = FC_CO_SIMULATION,
                                       .mode = FC_STEP_COMPLETE,
                                       .tolerance_is_set = 1,
@@ -118,7 +121,10 @@ static void infinite_numbers_are_refused(fmi2Component c) {
                               offsetof(FcFrictionState, hybrid.seen),
                               offsetof(FcFrictionState, hybrid.speed) + (FC_INPUT_COUNT - 1) * sizeof(double),
                               offsetof(FcFrictionState, hybrid.nominal_delta),
-                              offsetof(FcFrictionState, hybrid.nominal_energy)};
+                              offsetof(FcFrictionState, hybrid.nominal_energy),
+                              offsetof(FcFrictionState, hybrid.lag),
+                              offsetof(FcFrictionState, hybrid.lag_force),
+                              offsetof(FcFrictionState, hybrid.lag_heat)};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         FcSavedState saved = full_state();
         const double infinite = INFINITY;
@@ -197,6 +203,9 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
     }
     put_real(&layout, hybrid->nominal_delta);
     put_real(&layout, hybrid->nominal_energy);
+    put_real(&layout, hybrid->lag);
+    put_real(&layout, hybrid->lag_force);
+    put_real(&layout, hybrid->lag_heat);
     put(&layout, (unsigned)saved->experiment.interface, 4);
     put(&layout, (unsigned)saved->experiment.mode, 4);
     put(&layout, (unsigned)saved->experiment.outputs_stale, 4);

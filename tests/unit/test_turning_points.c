@@ -3,6 +3,7 @@
 
 #include "check.h"
 #include "random_bound.h"
+#include "solver/solver.h"
 
 enum { SCENES = 1500, SAMPLES = 4000, MOST = 1000 };
 static const double TOLERANCE = 1e-12;
@@ -155,8 +156,29 @@ static void a_touch_costs_few_divisions(void) {
     CHECK(dearest < 200.0);
 }
 
+// Dahl's cells are joined up to the next reversal, here to the end; once the evaluations are spent none is added.
+static void cells_are_joined_within_the_limit(void) {
+    contact = table_1(FC_CONTACT_MINDLIN, FC_CONTACT_SEPARATION);
+    friction = (FcFriction){.model = FC_DAHL, .limit = FC_LIMIT_LOAD, .mu = 0.18, .staticRatio = 1.0};
+    const double end = 20.0 / F;
+    const FcDrive drive = fc_drive_make((FcLinearInput){0.1, 0.0}, (FcLinearInput){D_MEAN, 0.0},
+                                        (FcLinearInput){E, 0.5 * E / end}, (FcLinearInput){100.0, 0.0},
+                                        (FcVibration){.f = F, .a_d = 1e-6}, 0.0, 0.0);
+    const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, E);
+    const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
+    for (int spent = 0; spent < 2; spent++) {
+        FcTurningPoints points;
+        FcPiece piece;
+        fc_turning_points_start(&points, &scene, TOLERANCE, end);
+        points.evaluations = spent ? 2.0 * FC_MOST_EVALUATIONS : 0.0;
+        fc_turning_points_next(&points, -FC_NO_BOUND, FC_NO_BOUND, &piece);
+        CHECK(spent ? piece.end->t < 0.1 * end : piece.end->t == end);
+    }
+}
+
 int main(void) {
     a_touch_costs_few_divisions();
+    cells_are_joined_within_the_limit();
     int seen = 0;
     for (int i = 0; i < SCENES; i++) {
         FcScene scene = random_scene();

@@ -24,6 +24,7 @@ LAWS = ("Dahl", "ElasticPlastic")
 TOLERANCES = (1e-4, 1e-6, 1e-8)
 STEPS = (2000, 8000, 32000)
 POINTS = 250
+MODEL_EXCHANGE = "model exchange"
 OF_REFERENCE = 1e-12  # tolerance of the reference's pieces
 
 
@@ -120,6 +121,19 @@ def errors(belt: LawBelt, run: Run, truth: np.ndarray) -> tuple[float, float]:
     """Of F_t and x."""
     error = np.abs(run.rows - truth).max(0)
     return error[2] / belt.F_C, error[0] * belt.k / belt.F_C
+
+
+def against_cost(fmu: FrictionFmu) -> list[dict[str, object]]:
+    """As coupling.coupled_errors, of Dahl's law: H is the simulated time over the calls."""
+    belt = LawBelt()
+    truth = reference(belt)
+    rows: list[dict[str, object]] = []
+    for tolerance in TOLERANCES:
+        run = exchange(fmu, belt, tolerance)
+        of_F_t, of_x = errors(belt, run, truth)
+        found = {"H": belt.end / run.calls, "error_F_t": float(of_F_t), "error_x": float(of_x)}
+        rows.append({"coupling": MODEL_EXCHANGE, **found, "failure": ""})
+    return rows
 
 
 def table(fmu: FrictionFmu) -> Iterator[tuple[str, str, float, float, float, int]]:

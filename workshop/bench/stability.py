@@ -26,6 +26,7 @@ from workshop.bench.driver import (
     wide_console,
     write_machine,
 )
+from workshop.bench.exchange import against_cost
 from workshop.bench.stability_map import EDGES, METHODS, classify, measured_edge
 
 DESCRIPTION = """\
@@ -84,7 +85,7 @@ def run(options: argparse.Namespace) -> None:
         ]
         progress.update(task, advance=1, description="Mass on a belt: stick-slip")
         reference = monolithic(belt)
-        errors = coupled_errors(bench.fmu, belt, reference, quick)
+        errors = coupled_errors(bench.fmu, belt, reference, quick) + against_cost(bench.fmu)
         progress.advance(task)
     written = [
         write_csv(behaviours, output / "stability.csv"),

@@ -12,6 +12,7 @@ from matplotlib.ticker import NullFormatter
 
 from frictioncontact import style
 from workshop.bench.coupling import Belt, Trajectory
+from workshop.bench.exchange import MODEL_EXCHANGE
 
 BEHAVIOUR = {
     "monotone": style.BLUE,
@@ -20,7 +21,7 @@ BEHAVIOUR = {
     "diverges": style.RED,
     "refuses": style.LIGHT,
 }
-COUPLING = {"F_t held": style.ORANGE, "F_t linear": style.BLUE}
+COUPLING = {"F_t held": style.ORANGE, "F_t linear": style.BLUE, MODEL_EXCHANGE: style.BLACK}
 
 
 def draw_map(
@@ -90,7 +91,7 @@ def draw_coupled(
                 panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)
                 panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
     panel.xaxis.set_minor_formatter(NullFormatter())
-    panel.set_xlabel("communication step H [s]")
+    panel.set_xlabel("communication step, or time per call in model exchange [s]")
     panel.set_ylabel("largest error of $F_t$ over $F_C$")
     panel.set_title("Jacobi master; dashed: stable in stick up to here")
     panel.legend()

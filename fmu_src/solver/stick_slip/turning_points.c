@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/root.h"
+#include "solver/solver.h"
 
 // A cell lasts this many smooth times, in each of which the phase, ln sigma and ln g move by 1 at the most (bound.h).
 static const double CELL = 1.5;
@@ -296,14 +297,15 @@ static void next_with_moving_bound(FcTurningPoints* points, double lowest, doubl
 }
 
 // A bristle that relaxes may be anywhere. Its cells are joined up to the next reversal, since what it costs to tell where it
-// is, is dear, but not where the bound falls by more than FARTHEST_FALL: a bristle that has met it might be back at it.
+// is, is dear, but not where the bound falls by more than FARTHEST_FALL: a bristle that has met it might be back at it. Where
+// the bound's rate is rounding alone each cell may cost MOST_SAMPLES, so the evaluations are limited here too.
 static void next_of_relaxing(FcTurningPoints* points, FcPiece* piece) {
     next_with_moving_bound(points, -FC_NO_BOUND, FC_NO_BOUND, piece);
     points->piece_start = *piece->start;
-    while (!piece->turns && points->at->t < points->event.time &&
-           points->at->D > FARTHEST_FALL * points->piece_start.D &&
-           nears(points, points->at, 0) == piece->nears[0] &&
-           nears(points, points->at, 1) == piece->nears[1]) {
+    while (
+        !piece->turns && points->at->t < points->event.time && points->evaluations <= FC_MOST_EVALUATIONS &&
+        points->at->D > FARTHEST_FALL * points->piece_start.D &&
+        nears(points, points->at, 0) == piece->nears[0] && nears(points, points->at, 1) == piece->nears[1]) {
         FcPiece next;
         next_with_moving_bound(points, -FC_NO_BOUND, FC_NO_BOUND, &next);
         piece->end = next.end;
