@@ -315,7 +315,7 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
     const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
     double from = t;
     double V_from = fc_drive_V(drive, from);
-    if (fabs(V_from) <= rounding_of_V(drive, t)) { // t is a root
+    if (V_from == 0.0 || (t > 0.0 && fabs(V_from) <= rounding_of_V(drive, t))) { // t is a root
         from += least_ahead(theta(drive, t)) / drive->omega;
         V_from = fc_drive_V(drive, from);
     }

@@ -13,6 +13,8 @@ static const double ROUNDING = 1e-12;
 static const double LEAST_BOUND = 0.25;
 // Of the bound at the start of a piece, in which a bristle relaxes.
 static const double FARTHEST_FALL = 0.25;
+// Over the peak's height: 43 / (2^5 384), and three times that for what moves besides.
+static const double MISSED_OF_PEAK = 0.01;
 // A bristle within this of the bound, over D, may be on it.
 static const double NEAR_BOUND = 1e-6;
 // Two turning points this near to each other, over what is left of the cell, count as one time.
@@ -112,6 +114,21 @@ static bool may_turn_within(double q_a, double q_b, double slope_a, double slope
            (fabs(slope_a) + fabs(slope_b)) * duration > 3.0 * fabs(change);
 }
 
+// Whether the cubic through the samples tells that q, which is nowhere farther from it than missed, has no second root: by
+// its coefficients of Bernstein, between which it lies, as its slope lies between their differences. The slope of q is
+// within 3.1 missed of that.
+static bool is_told_by_cubic(double q_a, double q_b, double slope_a, double slope_b, double duration,
+                             double missed) {
+    const double by[4] = {q_a, q_a + slope_a * duration / 3.0, q_b - slope_b * duration / 3.0, q_b};
+    const double s = q_b < 0.0 ? -1.0 : 1.0;
+    const bool crosses = (q_a < 0.0) != (q_b < 0.0);
+    bool told = crosses || s * q_a > missed;
+    for (int i = 0; i < 3; i++) {
+        told = told && (crosses ? s * (by[i + 1] - by[i]) > 3.1 / 3.0 * missed : s * by[i + 1] > missed);
+    }
+    return told;
+}
+
 typedef struct {
     const FcTurningPoints* points;
     int which;
@@ -150,10 +167,27 @@ static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, c
     points->turn[points->turn_count++] = (FcTurningPoint){turn_between(points, which, a, b), which, recedes};
 }
 
+// What a cubic through samples at a and b misses of D' [m/s] in a Stribeck peak: its fourth derivative times the time to the
+// power 4, over 384. In a smooth time V / V_S moves by a half, and the fifth derivative of e^-(x^2) is below 43 e^-(x^2 / 2).
+static double missed_of_peak(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b) {
+    const FcFriction* friction = points->scene->friction;
+    const double x = fmin(fabs(a->V), fabs(b->V)) / friction->V_S;
+    const double part = (b->t - a->t) / points->peak_time;
+    const double height = (friction->staticRatio - 1.0) * exp(-0.5 * x * x) * a->D;
+    return MISSED_OF_PEAK * height * part * part * part * part / points->peak_time;
+}
+
 static bool may_turn_between(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
                              int which) {
-    return may_turn_within(approach(points, a, which), approach(points, b, which),
-                           approach_rate(points, a, which), approach_rate(points, b, which), b->t - a->t);
+    const double q_a = approach(points, a, which), q_b = approach(points, b, which);
+    const double slope_a = approach_rate(points, a, which), slope_b = approach_rate(points, b, which);
+    if (points->peak_time > 0.0) {
+        const double missed = missed_of_peak(points, a, b);
+        if (missed * (b->t - a->t) > points->tolerance * a->D) {
+            return !is_told_by_cubic(q_a, q_b, slope_a, slope_b, b->t - a->t, missed);
+        }
+    }
+    return may_turn_within(q_a, q_b, slope_a, slope_b, b->t - a->t);
 }
 
 // Where to divide a cell [s]: where the approach is least, by a straight line through its slopes at both ends, if they
@@ -258,6 +292,9 @@ static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     const double reach = points->speed * (end->t - start->t);
     const double bound = LEAST_BOUND * start->D;
     const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
+    points->peak_time = fc_has_stribeck_curve(points->scene->friction)
+                            ? fc_bound_smooth_time(points->law, start->t, start->d, start->d_rate)
+                            : 0.0;
     const double on_bound = (1.0 - NEAR_BOUND) * start->D;
     const bool may_be_on[2] = {highest >= on_bound, lowest <= -on_bound};
     const int first = may_be_on[1] ? 1 : 0;
