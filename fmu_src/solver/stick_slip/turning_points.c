@@ -190,6 +190,15 @@ static bool may_turn_between(const FcTurningPoints* points, const FcBoundMotion*
     return may_turn_within(q_a, q_b, slope_a, slope_b, b->t - a->t);
 }
 
+// Whether a bound comes nearer or recedes by less than its tolerance between two samples: the sign is rounding, or nearly.
+static bool stands_still(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
+                         int which) {
+    const double duration = b->t - a->t;
+    const double rate = fmax(fabs(approach(points, a, which)), fabs(approach(points, b, which)));
+    const double slope = fmax(fabs(approach_rate(points, a, which)), fabs(approach_rate(points, b, which)));
+    return (rate + slope * duration) * duration < points->tolerance * a->D;
+}
+
 // Where to divide a cell [s]: where the approach is least, by a straight line through its slopes at both ends, if they
 // point to one; there two roots part, or are excluded, at once. Else in the middle.
 static double dividing_time(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
@@ -202,8 +211,8 @@ static double dividing_time(const FcTurningPoints* points, const FcBoundMotion* 
 // Adds the turning points of a bound between two samples: from left to right, dividing as needed.
 static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* start,
                       const FcBoundMotion* end) {
-    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND)) {
-        return; // nothing is met
+    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND) || stands_still(points, start, end, which)) {
+        return; // nothing is met, or it makes no difference
     }
     if (!may_turn_between(points, start, end, which)) {
         add_turn(points, which, may_be_on_bound, start, end);
