@@ -13,6 +13,9 @@ static const double ROUNDING = 1e-12;
 static const double LEAST_BOUND = 0.25;
 // Of the bound at the start of a piece, in which a bristle relaxes.
 static const double FARTHEST_FALL = 0.25;
+// A bound that moves by no more than this, over D, stands still; the slope of its rate has a rounding of that.
+static const double STANDS = 1e-15;
+static const double SLOPE_OF_STANDING = 1e-11;
 // Over the peak's height: 43 / (2^5 384), and three times that for what moves besides.
 static const double MISSED_OF_PEAK = 0.01;
 // A bristle within this of the bound, over D, may be on it.
@@ -146,11 +149,19 @@ static FcRootFunction evaluate(void* context, double t) {
     return root_function(of, &of->last);
 }
 
-// The turning point between two samples at which a bound's approach changes its sign.
+// The turning point between two samples at which a bound's approach changes its sign. One that vanishes at the first may
+// have its turn later.
 static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBoundMotion* a,
                                   const FcBoundMotion* b) {
-    Approach of = {points, which, *a};
-    const double t = fc_root(evaluate, &of, a->t, root_function(&of, a), b->t, root_function(&of, b),
+    FcBoundMotion from = *a;
+    if (approach(points, a, which) == 0.0) {
+        from = fc_turning_points_motion(points, a->t + SAME_TIME * (b->t - a->t));
+        if ((approach(points, &from, which) < 0.0) == (approach(points, b, which) < 0.0)) {
+            return *a;
+        }
+    }
+    Approach of = {points, which, from};
+    const double t = fc_root(evaluate, &of, from.t, root_function(&of, &from), b->t, root_function(&of, b),
                              points->last_step, points->tolerance * a->D, &points->evaluations);
     return fc_bound_nearby(points->scene, &of.last, t);
 }
@@ -190,13 +201,13 @@ static bool may_turn_between(const FcTurningPoints* points, const FcBoundMotion*
     return may_turn_within(q_a, q_b, slope_a, slope_b, b->t - a->t);
 }
 
-// Whether a bound comes nearer or recedes by less than its tolerance between two samples: the sign is rounding, or nearly.
+// Whether a bound stands still between two samples but for rounding, of which its slope has far more.
 static bool stands_still(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
                          int which) {
     const double duration = b->t - a->t;
     const double rate = fmax(fabs(approach(points, a, which)), fabs(approach(points, b, which)));
     const double slope = fmax(fabs(approach_rate(points, a, which)), fabs(approach_rate(points, b, which)));
-    return (rate + slope * duration) * duration < points->tolerance * a->D;
+    return rate * duration <= STANDS * a->D && slope * duration * duration <= SLOPE_OF_STANDING * a->D;
 }
 
 // Where to divide a cell [s]: where the approach is least, by a straight line through its slopes at both ends, if they
