@@ -6,16 +6,15 @@
 #include "model/constants.h"
 #include "model/root.h"
 
-// f t modulo 1, exact to the last bit of t: the product's rounding error is added back.
+// f t less the nearest whole number, exact to the last bit of t: the product's rounding error is added back.
 static double phase_in_cycles(double f, double t) {
     const double cycles = f * t;
     if (!isfinite(cycles)) {
         return 0.0;
     }
     const double lost = fma(f, t, -cycles);
-    double fraction = (cycles - floor(cycles)) + lost;
-    fraction -= floor(fraction);
-    return fraction < 1.0 ? fraction : 0.0;
+    const double fraction = (cycles - rint(cycles)) + lost;
+    return fraction - rint(fraction);
 }
 
 FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
