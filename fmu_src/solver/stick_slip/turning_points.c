@@ -297,6 +297,10 @@ static void take_samples(FcTurningPoints* points) {
         const double t = start.t + CELL * fc_bound_smooth_time(points->law, start.t, start.d, start.d_rate);
         *next = fc_turning_points_motion(points, t > start.t && t < end ? t : end);
     }
+    FcBoundMotion* last = &points->sample[points->sample_count];
+    if (points->relaxes && points->event.reversal && last->t == end) {
+        last->V = 0.0; // and no rounding, beside which D' may be nothing
+    }
     points->evaluations += points->sample_count;
 }
 
