@@ -178,14 +178,16 @@ static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, c
     points->turn[points->turn_count++] = (FcTurningPoint){turn_between(points, which, a, b), which, recedes};
 }
 
-// What a cubic through samples at a and b misses of D' [m/s] in a Stribeck peak: its fourth derivative times the time to the
-// power 4, over 384. In a smooth time V / V_S moves by a half, and the fifth derivative of e^-(x^2) is below 43 e^-(x^2 / 2).
+// What a cubic through samples at a and b misses of an approach [m/s] in a Stribeck peak: its fourth derivative times the
+// time to the power 4, over 384. In a smooth time V / V_S moves by a half. The fifth derivative of e^-(x^2), by which D'
+// moves, and the fourth of x e^-(x^2), by which V k does, are below 43 e^-(x^2 / 2).
 static double missed_of_peak(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b) {
-    const FcFriction* friction = points->scene->friction;
+    const FcFriction* friction = points->law->friction;
     const double x = fmin(fabs(a->V), fabs(b->V)) / friction->V_S;
     const double part = (b->t - a->t) / points->peak_time;
-    const double height = (friction->staticRatio - 1.0) * exp(-0.5 * x * x) * a->D;
-    return MISSED_OF_PEAK * height * part * part * part * part / points->peak_time;
+    const double height = (friction->staticRatio - 1.0) * exp(-0.5 * x * x);
+    const double moves = points->relaxes ? 2.0 * friction->V_S : a->D / points->peak_time;
+    return MISSED_OF_PEAK * height * moves * part * part * part * part;
 }
 
 static bool may_turn_between(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
@@ -316,7 +318,7 @@ static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     const double reach = points->speed * (end->t - start->t);
     const double bound = LEAST_BOUND * start->D;
     const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
-    points->peak_time = fc_has_stribeck_curve(points->scene->friction)
+    points->peak_time = fc_has_stribeck_curve(points->law->friction)
                             ? fc_bound_smooth_time(points->law, start->t, start->d, start->d_rate)
                             : 0.0;
     const double on_bound = (1.0 - NEAR_BOUND) * start->D;
