@@ -45,14 +45,19 @@ static double longest_before_pole(const FcDrive* drive, double t) {
 // Where V grazes zero |V| is at most this part of V_1.
 static const double GRAZES = 0.05;
 
+static bool grazes(const FcDrive* drive, double t) {
+    const double most = GRAZES * drive->vibration.V_1;
+    return fabs(fabs(drive->V.value + drive->V.rate * t) - drive->vibration.V_1) < most &&
+           fabs(fc_drive_V(drive, t)) < most;
+}
+
 // The error of the work counts over the path, which is far shorter than V and V_1 are where V grazes zero.
 static FcIntegrator where_it_grazes(const FcIntegrator* integrator, double start, double end) {
     const FcDrive* drive = &integrator->scene->drive;
     FcIntegrator finer = *integrator;
-    double speed = GRAZES * drive->vibration.V_1;
-    if (fabs(fc_drive_V(drive, start)) < speed && fabs(fc_drive_V(drive, end)) < speed &&
-        fabs(fc_drive_V(drive, 0.5 * (start + end))) < speed) {
+    if (grazes(drive, start) && grazes(drive, 0.5 * (start + end)) && grazes(drive, end)) {
         const double fastest = fmax(fabs(fc_drive_V(drive, start)), fabs(fc_drive_V(drive, end)));
+        double speed = GRAZES * drive->vibration.V_1;
         for (; fastest < speed && finer.digits < MOST_DIGITS; speed *= 0.1) {
             finer.digits++;
         }

@@ -178,29 +178,35 @@ static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, c
     points->turn[points->turn_count++] = (FcTurningPoint){turn_between(points, which, a, b), which, recedes};
 }
 
-// What a cubic through samples at a and b misses of an approach [m/s] in a Stribeck peak: its fourth derivative times the
-// time to the power 4, over 384. In a smooth time V / V_S moves by a half. The fifth derivative of e^-(x^2), by which D'
-// moves, and the fourth of x e^-(x^2), by which V k does, are below 43 e^-(x^2 / 2).
-static double missed_of_peak(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b) {
+// Whether a bound may turn in a Stribeck peak. What a cubic through samples at a and b misses of its approach [m/s] is the
+// fourth derivative times the time to the power 4, over 384. In a smooth time V / V_S moves by a half. The fifth derivative
+// of e^-(x^2), by which D' moves, and twice the fourth of x e^-(x^2), by which V k does, are below 43 e^-(x^2 / 2).
+static bool may_turn_in_peak(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
+                             int which) {
     const FcFriction* friction = points->law->friction;
+    const double q_a = approach(points, a, which), q_b = approach(points, b, which);
+    const double slope_a = approach_rate(points, a, which), slope_b = approach_rate(points, b, which);
+    const double duration = b->t - a->t;
+    const double part = duration / points->peak_time;
+    const double moves = points->relaxes ? friction->V_S : a->D / points->peak_time;
+    double missed = MISSED_OF_PEAK * (friction->staticRatio - 1.0) * moves * part * part * part * part;
+    if (is_told_by_cubic(q_a, q_b, slope_a, slope_b, duration, missed)) {
+        return false;
+    }
     const double x = fmin(fabs(a->V), fabs(b->V)) / friction->V_S;
-    const double part = (b->t - a->t) / points->peak_time;
-    const double height = (friction->staticRatio - 1.0) * exp(-0.5 * x * x);
-    const double moves = points->relaxes ? 2.0 * friction->V_S : a->D / points->peak_time;
-    return MISSED_OF_PEAK * height * moves * part * part * part * part;
+    missed *= exp(-0.5 * x * x);
+    return missed * duration > points->tolerance * a->D
+               ? !is_told_by_cubic(q_a, q_b, slope_a, slope_b, duration, missed)
+               : may_turn_within(q_a, q_b, slope_a, slope_b, duration);
 }
 
 static bool may_turn_between(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
                              int which) {
-    const double q_a = approach(points, a, which), q_b = approach(points, b, which);
-    const double slope_a = approach_rate(points, a, which), slope_b = approach_rate(points, b, which);
     if (points->peak_time > 0.0) {
-        const double missed = missed_of_peak(points, a, b);
-        if (missed * (b->t - a->t) > points->tolerance * a->D) {
-            return !is_told_by_cubic(q_a, q_b, slope_a, slope_b, b->t - a->t, missed);
-        }
+        return may_turn_in_peak(points, a, b, which);
     }
-    return may_turn_within(q_a, q_b, slope_a, slope_b, b->t - a->t);
+    return may_turn_within(approach(points, a, which), approach(points, b, which),
+                           approach_rate(points, a, which), approach_rate(points, b, which), b->t - a->t);
 }
 
 // Whether a bound stands still between two samples but for rounding, of which its slope has far more.
