@@ -19,7 +19,9 @@ static bool moves_by_decades(const ReferenceScene* s) {
 
 // The class but for the method: the first that holds.
 static int class_of_scene(const ReferenceScene* s, const ReferenceStep* truth) {
-    return moves_by_decades(s) ? CLASS_DECADES : truth->largest > 3.0 * truth->scale ? CLASS_BEYOND : CLASS_USUAL;
+    return moves_by_decades(s)                   ? CLASS_DECADES
+           : truth->largest > 3.0 * truth->scale ? CLASS_BEYOND
+                                                 : CLASS_USUAL;
 }
 
 int promise_class(const ReferenceScene* s, const ReferenceStep* truth, int method) {
