@@ -243,8 +243,10 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// Asking for less than this is asking for more digits than there are.
+// Asking for less than this is asking for more digits than there are: of a force, and of one that the damping multiplies,
+// which is small against what the tolerance is relative to.
 static const double SMALLEST_TOLERANCE = 1e-12;
+static const double SMALLEST_DAMPED = 1e-15;
 
 // How much more an error of the deflection does to F_t through the damping sigma_1 delta' than through sigma delta, at
 // the most: delta' = V - sigma |V| delta / g passes it on times sigma |V| / g.
@@ -256,8 +258,8 @@ static double damping_gain(const FcScene* scene, double h) {
 }
 
 static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h) {
-    return (FcSolverOptions){.tolerance =
-                                 fmax(SMALLEST_TOLERANCE, v->solver.tolerance / damping_gain(scene, h)),
+    const double tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance);
+    return (FcSolverOptions){.tolerance = fmax(SMALLEST_DAMPED, tolerance / damping_gain(scene, h)),
                              .step_size = v->solver.stepSize};
 }
 

@@ -11,9 +11,6 @@ enum {
     CLASS_DECADES, // an input moves E, the load or what d makes of it by a factor of 3 and more in the step
     CLASS_BEYOND,  // the bristle's force is, or starts, at more than three times the limit
     CLASS_CVODE,   // Dahl and LuGre by cvode, in no class above
-    CLASS_CURVE,   // ElasticPlastic with static friction
-    CLASS_TOUCH,   // V grazes zero: |V| is within 1e-3 of V_1
-    CLASS_NARROW,  // LuGre's V_S is below a thousandth of V
     CLASS_USUAL,
     CLASSES
 };

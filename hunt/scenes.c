@@ -160,11 +160,12 @@ static void times(Draw* draw, ReferenceScene* s, bool linear) {
     if (chance(draw, 0.6)) {
         s->start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e8 : 1e3) / s->f;
     }
-    if (chance(draw, 0.15)) {
+    const bool at_event = chance(draw, 0.15);
+    if (at_event) {
         s->start = eventful(draw, s, s->start);
     }
     s->h = log_between(draw, 1e-3, linear ? 4.0 : MOST_PERIODS) / s->f;
-    if (chance(draw, 0.05)) {
+    if (chance(draw, at_event ? 0.4 : 0.05)) { // so short that an event just after the start counts
         s->h = log_between(draw, 1e-9, 1e-3) / s->f;
     }
     if (chance(draw, 0.2)) {

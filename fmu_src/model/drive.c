@@ -6,16 +6,15 @@
 #include "model/constants.h"
 #include "model/root.h"
 
-// f t modulo 1, exact to the last bit of t: the product's rounding error is added back.
+// f t less the nearest whole number, exact to the last bit of t: the product's rounding error is added back.
 static double phase_in_cycles(double f, double t) {
     const double cycles = f * t;
     if (!isfinite(cycles)) {
         return 0.0;
     }
     const double lost = fma(f, t, -cycles);
-    double fraction = (cycles - floor(cycles)) + lost;
-    fraction -= floor(fraction);
-    return fraction < 1.0 ? fraction : 0.0;
+    const double fraction = (cycles - rint(cycles)) + lost;
+    return fraction - rint(fraction);
 }
 
 FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
@@ -321,7 +320,7 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
     const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
     double from = t;
     double V_from = fc_drive_V(drive, from);
-    if (fabs(V_from) <= rounding_of_V(drive, t)) { // t is a root
+    if (V_from == 0.0 || (t > 0.0 && fabs(V_from) <= rounding_of_V(drive, t))) { // t is a root
         from += least_ahead(theta(drive, t)) / drive->omega;
         V_from = fc_drive_V(drive, from);
     }

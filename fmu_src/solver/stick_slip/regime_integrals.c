@@ -43,6 +43,29 @@ static double longest_before_pole(const FcDrive* drive, double t) {
     return WAY_TO_POLE / fmax(fc_drive_E_growth(drive, t), fc_drive_load_growth(drive, t));
 }
 
+// Where V grazes zero |V| is at most this part of V_1.
+static const double GRAZES = 0.05;
+
+static bool grazes(const FcDrive* drive, double t) {
+    const double most = GRAZES * drive->vibration.V_1;
+    return fabs(fabs(drive->V.value + drive->V.rate * t) - drive->vibration.V_1) < most &&
+           fabs(fc_drive_V(drive, t)) < most;
+}
+
+// The error of the work counts over the path, which is far shorter than V and V_1 are where V grazes zero.
+static FcIntegrator where_it_grazes(const FcIntegrator* integrator, double start, double end) {
+    const FcDrive* drive = &integrator->scene->drive;
+    FcIntegrator finer = *integrator;
+    if (grazes(drive, start) && grazes(drive, 0.5 * (start + end)) && grazes(drive, end)) {
+        const double fastest = fmax(fabs(fc_drive_V(drive, start)), fabs(fc_drive_V(drive, end)));
+        double speed = GRAZES * drive->vibration.V_1;
+        for (; fastest < speed && finer.digits < MOST_DIGITS; speed *= 0.1) {
+            finer.digits++;
+        }
+    }
+    return finer;
+}
+
 static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
     const FcScene* scene = integrator->scene;
     const double smooth_time =
@@ -104,8 +127,9 @@ FcMap fc_stick_map(const FcIntegrator* integrator, double start, double end, dou
         map.work_offset = 0.5 * sigma * x * x;
         *evaluations += 1.0;
     } else {
+        const FcIntegrator of_work = where_it_grazes(integrator, start, end);
         for (double t = start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
-            const Panel panel = panel_at(integrator, t, end);
+            const Panel panel = panel_at(&of_work, t, end);
             const FcMap next = stick_panel(scene, &panel);
             fc_map_append(&map, &next);
             *evaluations += NODES[panel.rule];
@@ -141,8 +165,9 @@ static void add_slip_panel(const FcScene* scene, const Panel* panel, bool with_r
 static FcSlipIntegrals quadrature_of_slip(const FcIntegrator* integrator, double start, double end,
                                           bool with_rates, double* evaluations) {
     FcSlipIntegrals sum = {0};
+    const FcIntegrator of_work = where_it_grazes(integrator, start, end);
     for (double t = start; t < end && *evaluations <= FC_MOST_EVALUATIONS;) {
-        const Panel panel = panel_at(integrator, t, end);
+        const Panel panel = panel_at(&of_work, t, end);
         add_slip_panel(integrator->scene, &panel, with_rates, &sum, evaluations);
         t = panel.end;
     }

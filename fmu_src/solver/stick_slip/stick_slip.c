@@ -166,6 +166,10 @@ static FcBoundMotion meeting(Regime* regime, double side, const FcBoundMotion* a
     }
     const double t = fc_root(evaluate, &of, a->t, beyond(a, side, delta_a), b->t, at_b,
                              regime->points->last_step, INFINITY, &regime->result->evaluations);
+    if (relaxes(&regime->free)) { // what it has left to the bound is heat, to first order
+        regime->result->evaluations += 1.0;
+        return fc_turning_points_motion(regime->points, t);
+    }
     return fc_bound_nearby(regime->points->scene, &of.last, t);
 }
 

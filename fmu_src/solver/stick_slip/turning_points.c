@@ -14,6 +14,11 @@ static const double ROUNDING = 1e-12;
 static const double LEAST_BOUND = 0.25;
 // A piece of a bristle that relaxes ends where the bound has fallen to this part of what it was at the start.
 static const double FARTHEST_FALL = 0.25;
+// A bound that moves by no more than this, over D, stands still; the slope of its rate has a rounding of that.
+static const double STANDS = 1e-15;
+static const double SLOPE_OF_STANDING = 1e-11;
+// Over the peak's height: 43 / (2^5 384), and three times that for what moves besides.
+static const double MISSED_OF_PEAK = 0.01;
 // A bristle within this of the bound, over D, may be on it.
 static const double NEAR_BOUND = 1e-6;
 // Two turning points this near to each other, over what is left of the cell, count as one time.
@@ -113,6 +118,21 @@ static bool may_turn_within(double q_a, double q_b, double slope_a, double slope
            (fabs(slope_a) + fabs(slope_b)) * duration > 3.0 * fabs(change);
 }
 
+// Whether the cubic through the samples tells that q, which is nowhere farther from it than missed, has no second root: by
+// its coefficients of Bernstein, between which it lies, as its slope lies between their differences. The slope of q is
+// within 3.1 missed of that.
+static bool is_told_by_cubic(double q_a, double q_b, double slope_a, double slope_b, double duration,
+                             double missed) {
+    const double by[4] = {q_a, q_a + slope_a * duration / 3.0, q_b - slope_b * duration / 3.0, q_b};
+    const double s = q_b < 0.0 ? -1.0 : 1.0;
+    const bool crosses = (q_a < 0.0) != (q_b < 0.0);
+    bool told = crosses || s * q_a > missed;
+    for (int i = 0; i < 3; i++) {
+        told = told && (crosses ? s * (by[i + 1] - by[i]) > 3.1 / 3.0 * missed : s * by[i + 1] > missed);
+    }
+    return told;
+}
+
 typedef struct {
     const FcTurningPoints* points;
     int which;
@@ -130,11 +150,19 @@ static FcRootFunction evaluate(void* context, double t) {
     return root_function(of, &of->last);
 }
 
-// The turning point between two samples at which a bound's approach changes its sign.
+// The turning point between two samples at which a bound's approach changes its sign. One that vanishes at the first may
+// have its turn later.
 static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBoundMotion* a,
                                   const FcBoundMotion* b) {
-    Approach of = {points, which, *a};
-    const double t = fc_root(evaluate, &of, a->t, root_function(&of, a), b->t, root_function(&of, b),
+    FcBoundMotion from = *a;
+    if (approach(points, a, which) == 0.0) {
+        from = fc_turning_points_motion(points, a->t + SAME_TIME * (b->t - a->t));
+        if ((approach(points, &from, which) < 0.0) == (approach(points, b, which) < 0.0)) {
+            return *a;
+        }
+    }
+    Approach of = {points, which, from};
+    const double t = fc_root(evaluate, &of, from.t, root_function(&of, &from), b->t, root_function(&of, b),
                              points->last_step, points->tolerance * a->D, &points->evaluations);
     return fc_bound_nearby(points->scene, &of.last, t);
 }
@@ -151,10 +179,44 @@ static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, c
     points->turn[points->turn_count++] = (FcTurningPoint){turn_between(points, which, a, b), which, recedes};
 }
 
+// Whether a bound may turn in a Stribeck peak. What a cubic through samples at a and b misses of its approach [m/s] is the
+// fourth derivative times the time to the power 4, over 384. In a smooth time V / V_S moves by a half. The fifth derivative
+// of e^-(x^2), by which D' moves, and twice the fourth of x e^-(x^2), by which V k does, are below 43 e^-(x^2 / 2).
+static bool may_turn_in_peak(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
+                             int which) {
+    const FcFriction* friction = points->law->friction;
+    const double q_a = approach(points, a, which), q_b = approach(points, b, which);
+    const double slope_a = approach_rate(points, a, which), slope_b = approach_rate(points, b, which);
+    const double duration = b->t - a->t;
+    const double part = duration / points->peak_time;
+    const double moves = points->relaxes ? friction->V_S : a->D / points->peak_time;
+    double missed = MISSED_OF_PEAK * (friction->staticRatio - 1.0) * moves * part * part * part * part;
+    if (is_told_by_cubic(q_a, q_b, slope_a, slope_b, duration, missed)) {
+        return false;
+    }
+    const double x = fmin(fabs(a->V), fabs(b->V)) / friction->V_S;
+    missed *= exp(-0.5 * x * x);
+    return missed * duration > points->tolerance * a->D
+               ? !is_told_by_cubic(q_a, q_b, slope_a, slope_b, duration, missed)
+               : may_turn_within(q_a, q_b, slope_a, slope_b, duration);
+}
+
 static bool may_turn_between(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
                              int which) {
+    if (points->peak_time > 0.0) {
+        return may_turn_in_peak(points, a, b, which);
+    }
     return may_turn_within(approach(points, a, which), approach(points, b, which),
                            approach_rate(points, a, which), approach_rate(points, b, which), b->t - a->t);
+}
+
+// Whether a bound stands still between two samples but for rounding, of which its slope has far more.
+static bool stands_still(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
+                         int which) {
+    const double duration = b->t - a->t;
+    const double rate = fmax(fabs(approach(points, a, which)), fabs(approach(points, b, which)));
+    const double slope = fmax(fabs(approach_rate(points, a, which)), fabs(approach_rate(points, b, which)));
+    return rate * duration <= STANDS * a->D && slope * duration * duration <= SLOPE_OF_STANDING * a->D;
 }
 
 // Where to divide a cell [s]: where the approach is least, by a straight line through its slopes at both ends, if they
@@ -169,8 +231,8 @@ static double dividing_time(const FcTurningPoints* points, const FcBoundMotion* 
 // Adds the turning points of a bound between two samples: from left to right, dividing as needed.
 static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* start,
                       const FcBoundMotion* end) {
-    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND)) {
-        return; // nothing is met
+    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND) || stands_still(points, start, end, which)) {
+        return; // nothing is met, or it makes no difference
     }
     if (!may_turn_between(points, start, end, which)) {
         add_turn(points, which, may_be_on_bound, start, end);
@@ -244,6 +306,10 @@ static void take_samples(FcTurningPoints* points) {
         const double t = start.t + CELL * fc_bound_smooth_time(points->law, start.t, start.d, start.d_rate);
         *next = fc_turning_points_motion(points, t > start.t && t < end ? t : end);
     }
+    FcBoundMotion* last = &points->sample[points->sample_count];
+    if (points->relaxes && points->event.reversal && last->t == end) {
+        last->V = 0.0; // and no rounding, beside which D' may be nothing
+    }
     points->evaluations += points->sample_count;
 }
 
@@ -259,6 +325,9 @@ static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     const double reach = points->speed * (end->t - start->t);
     const double bound = LEAST_BOUND * start->D;
     const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
+    points->peak_time = fc_has_stribeck_curve(points->law->friction)
+                            ? fc_bound_smooth_time(points->law, start->t, start->d, start->d_rate)
+                            : 0.0;
     const double on_bound = (1.0 - NEAR_BOUND) * start->D;
     const bool may_be_on[2] = {highest >= on_bound, lowest <= -on_bound};
     const int first = may_be_on[1] ? 1 : 0;

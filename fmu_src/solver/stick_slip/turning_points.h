@@ -56,6 +56,7 @@ typedef struct {
     bool constant_bound; // D does not move
     double speed;        // m/s, |V| is never larger
     double smooth_time;  // s, of bound.h, common to all cells or 0
+    double peak_time;    // s, the same of the cell at hand where D has a Stribeck peak, else 0
     const FcBoundMotion* at;                    // reached
     FcBoundMotion sample[FC_CELLS_AT_ONCE + 1]; // ends of cells
     int ahead, sample_count;                    // the one that ends the cell at hand, and the last

@@ -140,7 +140,9 @@ static void begin_radau(Crossing* crossing) {
     crossing->at = (FcPlace){
         .rate = crossing->panel.rate,
         .path = fabs(fc_stretch_displacement(stretch, t, stretch->end)),
-        .layer = from_start ? stretch->w_a : fc_event_layer(interval->scene, true, t, phase, &start),
+        .layer = from_start && stretch->starts_at_reversal
+                     ? stretch->w_a // that of a dip is no time to relax in
+                     : fc_event_layer(interval->scene, true, t, phase, &start),
     };
     stretch->relaxes = crossing->section->is_measured && from_start ? crossing->section->z.whole : 0.0;
     crossing->missed = fc_stretch_displacement(stretch, t, crossing->end);
