@@ -19,7 +19,7 @@ from frictioncontact.sweeps import workers as at
 from frictioncontact.sweeps.folder import Folder
 from frictioncontact.sweeps.group import Group, Job
 from frictioncontact.sweeps.scenarios import Rows, Vary, drawn, from_csv, grid
-from frictioncontact.values import Value, Variables, pairs
+from frictioncontact.values import Value, Variables, is_bool, pairs, path_of
 
 MOST_WORKERS = 1000
 MOST_GROUP = 1_000_000  # scenarios; a worker holds its group's rows, some 300 bytes each
@@ -94,7 +94,9 @@ def sweep(
 
     UserError where an argument is wrong, before anything runs, and where the output can't be written.
     """
-    fmu, output = Path(fmu or resources.fmu()), Path(output)
+    fmu = resources.fmu() if fmu is None else path_of(fmu, "fmu")
+    output = path_of(output, "output")
+    csv = None if csv is None else path_of(csv, "csv")
     check_whole(samples, MOST_SAMPLES, "--samples")
     check_whole(1 if workers is None else workers, MOST_WORKERS, "--workers")
     content = _content(f"--fmu {fmu}", fmu)
@@ -114,7 +116,7 @@ def sweep(
     record = {
         "fmu": hashlib.sha256(content).hexdigest(),
         "vary": vary, "random": random, "seed": seed,
-        "csv": hashlib.sha256(_content("csv", Path(csv))).hexdigest() if csv else None,
+        "csv": hashlib.sha256(_content("csv", csv)).hexdigest() if csv else None,
         "set": fixed, "scenarios": count, "group": group, "samples": samples,
     }  # fmt: skip
     job = Job(content, rows, fixed, samples)
@@ -157,14 +159,14 @@ def _listed(name: str, values: str | Iterable[Value]) -> str | list[Value]:
 
 
 def _scenarios(
-    variables: Variables, vary: Vary, random: int | None, seed: int, csv: str | Path | None
+    variables: Variables, vary: Vary, random: int | None, seed: int, csv: Path | None
 ) -> tuple[int, Rows]:
-    if not isinstance(seed, Integral) or seed < 0:
+    if not isinstance(seed, Integral) or is_bool(seed) or seed < 0:
         raise UserError(f"--seed {seed}: must be a whole number from 0")
     if csv is not None:
         if vary or random is not None:
             raise UserError("--csv does not go with --vary or --random: the file names all scenarios")
-        return from_csv(variables, Path(csv))
+        return from_csv(variables, csv)
     if not vary:
         raise UserError("nothing to sweep: give --vary NAME=VALUES or --csv FILE (see --help)")
     return grid(variables, vary) if random is None else drawn(variables, vary, random, seed)

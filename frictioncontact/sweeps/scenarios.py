@@ -40,7 +40,7 @@ class Range:
         if self.logarithmic:
             values = np.exp((1.0 - u) * math.log(self.low) + u * math.log(self.high))
         else:
-            values = (1.0 - u) * self.low + u * self.high
+            values = self.low + u * (self.high - self.low)
         return np.clip(values, self.low, self.high)
 
 
@@ -121,6 +121,8 @@ def _values(
     if len(parts) - logarithmic != form.count(":") + 1:
         raise UserError(f"{where}: {shown(given)} is neither {form} nor {form}:log nor a,b,c")
     low, high = number(parts[0], where), number(parts[1], where)
+    if not math.isfinite(high - low):
+        raise UserError(f"{where}: from {low:g} to {high:g} is beyond the largest number")
     if high < low:
         raise UserError(f"{where}: the range ends at {high:g}, before it begins at {low:g}")
     if logarithmic and low <= 0.0:

@@ -66,8 +66,8 @@ def cluster(job: Job, address: str) -> Iterator[Workers]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what fails is told in one line
     try:
         client = Client(address, timeout=CONNECT_SECONDS)
-    except (OSError, ValueError) as error:
-        reason = str(error).splitlines()[0] if isinstance(error, ValueError) else "nothing answers there"
+    except (OSError, TypeError, ValueError) as error:
+        reason = str(error).splitlines()[0] if not isinstance(error, OSError) else "nothing answers there"
         raise UserError(f"--cluster {address}: {reason}") from None
     with client:
         try:

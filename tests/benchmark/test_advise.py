@@ -172,8 +172,8 @@ def test_bad_questions_get_one_line(
             "time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n",
             "inputs: time must grow in even steps, and does not at sample ",
         ),
-        ("t,V\n0,0.1\n1e-5,0.2\n", "inputs: t is no input of the FMU"),
-        ("time,speed\n0,0.1\n1e-5,0.2\n", "inputs: speed is no input of the FMU; these are: V, d, E, load"),
+        ("t,V\n0,0.1\n1e-5,0.2\n", "line 1, column 1: there is no variable 't'; columns may be"),
+        ("time,F_C\n0,55\n1e-5,55\n", "inputs: F_C is no input of the FMU; these are: V, d, E, load"),
     ],
 )
 def test_bad_inputs_are_told_by_their_line(
