@@ -34,8 +34,10 @@ from fmpy.fmi2 import (
     free,
 )
 
+from . import resources
 from .errors import UserError
 from .platforms import library_in
+from .values import path_of
 
 Value = float | int | str
 MODEL = "FrictionContact"
@@ -52,7 +54,7 @@ class FrictionFmu:
     """The unzipped FMU and its model description."""
 
     def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
+        self.path = path_of(path, "fmu")
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
         try:
             self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))
@@ -262,8 +264,9 @@ def run(
     return rows
 
 
-def opened(path: Path) -> FrictionFmu:
-    """The FMU of a file, unzipped once in a process as long as the file stays as it is."""
+def opened(file: str | Path | None) -> FrictionFmu:
+    """The FMU of a file, or the package's own; unzipped once in a process as long as it stays as it is."""
+    path = resources.fmu() if file is None else path_of(file, "fmu")
     try:
         stat = path.stat()
     except OSError as error:

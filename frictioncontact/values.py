@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from fmpy.model_description import ModelDescription, ScalarVariable
 
 from frictioncontact.errors import SHOWN, UserError, indefinite, unknown_variable
@@ -34,11 +36,23 @@ def number(text: str, where: str) -> float:
 def real(value: Any, where: str) -> float:
     """A number from Python code, which may be NaN or infinite."""
     try:
-        if not isinstance(value, str):
+        if not isinstance(value, str) and not is_bool(value):
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass
     raise UserError(f"{where} = {shown(str(value))} is not a number")
+
+
+def path_of(value: Any, where: str) -> Path:
+    """A path from Python code."""
+    if not isinstance(value, (str, os.PathLike)) or "\0" in str(value):
+        raise UserError(f"{where} = {shown(str(value))}: is no path")
+    return Path(value)
+
+
+def is_bool(value: object) -> bool:
+    """Python takes it for 0 or 1; where a number is meant, it is a mistake."""
+    return isinstance(value, (bool, np.bool_))
 
 
 def pairs(values: Any, where: str) -> Mapping[Any, Any]:
@@ -121,7 +135,7 @@ class Variables:
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
             number = math.nan
-        if isinstance(value, str) or not math.isfinite(number):
+        if isinstance(value, str) or is_bool(value) or not math.isfinite(number):
             raise UserError(f"{where}: {name} = {shown(str(value))} is not a finite number")
         if items is not None and number not in items.values():
             raise UserError(f"{where}: {name} = {number:g} is not one of {', '.join(items)}")

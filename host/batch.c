@@ -1,4 +1,3 @@
-#define _POSIX_C_SOURCE 200809L // clock_gettime  NOLINT(bugprone-reserved-identifier)
 #include "batch.h"
 
 #include <math.h>
@@ -6,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 struct Batch {
     const Fmi2Library* fmu;
@@ -36,18 +34,6 @@ typedef struct {
 
 static double of(const BatchColumn* column, size_t scenario) {
     return column->value[scenario * column->stride];
-}
-
-// Of a clock that is read without a call of the kernel: the processor time of a thread takes 1 us to read, twice a
-// scenario.
-static double seconds(void) {
-#ifdef CLOCK_MONOTONIC
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-#else
-    return (double)clock() / CLOCKS_PER_SEC;
-#endif
 }
 
 size_t batch_plan_size(void) { return sizeof(BatchPlan); }
@@ -290,16 +276,12 @@ static bool get_ready(Worker* w) {
 
 static void run_scenario(Worker* w, size_t scenario) {
     Batch* batch = w->batch;
-    const double began = batch->plan.seconds ? seconds() : 0.0;
     if (initialize(w, scenario) && simulate(w, scenario)) {
         keep_results(w, scenario);
         batch->status[scenario] = BATCH_DONE;
         atomic_fetch_add(&batch->finished, 1);
     } else if (!atomic_load(&batch->is_stopped)) {
         refuse(w, scenario);
-    }
-    if (batch->plan.seconds) {
-        batch->plan.seconds[scenario] = seconds() - began;
     }
 }
 

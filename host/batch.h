@@ -73,7 +73,6 @@ typedef struct {
     const fmi2ValueReference* input;
     const double* moves;  // samples by inputs: what they are set to before each step
     const double* step;   // length of each step; NULL: all are duration / samples
-    double* seconds;      // that every scenario took, or NULL
     int stops_at_refusal; // then no scenario after the first one that is refused need be run
 } BatchPlan;
 

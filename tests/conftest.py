@@ -7,10 +7,14 @@ import shutil
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 # Started in the background, a runner ignores Control-C, and so would the commands that tests interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -51,6 +55,17 @@ def fmu(fmu_path: Path) -> Iterator[FrictionFmu]:
     """The FMU, loaded once for all tests."""
     with FrictionFmu(fmu_path) as loaded:
         yield loaded
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """A headless Chromium, closed after a file's tests: a process can have one at a time."""
+    from workshop.browser import chromium, find_browser
+
+    if find_browser() is None:
+        pytest.skip("no Chromium is installed")
+    with chromium() as browser:
+        yield browser
 
 
 @pytest.fixture(scope="session")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
-from playwright.sync_api import Browser, Error, Playwright, sync_playwright
+from playwright.sync_api import Browser, Error, Page, Playwright, sync_playwright
 
 from frictioncontact.errors import UserError
 
@@ -37,3 +38,16 @@ def chromium() -> Iterator[Browser]:
 
 def _launched(playwright: Playwright, executable: str) -> Browser:
     return playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])
+
+
+def watch(page: Page, home: Path, heard: list[str]) -> None:
+    """Adds to heard what pages of a file or folder must not do: errors, warnings, requests beyond it."""
+    own = (home.resolve().as_uri(), "blob:", "data:")
+
+    def hear(wrong: bool, what: str) -> None:
+        if wrong:
+            heard.append(f"{page.url}: {what}")
+
+    page.on("pageerror", lambda error: hear(True, f"script error: {error}"))
+    page.on("console", lambda said: hear(said.type in ("error", "warning"), f"console: {said.text}"))
+    page.on("request", lambda asked: hear(not asked.url.startswith(own), f"request: {asked.url}"))

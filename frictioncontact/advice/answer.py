@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from frictioncontact import resources
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
 from frictioncontact.errors import UserError
@@ -91,7 +90,7 @@ def advise(
     The advice is held against the FMU at solver.tolerance = 1e-10, from rest and settled. UserError names
     what is wrong with the question.
     """
-    loaded = opened(Path(fmu) if fmu else resources.fmu())
+    loaded = opened(fmu)
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)
     mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
     advice = Advice(asked, {}, "", mean, scale, 0.0)

@@ -72,7 +72,7 @@ def run(options: argparse.Namespace) -> None:
             accuracy=options.accuracy,
             step=options.step,
             output=options.output_of,
-            inputs=read_inputs(options.inputs) if options.inputs else None,
+            inputs=read_inputs(options.inputs, fmu) if options.inputs else None,
             linear=options.linear,
             phases=PHASES[:2] if options.quick else PHASES,
             fmu=path,

@@ -122,7 +122,7 @@ def _number(cell: object, items: Mapping[str, float], where: str) -> float:
         if cell not in items:
             raise BatchError(f"{where}: {cell[:40]!r} is not one of {', '.join(items)}")
         return items[cell]
-    if isinstance(cell, (numbers.Real, np.bool_)) and not isinstance(cell, np.timedelta64):
+    if isinstance(cell, numbers.Real) and not isinstance(cell, (bool, np.timedelta64)):
         try:
             return float(cell)
         except OverflowError:

@@ -37,9 +37,8 @@ def prepared(
     settled: bool = False,
     inputs: Mapping[str, npt.ArrayLike] | None = None,
     steps: npt.ArrayLike | None = None,
-    times: bool = False,
 ) -> Batch:
-    """The batch of `simulate_many`, checked. times: one result more, "seconds" that each took."""
+    """The batch of `simulate_many`, checked."""
     lengths = None
     if steps is not None:
         lengths = _row(numbers_of(steps, "steps", 0.0), "steps")
@@ -67,7 +66,6 @@ def prepared(
         int(samples),
         _read(fmu, outputs),
         fmu.variable("vibration.f", "unit").valueReference if unit == "period" else None,
-        times,
         *_moving(fmu, inputs or {}, int(samples)),
         lengths,
     )
@@ -136,7 +134,7 @@ def _read(fmu: LoadedFmu, outputs: Outputs) -> dict[str, tuple[int, Statistic]]:
             raise BatchError(f"output {name}: {variable} is of type {found.type}; only Real is read")
         if statistic not in STATISTICS:
             raise BatchError(f"output {name}: {statistic!r} is not one of {', '.join(STATISTICS)}")
-        if name in ("reason", "seconds"):
+        if name == "reason":
             raise BatchError(f"output {name}: the name is taken")
         read[name] = found.valueReference, statistic
     return read

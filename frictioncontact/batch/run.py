@@ -33,7 +33,6 @@ class Batch:
     samples: int
     read: dict[str, tuple[int, str]]  # result -> value reference, statistic
     frequency: int | None  # value reference; None: settle and duration are seconds
-    times: bool  # "seconds" is a result
     inputs: tuple[int, ...] = ()  # value references of what is set before each step
     moves: np.ndarray | None = None  # [sample, input], of all scenarios
     steps: np.ndarray | None = None  # lengths of the steps; None: all are duration / samples
@@ -87,8 +86,6 @@ class _Running:
             results.append(
                 Result(references.index(reference), STATISTICS.index(statistic), array.ctypes.data)
             )
-        if batch.times:
-            self.values["seconds"] = np.full(batch.scenarios, np.nan)
         self.plan = Plan(
             guid=batch.fmu.guid,
             scenarios=batch.scenarios,
@@ -109,8 +106,6 @@ class _Running:
         )
         if batch.frequency is not None:
             self.plan.frequency = ctypes.pointer(ctypes.c_uint(batch.frequency))
-        if batch.times:
-            self.plan.seconds = self.values["seconds"].ctypes.data
         self.handle = self.runner.batch_begin(batch.fmu.handle, ctypes.byref(self.plan))
         if not self.handle:
             raise BatchError(f"no memory for {batch.scenarios} scenarios")

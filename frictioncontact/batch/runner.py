@@ -41,7 +41,7 @@ class Plan(ctypes.Structure):
         ("results", c_size_t), ("result", POINTER(Result)),
         ("frequency", POINTER(c_uint)), ("settle", Column), ("duration", Column), ("samples", c_size_t),
         ("inputs", c_size_t), ("input", POINTER(c_uint)), ("moves", DOUBLES), ("step", DOUBLES),
-        ("seconds", DOUBLES), ("stops_at_refusal", c_int),
+        ("stops_at_refusal", c_int),
     )  # fmt: skip
 
 

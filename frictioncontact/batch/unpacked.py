@@ -54,7 +54,7 @@ def loaded_fmu(fmu: str | Path | bytes, runner: ctypes.CDLL) -> LoadedFmu:
             fmu = b"" if key in _loaded else Path(fmu).read_bytes()
         except OSError as error:
             raise BatchError(f"{name}: {error.strerror}") from None
-        except ValueError:  # a null character
+        except (TypeError, ValueError):  # a null character
             raise BatchError(f"{name!r}: is no path") from None
     if key not in _loaded:
         _loaded[key] = _load(fmu, name, runner)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
-from frictioncontact import resources
+from frictioncontact.columns import accepted
 from frictioncontact.command import TABLE
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value, opened
@@ -19,12 +19,12 @@ from frictioncontact.identification.bootstrap import bootstrap as refits_of
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
 from frictioncontact.identification.experiment import Experiment, Rows
 from frictioncontact.identification.fit import fit as fitted
-from frictioncontact.identification.parameter import LARGEST, Parameter, accepted, parameter
+from frictioncontact.identification.parameter import LARGEST, Parameter, parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import Tell, silent
 from frictioncontact.identification.series import Record
 from frictioncontact.identification.show import show
-from frictioncontact.values import Variables, number, pairs, real
+from frictioncontact.values import Variables, number, pairs, path_of, real
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,9 +88,9 @@ def identify(
 ) -> Identification:
     """Least squares of any parameters of the FMU to measured friction, with 95 % intervals.
 
-    data       a CSV file, or a frame with the same headings, "NAME [UNIT]": a row a steady mean, F_t_mean
-               with V and any other input or parameter; or a series in time, F_t with position or V.
-               NAME.uncertainty is the standard uncertainty of a column
+    data       a CSV file, or a frame with the same headings, NAME in SI units or "NAME [UNIT]": a row a
+               steady mean, F_t_mean with V and any other input or parameter; or a series in time, F_t with
+               position or V. NAME.uncertainty is the standard uncertainty of a column
     fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
     start      start values that all rows share, SI units
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")
@@ -107,11 +107,11 @@ def identify(
             raise UserError(
                 f"bootstrap {bootstrap}: must be at least {LEAST_REFITS}, to have a 2.5 % quantile"
             )
-    loaded = opened(Path(fmu) if fmu else resources.fmu())
+    loaded = opened(fmu)
     variables = Variables(loaded.description)
     constants = {name: variables.given(name, value, "start") for name, value in pairs(start, "start").items()}
     stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
-    rows = read(Path(data) if isinstance(data, str) else data, loaded, constants, stated)
+    rows = read(path_of(data, "data") if isinstance(data, (str, Path)) else data, loaded, constants, stated)
     asked = fit.items() if isinstance(fit, Mapping) else ((name, None) for name in _names(fit))
     parameters = [_parameter(loaded, name, value, constants) for name, value in asked]
     if not parameters:

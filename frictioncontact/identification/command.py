@@ -29,8 +29,8 @@ what the data can't tell. Draws identify.png."""
 
 EPILOG = """\
 The CSV has one row per steady state, and every model value is the FMU's own F_t_mean over one vibration
-period of the periodic state. Each column is a variable of the FMU with a unit that it may have, in brackets;
-lines that begin with # are skipped:
+period of the periodic state. Each column is a variable of the FMU, with a unit that it may have in brackets
+or else in SI units; lines that begin with # are skipped:
 
   V [mm/s],vibration.V_1 [m/s],load [N],F_t_mean [N],F_t_mean.uncertainty [N]
   20,0.5,100,31.2,0.8
@@ -39,8 +39,8 @@ F_t_mean and V are needed. NAME.uncertainty, the standard uncertainty of a colum
 drives the FMU's load: contact.input = Load and friction.limit = Load follow from it unless --set says
 otherwise. What is no column keeps the FMU's start value, or that of --set.
 
-A column time [s] makes it a series instead, for example a loop of presliding and sliding, with F_t [N] and
-either position [m] or V [m/s]; load, d and E may vary along it.
+A column time makes it a series instead, for example a loop of presliding and sliding, with F_t and either
+position or V; load, d and E may vary along it. What simulate writes with --outputs V F_t is such a file.
 
 Without a file it fits the informative rows of the paper's Table 2: two parameters, three
 rows. That is an identification, not a validation.

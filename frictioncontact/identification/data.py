@@ -1,7 +1,7 @@
 """Measurements from CSV files or frames: rows of means, or a series in time.
 
-A column is named after a variable of the FMU with its unit in brackets, "V [mm/s]"; NAME.uncertainty is the
-standard uncertainty of the column NAME. A column "time [s]" makes a series.
+A column is named after a variable of the FMU: "V" in SI units, or with its unit in brackets, "V [mm/s]".
+NAME.uncertainty is the standard uncertainty of the column NAME. A column "time" makes a series.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frictioncontact.columns import Column, columns_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.identification.columns import Column, columns_of
 from frictioncontact.identification.parameter import LARGEST
 from frictioncontact.values import csv_rows, number
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from frictioncontact.columns import accepted
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 
@@ -61,18 +62,6 @@ class Parameter:
 
     def wrapped(self, coordinate: float) -> float:
         return coordinate % (2.0 * math.pi) if self.periodic else coordinate
-
-
-def accepted(fmu: FrictionFmu) -> list[str]:
-    """Variables that a column may hold, or a fit vary."""
-    return [
-        name
-        for name, variable in fmu.variables.items()
-        if variable.type == "Real"
-        and variable.causality in ("input", "parameter")
-        and not name.startswith("solver.")
-        and name != "delta_0"
-    ]
 
 
 def parameter(

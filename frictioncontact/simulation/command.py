@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from frictioncontact import resources
+from frictioncontact.columns import MEASURED, columns_of
 from frictioncontact.command import add_fmu, command_line, finish, say_written
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
-from frictioncontact.fmu import INPUTS, OUTPUTS, opened
+from frictioncontact.fmu import INPUTS, OUTPUTS, FrictionFmu, opened
 from frictioncontact.simulation.run import simulate
-from frictioncontact.values import Variables, csv_rows, number, shown
+from frictioncontact.values import Variables, csv_rows, number
 
 DESCRIPTION = """\
 Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file. All values
@@ -29,7 +30,8 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--step", type=float, required=True, help="time between two rows, s")
     parser.add_argument(
         "--inputs", type=Path, metavar="CSV",
-        help=f"columns time and any of {', '.join(INPUTS)}, linear between their samples",
+        help=f"columns time and any of {', '.join(INPUTS)}, linear between their samples; in SI units, or "
+        "with a unit as 'V [mm/s]'",
     )  # fmt: skip
     parser.add_argument(
         "--outputs", nargs="+", default=OUTPUTS, metavar="NAME", help=f"variables ({' '.join(OUTPUTS)})"
@@ -47,7 +49,7 @@ def run(options: argparse.Namespace) -> None:
         start,
         stop=options.stop,
         step=options.step,
-        inputs=read_inputs(options.inputs) if options.inputs else None,
+        inputs=read_inputs(options.inputs, opened(path)) if options.inputs else None,
         outputs=options.outputs,
         fmu=path,
     )
@@ -58,22 +60,25 @@ def run(options: argparse.Namespace) -> None:
         print(table.to_string(index=False, float_format="{:.6g}".format))
 
 
-def read_inputs(path: Path) -> dict[str, list[float]]:
-    """The columns of a CSV file under their headings; UserError names file, line and column."""
+def read_inputs(path: Path, fmu: FrictionFmu) -> dict[str, list[float]]:
+    """The columns of a CSV file under their names, in SI units; UserError names file, line and column.
+
+    A measured force is left out, so that what identify reads may be simulated too.
+    """
     lines = list(csv_rows(path))
     if not lines:
         raise UserError(f"{path}: no header row")
-    header = lines[0][1]
-    for name in header:
-        if header.count(name) > 1:
-            raise UserError(f"{path}: column {shown(name)} is there twice")
-    columns: dict[str, list[float]] = {name: [] for name in header}
+    header = columns_of(fmu, path, *lines[0])
+    table: dict[str, list[float]] = {column.name: [] for column in header}
+    if len(table) < len(header):
+        raise UserError(f"{path}: a column is there twice")
     for line, cells in lines[1:]:
         if len(cells) != len(header):
             raise UserError(f"{path}, line {line}: has {len(cells)} cells where the header has {len(header)}")
-        for name, cell in zip(header, cells, strict=True):
-            columns[name].append(number(cell, f"{path}, line {line}, {name}"))
-    return columns
+        for column, cell in zip(header, cells, strict=True):
+            where = f"{path}, line {line}, {column.heading}"
+            table[column.name].append(column.factor * number(cell, where))
+    return {name: values for name, values in table.items() if name not in MEASURED}
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+LARGEST = 1e50  # value of a sample, whose differences are finite
 FAR = 1e300  # s, before and after every sample
 
 
@@ -80,8 +81,9 @@ def samples(table: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[s
 def _numbers(name: str, column: npt.ArrayLike) -> np.ndarray:
     try:
         array = np.ma.asarray(column)
-        if array.dtype.kind in "mM":
-            raise UserError(f"inputs: {name} holds dates; it must be a row of numbers")
+        if array.dtype.kind in "bmM":
+            kind = "truth values" if array.dtype.kind == "b" else "dates"
+            raise UserError(f"inputs: {name} holds {kind}; it must be a row of numbers")
         array = array.astype(float).filled(np.nan)
     except (TypeError, ValueError):
         raise UserError(f"inputs: {name} is not a row of numbers") from None
@@ -90,4 +92,9 @@ def _numbers(name: str, column: npt.ArrayLike) -> np.ndarray:
     if not np.isfinite(array).all():
         k = int(np.argmin(np.isfinite(array)))
         raise UserError(f"inputs: {name} = {array[k]} at sample {k} is not a finite number")
+    if (abs(array) > LARGEST).any():
+        k = int(np.argmax(abs(array)))
+        raise UserError(
+            f"inputs: {name} = {array[k]:g} at sample {k}: must be from {-LARGEST:g} to {LARGEST:g}"
+        )
     return array

@@ -11,11 +11,10 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from frictioncontact import resources
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import OUTPUTS, FrictionFmu, Value, opened, run
 from frictioncontact.simulation.inputs import Samples, samples
-from frictioncontact.values import Variables, pairs
+from frictioncontact.values import Variables, pairs, real
 
 if TYPE_CHECKING:
     Table = Mapping[str, npt.ArrayLike] | pd.DataFrame
@@ -46,7 +45,7 @@ def simulate(
 
     UserError names what is wrong with a name or value; FrictionError is the FMU's own refusal.
     """
-    loaded = opened(Path(fmu) if fmu else resources.fmu())
+    loaded = opened(fmu)
     outputs = _names(outputs)
     values = checked(loaded, pairs(start, "start"), outputs)
     ends = _ends(stop, step)
@@ -81,7 +80,7 @@ def _names(outputs: object) -> list[str]:
 def _ends(stop: float, step: float) -> np.ndarray:
     """Times [s] of the rows after the first."""
     for name, value in (("stop", stop), ("step", step)):
-        if not (isinstance(value, (int, float, np.number)) and 0.0 < value < math.inf):
+        if not 0.0 < real(value, name) < math.inf:
             raise UserError(f"{name} = {value}: must be a positive number of seconds")
     if stop > MOST * step:
         raise UserError(f"step = {step:g} s: stop / step must be at most {MOST}")

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import argparse
 import signal
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from frictioncontact import resources
 from frictioncontact.batch.many import processors
 from frictioncontact.command import command_line, finish
 from frictioncontact.errors import UserError
 from frictioncontact.sweeps.group import RESULTS
-from frictioncontact.sweeps.run import kept, sweep
+from frictioncontact.sweeps.run import sweep
+from frictioncontact.sweeps.workers import GOES_ON
 from frictioncontact.values import assignment
 
 DESCRIPTION = """\
-Runs the FMU to its periodic state in many scenarios and writes one row for each to results.parquet, a folder
-of files that pandas.read_parquet reads as one.
+Runs the FMU over a settled period of the vibration in many scenarios and writes one row for each to
+results.parquet, a folder of files that pandas.read_parquet reads as one.
 
 Scenarios: every combination of the --vary values (a grid); --random N rows drawn from the --vary ranges;
 or the rows of a --csv file whose header names variables. Values are in SI units; those of enumerations
@@ -28,13 +30,15 @@ are names.
   %(prog)s --csv scenarios.csv --cluster tcp://10.0.0.5:8786
 
 A sweep that was stopped, however it was, goes on when the same command is given again. Scenarios that the FMU
-refuses are kept apart in failed.parquet and failed.csv, with the reason."""
+refuses are kept apart in failed.parquet, with the reason."""
 
-EPILOG = "columns of the results:\n" + "\n".join(f"  {name:<12} {text}" for name, text in RESULTS.items())
+COLUMNS = [f"  {name:<12} {text}" for name, (_, text) in RESULTS.items()]
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("frictioncontact sweep", DESCRIPTION, EPILOG)
+    parser = command_line(
+        "frictioncontact sweep", DESCRIPTION, "\n".join(["columns of the results:", *COLUMNS])
+    )
     add = parser.add_argument
     add("--vary", action="append", default=[], metavar="NAME=VALUES",
         help="a,b,c or low:high:count[:log]; with --random a,b,c or low:high[:log]")  # fmt: skip
@@ -44,13 +48,12 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     add("--set", action="append", default=[], metavar="NAME=VALUE", help="in all scenarios")
     add("--output", type=Path, help="folder of the results (sweep)")
     add("--fresh", action="store_true", help="discard what the folder holds of a sweep")
-    add("--cluster", "--scheduler", metavar="tcp://HOST:PORT",
+    add("--cluster", metavar="tcp://HOST:PORT",
         help="scheduler of a Dask cluster that has this package, instead of threads here")  # fmt: skip
     add("--workers", type=int, default=processors(), help="threads here (one a processor)")
-    add("--group", "--chunk", type=int, metavar="N",
+    add("--group", type=int, metavar="N",
         help="scenarios of a file, which a kill loses (a 64th of the sweep, at most 250000)")  # fmt: skip
-    add("--settle", type=float, default=1e6, help="periods before the one that is read (1e6)")
-    add("--samples", type=int, default=64, help="samples of that period (64)")
+    add("--samples", type=int, default=64, help="samples of the period (64)")
     add("--fmu", type=Path, help="use this FMU instead of the package's own")
     add("--quick", action="store_true", help="a grid of 16 x 12 scenarios, afresh")
     options = parser.parse_args(argv)
@@ -61,7 +64,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return options
 
 
-def named(texts: Iterable[str], option: str) -> dict[str, str]:
+def named(texts: Sequence[str], option: str) -> dict[str, str]:
     """Of several "NAME=VALUE" of an option."""
     values: dict[str, str] = {}
     for text in texts:
@@ -72,19 +75,14 @@ def named(texts: Iterable[str], option: str) -> dict[str, str]:
     return values
 
 
-def wanted(options: argparse.Namespace) -> dict[str, object]:
+def wanted(options: argparse.Namespace) -> dict[str, Any]:
     """The arguments of `sweep`."""
     given = {name: value for name, value in vars(options).items() if name != "quick"}
     return given | {name: named(given[name], f"--{name}") for name in ("vary", "set")}
 
 
 def run(options: argparse.Namespace) -> None:
-    swept = sweep(progress=True, **wanted(options))
-    if swept.new:
-        print(swept)
-    else:
-        print(f"nothing to do: {options.output} holds all {swept.good} results "
-              f"({swept.refused} failed scenarios apart)")  # fmt: skip
+    print(sweep(progress=True, **wanted(options)))
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -93,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     try:
         finish(run, options)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"stopped; {kept(options.output)}") from None
+        raise KeyboardInterrupt(f"stopped; {GOES_ON}") from None
 
 
 if __name__ == "__main__":

@@ -2,41 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from frictioncontact import resources
-from frictioncontact.batch.prepare import Output, prepared
+from frictioncontact.batch import simulate_many
+from frictioncontact.batch.prepare import Output
 from frictioncontact.batch.run import Progress
-from frictioncontact.batch.runner import runner
-from frictioncontact.batch.unpacked import loaded_fmu
-from frictioncontact.sweeps.scenarios import Scenarios
+from frictioncontact.sweeps.scenarios import Rows
+from frictioncontact.values import Value
 
-# Column of the results -> unit and meaning.
-RESULTS = {
-    "F_mean": "N, time mean of F_t over a period of the vibration",
-    "reduction": "percent, how far F_mean lies below F_C",
-    "F_min": "N, least sample of F_t in the period",
-    "F_max": "N, greatest sample of F_t in the period",
-    "sigma_mean": "N/m, mean sample of the contact stiffness",
-    "A_r_mean": "m2, mean sample of the real contact area",
-    "W_period": "J, work against friction in the period",
-    "evaluations": "1, evaluations of the right-hand side",
-    "seconds": "s, time that the scenario took on its worker",
+Group = tuple[int, int]  # first scenario, and the one after the last
+
+# Column of the results -> what is read, unit and meaning.
+RESULTS: dict[str, tuple[Output, str]] = {
+    "F_mean": (("F_t_mean", "mean"), "N, time mean of F_t over a period of the vibration"),
+    "reduction": ("F_C", "percent, how far F_mean lies below F_C"),
+    "F_min": (("F_t", "min"), "N, least sample of F_t in the period"),
+    "F_max": (("F_t", "max"), "N, greatest sample of F_t in the period"),
+    "sigma_mean": (("sigma", "mean"), "N/m, mean sample of the contact stiffness"),
+    "A_r_mean": (("A_r", "mean"), "m2, mean sample of the real contact area"),
+    "W_period": (("W_f", "change"), "J, work against friction in the period"),
+    "evaluations": ("solver.evaluations", "1, evaluations of the right-hand side"),
 }
-OUTPUTS: dict[str, Output] = {
-    "F_mean": ("F_t_mean", "mean"),
-    "reduction": "F_C",  # and what it is made of
-    "F_min": ("F_t", "min"),
-    "F_max": ("F_t", "max"),
-    "sigma_mean": ("sigma", "mean"),
-    "A_r_mean": ("A_r", "mean"),
-    "W_period": ("W_f", "change"),
-    "evaluations": "solver.evaluations",
-}
+OUTPUTS = {name: output for name, (output, _) in RESULTS.items()}
 
 
 @dataclass(frozen=True)
@@ -44,50 +37,38 @@ class Job:
     """What all groups of a sweep share."""
 
     fmu: bytes  # the file
-    scenarios: Scenarios
-    settle: float  # periods of the vibration that bring a scenario to its periodic state
-    samples: int  # in the period after that
+    rows: Rows  # of what varies
+    fixed: Mapping[str, Value]  # in all scenarios
+    samples: int  # of the period
 
 
 @dataclass(frozen=True)
 class Part:
-    """Of a group."""
+    """Of a group: Parquet files of its scenarios with results, and of the refused ones with why."""
 
-    good: pa.Buffer  # a Parquet file: the scenarios and their results
-    bad: pa.Buffer | None  # the same: the refused scenarios and why, if there are any
+    good: pa.Buffer
+    bad: pa.Buffer
     refused: int
-    seconds: float  # that the scenarios took on their worker
 
 
-def silent(finished: int, refused: int) -> None:
-    """Progress that nobody looks at."""
-
-
-def run_group(job: Job, first: int, stop: int, progress: Progress = silent) -> Part:
-    """Runs scenarios first to stop - 1 on one thread. Whatever progress raises ends them."""
-    progress(0, 0)
-    rows = {name: column.rows(first, stop) for name, column in job.scenarios.columns.items()}
-    fmu = loaded_fmu(job.fmu, runner(resources.batch_host()))
-    batch = prepared(fmu, rows, OUTPUTS, settle=job.settle, samples=job.samples, times=True)
-    results = batch.run(threads=1, raises=False, progress=progress)
+def run_group(job: Job, group: Group, progress: bool | Progress = False) -> Part:
+    """Runs the scenarios on one thread. Whatever progress raises ends them."""
+    values: dict[str, npt.ArrayLike] = {**job.rows(*group), **job.fixed}
+    results = simulate_many(
+        values, OUTPUTS, fmu=job.fmu, samples=job.samples, errors="keep", threads=1, progress=progress
+    )
     reasons = pa.array(results.pop("reason"), pa.string())
     results["reduction"] = 100.0 * (1.0 - results["F_mean"] / results["reduction"])
-    scenarios = {
-        "scenario": pa.array(np.arange(first, stop)),
-        **{name: job.scenarios.columns[name].shown(column) for name, column in rows.items()},
-    }
-    good = pa.table({**scenarios, **{name: results[name] for name in RESULTS}})
-    refused = len(reasons) - reasons.null_count
-    bad = None
-    if refused:
-        good = good.filter(reasons.is_null())
-        bad = _parquet(pa.table({**scenarios, "reason": reasons}).filter(reasons.is_valid()))
-    return Part(_parquet(good), bad, refused, float(np.nansum(results["seconds"])))
+    scenarios = {"scenario": np.arange(*group)}
+    scenarios |= {name: np.broadcast_to(column, len(reasons)) for name, column in values.items()}
+    good = pa.table({**scenarios, **results}).filter(reasons.is_null())
+    bad = pa.table({**scenarios, "reason": reasons}).filter(reasons.is_valid())
+    return Part(_parquet(good), _parquet(bad), len(bad))
 
 
 def _parquet(table: pa.Table) -> pa.Buffer:
     """Dictionaries serve names alone: numbers seldom come twice."""
     sink = pa.BufferOutputStream()
     names = [field.name for field in table.schema if pa.types.is_string(field.type)]
-    pq.write_table(table, sink, use_dictionary=names, write_page_checksum=True)
+    pq.write_table(table, sink, use_dictionary=names)
     return sink.getvalue()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import itertools
 import logging
 import threading
 from collections.abc import Callable, Iterator
@@ -11,56 +10,29 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPo
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import TYPE_CHECKING
+from itertools import islice
 
 from frictioncontact.errors import UserError
-from frictioncontact.sweeps.folder import Group
-from frictioncontact.sweeps.group import Job, Part, run_group
-
-if TYPE_CHECKING:
-    from distributed import Client
+from frictioncontact.sweeps.group import Group, Job, Part, run_group
 
 CONNECT_SECONDS = 5.0
-WAIT = 1.0  # s
-IN_HAND = 2  # groups of each worker: one that it runs, and one that waits
+GOES_ON = "what was computed is kept; the same sweep without --fresh goes on from there"
+WAIT = 1.0  # s, between which Windows lets a Control-C through
 
 
 @dataclass(frozen=True)
 class Workers:
     count: int
     submit: Callable[[Group], Future[Part]]
-    died: tuple[type[Exception], ...] = ()  # what is raised where a group's workers died
-    gone: tuple[type[Exception], ...] = ()  # and where the cluster is gone
 
-    def run(self, groups: list[Group]) -> Iterator[tuple[Group, Part | None]]:
-        """Every group as it is done; without a part where every worker that ran it died."""
-        todo, suspects = iter(groups), []
-        waiting = {self.submit(group): group for group in itertools.islice(todo, IN_HAND * self.count)}
+    def run(self, groups: list[Group]) -> Iterator[tuple[Group, Part]]:
+        """Every group as it is done. Each worker has one that it runs and one that waits."""
+        todo = iter(groups)
+        waiting = {self.submit(group): group for group in islice(todo, 2 * self.count)}
         while waiting:
-            # Windows lets a Control-C through only between two waits.
-            done, _ = wait(waiting, timeout=WAIT, return_when=FIRST_COMPLETED)
-            for future in done:
-                group, part = waiting.pop(future), self._part(future)
-                if part is None:
-                    suspects.append(group)
-                else:
-                    yield group, part
-                for following in itertools.islice(todo, 1):
-                    waiting[self.submit(following)] = following
-        for group in suspects:  # one by one: some only waited where another one killed the worker
-            yield group, self._part(self.submit(group))
-
-    def _part(self, future: Future[Part]) -> Part | None:
-        try:
-            return future.result()
-        except self.died:
-            return None
-        except self.gone:
-            raise UserError("the connection to the scheduler was lost") from None
-
-
-class _Stopped(Exception):
-    """Ends a group that nobody waits for any more."""
+            for future in wait(waiting, timeout=WAIT, return_when=FIRST_COMPLETED).done:
+                yield waiting.pop(future), future.result()
+                waiting |= {self.submit(group): group for group in islice(todo, 1)}
 
 
 @contextmanager
@@ -69,11 +41,11 @@ def threads(job: Job, count: int) -> Iterator[Workers]:
 
     def check(finished: int, refused: int) -> None:
         if stopped.is_set():
-            raise _Stopped
+            raise CancelledError
 
     pool = ThreadPoolExecutor(count)
     try:
-        yield Workers(count, lambda group: pool.submit(run_group, job, *group, check))
+        yield Workers(count, lambda group: pool.submit(run_group, job, group, check))
     finally:
         stopped.set()
         pool.shutdown(cancel_futures=True)
@@ -94,42 +66,30 @@ def cluster(job: Job, address: str) -> Iterator[Workers]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what fails is told in one line
     try:
         client = Client(address, timeout=CONNECT_SECONDS)
-    except (OSError, ValueError) as error:
-        reason = str(error).splitlines()[0] if isinstance(error, ValueError) else "nothing answers there"
+    except (OSError, TypeError, ValueError) as error:
+        reason = str(error).splitlines()[0] if not isinstance(error, OSError) else "nothing answers there"
         raise UserError(f"--cluster {address}: {reason}") from None
     with client:
-        _check(client, address)
-        shared = client.submit(copy.copy, job, pure=False)  # a task: what is lost with a worker is made again
-        executor = client.get_executor()
-        yield Workers(
-            sum(client.nthreads().values()),
-            lambda group: executor.submit(run_group, shared, *group),
-            (KilledWorker,),
-            (CommClosedError, FutureCancelledError, CancelledError, OSError),
-        )
-
-
-def _check(client: Client, address: str) -> None:
-    """That the scheduler and all workers have what run_group needs."""
-    wanted = version("frictioncontact")
-
-    def lacking() -> str:  # travels by value, to where this package may be missing
         try:
-            from importlib.metadata import version
+            _check(client.get_versions(packages=["frictioncontact", "pyarrow"]), address)
+            shared = client.submit(copy.copy, job, pure=False)  # a task: made again if lost with a worker
+            executor = client.get_executor()
+            count = sum(client.nthreads().values())
+            yield Workers(count, lambda group: executor.submit(run_group, shared, group))
+        except KilledWorker:
+            raise UserError(f"--cluster {address}: worker after worker died of a group; {GOES_ON}") from None
+        except (CommClosedError, FutureCancelledError, CancelledError, OSError):
+            raise UserError(f"--cluster {address}: the connection was lost; {GOES_ON}") from None
 
-            import frictioncontact.sweeps.group  # noqa: F401
 
-            found = version("frictioncontact")
-        except ImportError as error:
-            return str(error)
-        return "" if found == wanted else f"its version is {found}"
-
-    at_workers = client.run(lacking)
-    if not at_workers:
+def _check(found: dict, address: str) -> None:
+    """That the scheduler and all workers have what run_group needs."""
+    if not found["workers"]:
         raise UserError(f"--cluster {address}: has no workers")
-    for where, why in {"scheduler": client.run_on_scheduler(lacking), **at_workers}.items():
-        if why:
+    wanted = version("frictioncontact")
+    for where, has in {"scheduler": found["scheduler"], **found["workers"]}.items():
+        if has["packages"]["frictioncontact"] != wanted or not has["packages"]["pyarrow"]:
             raise UserError(
-                f"--cluster {address}: {where} lacks frictioncontact {wanted} ({why}): "
-                f"pip install frictioncontact=={wanted} there"
+                f"--cluster {address}: {where} lacks frictioncontact {wanted} with its sweeps: "
+                f"pip install 'frictioncontact[sweep]=={wanted}' there"
             )

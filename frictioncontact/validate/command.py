@@ -169,7 +169,7 @@ def run(options: argparse.Namespace) -> None:
             drawn["validation-cycles"] = figures.cycles(whole, record_fits)
             drawn["validation-unloading"] = figures.unloading(whole, record_fits)
         for name, figure in drawn.items():
-            style.save_both(figure, options.output, name)
+            style.save(figure, options.output / f"{name}.png")
         print(f"Written: {len(drawn)} pictures in {options.output}")
 
 

@@ -12,10 +12,11 @@ SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
 
 
 def sampled_period(
-    fmu: FrictionFmu, values: Mapping[str, Value], settle: float, samples: int
+    fmu: FrictionFmu, values: Mapping[str, Value], settle: float | None, samples: int
 ) -> dict[str, float]:
-    """The columns of a sweep: settle periods in a step, then one period in samples steps."""
-    with fmu.session(values) as session:
+    """The columns of a sweep: one period in samples steps, after settle periods or settled at once."""
+    initial = {} if settle is not None else {"initialState": "Settled"}
+    with fmu.session({**values, **initial}) as session:
         period, F_C = 1.0 / session.get("vibration.f"), session.get("F_C")
         if settle:
             session.step(settle * period)

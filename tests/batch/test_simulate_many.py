@@ -213,6 +213,7 @@ class TestRefusals:
             ({"V": np.array([0.1, "abc"], dtype=object)}, "column V, row 1: 'abc' is not a number"),
             ({"V": [0.1, None]}, "column V, row 1: 'None' is not a number"),
             ({"V": 1j}, r"column V: '1j' is not a number"),
+            ({"V": np.array([True])}, "column V, row 0: 'True' is not a number"),
             ({"V": [0.1, 0.2], "d": [14e-6] * 3}, "column d: its 3 values do not go with the 2 of those"),
             ({"v": 0.1}, "column v: v is no variable of the FMU; did you mean V?"),
             ({"F_t": 0.1}, "column F_t: F_t is an output of the FMU and can't be set"),

@@ -6,11 +6,11 @@ import os
 
 import pyarrow as pa
 
-from frictioncontact.sweeps.group import Job, Part
+from frictioncontact.sweeps.group import Group, Job, Part
 
 
-def deadly(job: Job, first: int, stop: int) -> Part:
+def deadly(job: Job, group: Group) -> Part:
     """Scenario 3 kills its process."""
-    if first <= 3 < stop:
+    if group[0] <= 3 < group[1]:
         os._exit(1)
-    return Part(pa.py_buffer(b""), None, 0, 0.0)
+    return Part(pa.py_buffer(b""), pa.py_buffer(b""), 0)

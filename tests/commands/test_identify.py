@@ -217,7 +217,7 @@ GOOD = "20,0.5,31\n40,0.5,33\n"
         ("", "no header row"),
         ("V [m/s],vibration.V_1 [m/s]\n1,2\n", r"column 'F_t_mean \[N\]' is missing"),
         ("vibration.V_1 [m/s],F_t_mean [N]\n1,2\n", r"column 'V \[m/s\]' is missing"),
-        ("V,F_t_mean [N]\n1,2\n", "line 1, column 1: heading 'V' is not of the form"),
+        ("V [m/s,F_t_mean [N]\n1,2\n", r"line 1, column 1: heading 'V \[m/s' is not of the form"),
         ("V [km/h],F_t_mean [N]\n1,2\n", "column 1: V is in m/s or mm/s, not in 'km/h'"),
         ("V [m/s],F_t_mean [kg]\n1,2\n", "column 2: F_t_mean is in N or mN or kN, not in 'kg'"),
         ("V [m/s],speed [m/s],F_t_mean [N]\n", "column 2: there is no variable 'speed'"),

@@ -110,7 +110,7 @@ def test_browser_finds_what_is_wrong(tmp_path: Path) -> None:
         "<script>const boxes = []; const draw = () => 0; nothing();</script></body></html>"
     )
     seen = report_browser.visit(page, 390, dark=False)
-    assert any("request to the network" in problem for problem in seen.problems)
+    assert any("request: http://127.0.0.1:9/x.png" in problem for problem in seen.problems)
     assert any("script error" in problem for problem in seen.problems)
     assert seen.scroll_width > 390
 

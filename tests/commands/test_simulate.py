@@ -106,6 +106,10 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"inputs": {"V": [1.0]}}, "inputs: needs a column time [s] and at least one of V, d, E, load"),
         ({"inputs": {"time": [0.0], "F_C": [1.0]}}, "inputs: F_C is no input of the FMU; these are: V, d"),
         ({"inputs": {"time": [0.0, 1.0], "V": [1.0]}}, "inputs: V has 1 values and time has 2"),
+        ({"inputs": {"time": [0.0, 1.0], "V": [-1e308, 1e308]}}, "inputs: V = -1e+308 at sample 0: must be"),
+        ({"inputs": {"time": [0.0], "V": [True]}}, "inputs: V holds truth values; it must be a row of"),
+        ({"stop": True}, "stop = 'True' is not a number"),
+        ({"stop": "1"}, "stop = '1' is not a number"),
         ({"inputs": {"time": [1.0, 0.5], "V": [1.0, 1.0]}}, "inputs: time falls from 1 to 0.5 s at sample 1"),
         ({"inputs": {"time": [0.0, 1.0], "V": [1.0, np.inf]}}, "inputs: V = inf at sample 1 is not a finite"),
         ({"inputs": {"time": [0.0], "V": ["x"]}}, "inputs: V is not a row of numbers"),
@@ -161,10 +165,11 @@ def test_the_command_prints_or_writes_the_same_table(
     ("text", "message"),
     [
         ("time,V\n0,0.1\n1e-5,x\n", "line 3, V: 'x' is not a number"),
+        ("time [s],V [km/h]\n0,0.1\n", "line 1, column 2: V is in m/s or mm/s"),
         ("time,V\n0\n", "line 2: has 1 cells where the header has 2"),
         ("", "no header row"),
-        ("time,V,V\n0,1,2\n", "column 'V' is there twice"),
-        ("time,speed\n0,1\n", "inputs: speed is no input of the FMU"),
+        ("time,V,V\n0,1,2\n", "a column is there twice"),
+        ("time,speed\n0,1\n", "line 1, column 2: there is no variable 'speed'; columns may be"),
     ],
 )
 def test_wrong_files_of_inputs(fmu_path: Path, tmp_path: Path, text: str, message: str) -> None:

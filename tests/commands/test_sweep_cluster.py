@@ -7,28 +7,28 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import pytest
 from deadly import deadly
 from distributed import Client
 from test_sweep import GRID, check_grid, command, environment, kept_rows, parts, run, started, wait_for
 
+from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.sweeps import workers
 from frictioncontact.sweeps.group import Job
-from frictioncontact.sweeps.scenarios import Scenarios
 
 __all__ = ["started"]
 DASK = Path(sys.executable).parent / "dask"
 Started = Callable[..., subprocess.Popen]
 
 
-def without_project(folder: Path) -> dict[str, str]:
-    """An environment in which `import frictioncontact` fails, as on a machine that lacks this project."""
-    (folder / "hidden").mkdir()
-    (folder / "hidden" / "frictioncontact.py").write_text("raise ImportError('this project is not here')\n")
-    return {**environment(), "PYTHONPATH": str(folder / "hidden")}
+def with_another_version(folder: Path) -> dict[str, str]:
+    """The environment of a machine that has frictioncontact 0.0.1."""
+    (folder / "frictioncontact-0.0.1.dist-info").mkdir(parents=True)
+    metadata = "Metadata-Version: 2.1\nName: frictioncontact\nVersion: 0.0.1\n"
+    (folder / "frictioncontact-0.0.1.dist-info" / "METADATA").write_text(metadata)
+    return {**environment(), "PYTHONPATH": str(folder)}
 
 
 class Cluster:
@@ -80,15 +80,15 @@ def test_cluster_that_loses_a_worker(
     check_grid(output, fmu)
 
 
-def test_workers_without_the_package(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
-    cluster.worker(without_project(tmp_path))
+def test_workers_of_another_version(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
+    cluster.worker(with_another_version(tmp_path / "other"))
     cluster.wait_for_workers(1)
     done = run(fmu_path, tmp_path / "sweep", *GRID, "--cluster", cluster.address)
     assert done.returncode == 1
     assert len(done.stderr.splitlines()) == 1, done.stderr
     assert done.stderr.startswith(f"error: --cluster {cluster.address}: tcp://127.0.0.1:")
-    assert "lacks frictioncontact" in done.stderr and "this project is not here" in done.stderr
-    assert "pip install frictioncontact==" in done.stderr
+    assert "lacks frictioncontact" in done.stderr
+    assert "pip install 'frictioncontact[sweep]==" in done.stderr
     assert not (tmp_path / "sweep").exists()
 
 
@@ -105,7 +105,7 @@ def test_no_scheduler(fmu_path: Path, tmp_path: Path, address: str, message: str
 
 
 def test_no_workers(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
-    done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", "--scheduler", cluster.address)
+    done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", cluster.address)
     assert done.returncode == 1
     assert done.stderr == f"error: --cluster {cluster.address}: has no workers\n"
 
@@ -124,7 +124,8 @@ def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Pa
     _, said = sweeping.communicate(timeout=120)
     assert sweeping.returncode == 1
     assert len(said.strip().splitlines()) == 1, said
-    assert said.startswith("error: the connection to the scheduler was lost; what was computed is kept in")
+    lost = f"error: --cluster {cluster.address}: the connection was lost; what was computed is kept; the same"
+    assert said.startswith(lost), said
     kept = kept_rows(output)
     assert kept >= 30
     rest = run(fmu_path, output, *arguments, "--workers", "2")
@@ -132,13 +133,10 @@ def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Pa
 
 
 def test_scenario_that_kills_its_workers(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its group is given up; the others are run."""
     cluster.worker(nanny="--nanny")
     cluster.wait_for_workers(1)
     monkeypatch.setattr(workers, "run_group", deadly)
-    job = Job(b"", Scenarios(9, {}), 1e6, 1)
-    groups = [(int(first), int(first) + 1) for first in np.arange(9)]
-    with workers.cluster(job, cluster.address) as staff:
-        done = dict(staff.run(groups))
-    assert sorted(done) == groups
-    assert [group for group, part in done.items() if part is None] == [(3, 4)]
+    job = Job(b"", None, {}, {}, 1)
+    message = f"^--cluster {cluster.address}: worker after worker died of a group; what was computed is kept"
+    with pytest.raises(UserError, match=message), workers.cluster(job, cluster.address) as staff:
+        list(staff.run([(k, k + 1) for k in range(9)]))

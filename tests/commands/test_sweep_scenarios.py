@@ -9,34 +9,39 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from frictioncontact.batch.unpacked import description_and_library
 from frictioncontact.errors import UserError
 from frictioncontact.sweeps import command
-from frictioncontact.sweeps.run import scenarios_of, sweep
-from frictioncontact.sweeps.scenarios import MOST_SCENARIOS, Range, Scenarios, uniform
+from frictioncontact.sweeps.run import sweep
+from frictioncontact.sweeps.scenarios import MOST_SCENARIOS, Range, Rows, Vary, drawn, grid
+from frictioncontact.values import Variables
 
 
-def scenarios(fmu_path: Path, *arguments: str) -> Scenarios:
-    given = command.wanted(command.arguments(list(arguments)))
-    names = ("vary", "random", "seed", "csv", "set")
-    return scenarios_of("the FMU", fmu_path.read_bytes(), *(given[name] for name in names))
+@pytest.fixture(scope="module")
+def variables(fmu_path: Path) -> Variables:
+    return Variables(description_and_library(fmu_path.read_bytes(), "the FMU")[0])
 
 
-def rows(scenarios: Scenarios, first: int, stop: int) -> pd.DataFrame:
-    """Scenarios first to stop - 1, as results show them."""
-    columns = scenarios.columns.items()
-    return pd.DataFrame(
-        {name: column.shown(column.rows(first, stop)).to_numpy(False) for name, column in columns}
+def table(fmu_path: Path, folder: Path, *arguments: str) -> pd.DataFrame:
+    """The scenarios of a sweep, as its results show them."""
+    options = command.arguments(
+        [*arguments, "--fmu", str(fmu_path), "--output", str(folder), "--samples", "1"]
     )
+    swept = sweep(**command.wanted(options) | {"fresh": True})
+    made = pd.read_parquet(swept.results)
+    return made.loc[:, :"F_mean"].drop(columns=["scenario", "F_mean"])
 
 
-def table(fmu_path: Path, *arguments: str) -> pd.DataFrame:
-    made = scenarios(fmu_path, *arguments)
-    return rows(made, 0, made.count)
-
-
-def test_grid(fmu_path: Path) -> None:
+def test_grid(fmu_path: Path, tmp_path: Path) -> None:
     made = table(
-        fmu_path, "--vary", "V=1:100:3:log", "--vary", "friction.model=Dahl,Coulomb", "--set", "d=15e-6"
+        fmu_path,
+        tmp_path,
+        "--vary",
+        "V=1:100:3:log",
+        "--vary",
+        "friction.model=Dahl,Coulomb",
+        "--set",
+        "d=15e-6",
     )
     assert made.to_dict("list") == {
         "V": pytest.approx([1, 1, 10, 10, 100, 100]),
@@ -45,11 +50,11 @@ def test_grid(fmu_path: Path) -> None:
     }
 
 
-def test_random_is_repeatable_and_within_bounds(fmu_path: Path) -> None:
+def test_random_is_repeatable_and_within_bounds(fmu_path: Path, tmp_path: Path) -> None:
     arguments = "--random", "500", "--vary", "V=1e-3:1:log", "--vary", "d=10e-6:18e-6"
-    made = table(fmu_path, *arguments, "--seed", "1")
-    pd.testing.assert_frame_equal(made, table(fmu_path, *arguments, "--seed", "1"))
-    assert not made.equals(table(fmu_path, *arguments, "--seed", "2"))
+    made = table(fmu_path, tmp_path, *arguments, "--seed", "1")
+    pd.testing.assert_frame_equal(made, table(fmu_path, tmp_path, *arguments, "--seed", "1"))
+    assert not made.equals(table(fmu_path, tmp_path, *arguments, "--seed", "2"))
     assert made["V"].between(1e-3, 1).all()
     assert made["d"].between(10e-6, 18e-6).all()
     assert 0.4 < (made["V"] < 10**-1.5).mean() < 0.6  # evenly over the decades
@@ -57,9 +62,9 @@ def test_random_is_repeatable_and_within_bounds(fmu_path: Path) -> None:
 
 def test_csv(fmu_path: Path, tmp_path: Path) -> None:
     path = tmp_path / "scenarios.csv"
-    path.write_text("V, solver.method\n0.1, cvode\n\n0.2,rk4\n")
-    made = table(fmu_path, "--csv", str(path))
-    assert made.to_dict("list") == {"V": [0.1, 0.2], "solver.method": ["cvode", "rk4"]}
+    path.write_text("V, friction.model\n0.1, LuGre\n\n0.2,Dahl\n")
+    made = table(fmu_path, tmp_path / "out", "--csv", str(path))
+    assert made.to_dict("list") == {"V": [0.1, 0.2], "friction.model": ["LuGre", "Dahl"]}
 
 
 @pytest.mark.parametrize(
@@ -86,7 +91,7 @@ def test_malformed_csv_names_row_and_column(
     path = tmp_path / "scenarios.csv"
     path.write_text(content)
     with pytest.raises(UserError, match=re.escape(f"{path}: {message}")):
-        table(fmu_path, "--csv", str(path))
+        table(fmu_path, tmp_path / "out", "--csv", str(path))
 
 
 @pytest.mark.parametrize(
@@ -104,23 +109,20 @@ def test_malformed_csv_names_row_and_column(
             ["--vary", "V=1", "--samples", "100000000000"],
             "--samples 100000000000: must be a whole number from 1 to 1000000",
         ),
-        (["--vary", "V=1", "--settle", "inf"], "--settle: inf is not a finite number"),
         (["--vary", "V=0:1", "--random", "99999999999"], "must be a whole number from 1 to 1000000000"),
         (["--vary", "V=0:1", "--random", "0"], "--random 0: must be a whole number"),
-        (["--vary", "V=0:1", "--random", "5", "--seed", "-1"], "--seed -1: must be at least 0"),
+        (["--vary", "V=0:1", "--random", "5", "--seed", "-1"], "--seed -1: must be a whole number from 0"),
         (
             ["--vary", "V=1", "--group", "1000001"],
             "--group 1000001: must be a whole number from 1 to 1000000",
         ),
         (["--random", "100001", "--vary", "V=0:1", "--group", "1"], "would be more than 100000 files"),
-        (["--vary", "V=0:1:-3"], "the count '-3' is not a whole number"),
+        (["--vary", "V=0:1:-3"], "the count -3: must be a whole number from 1 to 10000000"),
         (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
         (["--vary", "V=1", "--set", "V=2"], "--set V: is given twice"),
         (["--vary", "V=0:1:1000000", "--vary", "d=1:2:1001"], "the most that a sweep runs is 1000000000"),
         (["--vary", "V=1", "--workers", "0"], "--workers 0: must be a whole number from 1 to 1000"),
-        (["--vary", "V=1", "--settle", "nan"], "--settle: nan is not a finite number"),
         (["--random", "3", "--vary", "V=0:1:3"], "'0:1:3' is neither low:high"),
-        (["--vary", "V=1", "--settle", "-1"], "--settle: -1 must be at least 0"),
         (["--csv", "none.csv", "--vary", "V=1"], "--csv does not go with --vary"),
         (
             ["--vary", "friction.model=1:4:4"],
@@ -136,47 +138,51 @@ def test_wrong_arguments(fmu_path: Path, tmp_path: Path, arguments: list[str], m
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(
-    ("kind", "arguments"),
-    [
-        ("grid", ["--vary", "V=0.01:1:24999:log", "--vary", "d=12e-6:16e-6:20000", "--vary",
-                  "friction.model=Dahl,Coulomb"]),
-        ("random", ["--random", str(MOST_SCENARIOS), "--vary", "V=0.01:1:log", "--vary", "d=12e-6:16e-6",
-                    "--vary", "friction.model=Dahl,Coulomb"]),
-    ],
-)  # fmt: skip
-def test_a_row_depends_on_its_number_alone(fmu_path: Path, kind: str, arguments: list[str]) -> None:
-    """Of some 1e9, at places all over."""
-    made = scenarios(fmu_path, *arguments, "--set", "vibration.V_1=1.44")
-    assert made.count == (MOST_SCENARIOS if kind == "random" else 24999 * 20000 * 2)
-    for place in (0, 39_999, 123_456_789, made.count - 40):
-        whole = rows(made, place, place + 40)
+GRID: Vary = {"V": "0.01:1:24999:log", "d": "12e-6:16e-6:20000", "friction.model": "Dahl,Coulomb"}
+RANDOM: Vary = {"V": "0.01:1:log", "d": "12e-6:16e-6", "friction.model": "Dahl,Coulomb"}
+
+
+def check_pieces(count: int, rows: Rows) -> None:
+    """A row depends on its number alone, at places all over."""
+    for place in (0, 39_999, 123_456_789, count - 40):
+        whole = pd.DataFrame(rows(place, place + 40))
         for first, stop in ((0, 1), (3, 17), (17, 40)):
-            piece = rows(made, place + first, place + stop)
+            piece = pd.DataFrame(rows(place + first, place + stop))
             assert piece.equals(whole[first:stop].reset_index(drop=True))
-    last = rows(made, made.count - 1, made.count)
-    if kind == "grid":
-        assert last.to_dict("list") == {
-            "V": [1.0], "d": [16e-6], "friction.model": ["Coulomb"], "vibration.V_1": [1.44]
-        }  # fmt: skip
 
 
-def test_draws_are_those_of_numpys_own_stream() -> None:
-    whole = np.random.Generator(np.random.Philox(np.random.SeedSequence(7, spawn_key=(2,)))).random(1000)
-    for first, stop in ((0, 1000), (1, 2), (4, 9), (5, 6), (6, 11), (7, 8), (999, 1000)):
-        assert np.array_equal(uniform(7, 2, first, stop), whole[first:stop])
-    assert abs(np.corrcoef(uniform(7, 0, 0, 10**5), uniform(7, 1, 0, 10**5))[0, 1]) < 0.016  # 5 sigma
+def test_a_grid_of_a_thousand_million(variables: Variables) -> None:
+    count, rows = grid(variables, GRID)
+    assert count == 24999 * 20000 * 2
+    check_pieces(count, rows)
+    assert {name: value[0] for name, value in rows(count - 1, count).items()} == {
+        "V": 1.0, "d": 16e-6, "friction.model": "Coulomb"
+    }  # fmt: skip
+
+
+def test_a_thousand_million_draws(variables: Variables) -> None:
+    """Each variable's are those of a stream of its own."""
+    count, rows = drawn(variables, RANDOM, MOST_SCENARIOS, 7)
+    assert count == MOST_SCENARIOS
+    check_pieces(count, rows)
+    streams = [np.random.default_rng(np.random.SeedSequence(7, spawn_key=(k,))) for k in range(3)]
+    u = [stream.random(100_000) for stream in streams]
+    drew = rows(0, 100_000)
+    assert np.allclose(drew["V"], 0.01 ** (1.0 - u[0]), rtol=1e-12, atol=0.0)
+    assert np.allclose(drew["d"], 12e-6 + 4e-6 * u[1], rtol=1e-12, atol=0.0)
+    assert np.array_equal(drew["friction.model"], np.where(u[2] < 0.5, "Dahl", "Coulomb"))
+    assert abs(np.corrcoef(u[0], u[1])[0, 1]) < 0.016  # 5 sigma
 
 
 @pytest.mark.parametrize("logarithmic", [False, True])
 @pytest.mark.parametrize(("low", "high"), [(0.1, 0.3), (1e-300, 1e300), (0.7, 0.7), (1e-9, 1e3)])
 def test_ranges_keep_their_ends(low: float, high: float, logarithmic: bool) -> None:
-    spread = Range(low, high, logarithmic, 1001)
-    values = spread.at(np.arange(1001))
-    assert (values[0], values[-1]) == (low, high)
-    assert (np.diff(values) >= 0.0).all()
-    expected = (np.geomspace if logarithmic else np.linspace)(low, high, 1001)
-    assert np.allclose(values, expected, rtol=1e-12, atol=0.0)
+    spread = Range(low, high, logarithmic)
+    for values in (spread.spaced(1001), spread.at(np.linspace(0.0, 1.0, 1001))):
+        assert (values[0], values[-1]) == pytest.approx((low, high), rel=1e-12, abs=0.0)
+        assert values.min() >= low and values.max() <= high
+        assert (np.diff(values) >= 0.0).all()
+    assert tuple(spread.spaced(1001)[[0, -1]]) == (low, high)
 
 
 def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:
@@ -201,7 +207,6 @@ def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:
         ({"vary": {"V": 0.3}}, "--vary V: 0.3 is neither a text nor a sequence of values"),
         ({"vary": {"V": "0:1"}, "random": 5, "seed": 1.5}, "--seed 1.5: must be a whole number"),
         ({"vary": {"V": "0:1"}, "random": 5, "set": ["d"]}, "set = \"['d']\": must be a mapping of names"),
-        ({"vary": {"V": [0.3]}, "settle": [1, 2]}, "--settle [1, 2]: must be one number"),
     ],
 )
 def test_wrong_types_from_python_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:

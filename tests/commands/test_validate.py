@@ -179,7 +179,7 @@ def test_the_command_prints_its_tables_and_draws(
     text = capsys.readouterr().out
     assert "Longitudinal vibration, dry" in text
     assert "Normal vibration" in text
-    assert sorted(path.suffix for path in (tmp_path / "out").iterdir()) == [".png", ".png", ".svg", ".svg"]
+    assert sorted(path.suffix for path in (tmp_path / "out").iterdir()) == [".png", ".png"]
 
 
 def test_an_output_that_can_not_be_written_is_one_line(fmu_path: Path, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
@@ -12,7 +13,9 @@ from matplotlib.figure import Figure
 
 import frictioncontact as fc
 from frictioncontact.advice import command as advise_command
+from frictioncontact.fmu import opened
 from frictioncontact.identification import command as identify_command
+from frictioncontact.simulation.command import read_inputs
 from workshop.project import ROOT
 
 DRY = ROOT / "data" / "dry.csv"
@@ -61,7 +64,7 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
     ("arguments", "message"),
     [
         ({"data": "nowhere.csv"}, "nowhere.csv: No such file"),
-        ({"data": pd.DataFrame({"V": [1.0]})}, "data, line 1, column 1: heading 'V' is not of the form"),
+        ({"data": pd.DataFrame({"V [": [1.0]})}, "data, line 1, column 1: heading 'V [' is not of the form"),
         ({"fit": ["F_t"]}, "F_t can't be fitted; these can: V, d, E"),
         ({"fit": ["contact.sigma", "contact.sigma"]}, "contact.sigma is to be fitted twice"),
         ({"fit": {"contact.sigma": (2.0, 1.0)}}, "contact.sigma = 2..1: the range is empty"),
@@ -78,6 +81,9 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
         ({"fit": {"F_C": (1.0, 2.0, 3.0)}}, "F_C = (1.0, 2.0, 3.0): a range is (low, high)"),
         ({"start": "V"}, "start = 'V': must be a mapping of names to values"),
         ({"data": {"V [m/s]": [1.0]}}, "data: must be the path of a CSV file, or a pandas frame"),
+        ({"data": "a\0.csv"}, "data = 'a\\x00.csv': is no path"),
+        ({"fit": {"F_C": True}}, "F_C = 'True' is not a number"),
+        ({"start": {"V": True}}, "start: V = 'True' is not a finite number"),
     ],
 )
 def test_wrong_fits_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
@@ -106,8 +112,49 @@ def test_advice_is_what_the_command_prints(fmu_path: Path, capsys: pytest.Captur
         ({"output": "W_f"}, "output W_f: must be one of both, F_t, F_t_mean"),
         ({"inputs": {"time": [0.0, 1.0, 3.0], "V": [0.0] * 3}}, "inputs: time must grow in even steps"),
         ({"inputs": {"time": [0.0], "V": [0.0]}}, "inputs: needs at least two samples"),
+        ({"accuracy": True}, "accuracy = 'True' is not a number"),
     ],
 )
 def test_wrong_questions_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
     with pytest.raises(fc.UserError, match="^" + re.escape(message)):
         fc.advise(**{"fmu": fmu_path, **arguments})
+
+
+CALLS = [
+    lambda fmu: fc.simulate(stop=1.0, step=1.0, fmu=fmu),
+    lambda fmu: fc.simulate_many({"V": [0.1]}, fmu=fmu),
+    lambda fmu: fc.identify(DRY, "contact.sigma", start=LAW, fmu=fmu),
+    lambda fmu: fc.advise({"V": 0.1}, fmu=fmu),
+    lambda fmu: fc.sweep(output="nowhere", vary={"V": [0.1]}, fmu=fmu),
+    lambda fmu: fc.FrictionFmu(fmu),
+]
+
+
+@pytest.mark.parametrize("fmu", [3, True, "a\0.fmu"])
+@pytest.mark.parametrize("call", CALLS)
+def test_what_is_no_path_of_an_fmu_is_one_line(call: Callable[[object], object], fmu: object) -> None:
+    with pytest.raises(fc.UserError, match=f"{re.escape(repr(str(fmu)))}: is no path$"):
+        call(fmu)
+
+
+@pytest.mark.parametrize("output", [None, 3, "a\0"])
+def test_an_output_of_a_sweep_that_is_no_path(output: object) -> None:
+    with pytest.raises(fc.UserError, match=f"^output = {re.escape(repr(str(output)))}: is no path$"):
+        fc.sweep(output=output, vary={"V": [0.1]})
+
+
+def test_what_simulate_gives_is_what_identify_takes(fmu_path: Path, tmp_path: Path) -> None:
+    """As a frame and as a file, whose columns without units are in SI units; and the other way round."""
+    table = fc.simulate(
+        {**LAW, "contact.sigma": 4e6}, stop=0.4, step=2e-3, outputs=["V", "F_t"], fmu=fmu_path,
+        inputs={"time": [0.0, 0.1, 0.2, 0.4], "V": [3e-4, -3e-4, 3e-4, 3e-4]},
+    )  # fmt: skip
+    path = tmp_path / "record.csv"
+    table.to_csv(path, index=False)
+    for data in (table, path):
+        found = fc.identify(data, "contact.sigma", start=LAW, fmu=fmu_path)
+        assert found.values["contact.sigma"] == pytest.approx(4e6, rel=1e-2)
+    path.write_text("time [ms],V [mm/s],F_t [kN]\n0,300,0\n1,300,0\n")
+    drive = read_inputs(path, opened(fmu_path))
+    assert drive == {"time": [0.0, pytest.approx(1e-3)], "V": [pytest.approx(0.3), pytest.approx(0.3)]}
+    assert len(fc.simulate(stop=1e-3, step=1e-3, inputs=drive, fmu=fmu_path)) == 2

@@ -1,4 +1,4 @@
-"""The page, made once, in a headless Chromium that tells what a page must not do."""
+"""The page, made once, in a browser that tells what a page must not do."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from playground_page import Playground
 from playwright.sync_api import Browser
 
-from workshop.browser import chromium, find_browser
 from workshop.description import description
 from workshop.playground.page import XML, page_text
 from workshop.presets import Preset, possible, presets
@@ -22,15 +21,6 @@ def html(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("playground") / "playground.html"
     path.write_text(page_text(), encoding="utf-8")
     return path
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Closed again: a process can have one at a time, and other tests may need one."""
-    if find_browser() is None:
-        pytest.skip("no Chromium is installed")
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture

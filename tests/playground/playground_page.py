@@ -7,23 +7,18 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
+from workshop.browser import watch
 from workshop.presets import Preset
 
 
 class Playground:
-    """problems: errors of the scripts, words in the console, requests beyond the page's own file."""
+    """problems: errors, warnings, requests beyond the page's own file."""
 
     def __init__(self, page: Page, html: Path) -> None:
         self.page = page
         self.address = html.as_uri()
         self.problems: list[str] = []
-        page.on("pageerror", lambda error: self.problems.append(f"script error: {error}"))
-        page.on("console", lambda message: self.problems.append(f"console: {message.text}"))
-        page.on("request", lambda request: self._note_request(request.url))
-
-    def _note_request(self, url: str) -> None:
-        if not url.startswith((self.address, "blob:", "data:")):
-            self.problems.append(f"request: {url}")
+        watch(page, html, self.problems)
 
     def open(self, words: str = "") -> None:
         self.page.goto("about:blank")

@@ -12,9 +12,9 @@ from playwright.sync_api import Browser, Page, expect
 
 from frictioncontact.errors import UserError
 from workshop import description
-from workshop.browser import chromium, find_browser
+from workshop.browser import watch
 from workshop.project import ROOT
-from workshop.site.check import SIZES, broken_links, complaints, context, pages, watched
+from workshop.site.check import SIZES, broken_links, complaints, context, pages
 from workshop.site.command import build
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
@@ -38,20 +38,14 @@ def site(older: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    if find_browser() is None:
-        pytest.skip("no Chromium is installed")
-    with chromium() as browser:
-        yield browser
-
-
 @pytest.fixture(params=SIZES)
 def page(browser: Browser, site: Path, request: pytest.FixtureRequest) -> Iterator[Page]:
     """A window of each size. Fails the test if a page had an error or asked for more than the folder has."""
     heard: list[str] = []
     with context(browser, request.param) as window:
-        yield watched(window, site, heard)
+        page = window.new_page()
+        watch(page, site, heard)
+        yield page
     assert heard == []
 
 

@@ -34,7 +34,6 @@ from workshop.project import ROOT
 
 Result = TypeVar("Result")
 
-SETTLE = 1e6  # periods
 SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
 AROUND = ("W_f", "solver.evaluations")
 RANGES = {"V": (0.005, 0.5), "vibration.V_1": (0.1, 1.5), "d": (12e-6, 17e-6)}
@@ -52,7 +51,7 @@ def bare_input(fmu: FrictionFmu, count: int) -> str:
     """What the bare loop reads: the variables' numbers, then a line a scenario."""
     reference = {name: variable.valueReference for name, variable in fmu.variables.items()}
     values = scenarios(count)
-    numbers = [reference["vibration.f"]]
+    numbers = [reference["vibration.f"], reference["initialState"]]
     for names in (tuple(values), SAMPLED, AROUND):
         numbers += [len(names), *(reference[name] for name in names)]
     rows = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(values.values())).tolist())
@@ -64,7 +63,7 @@ def bare_loop(fmu: FrictionFmu, program: Path, text: str, count: int, samples: i
     description = fmu.description
     library = next((fmu.directory / "binaries").glob(f"*/{description.coSimulation.modelIdentifier}.so"))
     done = subprocess.run(
-        [program, library, description.guid, repr(SETTLE), str(samples)],
+        [program, library, description.guid, str(samples)],
         input=text,
         capture_output=True, text=True, check=False,
     )  # fmt: skip
@@ -90,7 +89,7 @@ def two_at_once(loop: Callable[[], object]) -> None:
 def one_batch(fmu: Path, count: int, samples: int) -> tuple[float, float]:
     """The same of one call of simulate_many on one thread."""
     began = time.process_time()
-    results = simulate_many(scenarios(count), OUTPUTS, settle=SETTLE, samples=samples, threads=1, fmu=fmu)
+    results = simulate_many(scenarios(count), OUTPUTS, samples=samples, threads=1, fmu=fmu)
     return (time.process_time() - began) / count, float(np.mean(results["F_mean"]))
 
 
@@ -99,9 +98,9 @@ def sessions(fmu: FrictionFmu, count: int, samples: int) -> float:
     values = scenarios(count)
     began = time.process_time()
     for row in range(count):
-        with fmu.session({name: column[row] for name, column in values.items()}) as session:
+        start = {name: column[row] for name, column in values.items()}
+        with fmu.session({**start, "initialState": "Settled"}) as session:
             period = 1.0 / session.get("vibration.f")
-            session.step(SETTLE * period)
             session.read(AROUND)
             for _ in range(samples):
                 session.step(period / samples)
@@ -120,7 +119,7 @@ class Sweep:
 def sweep(fmu: Path, count: int, samples: int, workers: int) -> Sweep:
     """scripts/sweep, in processes of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        arguments = ["--random", count, "--samples", samples, "--workers", workers, "--settle", SETTLE]
+        arguments = ["--random", count, "--samples", samples, "--workers", workers]
         for name, (low, high) in RANGES.items():
             arguments += ["--vary", f"{name}={low}:{high}"]
         command = [sys.executable, "-m", "frictioncontact", "sweep", "--fmu", fmu, "--output", folder]

@@ -47,12 +47,13 @@ class Extent:
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
-    seed: int = 0  # of the hunt
+    advised: int  # scenes
+    seed: int = 0  # of the hunt and of the advice
 
 
-FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
-QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
-CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2)
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, 40)
+QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, 4)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2, 4)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -207,6 +208,13 @@ def check_hunt_guided(extent: Extent) -> None:
     _run([str(folder / "hunt/fuzz_hunt"), *options, str(found)])
 
 
+def check_advice(extent: Extent) -> None:
+    """Random scenes against the reference: what scripts/advise recommends holds its promise; its price."""
+    build_fmu()
+    words = [f"--scenes={extent.advised}", f"--seed={extent.seed}"]
+    _run([sys.executable, "-m", "workshop.check.advice", *words])
+
+
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
     valgrind = _tool("valgrind", "valgrind")
@@ -242,6 +250,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "soak": check_soak,
     "hunt": check_hunt,
     "hunt-guided": check_hunt_guided,
+    "advice": check_advice,
     "leaks": check_leaks,
     "coverage": check_coverage,
     "bad-input": write_bad_input,
@@ -263,7 +272,7 @@ def main() -> None:
         "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
     )
     parser.add_argument("--minutes", type=float, help="of the hunt")
-    parser.add_argument("--seed", type=int, help="of the hunt; drawn anew when not given")
+    parser.add_argument("--seed", type=int, help="of the hunt and the advice; drawn anew when not given")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:

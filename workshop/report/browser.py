@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from playwright.sync_api import ConsoleMessage, Request
-
-from workshop.browser import chromium
+from workshop.browser import chromium, watch
 
 WIDTHS = {"phone": 390, "tablet": 820, "desktop": 1440}
 DRAW_ALL = "(boxes.forEach(draw), boxes.every((box) => box.querySelector('.main-svg')))"
-LOCAL = ("file:", "data:", "blob:")
 
 
 @dataclass(frozen=True)
@@ -21,7 +18,7 @@ class Visit:
     width: int
     scroll_width: int
     drawn: bool
-    problems: list[str]  # errors of the script, requests to the network
+    problems: list[str]  # errors, warnings, requests beyond the page
 
 
 def visit(
@@ -30,22 +27,12 @@ def visit(
     """Opens the page at a width [px]; a screenshot is of the whole page or of its first tall px."""
     problems: list[str] = []
 
-    def log(message: ConsoleMessage) -> None:
-        if message.type == "error":
-            problems.append(f"log: {message.text}")
-
-    def request(asked: Request) -> None:
-        if not asked.url.startswith(LOCAL):
-            problems.append(f"request to the network: {asked.url}")
-
     scheme = "dark" if dark else "light"
     with chromium() as browser:
         tab = browser.new_page(
             viewport={"width": width, "height": 900}, color_scheme=scheme, is_mobile=width < 600
         )
-        tab.on("pageerror", lambda error: problems.append(f"script error: {error.message}"))
-        tab.on("console", log)
-        tab.on("request", request)
+        watch(tab, page, problems)
         tab.goto(page.resolve().as_uri())
         drawn = tab.evaluate(DRAW_ALL)
         tab.wait_for_timeout(400)

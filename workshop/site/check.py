@@ -8,9 +8,9 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from lxml import html
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, BrowserContext
 
-from workshop.browser import chromium
+from workshop.browser import chromium, watch
 
 SIZES = {"desktop": (1440, 900), "phone": (390, 844)}  # pixels of CSS
 
@@ -57,27 +57,6 @@ def broken_links(folder: Path) -> Iterator[str]:
                 yield f"{where}: no such anchor"
 
 
-def watched(context: BrowserContext, folder: Path, heard: list[str]) -> Page:
-    """A new page of a browser; errors, warnings and requests beyond the folder are added to heard."""
-    home = folder.resolve().as_uri()
-    page = context.new_page()
-    page.on("pageerror", lambda error: heard.append(f"{page.url}: script error: {error}"))
-    page.on(
-        "console",
-        lambda message: (
-            message.type not in ("error", "warning") or heard.append(f"{page.url}: console: {message.text}")
-        ),
-    )
-    page.on(
-        "request",
-        lambda request: (
-            request.url.startswith((home, "blob:", "data:"))
-            or heard.append(f"{page.url}: request: {request.url}")
-        ),
-    )
-    return page
-
-
 def context(browser: Browser, size: str) -> BrowserContext:
     width, height = SIZES[size]
     return browser.new_context(viewport={"width": width, "height": height}, has_touch=size == "phone")
@@ -87,7 +66,8 @@ def complaints(browser: Browser, folder: Path, size: str) -> list[str]:
     """What the pages do wrong, opened one by one: errors, requests, text wider than the window."""
     heard: list[str] = []
     with context(browser, size) as window:
-        page = watched(window, folder, heard)
+        page = window.new_page()
+        watch(page, folder, heard)
         for path in pages(folder):
             page.goto(path.resolve().as_uri())
             if page.evaluate("document.documentElement.scrollWidth > window.innerWidth + 1"):

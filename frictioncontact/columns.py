@@ -1,4 +1,4 @@
-"""Headings of measurement files: "NAME [UNIT]", with the factor of the unit to SI."""
+"""Headings of tables: "NAME [UNIT]", with the factor of the unit to SI, or "NAME" in SI units."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pathlib import Path
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.identification.parameter import accepted
 
-HEADING = re.compile(r"\s*([^\[\]]+?)\s*\[\s*([^\[\]]*?)\s*\]\s*")
+HEADING = re.compile(r"\s*([^\[\]]+?)\s*(?:\[\s*([^\[\]]*?)\s*\]\s*)?")
 FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
+MEASURED = ("F_t", "F_t_mean")
 OWN = {  # columns that are no inputs or parameters of the FMU
     "F_t_mean": FORCES,
     "F_t": FORCES,
@@ -27,6 +27,18 @@ class Column:
     heading: str
     name: str
     factor: float  # from the column's unit to SI
+
+
+def accepted(fmu: FrictionFmu) -> list[str]:
+    """Variables that a column may hold, or a fit vary."""
+    return [
+        name
+        for name, variable in fmu.variables.items()
+        if variable.type == "Real"
+        and variable.causality in ("input", "parameter")
+        and not name.startswith("solver.")
+        and name != "delta_0"
+    ]
 
 
 def units(fmu: FrictionFmu, name: str) -> dict[str, float]:
@@ -47,7 +59,7 @@ def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> C
     where = f"{path}, line {line}, column {index + 1}"
     match = HEADING.fullmatch(cell)
     if not match:
-        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]', for example 'V [m/s]'")
+        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]' or 'name'")
     name, unit = match.groups()
     plain = name.removesuffix(".uncertainty")
     if plain in OWN:
@@ -59,6 +71,6 @@ def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> C
         raise UserError(
             f"{where}: there is no variable {name!r}; columns may be {others}, and NAME.uncertainty of each"
         )
-    if unit not in known:
+    if unit is not None and unit not in known:
         raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
-    return Column(index, cell.strip(), name, known[unit])
+    return Column(index, cell.strip(), name, known[unit] if unit is not None else 1.0)
