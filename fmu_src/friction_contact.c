@@ -212,10 +212,6 @@ bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message)
 }
 
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message) {
-    if (!fc_friction_contact_check(
-            contact, message)) { // a state read from bytes may hold values that do not go together
-        return false;
-    }
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
     double delta = v->delta;

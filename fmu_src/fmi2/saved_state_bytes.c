@@ -287,6 +287,15 @@ static const char* unsound_part(FcSavedState* saved) {
     return experiment_is_sound(&saved->experiment) ? NULL : "the state of the instance";
 }
 
+// Outputs that are not stale were computed of values that go together.
+static bool goes_together(const FcSavedState* saved, FcMessage* message) {
+    if (saved->experiment.outputs_stale || saved->experiment.mode == FC_INSTANTIATED) {
+        return true;
+    }
+    FcFrictionContact contact = {.state = saved->friction, .cvode = NULL};
+    return fc_friction_contact_check(&contact, message);
+}
+
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
                                    fmi2FMUstate* FMUstate) {
     const FcCall call = FC_CALL_DESERIALIZE_FMU_STATE;
@@ -308,6 +317,10 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
     const char* part = unsound_part(&read);
     if (part) {
         return fc_refuse(instance, call, "the bytes hold an impossible value of %s", part);
+    }
+    FcMessage message;
+    if (!goes_together(&read, &message)) {
+        return fc_refuse(instance, call, "the bytes hold values that do not go together: %s", message.text);
     }
     FcSavedState* saved = fc_saved_state_to_fill(instance, call, FMUstate);
     if (!saved) {

@@ -40,7 +40,7 @@ from workshop.report.recovery import (
 
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 LOOPS = 100  # seeds
-GUIDE = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 
 
 def least_of(seeds: int) -> int:

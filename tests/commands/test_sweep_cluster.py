@@ -136,7 +136,7 @@ def test_scenario_that_kills_its_workers(cluster: Cluster, monkeypatch: pytest.M
     cluster.worker(nanny="--nanny")
     cluster.wait_for_workers(1)
     monkeypatch.setattr(workers, "run_group", deadly)
-    job = Job(b"", None, {}, {}, 1)
+    job = Job(b"", None, {}, 1)
     message = f"^--cluster {cluster.address}: worker after worker died of a group; what was computed is kept"
     with pytest.raises(UserError, match=message), workers.cluster(job, cluster.address) as staff:
         list(staff.run([(k, k + 1) for k in range(9)]))
