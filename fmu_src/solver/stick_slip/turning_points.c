@@ -185,8 +185,10 @@ static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, c
 static bool may_turn_in_peak(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b,
                              int which) {
     const FcFriction* friction = points->law->friction;
-    const double q_a = approach(points, a, which), q_b = approach(points, b, which);
-    const double slope_a = approach_rate(points, a, which), slope_b = approach_rate(points, b, which);
+    const double q_a = approach(points, a, which);
+    const double q_b = approach(points, b, which);
+    const double slope_a = approach_rate(points, a, which);
+    const double slope_b = approach_rate(points, b, which);
     const double duration = b->t - a->t;
     const double part = duration / points->peak_time;
     const double moves = points->relaxes ? friction->V_S : a->D / points->peak_time;
