@@ -23,8 +23,8 @@ static const double RADAU = 7.0;
 static const double FEW_DECADES = 3.0;
 static const double RADAU_FOR_EACH = 2.3;
 static const double RADAU_PANEL = 2.3;
-// Half of the angle [rad] by which the vibration turns in half a period.
-static const double HALF_PERIOD = 0.5 * FC_PI;
+// phi, half of the angle [rad] by which the vibration turns, of half a period.
+static const double PHI_OF_HALF_PERIOD = 0.5 * FC_PI;
 
 // A panel that lasts for a whole stretch is accurate up to a tolerance of 10^-(one + phi sqrt(phi) + mu sqrt(mu) +
 // z sqrt(z)), about, with a scatter of half a decade (4 nodes) to one and a half (12): a plan of cost, judged afterwards. time: of a panel, over that
@@ -127,7 +127,8 @@ static int rule_for(double phi, double mu, double z, double decades) {
 
 FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades) {
     const double of_half_period = RADAU + RADAU_FOR_EACH * fc_most(0.0, decades - FEW_DECADES);
-    double least = fc_most(RADAU_PANEL, of_half_period * fc_least(1.0, fc_most(phi, mu) / HALF_PERIOD));
+    double least =
+        fc_most(RADAU_PANEL, of_half_period * fc_least(1.0, fc_most(phi, mu) / PHI_OF_HALF_PERIOD));
     FcGaussPieces cheapest = {0, FC_GAUSS_MOST_NODES};
     for (int n = 1; n <= MOST_PIECES && n * RULE[0].time < least; n++) {
         const double of_piece = n == 1 ? z->whole : n == 2 ? z->half : z->fastest / n;
