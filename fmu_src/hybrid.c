@@ -185,38 +185,30 @@ bool fc_hybrid_step_completed(FcFrictionContact* contact) {
            (z.of[1] <= 0.0 || z.of[2] <= 0.0 || z.of[3] <= 0.0);
 }
 
-// Moves delta; what the bristle stored in between is heat.
-static void move_to(FcFrictionContact* contact, double delta) {
+// Moves delta and adds heat [J], if both stay numbers.
+static void move_to(FcFrictionContact* contact, double delta, double heat) {
     FcVariables* v = &contact->state.variables;
-    if (delta == v->delta) {
-        return;
+    if (isfinite(delta) && isfinite(v->Q_f + heat)) {
+        contact->state.hybrid.changed |= delta != v->delta || heat != 0.0;
+        v->delta = delta;
+        v->Q_f += heat;
     }
-    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const double heat = 0.5 * fc_scene_stiffness(&scene, 0.0) * (v->delta - delta) * (v->delta + delta);
-    if (!isfinite(delta) || !isfinite(v->Q_f + heat)) {
-        return;
-    }
-    v->delta = delta;
-    v->Q_f += heat;
-    contact->state.hybrid.changed = 1;
 }
 
 void fc_hybrid_event_begins(FcFrictionContact* contact) {
     look_at_inputs(contact);
     look_at_lag(contact);
     FcHybrid* hybrid = &contact->state.hybrid;
-    FcVariables* v = &contact->state.variables;
     double bound;
     double force;
-    if (slips_along(contact, &bound, &force) && isfinite(bound) && isfinite(v->Q_f + hybrid->lag_heat)) {
-        hybrid->changed |= bound != v->delta || hybrid->lag_heat != 0.0;
-        v->delta = bound;
-        v->Q_f += hybrid->lag_heat;
+    if (slips_along(contact, &bound, &force)) {
+        move_to(contact, bound, hybrid->lag_heat);
     }
     hybrid->lag = hybrid->lag_heat = hybrid->lag_force = 0.0;
 }
 
-// An input may have jumped at the event: a bristle that is now within its bound is free, one beyond is taken onto it.
+// An input may have jumped at the event: a bristle that is now within its bound is free, one beyond is taken onto it, and
+// what it stored in between is heat.
 static FcRegime next_regime(FcFrictionContact* contact) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const double D = fc_regime_bound(&scene);
@@ -225,7 +217,8 @@ static FcRegime next_regime(FcFrictionContact* contact) {
         return FC_FREE;
     }
     const int side = delta < 0.0 ? -1 : 1;
-    move_to(contact, side * D);
+    const double sigma = fc_scene_stiffness(&scene, 0.0);
+    move_to(contact, side * D, 0.5 * sigma * (delta - side * D) * (delta + side * D));
     if (regime_of(contact) == (FcRegime)side) {
         return push(contact, side) > 0.0 ? (FcRegime)side : FC_FREE;
     }
