@@ -53,6 +53,7 @@ def build_targets(
 
     Commands that are started together build one after the other. What a killed build left, and what came with
     a copied or renamed project, is built anew, as is all where that is asked for.
+    environment: the whole of it, in place of this process's.
     """
     if progress is None:
         with progress_bar() as own:
@@ -121,7 +122,7 @@ def _run(
     with subprocess.Popen(
         command,
         cwd=ROOT,
-        env={**os.environ, **(environment or {})},
+        env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

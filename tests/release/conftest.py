@@ -12,10 +12,10 @@ MISSING = "the release's packages are not installed: scripts/setup release"
 pytest.importorskip("lief", reason=MISSING)
 pytest.importorskip("ziglang", reason=MISSING)
 
-from workshop.release.command import compile_platforms  # noqa: E402
+from workshop.release.command import compile_platform  # noqa: E402
 
 
 @pytest.fixture(scope="session")
 def library() -> Callable[[str], Path]:
     """The library of a platform, in CMake's folder for it, compiled when first asked for."""
-    return cache(lambda platform: compile_platforms([platform])[platform])
+    return cache(compile_platform)

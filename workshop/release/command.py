@@ -43,20 +43,16 @@ TOOLCHAIN_LICENSES = {
 }
 
 
-def compile_platforms(
-    platforms: Iterable[str], progress: Progress | None = None, anew: bool = False
-) -> dict[str, Path]:
-    """Libraries in CMake's folders, one a platform, each inspected; anew: whatever has been compiled before.
+def compile_platform(platform: str, progress: Progress | None = None, anew: bool = False) -> Path:
+    """The library of a platform, in CMake's folder for it, inspected; beside it the wheel's batch host.
 
-    Beside each lies the batch host, which goes into the wheels.
+    anew: everything is compiled, whatever has been compiled before.
     """
-    libraries = {}
-    for platform in platforms:
-        folder = build(platform, ["fmu_parts", "friction_batch"], progress, anew)
-        libraries[platform] = folder / f"FrictionContact{SUFFIXES[platform]}"
-        release_inspect.check(platform, libraries[platform])
-        release_inspect.check(platform, batch_host(libraries[platform]), "batch_")
-    return libraries
+    folder = build(platform, ["fmu_parts", "friction_batch"], progress, anew)
+    library = folder / f"FrictionContact{SUFFIXES[platform]}"
+    release_inspect.check(platform, library)
+    release_inspect.check(platform, batch_host(library), "batch_")
+    return library
 
 
 def batch_host(library: Path) -> Path:
@@ -143,7 +139,7 @@ def make_release(output: Path, platforms: Iterable[str], progress: Progress, ane
     task = progress.add_task("Compiling", total=len(platforms) + 3)
     for platform in platforms:
         progress.update(task, advance=1, description=f"Compiling for {platform}")
-        libraries.update(compile_platforms([platform], progress, anew))
+        libraries[platform] = compile_platform(platform, progress, anew)
     with tempfile.TemporaryDirectory(prefix="release-") as temporary:
         folder = Path(temporary)
         progress.update(task, advance=1, description="Writing pages")

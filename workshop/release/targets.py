@@ -40,7 +40,7 @@ def zig() -> Path:
 
 
 def environment() -> dict[str, str]:
-    """Where zig keeps what it has compiled, unless the environment says otherwise."""
+    """This process's, which says where zig keeps what it has compiled."""
     cache = str(ROOT / "build" / "zig-cache")
     return {"ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache, **os.environ}
 
