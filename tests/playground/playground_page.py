@@ -24,6 +24,7 @@ class Playground:
         self.page.goto("about:blank")
         self.page.goto(self.address + words)
         self.page.wait_for_selector("body.ready")
+        self.settle()  # until then the page would write its first address over the next
 
     def load(self, values: Mapping[str, float | str]) -> None:
         """Goes to the address of a scene, on the page that is open."""

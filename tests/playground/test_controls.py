@@ -184,10 +184,8 @@ def test_wrong_words_of_an_address_are_told_and_no_part_of_the_scene(playground:
 
 def test_an_address_with_foreign_words_shows_the_message(playground: Playground) -> None:
     playground.open("#colour=3")
-    playground.settle()
     assert playground.page.locator("#refusal").inner_text() == "colour is no variable of this FMU"
     playground.open("#friction.model=Newton")
-    playground.settle()
     assert "friction.model" in playground.refusal("friction.model")
 
 
