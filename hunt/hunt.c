@@ -28,7 +28,7 @@
 enum { MOST_JOBS = 64 };
 
 typedef struct {
-    uint64_t seed, scenes, first;
+    uint64_t seed, scenes, first, thorough;
     double seconds; // 0: no end but the number of scenes
     double tolerance[MOST_TOLERANCES];
     int tolerances, jobs;
@@ -133,7 +133,7 @@ static void judge_steps(const Options* options, const Sequence* sequence, uint64
 
 // The steps after the first are taken with one of the tolerances, in turn: each of them needs the reference anew.
 static void try_sequence(const Options* options, const Sequence* sequence, uint64_t number, Tally* tally) {
-    Trial trial = {0};
+    Trial trial = {.screens = number % options->thorough != 0};
     tally->drawn++;
     if (options->show) {
         char text[SEQUENCE_TEXT];
@@ -229,6 +229,7 @@ static void replay_file(const Options* options, Tally* tally) {
         int read = 0;
         Options mine = *options;
         mine.tolerances = 1;
+        mine.thorough = 1;
         if (line[0] == '#' || line[0] == '\n') {
             continue;
         }
@@ -251,9 +252,12 @@ static void usage(void) {
         stderr,
         "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--law NAME]\n"
         "     [--limit Constant|Load] [--settled 0|1|2] [--method NUMBER] [--jobs J] [--minimize K]\n"
-        "     [--brief] [--show] [--strict] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
+        "     [--thorough N] [--brief] [--show] [--strict] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
         "--first: number of the first sequence; with --scenes 1 a single one. --settled: none, a tenth (the\n"
         "default) or all of the scenes start settled. --method: 0 is the default, and now and then cvode.\n"
+        "--thorough: so many sequences to one that the reference takes from the start (100); of the others it "
+        "takes\n"
+        "only steps that differ from their parts at a finer tolerance, by more than half of what is granted.\n"
         "--minimize: makes K misses of each law and class plain. --file: the sequences of a file, one a "
         "line.\n"
         "--brief: only the tables. --show: every sequence before it is tried. --strict: the tolerance alone "
@@ -303,6 +307,8 @@ static void read_option(Options* options, const char* name, const char* value) {
         options->scenes = (uint64_t)number_of(value);
     } else if (strcmp(name, "--first") == 0) {
         options->first = strtoull(value, NULL, 10);
+    } else if (strcmp(name, "--thorough") == 0) {
+        options->thorough = (uint64_t)fmax(1.0, number_of(value));
     } else if (strcmp(name, "--minutes") == 0) {
         options->seconds = 60.0 * number_of(value);
         options->scenes = UINT64_MAX / 2;
@@ -336,6 +342,7 @@ int main(int argc, char** argv) {
                        .tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-9},
                        .tolerances = 5,
                        .jobs = 1,
+                       .thorough = 100,
                        .grammar = {.settled = 1}};
     for (int k = 1; k < argc; k++) {
         if (strcmp(argv[k], "--brief") == 0) {

@@ -33,7 +33,7 @@ static double off_force(double F_t, double truth, double other, bool near_jump) 
 Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const FmuStep* step,
                     double tolerance) {
     // the double that holds a soft bristle far longer than its way rounds coarser than the way's share
-    const double rounding = 4.0 * DBL_EPSILON * fmax(fabs(truth->delta), fabs(truth->delta_start));
+    const double rounding = 16.0 * DBL_EPSILON * fmax(fabs(truth->delta), fabs(truth->delta_start));
     const double limit = truth->scale;
     const double swap = 2.0 * limit * fmin(1.0, unknown_sign(s) / s->h);
     const double slipped = fabs(truth->delta - truth->delta_start);
@@ -41,7 +41,9 @@ Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const F
     const double energy = limit * (truth->path + slipped + projected);
     // so many digits do the sums have, and a start far beyond the bound gives much
     const double digits = 256.0 * DBL_EPSILON * fmax(fabs(truth->work), fabs(truth->heat));
-    const double shift = digits + CLOCK * limit * s->V_1 * s->h; // as much as V is moved by
+    // as much as V is moved by; a force beyond the limit slips faster than V by so many times
+    const double beyond = fmax(1.0, truth->largest / limit);
+    const double shift = digits + CLOCK * limit * beyond * beyond * s->V_1 * s->h;
     Errors errors;
     const double near = fmax(tolerance, FLOOR) * limit;
     errors.error[OF_FORCE] =

@@ -1100,3 +1100,13 @@ void reference_step(const ReferenceScene* scene, int fineness, ReferenceStep* re
     result->panels = (double)w.panels;
     result->unresolved = (double)w.unresolved;
 }
+
+void reference_frame(const ReferenceScene* scene, ReferenceStep* frame) {
+    const World w = make_world(scene, 1);
+    *frame = (ReferenceStep){.path = (double)w.path,
+                             .sigma = (double)scene_at(&w, w.h, false).sigma,
+                             .scale = force_scale(&w, 0.0),
+                             .largest = (double)(scene_at(&w, 0.0L, false).sigma * fabsl(scene->delta_0)),
+                             .gap = INFINITY,
+                             .gap_start = INFINITY};
+}

@@ -62,6 +62,10 @@ ReferenceScene reference_scene(void);
 // fineness 1, or more for more panels from the start and a second number of stages: for checks of the result itself.
 void reference_step(const ReferenceScene* scene, int fineness, ReferenceStep* result);
 
+// Only what errors are relative to, without solving for the bristle: path, sigma at the end, and for scale the least over the
+// step of the mean limit, which is no larger than that of reference_step. largest is that of the start; no jump is near.
+void reference_frame(const ReferenceScene* scene, ReferenceStep* frame);
+
 #ifdef __cplusplus
 }
 #endif

@@ -4,7 +4,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "fmu_step.h"
 #include "judge.h"
 #include "sequence.h"
 
@@ -93,6 +92,25 @@ static bool restored(const ReferenceScene* scene, int method, double tolerance, 
 
 typedef bool Way(const ReferenceScene* scene, int method, double tolerance, FmuStep* step);
 
+// What judge_ratio says of a step, were the other one exact.
+static double difference(const ReferenceScene* scene, const ReferenceStep* frame, const FmuStep* exact,
+                         const FmuStep* step, double tolerance) {
+    ReferenceStep as_truth = *frame;
+    as_truth.delta = exact->delta;
+    if (frame->gap > tolerance * frame->scale) { // near a jump the two ways may take different sides
+        as_truth.F_t = exact->F_t;
+    }
+    as_truth.F_t_mean = exact->F_t_mean;
+    as_truth.work = exact->work;
+    as_truth.heat = exact->heat;
+    if (frame->gap_start > tolerance * frame->scale) {
+        as_truth.F_t_start = exact->F_t_start;
+    }
+    const Errors errors = judge_errors(scene, &as_truth, step, tolerance);
+    int which = 0;
+    return judge_ratio(&errors, &as_truth, tolerance, &which);
+}
+
 double relation_ratio(int relation, const ReferenceScene* scene, const ReferenceStep* truth, int method,
                       double tolerance) {
     static Way* const WAYS[RELATIONS] = {split, mirrored, shifted, restored};
@@ -103,18 +121,30 @@ double relation_ratio(int relation, const ReferenceScene* scene, const Reference
     if (relation == RELATION_RESTORED) {
         return memcmp(&direct, &other, sizeof direct) == 0 ? 0.0 : INFINITY;
     }
-    ReferenceStep as_truth = *truth;
-    as_truth.delta = direct.delta;
-    if (truth->gap > tolerance * truth->scale) { // near a jump the two ways may take different sides
-        as_truth.F_t = direct.F_t;
+    return difference(scene, truth, &direct, &other, tolerance);
+}
+
+static const double FINER = 1e-2, FINEST = 1e-11;
+
+double parts_ratio(const ReferenceScene* scene, const FmuStep* step, const ReferenceStep* frame,
+                   double tolerance) {
+    const double finer = fmax(FINEST, FINER * tolerance);
+    ReferenceScene from = *scene;
+    FmuStep parts;
+    FmuStep settled;
+    ReferenceStep around = *frame;
+    from.initial = START_GIVEN;
+    from.delta_0 = step->delta_start;
+    if (!split(&from, FMU_COLLOCATION, finer, &parts)) {
+        return INFINITY;
     }
-    as_truth.F_t_mean = direct.F_t_mean;
-    as_truth.work = direct.work;
-    as_truth.heat = direct.heat;
-    if (truth->gap_start > tolerance * truth->scale) {
-        as_truth.F_t_start = direct.F_t_start;
+    if (scene->initial == START_SETTLED) {
+        if (!take(scene, FMU_COLLOCATION, finer, &settled)) {
+            return INFINITY;
+        }
+        parts.F_t_start = settled.F_t_start;
     }
-    const Errors errors = judge_errors(scene, &as_truth, &other, tolerance);
-    int which = 0;
-    return judge_ratio(&errors, &as_truth, tolerance, &which);
+    around.delta_start = step->delta_start;
+    around.largest = fmax(frame->largest, frame->sigma * fabs(parts.delta));
+    return difference(scene, &around, &parts, step, tolerance);
 }

@@ -2,6 +2,7 @@
 #ifndef HUNT_RELATIONS_H
 #define HUNT_RELATIONS_H
 
+#include "fmu_step.h"
 #include "reference.h"
 
 enum {
@@ -16,5 +17,11 @@ enum {
 // relation does not hold exactly (the phase of the other time would be rounded) or the core refuses the scene.
 double relation_ratio(int relation, const ReferenceScene* scene, const ReferenceStep* truth, int method,
                       double tolerance);
+
+// The error of a step over the tolerance, were the same step by the default exact that is taken as two from where the FMU
+// stood, with a tolerance a hundred times finer; frame gives what errors are relative to. Infinite where the parts are
+// refused.
+double parts_ratio(const ReferenceScene* scene, const FmuStep* step, const ReferenceStep* frame,
+                   double tolerance);
 
 #endif

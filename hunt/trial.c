@@ -30,11 +30,33 @@ static void step_of_reference(const ReferenceScene* scene, double delta_start, i
     }
 }
 
+static bool is_short(const ReferenceScene* scene) {
+    return scene->h * scene->f <= MOST_PERIODS || (scene->V_1 == 0.0 && scene->a_d == 0.0);
+}
+
+// Whether the step agrees with its parts by half of what is granted. More than the usual is not granted here to a force
+// beyond the limit, since the frame's limit is the least.
+static bool agrees(TrialStep* taken, const ReferenceScene* scene, int method, double tolerance) {
+    ReferenceScene short_one = *scene;
+    ReferenceStep frame;
+    short_one.h = is_short(scene) ? scene->h : 1.0 / scene->f;
+    short_one.delta_0 = taken->step.delta_start;
+    reference_frame(&short_one, &frame);
+    frame.path *= scene->h / short_one.h;
+    const double ratio = parts_ratio(scene, &taken->step, &frame, tolerance);
+    frame.largest = 0.0;
+    if (!(ratio < 0.5 * promise_factor(promise_class(scene, &frame, method), tolerance))) {
+        return false;
+    }
+    taken->parts = ratio;
+    taken->truth = frame;
+    return true;
+}
+
 // The truth of the step, or where it is long and held what a period says of forces, path and rounding.
 static void find_truth(TrialStep* taken, const ReferenceScene* scene) {
     ReferenceScene short_one = *scene;
-    taken->scene = *scene;
-    taken->graded = scene->h * scene->f <= MOST_PERIODS || (scene->V_1 == 0.0 && scene->a_d == 0.0);
+    taken->graded = is_short(scene);
     if (!taken->graded) {
         short_one.h = 1.0 / scene->f;
     }
@@ -57,7 +79,10 @@ void trial_run(Trial* trial, const Sequence* sequence, int most_steps, double to
         if (!fmu_step(run, &scene, &taken->step)) {
             break;
         }
-        if (memcmp(&taken->scene, &scene, sizeof scene) != 0 || scene.initial == START_SETTLED) {
+        const bool known = !taken->screened && memcmp(&taken->scene, &scene, sizeof scene) == 0;
+        taken->scene = scene;
+        taken->screened = trial->screens && agrees(taken, &scene, sequence->method, tolerance);
+        if (!taken->screened && (!known || scene.initial == START_SETTLED)) {
             find_truth(taken, &scene);
         }
         delta = taken->step.delta;
@@ -71,6 +96,11 @@ Verdict trial_verdict(const Trial* trial, int k, int method, double tolerance) {
     const TrialStep* taken = &trial->taken[k];
     Verdict verdict = {.kind = promise_class(&taken->scene, &taken->truth, method), .step = k, .ratio = -1.0};
     verdict.granted = promise_factor(verdict.kind, tolerance);
+    if (taken->screened) {
+        verdict.ratio = taken->parts;
+        verdict.of = BY_SPLIT;
+        return verdict;
+    }
     if (taken->graded) {
         const Errors errors = judge_errors(&taken->scene, &taken->truth, &taken->step, tolerance);
         verdict.ratio = judge_ratio(&errors, &taken->truth, tolerance, &verdict.of);

@@ -8,12 +8,15 @@
 typedef struct {
     ReferenceScene scene;
     FmuStep step;
-    ReferenceStep truth; // of one period, where the step is too long for brute force
+    ReferenceStep truth; // of one period, where the step is too long for brute force; reference_frame where screened
     bool graded;         // whether truth is that of the step
+    bool screened;       // whether the step agrees with its parts, and no reference was asked
+    double parts;        // parts_ratio, where screened
     double derivatives;  // slopes_ratio
 } TrialStep;
 
 typedef struct {
+    bool screens;      // whether the reference is asked only of steps that do not agree with their parts
     int steps;         // that were taken
     bool refused;      // whether the one after them was refused
     char message[320]; // why
