@@ -274,6 +274,7 @@ static ReferenceScene later_step(Draw* draw, const ReferenceScene* before) {
         s.h = log_between(draw, 1e-3, 4.0) / s.f;
     }
     if (chance(draw, 0.3)) {
+        s.h = fmin(s.h, MOST_PERIODS / s.f); // each period costs its own while inputs move
         rates(draw, &s);
     }
     ReferenceScene changes = no_change();
