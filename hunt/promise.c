@@ -25,12 +25,11 @@ static int class_of_scene(const ReferenceScene* s, const ReferenceStep* truth) {
 }
 
 int promise_class(const ReferenceScene* s, const ReferenceStep* truth, int method) {
-    const int kind = class_of_scene(s, truth);
     const bool is_affine = s->law == LAW_DAHL || s->law == LAW_LUGRE;
-    if (is_affine && method > FMU_CVODE) {
-        return CLASS_FIXED;
+    if (is_affine && method != FMU_COLLOCATION) {
+        return method == FMU_CVODE ? CLASS_CVODE : CLASS_FIXED;
     }
-    return is_affine && method == FMU_CVODE && kind > CLASS_CVODE ? CLASS_CVODE : kind;
+    return class_of_scene(s, truth);
 }
 
 enum { COLUMNS = 5 };
@@ -41,9 +40,9 @@ static const struct {
     double factor[COLUMNS]; // of the tolerance
 } PROMISES[CLASSES] = {
     [CLASS_FIXED] = {"fixed steps", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
+    [CLASS_CVODE] = {"cvode", {1, 1, 10, 10, 1000}},
     [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 100}},
     [CLASS_BEYOND] = {"force beyond the limit", {1, 1, 10, 1e3, 1e6}},
-    [CLASS_CVODE] = {"cvode", {1, 1, 10, 10, 1000}},
     [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},
 };
 
