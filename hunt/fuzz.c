@@ -34,8 +34,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Trial trial = {0};
     trial_run(&trial, &sequence, MOST_STEPS, tolerance);
     const Verdict worst = trial_worst(&trial, sequence.method, tolerance);
-    if (!(worst.ratio <= worst.granted) &&
-        !(worst.of < JUDGED && trial_is_unsure(&trial, worst.step, tolerance))) {
+    if (!(worst.ratio <= worst.granted) && !trial_is_unsure(&trial, &worst, tolerance)) {
         char text[SEQUENCE_TEXT];
         sequence_text(&sequence, text, sizeof text);
         fprintf(stderr, "miss ratio=%g of=%s step=%d: tolerance=%g %s\n", worst.ratio, GRADE_NAMES[worst.of],

@@ -60,10 +60,6 @@ static void report(const Sequence* sequence, const Trial* trial, uint64_t number
     fflush(stdout);
 }
 
-static bool is_unsure(const Trial* trial, const Verdict* verdict, double tolerance) {
-    return verdict->of < JUDGED && trial_is_unsure(trial, verdict->step, tolerance);
-}
-
 typedef struct {
     double tolerance;
     bool strict;
@@ -76,7 +72,7 @@ static bool still_misses(const Sequence* sequence, const void* context) {
     trial_run(&trial, sequence, MOST_STEPS, miss->tolerance);
     const Verdict worst = trial_worst(&trial, sequence->method, miss->tolerance);
     return worst.ratio > 1.5 * (miss->strict ? 1.0 : worst.granted) &&
-           !is_unsure(&trial, &worst, miss->tolerance);
+           !trial_is_unsure(&trial, &worst, miss->tolerance);
 }
 
 // So many misses of each law and class are made plain, as lines that --file takes.
@@ -114,7 +110,7 @@ static void judge_steps(const Options* options, const Sequence* sequence, uint64
         Verdict verdict = trial_verdict(trial, k, sequence->method, tolerance);
         verdict.granted = options->strict ? 1.0 : verdict.granted;
         const bool misses = !(verdict.ratio <= verdict.granted);
-        const bool unsure = misses && is_unsure(trial, &verdict, tolerance);
+        const bool unsure = misses && trial_is_unsure(trial, &verdict, tolerance);
         tally->unsure += unsure;
         if (!unsure) {
             tally_count(tally, &trial->taken[k], sequence->method, column, &verdict);
@@ -255,9 +251,11 @@ static void usage(void) {
         "     [--thorough N] [--brief] [--show] [--strict] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
         "--first: number of the first sequence; with --scenes 1 a single one. --settled: none, a tenth (the\n"
         "default) or all of the scenes start settled. --method: 0 is the default, and now and then cvode.\n"
-        "--thorough: so many sequences to one that the reference takes from the start (100); of the others it "
+        "--thorough: so many sequences to one that the reference takes from the start (100); of the others "
+        "it "
         "takes\n"
-        "only steps that differ from their parts at a finer tolerance, by more than half of what is granted.\n"
+        "only steps that differ from their parts at a finer tolerance, by more than half of what is "
+        "granted.\n"
         "--minimize: makes K misses of each law and class plain. --file: the sequences of a file, one a "
         "line.\n"
         "--brief: only the tables. --show: every sequence before it is tried. --strict: the tolerance alone "

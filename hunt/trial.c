@@ -1,5 +1,6 @@
 #include "trial.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +14,7 @@ const char* const GRADE_NAMES[GRADES] = {"F_t",         "F_t_mean", "W_f",    "Q
 
 // The reference takes some ms for each period.
 static const double MOST_PERIODS = 31.0;
+static const double CLOCK = 2e-16; // of a period, by which a time is rounded
 
 // The step from where the FMU stood before it. A settled start is judged by its own force.
 static void step_of_reference(const ReferenceScene* scene, double delta_start, int fineness,
@@ -30,6 +32,15 @@ static void step_of_reference(const ReferenceScene* scene, double delta_start, i
     }
 }
 
+// Its stiffness [N/m] at the end of a step, however long.
+static double sigma_at_end(const ReferenceScene* scene) {
+    ReferenceScene end = scene_after(scene, 0.0);
+    ReferenceStep frame;
+    end.h = 0.0;
+    reference_frame(&end, &frame);
+    return frame.sigma;
+}
+
 static bool is_short(const ReferenceScene* scene) {
     return scene->h * scene->f <= MOST_PERIODS || (scene->V_1 == 0.0 && scene->a_d == 0.0);
 }
@@ -43,6 +54,7 @@ static bool agrees(TrialStep* taken, const ReferenceScene* scene, int method, do
     short_one.delta_0 = taken->step.delta_start;
     reference_frame(&short_one, &frame);
     frame.path *= scene->h / short_one.h;
+    frame.sigma = sigma_at_end(scene);
     const double ratio = parts_ratio(scene, &taken->step, &frame, tolerance);
     frame.largest = 0.0;
     if (!(ratio < 0.5 * promise_factor(promise_class(scene, &frame, method), tolerance))) {
@@ -63,6 +75,7 @@ static void find_truth(TrialStep* taken, const ReferenceScene* scene) {
     step_of_reference(&short_one, taken->step.delta_start, 1, &taken->truth);
     taken->derivatives = slopes_ratio(&short_one, &taken->truth, &taken->step);
     if (!taken->graded) {
+        taken->truth.sigma = sigma_at_end(scene);
         taken->truth.path *= scene->h / short_one.h;
         taken->truth.gap = INFINITY;
     }
@@ -130,20 +143,43 @@ Verdict trial_worst(const Trial* trial, int method, double tolerance) {
     return worst;
 }
 
-bool trial_is_unsure(const Trial* trial, int k, double tolerance) {
-    const TrialStep* taken = &trial->taken[k];
+// What judge_ratio says of the reference of another scene, were the truth of the step exact.
+static double ratio_of_reference(const TrialStep* taken, const ReferenceScene* other, int fineness,
+                                 double tolerance) {
+    ReferenceStep found;
+    step_of_reference(other, taken->step.delta_start, fineness, &found);
+    const FmuStep as_step = {.delta = found.delta,
+                             .F_t = found.F_t,
+                             .F_t_mean = found.F_t_mean,
+                             .work = found.work,
+                             .heat = found.heat,
+                             .F_t_start = found.F_t_start};
+    const Errors errors = judge_errors(&taken->scene, &taken->truth, &as_step, tolerance);
+    int which = 0;
+    return judge_ratio(&errors, &taken->truth, tolerance, &which);
+}
+
+// Whether a start that is moved by the rounding of times, earlier or later, explains a fifth of the error.
+static bool is_by_clock(const TrialStep* taken, const Verdict* miss, double tolerance) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        ReferenceScene moved = taken->scene;
+        moved.start += sign * fmax(CLOCK / moved.f, 2.0 * DBL_EPSILON * (fabs(moved.start) + moved.h));
+        if (miss->of == BY_DERIVATIVES) {
+            if (slopes_ratio(&moved, &taken->truth, &taken->step) < 0.8 * miss->ratio) {
+                return true;
+            }
+        } else if (ratio_of_reference(taken, &moved, 1, tolerance) > 0.2 * miss->ratio) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool trial_is_unsure(const Trial* trial, const Verdict* miss, double tolerance) {
+    const TrialStep* taken = &trial->taken[miss->step];
     if (!taken->graded) {
         return false;
     }
-    ReferenceStep finer;
-    step_of_reference(&taken->scene, taken->step.delta_start, 2, &finer);
-    const FmuStep as_step = {.delta = finer.delta,
-                             .F_t = finer.F_t,
-                             .F_t_mean = finer.F_t_mean,
-                             .work = finer.work,
-                             .heat = finer.heat,
-                             .F_t_start = finer.F_t_start};
-    const Errors errors = judge_errors(&taken->scene, &taken->truth, &as_step, tolerance);
-    int which = 0;
-    return !(judge_ratio(&errors, &taken->truth, tolerance, &which) < 0.1);
+    return !(ratio_of_reference(taken, &taken->scene, 2, tolerance) < 0.1) ||
+           is_by_clock(taken, miss, tolerance);
 }

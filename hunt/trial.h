@@ -8,11 +8,12 @@
 typedef struct {
     ReferenceScene scene;
     FmuStep step;
-    ReferenceStep truth; // of one period, where the step is too long for brute force; reference_frame where screened
-    bool graded;         // whether truth is that of the step
-    bool screened;       // whether the step agrees with its parts, and no reference was asked
-    double parts;        // parts_ratio, where screened
-    double derivatives;  // slopes_ratio
+    ReferenceStep
+        truth;   // of one period, where the step is too long for brute force; reference_frame where screened
+    bool graded; // whether truth is that of the step
+    bool screened;      // whether the step agrees with its parts, and no reference was asked
+    double parts;       // parts_ratio, where screened
+    double derivatives; // slopes_ratio
 } TrialStep;
 
 typedef struct {
@@ -45,7 +46,8 @@ Verdict trial_verdict(const Trial* trial, int k, int method, double tolerance);
 // The worst of all steps, over what is granted.
 Verdict trial_worst(const Trial* trial, int method, double tolerance);
 
-// Whether the reference with more panels and stages says something else by a tenth of the tolerance.
-bool trial_is_unsure(const Trial* trial, int k, double tolerance);
+// Whether the reference is unsure of a miss: with more panels and stages it says something else by a tenth of the
+// tolerance, or a start as much earlier or later as times are rounded explains a fifth of the error.
+bool trial_is_unsure(const Trial* trial, const Verdict* miss, double tolerance);
 
 #endif
