@@ -25,25 +25,36 @@ static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi
     return info;
 }
 
+// Whether the arrays are there and ask for derivatives in time of order 1 of variables of the causality; logs why not.
+static bool asks_for_rates(const FcInstance* instance, FcCall call, FcCausality causality,
+                           const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                           const fmi2Real value[]) {
+    if (nvr > 0 && (!vr || !order || !value)) {
+        fc_refuse(instance, call, "vr, order or value is NULL");
+        return false;
+    }
+    for (size_t i = 0; i < nvr; i++) {
+        const FcVariableInfo* info = expect(instance, call, vr[i], causality);
+        if (!info) {
+            return false;
+        }
+        if (order[i] != 1) {
+            fc_refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i], info->name);
+            return false;
+        }
+    }
+    return true;
+}
+
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[]) {
     const FcCall call = FC_CALL_SET_REAL_INPUT_DERIVATIVES;
     FcInstance* instance = fc_instance_enter(c, call);
-    if (!instance) {
+    if (!instance || !asks_for_rates(instance, call, FC_CAUSALITY_INPUT, vr, nvr, order, value)) {
         return fmi2Error;
     }
-    if (nvr > 0 && (!vr || !order || !value)) {
-        return fc_refuse(instance, call, "vr, order or value is NULL");
-    }
     for (size_t i = 0; i < nvr; i++) {
-        const FcVariableInfo* info = expect(instance, call, vr[i], FC_CAUSALITY_INPUT);
-        if (!info) {
-            return fmi2Error;
-        }
-        if (order[i] != 1) {
-            return fc_refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
-                             info->name);
-        }
+        const FcVariableInfo* info = &fc_variables[vr[i]];
         if (!isfinite(value[i])) {
             return fc_refuse(instance, call, "derivative of %s = %s per s is not a finite number", info->name,
                              fc_quantity_text(value[i], info->unit).text);
@@ -60,23 +71,13 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
                                         const fmi2Integer order[], fmi2Real value[]) {
     const FcCall call = FC_CALL_GET_REAL_OUTPUT_DERIVATIVES;
     FcInstance* instance = fc_instance_enter(c, call);
-    if (!instance) {
+    if (!instance || !asks_for_rates(instance, call, FC_CAUSALITY_OUTPUT, vr, nvr, order, value)) {
         return fmi2Error;
     }
-    if (nvr > 0 && (!vr || !order || !value)) {
-        return fc_refuse(instance, call, "vr, order or value is NULL");
-    }
     for (size_t i = 0; i < nvr; i++) {
-        const FcVariableInfo* info = expect(instance, call, vr[i], FC_CAUSALITY_OUTPUT);
-        if (!info) {
-            return fmi2Error;
-        }
+        const FcVariableInfo* info = &fc_variables[vr[i]];
         if (info->offset != offsetof(FcVariables, F_t)) {
             return fc_refuse(instance, call, "%s has no derivative in time here: only F_t has", info->name);
-        }
-        if (order[i] != 1) {
-            return fc_refuse(instance, call, "order = %d of %s: only order 1 is supported", order[i],
-                             info->name);
         }
     }
     FcMessage message;

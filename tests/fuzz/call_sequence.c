@@ -50,17 +50,6 @@ static fmi2ValueReference next_input(Bytes* input) {
     return reference_of(inputs[next_byte(input) % 5]);
 }
 
-static fmi2Status directional(Bytes* input, fmi2Component c) {
-    const fmi2ValueReference unknown = next_reference(input);
-    const fmi2ValueReference known = next_reference(input);
-    const double direction = next_real(input);
-    double slope = 0.0;
-    const fmi2Status status = fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &direction, &slope);
-    HOLD(status != fmi2OK || !isnan(slope) || !(fabs(direction) < 1e100),
-         "a directional derivative is a number");
-    return status;
-}
-
 static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
     char bytes[STATE_SIZE_MOST];
     size_t size = 0;

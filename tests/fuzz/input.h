@@ -1,4 +1,4 @@
-// What the bytes of a fuzzer's input mean: numbers, variables, and the calls that set them.
+// What the bytes of a fuzzer's input mean: numbers, variables, and the calls that take them.
 #ifndef FC_FUZZ_INPUT_H
 #define FC_FUZZ_INPUT_H
 
@@ -66,6 +66,16 @@ static fmi2Status choose(Bytes* input, fmi2Component c) {
     const fmi2ValueReference vr = reference_of(enumerations[byte < 64 ? 0 : byte / 8 % 6]);
     const int item = (int)(byte % 8);
     return fmi2SetInteger(c, &vr, 1, &item);
+}
+
+static fmi2Status directional(Bytes* input, fmi2Component c) {
+    const fmi2ValueReference unknown = next_reference(input);
+    const fmi2ValueReference known = next_reference(input);
+    const double direction = next_real(input);
+    double slope = 0.0;
+    const fmi2Status status = fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &direction, &slope);
+    HOLD(status != fmi2OK || isfinite(slope), "a directional derivative is a number");
+    return status;
 }
 
 #endif

@@ -103,16 +103,6 @@ static fmi2Status nominals(fmi2Component c) {
     return status;
 }
 
-static fmi2Status directional(Bytes* input, fmi2Component c) {
-    const fmi2ValueReference unknown = next_reference(input);
-    const fmi2ValueReference known = next_reference(input);
-    const double direction = next_real(input);
-    double slope = 0.0;
-    const fmi2Status status = fmi2GetDirectionalDerivative(c, &unknown, 1, &known, 1, &direction, &slope);
-    HOLD(status != fmi2OK || isfinite(slope), "a directional derivative is a number");
-    return status;
-}
-
 static fmi2Status carry_state(Bytes* input, Bench* bench, fmi2Component c) {
     char bytes[STATE_SIZE_MOST];
     size_t size = 0;

@@ -1,4 +1,4 @@
-"""The table of docs/using.md has the numbers that `python -m workshop.bench.exchange` prints."""
+"""The table of docs/model-exchange.md has the numbers that `python -m workshop.bench.exchange` prints."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COUPLINGS = {"held values": "F_t held", "derivatives both ways": "F_t linear"}
 
 
 def rows() -> Iterator[tuple[str, str, float, float, float]]:
-    for law, way, *numbers in ROW.findall((ROOT / "docs" / "using.md").read_text()):
+    for law, way, *numbers in ROW.findall((ROOT / "docs" / "model-exchange.md").read_text()):
         yield (law, way, *map(float, numbers))  # type: ignore[misc]
 
 

@@ -82,6 +82,17 @@ static double uneven_step(double t) {
     return end - t;
 }
 
+// Uneven steps from 0 on until the duration is over: how many, and the time reached [s].
+static double step_unevenly(const Fmi2Instance* contact, double duration, double* t) {
+    double steps = 0.0;
+    for (*t = 0.0; *t < duration; steps += 1.0) {
+        const double h = uneven_step(*t);
+        step(contact, *t, h);
+        *t = *t + h;
+    }
+    return steps;
+}
+
 static int report(const char* run, double steps, double began, double work, double drift) {
     printf("%-10s %.3g steps in %.1f s, work %.9g J, drift %.2e of it\n", run, steps, seconds() - began, work,
            drift);
@@ -120,13 +131,8 @@ static int vibrating(double duration) {
     const double V_1 = 0.4;
     Fmi2Instance contact;
     initialize(&contact, V, V_1);
-    double t = 0.0;
-    double steps = 0.0;
-    for (; t < duration; steps += 1.0) {
-        const double h = uneven_step(t);
-        step(&contact, t, h);
-        t = t + h;
-    }
+    double t;
+    const double steps = step_unevenly(&contact, duration, &t);
     const long double two_pi = 6.283185307179586476925286766559L;
     const long double cycles = (long double)F * (long double)t;
     const long double swing =
@@ -147,13 +153,8 @@ static int reversing(double duration) {
     initialize(&contact, V, V_1);
     Fmi2Instance whole;
     initialize(&whole, V, V_1);
-    double t = 0.0;
-    double steps = 0.0;
-    for (; t < duration; steps += 1.0) {
-        const double h = uneven_step(t);
-        step(&contact, t, h);
-        t = t + h;
-    }
+    double t;
+    const double steps = step_unevenly(&contact, duration, &t);
     step(&whole, 0.0, t);
     const double work = get(&contact, offsetof(FcVariables, W_f));
     const double expected = get(&whole, offsetof(FcVariables, W_f));

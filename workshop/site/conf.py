@@ -60,6 +60,7 @@ SUMMARY = "if (location.protocol === 'file:') DOCUMENTATION_OPTIONS.SHOW_SEARCH_
 CONTENTS = {
     "Use": {
         "In your tool": "docs/using",
+        "Model exchange": "docs/model-exchange",
         "Importers": "docs/compatibility",
         "Measured parameters": "docs/measured-parameters",
         "Playground": "docs/playground",

@@ -106,16 +106,14 @@ static double to_the_2n(double x, int n) {
     return n == 4 ? x_8 : n == 6 ? x_8 * x_4 : n == 8 ? x_8 * x_8 : x_8 * x_8 * x_8;
 }
 
+// The error of the force at the panel's end, over the least of 1 and z, and of the mean force, work and heat in the panel,
+// over sigma times the deflection, at the most; h [s].
 static double bound(const FcPace* pace, int rule, double h, double z) {
     const double phi = 0.5 * pace->phase * h;
     const double mu = 0.5 * pace->log_sigma * h;
     const double K = RULE[rule].one + RULE[rule].phi * phi + RULE[rule].mu * mu + RULE[rule].z * z +
                      RULE[rule].sqrt_z * sqrt(z);
     return to_the_2n(K / (2.94 * RULE[rule].n), RULE[rule].n);
-}
-
-double fc_panel_bound(const FcPace* pace, int n, double h, double z) {
-    return bound(pace, n == 4 ? 0 : n == 6 ? 1 : n == 8 ? 2 : 3, h, z);
 }
 
 // What the bound may be: force is that of the deflection in it, of a bristle that settles at |X| / z. Heat goes with the

@@ -23,10 +23,6 @@ void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const F
 // No panel that relaxes by more is bounded.
 static const double FC_MOST_BOUNDED = 7.0;
 
-// The bound: the error of the force at the panel's end, over the least of 1 and z, and of the mean force, work and heat in
-// the panel, over sigma times the deflection. n = 4, 6, 8 or 12; h [s].
-double fc_panel_bound(const FcPace* pace, int n, double h, double z);
-
 // The panel [t, t + h] of the scene over which V keeps its sign, of the displacement X [m] and the relaxation of about z, with
 // the fewest nodes whose bound is small enough; false where there are none. Adds to *evaluations what it takes.
 bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t, double h, double X,
