@@ -19,9 +19,9 @@ static bool moves_by_decades(const ReferenceScene* s) {
 
 // The class but for the method: the first that holds.
 static int class_of_scene(const ReferenceScene* s, const ReferenceStep* truth) {
-    return moves_by_decades(s)                   ? CLASS_DECADES
-           : truth->largest > 3.0 * truth->scale ? CLASS_BEYOND
-                                                 : CLASS_USUAL;
+    return truth->largest > 3.0 * truth->scale ? CLASS_BEYOND
+           : moves_by_decades(s)               ? CLASS_DECADES
+                                               : CLASS_USUAL;
 }
 
 int promise_class(const ReferenceScene* s, const ReferenceStep* truth, int method) {
@@ -41,8 +41,8 @@ static const struct {
 } PROMISES[CLASSES] = {
     [CLASS_FIXED] = {"fixed steps", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
     [CLASS_CVODE] = {"cvode", {1, 1, 10, 10, 1000}},
-    [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 100}},
     [CLASS_BEYOND] = {"force beyond the limit", {1, 1, 10, 1e3, 1e6}},
+    [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 100}},
     [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},
 };
 

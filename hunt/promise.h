@@ -9,8 +9,8 @@
 enum {
     CLASS_FIXED,   // Dahl and LuGre by fixed steps
     CLASS_CVODE,   // Dahl and LuGre by cvode
-    CLASS_DECADES, // an input moves E, the load or what d makes of it by a factor of 3 and more in the step
     CLASS_BEYOND,  // the bristle's force is, or starts, at more than three times the limit
+    CLASS_DECADES, // an input moves E, the load or what d makes of it by a factor of 3 and more in the step
     CLASS_USUAL,
     CLASSES
 };

@@ -440,7 +440,24 @@ static void a_parabola_takes_this_long(void) {
     }
 }
 
+// In units of 2^-40 Pa and 2^-40 s every number here is a whole one.
+static void what_is_left_of_E_and_load_has_its_digits(void) {
+    const uint64_t start = 1000000;
+    const FcLinearInput held = {1.0, 0.0};
+    for (uint64_t k = 0; k < 100; k++) {
+        const uint64_t rate = 0x7fffffffu - 2u * k;
+        const uint64_t ticks = (start << 40) / rate;
+        const double left = (double)((start << 40) - rate * ticks) * 0x1p-40;
+        const FcLinearInput falls = {(double)start, -(double)rate};
+        const FcDrive drive =
+            fc_drive_make(held, held, falls, falls, (FcVibration){F, 0.0, 0.0, 0.0}, 0.0, 0.0);
+        CHECK_NEAR(fc_drive_E(&drive, (double)ticks * 0x1p-40), left, 1e-15);
+        CHECK_NEAR(fc_drive_load(&drive, (double)ticks * 0x1p-40), left, 1e-15);
+    }
+}
+
 int main(void) {
+    what_is_left_of_E_and_load_has_its_digits();
     the_largest_speed_is_at_an_end();
     growths_are_relative_rates();
     a_parabola_takes_this_long();
