@@ -14,7 +14,8 @@ static double log_change(double value, double change) {
 static bool moves_by_decades(const ReferenceScene* s) {
     const double by_d = fabs(s->d_rate) * s->h * s->lambda / s->R_q;
     const double by_load = s->input == INPUT_LOAD ? log_change(s->load, s->load_rate * s->h) : by_d;
-    return fmax(by_load, log_change(s->E, s->E_rate * s->h)) > log(3.0);
+    const double by_vibration = 2.0 * s->a_d * s->lambda / s->R_q;
+    return fmax(by_load, log_change(s->E, s->E_rate * s->h)) > log(3.0) || by_vibration > log(1e6);
 }
 
 // The class but for the method: the first that holds.
@@ -42,7 +43,7 @@ static const struct {
     [CLASS_FIXED] = {"fixed steps", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
     [CLASS_CVODE] = {"cvode", {1, 1, 10, 10, 1000}},
     [CLASS_BEYOND] = {"force beyond the limit", {1, 1, 10, 1e3, 1e6}},
-    [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 100}},
+    [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 1000}},
     [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},
 };
 

@@ -8,8 +8,9 @@ static const double PI = 3.141592653589793;
 static const double ACCURACY = 1e-6;
 static const double SHARE = 0x1p-12; // of its scale that an input is changed by
 static const double SHARE_OF_TIME = 0x1p-16;
-static const double KINK = 0.02;    // by which two differences next to each other differ at a kink
-static const double INSTANT = 1e-9; // of a period: what the held inputs are looked at for
+static const double KINK = 0.02;        // by which two differences next to each other differ at a kink
+static const double AT_REVERSAL = 1e-9; // of the largest speed
+static const double INSTANT = 1e-9;     // of a period: what the held inputs are looked at for
 
 // Forces at 0, x and 2 x; the derivative at 0, of second order. Returns false at a kink.
 static bool one_sided(const double force[3], double x, double scale, double* slope) {
@@ -76,7 +77,7 @@ static double rate_error(const ReferenceScene* s, const ReferenceStep* now, doub
     pace += fabs(s->E_rate) / s->E + fabs(s->load_rate) / s->load + bend / fmin(top, s->V_S);
     const double x = SHARE_OF_TIME / pace;
     double force[4], first, later;
-    if (fabs(start_velocity(s)) < 1e-9 * top + 8.0 * x * bend) { // V reverses soon, or just did
+    if (fabs(start_velocity(s)) < AT_REVERSAL * top + 8.0 * x * bend) { // V reverses soon, or just did
         return -1.0;
     }
     if (now->gap_start > 0.0 && now->gap_start < 8.0 * x * now->sigma * top) { // it meets its bound soon
@@ -93,6 +94,9 @@ static double rate_error(const ReferenceScene* s, const ReferenceStep* now, doub
 }
 
 double slopes_ratio(const ReferenceScene* scene, const ReferenceStep* truth, const FmuStep* step) {
+    if (fabs(start_velocity(scene)) < AT_REVERSAL * (fabs(scene->V) + scene->V_1)) {
+        return -1.0; // the sign of V, and so the side of the force, is within rounding
+    }
     ReferenceScene from = *scene;
     from.initial = START_GIVEN;
     from.delta_0 = step->delta_start;

@@ -200,7 +200,7 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     const double drift =
         fc_most(0.0, 1.0 / smooth - interval->pace.phase) + fc_least(peak.height, 1.0) / peak.lasts;
     const Lives life = lives_at(stretch, at, after, smooth);
-    const double transient = fc_least(at->transient, 1e6);
+    const double transient = fc_least(at->transient, 1e12);
     const double gone = 0.434 * at->gone; // negative, or no number, where the stiffness overflows
     const int gone_decades = gone > 0.0 ? (int)fc_least(1e3, gone) : 0;
     const double last_counts = drift * fc_least(stretch->w_b, smooth) + at->lag;
@@ -223,7 +223,8 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     limits.finer = isfinite(limits.peak) && limits.starts && tolerance < FINE_IN_PEAK * fc_most(1.0, excess);
     const double allowed_last = limits.allowed_last;
     const double of_lag = interval->moving_limit || tolerance < COARSE ? 1.0 : LAG_BEHIND_CONSTANT_LIMIT;
-    double for_transient = for_mean / (transient * life.lives + tiny);
+    const double of_heat = fc_most(1.0, 0.5 * transient); // which goes with the square of the force
+    double for_transient = for_mean / (transient * of_heat * life.lives + tiny);
     double for_lag = of_lag * for_mean / (drift * life.lag_counts + tiny);
     FcPlan plan = {.h = planned_length(&limits, for_transient, for_lag, gone_decades, caution)};
 
