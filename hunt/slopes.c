@@ -32,8 +32,8 @@ static double start_velocity(const ReferenceScene* s) {
     return s->V + s->V_1 * cos(2.0 * PI * fmod(s->f * s->start, 1.0));
 }
 
-// How far [its unit] an input moves before F_t is another one. At a reversal the differences by V lie on both sides of it,
-// elsewhere they do not cross it.
+// How far [its unit] an input moves before F_t is another one. At a reversal the differences by V lie on both sides,
+// elsewhere they do not cross V = 0.
 static double scale_of(const ReferenceScene* s, int input) {
     const double V = start_velocity(s);
     const bool at_reversal = fabs(V) <= AT_ZERO * (fabs(s->V) + s->V_1);
