@@ -953,7 +953,8 @@ static Real mean_limit(const World* w, Real t) {
 
 // limit is the time mean of the limit over the step [N].
 static double force_scale(const World* w, double limit) {
-    return fmax(limit, (double)fminl(mean_limit(w, 0.0L), mean_limit(w, w->h)));
+    const Real at_start = mean_limit(w, 0.0L);
+    return fmin((double)at_start, fmax(limit, (double)fminl(at_start, mean_limit(w, w->h))));
 }
 
 static void step_of_coulomb(World* w, ReferenceStep* result) {

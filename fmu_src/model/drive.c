@@ -52,7 +52,7 @@ static double linear(FcLinearInput input, double t) { return input.value + input
 
 // The same with one rounding, that of the sum: where an input falls by decades the rounding of the product would be many
 // times what is left of it.
-static double falling(FcLinearInput input, double t) {
+static double linear_in_one_rounding(FcLinearInput input, double t) {
     return input.rate != 0.0 ? fma(input.rate, t, input.value) : input.value;
 }
 
@@ -101,9 +101,9 @@ double fc_drive_V(const FcDrive* drive, double t) {
 
 double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }
 
-double fc_drive_E(const FcDrive* drive, double t) { return falling(drive->E, t); }
+double fc_drive_E(const FcDrive* drive, double t) { return linear_in_one_rounding(drive->E, t); }
 
-double fc_drive_load(const FcDrive* drive, double t) { return falling(drive->load, t); }
+double fc_drive_load(const FcDrive* drive, double t) { return linear_in_one_rounding(drive->load, t); }
 
 double fc_drive_E_growth(const FcDrive* drive, double t) {
     return fabs(drive->E.rate) / fc_drive_E(drive, t);

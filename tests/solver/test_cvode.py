@@ -1,4 +1,4 @@
-"""solver.method = cvode, which shares the default's promise: errors at most tolerance times F_C."""
+"""solver.method = cvode: in these scenes errors are at most tolerance times F_C."""
 
 from __future__ import annotations
 

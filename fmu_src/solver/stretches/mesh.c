@@ -15,7 +15,8 @@ static const double MISSED_OF_PATH = 0.1;
 // is left of it after what has relaxed so far.
 static const double SURE_OF_WHOLE = 0.9;
 static const double SURE_OF_REST = 0.5;
-// From this tolerance on the first panel of a transient in a Stribeck peak, which is no exponential, is planned finer.
+// Below this tolerance, times the excess of the static ratio over 1 where that is larger than 1, the first panel of a
+// transient in a Stribeck peak, which is no exponential, is planned a decade finer.
 static const double FINE_IN_PEAK = 5e-5;
 
 // Lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST. LAYERS: of a decaying transient, in layers.
