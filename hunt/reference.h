@@ -49,8 +49,8 @@ typedef struct {
     double F_t_start;                  // N, with held inputs
     double F_t_start_other, gap_start; // N, as at the end
     double limit;                      // N, time mean of F_C or of mu F_n over the step
-    double scale;      // N, that, or F_C or mu times the mean of F_n over a period at the start, whichever is less
-    double path;       // m, time integral of |V|
+    double scale; // N, that, or F_C or mu times the mean of F_n over a period at the start, whichever is less
+    double path;  // m, time integral of |V|
     double largest;    // N, largest |sigma delta| seen at a node
     double panels;     // panels that were solved
     double unresolved; // panels that did not agree at the smallest size
