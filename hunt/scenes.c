@@ -152,7 +152,7 @@ static double eventful(Draw* draw, const ReferenceScene* s, double near) {
     const double ratio = s->V_1 > 0.0 ? -s->V / s->V_1 : 0.0;
     const double angle = fabs(ratio) < 1.0 ? acos(ratio) : ratio > 0.0 ? 0.0 : TURN / 2.0;
     const double cycle = floor(near * s->f) + sign(draw) * angle / TURN;
-    const double off = chance(draw, 0.2) ? 0.0 : sign(draw) * log_between(draw, 1e-15, 1e-2);
+    const double off = chance(draw, 0.2) ? 0.0 : sign(draw) * log_between(draw, 1e-16, 1e-2);
     return (cycle + off) / s->f;
 }
 
@@ -160,7 +160,7 @@ static void times(Draw* draw, ReferenceScene* s, bool linear) {
     if (chance(draw, 0.6)) {
         s->start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e8 : 1e3) / s->f;
     }
-    const bool at_event = chance(draw, 0.15);
+    const bool at_event = chance(draw, 0.3);
     if (at_event) {
         s->start = eventful(draw, s, s->start);
     }
@@ -193,16 +193,17 @@ static void rates(Draw* draw, ReferenceScene* s) {
         s->V_rate = fmax(-3.0 * top, fmin(3.0 * top, to - s->V)) / s->h;
     }
     if (chance(draw, 0.5)) {
-        const double room = s->d - s->a_d, most = chance(draw, 0.3) ? 5.0 : 0.3;
+        const double room = s->d - s->a_d, kind = unit(draw);
+        const double most = kind < 0.1 ? 18.0 : kind < 0.4 ? 5.0 : 0.3; // the load falls by eight decades
         const double to = fmax(0.02 * room, room + between(draw, -1.0, 1.0) * most * s->R_q / s->lambda);
         s->d_rate = (to - room) / s->h;
     }
     if (chance(draw, 0.4)) {
-        const double to = chance(draw, 0.7) ? between(draw, 0.7, 1.3) : log_between(draw, 1e-3, 10.0);
+        const double to = chance(draw, 0.7) ? between(draw, 0.7, 1.3) : log_between(draw, 1e-8, 10.0);
         s->E_rate = s->E * (to - 1.0) / s->h;
     }
     if (chance(draw, 0.6)) {
-        const double to = chance(draw, 0.5) ? between(draw, 0.5, 2.0) : log_between(draw, 1e-6, 10.0);
+        const double to = chance(draw, 0.5) ? between(draw, 0.5, 2.0) : log_between(draw, 1e-8, 10.0);
         s->load_rate = s->load * (to - 1.0) / s->h;
     }
 }
