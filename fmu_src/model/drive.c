@@ -215,6 +215,26 @@ double fc_drive_displacement_integral(const FcDrive* drive, double t0, double t1
     return 0.5 * duration * fc_drive_displacement(drive, t0, t1) - moment;
 }
 
+// Positive nodes on [-1, 1] and weights of the Gauss rule of eight nodes (Abramowitz and Stegun, table 25.4).
+static const double GAUSS[4][2] = {{0.1834346424956498, 0.3626837833783620},
+                                   {0.5255324099163290, 0.3137066458778873},
+                                   {0.7966664774136267, 0.2223810344533745},
+                                   {0.9602898564975363, 0.1012285362903763}};
+
+static double square_by_quadrature(const FcDrive* drive, double middle, double half) {
+    double square = 0.0;
+    for (int k = 0; k < 4; k++) {
+        const double before = fc_drive_V(drive, middle - GAUSS[k][0] * half);
+        const double after = fc_drive_V(drive, middle + GAUSS[k][0] * half);
+        square += GAUSS[k][1] * (before * before + after * after);
+    }
+    return square * half;
+}
+
+// Of the sum of its terms: below it the square of V has lost three digits to their cancelling, as where V grazes zero. The
+// vibration turns by less than 2 rad there, over which eight nodes err by less than 1e-13 of the terms.
+static const double CANCELS = 1e-3;
+
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
 // the integrals of (v + V' tau)^2, of 2 (v + V' tau) V_1 cos and of V_1^2 cos^2.
 double fc_drive_square(const FcDrive* drive, double t0, double t1) {
@@ -222,17 +242,19 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
     const double middle = 0.5 * (t0 + t1);
     const double v = linear(drive->V, middle);
     const double rate = drive->V.rate;
-    double square = (v * v + rate * rate * duration * duration / 12.0) * duration;
     const double V_1 = drive->vibration.V_1;
-    if (V_1 != 0.0) {
-        const double omega = drive->omega;
-        const double angle = theta(drive, middle);
-        const double s = 0.5 * omega * duration;
-        square +=
-            2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * sine_moment(omega, s) * sin(angle));
-        square += V_1 * V_1 * (0.5 * duration + 0.5 * sin(2.0 * s) / omega * cos(2.0 * angle));
+    const double still = (v * v + rate * rate * duration * duration / 12.0) * duration;
+    if (V_1 == 0.0) {
+        return still;
     }
-    return fmax(0.0, square);
+    const double omega = drive->omega;
+    const double angle = theta(drive, middle);
+    const double s = 0.5 * omega * duration;
+    const double mixed =
+        2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * sine_moment(omega, s) * sin(angle));
+    const double own = V_1 * V_1 * (0.5 * duration + 0.5 * sin(2.0 * s) / omega * cos(2.0 * angle));
+    const double square = still + mixed + own;
+    return square < CANCELS * (still + own) ? square_by_quadrature(drive, middle, 0.5 * duration) : square;
 }
 
 // What rounding may make of a root's angle, over 1 + the angle.

@@ -406,6 +406,25 @@ static void integrals_of_V(void) {
     }
 }
 
+// Where V grazes zero its square is 1e-10 and less of V_1^2, and keeps its own digits.
+static void the_square_of_a_grazing_V(void) {
+    enum { POINTS = 400 };
+    for (int i = 0; i < 4; i++) {
+        const double omega = TWO_PI * F;
+        const double h = (i % 2 == 0 ? 3e-5 : 3e-3) / omega;
+        const double V = 0.7 * (i < 2 ? 1.0 + 1e-9 : 1.0 - 1e-9);
+        const FcDrive drive = drive_of((Case){.V = V, .V_1 = 0.7, .start = 0.5 / F});
+        long double square = 0.0; // Simpson's rule
+        for (int k = 0; k <= POINTS; k++) {
+            const long double angle = drive.theta_0 + (long double)omega * h * k / POINTS;
+            const long double sine = sinl(0.5L * (angle - acosl(-1.0L)));
+            const long double at_k = (long double)V - 0.7 + 1.4L * sine * sine;
+            square += (k == 0 || k == POINTS ? 1 : k % 2 == 0 ? 2 : 4) * at_k * at_k * h / (3 * POINTS);
+        }
+        CHECK_WITHIN(fc_drive_square(&drive, 0.0, h), (double)square, 1e-8 * (double)square);
+    }
+}
+
 // From 0.1 to -0.4 m/s and back: the vibration's amplitude comes on top of the larger speed.
 static void the_largest_speed_is_at_an_end(void) {
     for (double sign = -1.0; sign < 2.0; sign += 2.0) {
@@ -467,6 +486,7 @@ int main(void) {
     values_follow_the_formulas();
     slopes_are_derivatives();
     integrals_of_V();
+    the_square_of_a_grazing_V();
     bounds_hold();
     reversals_of_held_vibration();
     events_tell_what_follows();
