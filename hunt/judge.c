@@ -66,7 +66,8 @@ Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const F
 }
 
 double judge_ratio(const Errors* errors, const ReferenceStep* truth, double tolerance, int* which) {
-    const double force = fmax(truth->largest, fmax(fabs(truth->F_t), fabs(truth->F_t_mean)));
+    const double force =
+        fmax(fmax(truth->largest, fabs(truth->F_t_start)), fmax(fabs(truth->F_t), fabs(truth->F_t_mean)));
     const double granted = fmax(fmax(tolerance, FLOOR), FLOOR_OF_FORCE * force / truth->scale);
     double worst = -1.0;
     for (int k = 0; k < JUDGED; k++) {

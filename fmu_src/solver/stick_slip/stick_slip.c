@@ -75,15 +75,13 @@ static void begin_regime(Regime* regime, double side, const FcBoundMotion* now) 
     regime->start = *now;
 }
 
-// What a bristle that relaxes has left to the bound where the root was found counts as slipped there and then, so that the
-// heat's error is one of second order of that of the root. Of one that sticks it is rounding.
+// What the bristle has left to the bound where the root was found counts as slipped there and then, so that the heat's error
+// is one of second order of that of the root.
 static void begin_slip(Regime* regime, double side, const FcBoundMotion* now) {
     FcStepResult* result = regime->result;
-    if (relaxes(&regime->free)) {
-        const double left = side * now->D - result->delta;
-        result->heat -= 0.5 * now->sigma * left * (side * now->D + result->delta);
-        result->drag += regime->free.law->friction->sigma_1 != 0.0 ? now->V * left : 0.0;
-    }
+    const double left = side * now->D - result->delta;
+    result->heat -= 0.5 * now->sigma * left * (side * now->D + result->delta);
+    result->drag += regime->free.law->friction->sigma_1 != 0.0 ? now->V * left : 0.0;
     begin_regime(regime, side, now);
 }
 
