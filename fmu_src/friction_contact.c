@@ -52,8 +52,10 @@ static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
     const FcVariables* v = &contact->state.variables;
     const FcLinearInput V = {v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
     const FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
-    const FcLinearInput E = {fma(rate[FC_INPUT_E], ahead, v->E), rate[FC_INPUT_E]};
-    const FcLinearInput load = {fma(rate[FC_INPUT_LOAD], ahead, v->load), rate[FC_INPUT_LOAD]};
+    FcLinearInput E = {v->E, rate[FC_INPUT_E]};
+    FcLinearInput load = {v->load, rate[FC_INPUT_LOAD]};
+    E.value = fc_input_after(E, ahead);
+    load.value = fc_input_after(load, ahead);
     const FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
     return fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
 }
@@ -347,8 +349,8 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result)
     FcVariables* v = &state->variables;
     v->V += state->next_rate[FC_INPUT_V] * h;
     v->d += state->next_rate[FC_INPUT_D] * h;
-    v->E = fma(state->next_rate[FC_INPUT_E], h, v->E); // as fc_drive_E is
-    v->load = fma(state->next_rate[FC_INPUT_LOAD], h, v->load);
+    v->E = fc_input_after((FcLinearInput){v->E, state->next_rate[FC_INPUT_E]}, h);
+    v->load = fc_input_after((FcLinearInput){v->load, state->next_rate[FC_INPUT_LOAD]}, h);
     v->delta = result->delta;
     v->solver.evaluations += result->evaluations;
     accumulate(&v->W_f, &state->W_f_rest, result->work);

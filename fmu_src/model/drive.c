@@ -50,9 +50,7 @@ static double theta(const FcDrive* drive, double t) { return drive->theta_0 + dr
 
 static double linear(FcLinearInput input, double t) { return input.value + input.rate * t; }
 
-// The same with one rounding, that of the sum: where an input falls by decades the rounding of the product would be many
-// times what is left of it.
-static double linear_in_one_rounding(FcLinearInput input, double t) {
+double fc_input_after(FcLinearInput input, double t) {
     return input.rate != 0.0 ? fma(input.rate, t, input.value) : input.value;
 }
 
@@ -60,8 +58,8 @@ FcDrive fc_drive_later(const FcDrive* drive, double t) {
     FcDrive later = *drive;
     later.V.value = linear(drive->V, t);
     later.d.value = linear(drive->d, t);
-    later.E.value = linear(drive->E, t);
-    later.load.value = linear(drive->load, t);
+    later.E.value = fc_input_after(drive->E, t);
+    later.load.value = fc_input_after(drive->load, t);
     return later;
 }
 
@@ -101,9 +99,9 @@ double fc_drive_V(const FcDrive* drive, double t) {
 
 double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }
 
-double fc_drive_E(const FcDrive* drive, double t) { return linear_in_one_rounding(drive->E, t); }
+double fc_drive_E(const FcDrive* drive, double t) { return fc_input_after(drive->E, t); }
 
-double fc_drive_load(const FcDrive* drive, double t) { return linear_in_one_rounding(drive->load, t); }
+double fc_drive_load(const FcDrive* drive, double t) { return fc_input_after(drive->load, t); }
 
 double fc_drive_E_growth(const FcDrive* drive, double t) {
     return fabs(drive->E.rate) / fc_drive_E(drive, t);

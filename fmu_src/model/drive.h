@@ -24,6 +24,10 @@ typedef struct {
     double rate;  // per second
 } FcLinearInput;
 
+// E or load after t [s], in one rounding: where an input falls by decades, that of the product would be many times what is
+// left of it.
+double fc_input_after(FcLinearInput input, double t);
+
 typedef struct {
     FcLinearInput V;    // m/s
     FcLinearInput d;    // m
