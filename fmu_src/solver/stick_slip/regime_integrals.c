@@ -58,7 +58,7 @@ static FcIntegrator where_it_grazes(const FcIntegrator* integrator, double start
     FcIntegrator finer = *integrator;
     if (grazes(drive, start) && grazes(drive, 0.5 * (start + end)) && grazes(drive, end)) {
         const double fastest = fmax(fabs(fc_drive_V(drive, start)), fabs(fc_drive_V(drive, end)));
-        double speed = GRAZES * drive->vibration.V_1;
+        double speed = drive->vibration.V_1;
         for (; fastest < speed && finer.digits < MOST_DIGITS; speed *= 0.1) {
             finer.digits++;
         }
