@@ -14,7 +14,7 @@ static inline void fc_pair_put(double* first, FcPair pair) { *(FcPair*)first = p
 
 static inline double fc_pair_sum(FcPair pair) { return pair[0] + pair[1]; }
 
-// Largest argument of this series and of those of nodes.c: their remainders are then under 1e-17.
+// Largest argument of this series and of those of nodes.c. Derived: their remainders are then under 1e-17.
 static const double FC_SERIES_RANGE = 0.25;
 
 // By Taylor series. In pairs of terms, which a processor adds up side by side, where Horner's scheme waits for each sum.
