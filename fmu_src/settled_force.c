@@ -91,7 +91,8 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, F
         if (V_1 == 0.0) {
             const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
             const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
-            scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V) : v->friction.V_S);
+            scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V)
+                                                                 : v->friction.V_S);
         }
         const double room = speed >= V_1 ? speed - V_1 : speed; // towards 0
         return copysign(part * scale, room > part * scale ? -v->V : v->V);

@@ -27,8 +27,8 @@ static FcPace pace_of(const FcScene* scene, double h) {
     const double E = fc_drive_smallest_E(drive, h);
     const double load = fmin(drive->load.value, fc_drive_load(drive, h));
     const bool load_moves_far = fmax(drive->load.value, fc_drive_load(drive, h)) > MOVES_FAR * load;
-    pace.is_local = (d_rate > 0.0 && by_nearness > by_decay) || fc_drive_largest_E(drive, h) > MOVES_FAR * E ||
-                    (scene->floats && load_moves_far);
+    pace.is_local = (d_rate > 0.0 && by_nearness > by_decay) ||
+                    fc_drive_largest_E(drive, h) > MOVES_FAR * E || (scene->floats && load_moves_far);
     pace.log_sigma = by_decay * d_rate;
     if (!pace.is_local) {
         const double by_E = fabs(drive->E.rate) / E;

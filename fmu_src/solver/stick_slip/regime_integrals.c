@@ -73,11 +73,12 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
             ? integrator->smooth_time
             : fc_bound_smooth_time(scene, t, fc_scene_d(scene, t), fc_scene_d_rate(scene, t));
     const double left = end - t;
-    const double longest =
-        fmin(LONGEST[GAUSS_RULES - 1][integrator->digits] * smooth_time, longest_before_pole(&scene->drive, t));
+    const double longest = fmin(LONGEST[GAUSS_RULES - 1][integrator->digits] * smooth_time,
+                                longest_before_pole(&scene->drive, t));
     const double count = fmax(1.0, ceil(left / longest));
     Panel panel = {.start = t, .length = left / count, .end = end};
-    while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time && panel.rule < GAUSS_RULES - 1) {
+    while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time &&
+           panel.rule < GAUSS_RULES - 1) {
         panel.rule++;
     }
     if (count > 1.0 && t + panel.length > t) {
@@ -87,7 +88,8 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
 }
 
 // The Gauss rules there are, and their nodes.
-static const FcGaussRule* const GAUSS_RULE[GAUSS_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
+static const FcGaussRule* const GAUSS_RULE[GAUSS_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8,
+                                                           &FC_GAUSS_12};
 static const int GAUSS_NODES[GAUSS_RULES] = {4, 6, 8, 12};
 
 static FcMap stick_panel(const FcScene* scene, const Panel* panel) {

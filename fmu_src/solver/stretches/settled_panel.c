@@ -132,7 +132,8 @@ static Settled settled(const Span* span, double too_long, Course* course) {
     // What is left of the Stribeck curve counts as a transient.
     const double lag = at->lag + fabs(span->limit / interval->scene->F_C - 1.0);
     const double of_heat = fc_most(1.0, lag); // which goes with the square of the force
-    const double allowed_changes = allowed_time * at->rate * at->rate / (lag * of_heat + LEAST_TRANSIENT); // 1/s
+    const double allowed_changes =
+        allowed_time * at->rate * at->rate / (lag * of_heat + LEAST_TRANSIENT); // 1/s
     if (pace + 1.0 / after > allowed_changes) {
         return NOT_SETTLED;
     }
