@@ -15,11 +15,11 @@
 //
 // An estimate that is too small matters less for the mean, where it is one of many panels, than at the end. Of a judged panel
 // that relaxes by z < 1 a Radau panel may use z times its share, a Gauss panel z times that at the end (panels/judge.c).
-//
-// All are chosen by hand: smaller ones cost panels, larger ones break the tolerance, which tests/solver, tests/physics and the
-// hunt hold. Those of plans decide the cost alone.
 #ifndef FC_SOLVER_BUDGET_H
 #define FC_SOLVER_BUDGET_H
+
+// All are chosen by hand: smaller ones cost panels, larger ones break the tolerance, which tests/solver, tests/physics and the
+// hunt hold. Those of plans decide the cost alone.
 
 // Of its bound. Of 200 000 random panels no error came to 0.4 of its bound, and 99 of 100 not to 0.02 (test_bounded_panel).
 static const double FC_SHARE_OF_BOUNDED_PANEL = 0.5;

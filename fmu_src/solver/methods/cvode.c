@@ -47,9 +47,8 @@
 // Kronrod extension with seven, exact for the degree 9: W. Gander, W. Gautschi, BIT 40 (2000) 84. What counts is the
 // latter; their difference may be this fraction of solver.tolerance, in each quadrature of a piece.
 #define QUADRATURE_FRACTION 0.1
-#define QUADRATURE_ROUNDING                                                                                  \
-    1e-13                     // 450 eps, of the integral of the magnitude: a smaller difference says nothing
-#define MOST_STEP_HALVINGS 40 // of a step of CVODE: what is left is 1e-12 of it
+#define QUADRATURE_ROUNDING 1e-13 // 450 eps, of the integral of the magnitude: less says nothing
+#define MOST_STEP_HALVINGS 40     // of a step of CVODE: what is left is 1e-12 of it
 enum { KRONROD_NODES = 7 };
 static const double node_at[KRONROD_NODES] = {-1.0, -0.81649658092772603273, -0.44721359549995793928,
                                               0.0,  0.44721359549995793928,  0.81649658092772603273,

@@ -6,7 +6,7 @@
 // Compilers do not find all such pairs by themselves. The first has an even place in an array that is FC_PAIRED.
 typedef double FcPair __attribute__((vector_size(16), may_alias));
 
-#define FC_PAIRED __attribute__((aligned(16)))
+#define FC_PAIRED __attribute__((aligned(16))) // the bytes of two
 
 static inline FcPair fc_pair(const double* first) { return *(const FcPair*)first; }
 

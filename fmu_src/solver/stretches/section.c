@@ -30,7 +30,7 @@ static const double TIME_OF_RADAU_PANEL = 2.3;
 static const double PHI_OF_HALF_PERIOD = 0.5 * FC_PI;
 
 // n nodes are accurate over a whole stretch at tolerances down to 10^(one + a sqrt(phi) + b sqrt(mu) + c sqrt(z)), about, a, b and c
-// standing under phi, mu and z: least squares over random panels, with a scatter of half a decade (4 nodes) to one and a half
+// standing under phi, mu and z: fitted by least squares to random panels, with a scatter of half a decade (4 nodes) to one and a half
 // (12). The program of that fit is not kept, since an error of the plan costs tries alone. time: of a panel, over that of 4 nodes.
 enum { PLANNED_RULES = 4 };
 static const struct {
