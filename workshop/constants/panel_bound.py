@@ -14,7 +14,8 @@ end, over the least of 1 and z, of the mean force, the work and the heat; all fo
 panel and is no less than half its largest value where it dips inside.
 
 An error e is written as K = 2.94 n e^(1/2n): about the K for which n nodes miss cos(K x) by e. A linear
-programme finds the least linear function of phi, phi mu, z and sqrt(z) that is nowhere below. The solver calls phi mu mu.
+programme finds the least linear function of phi, phi mu, z and sqrt(z) that is nowhere below.
+The solver calls phi mu mu.
 tests/unit/test_bounded_panel.c holds the table against panels of other scenes.
 """
 
