@@ -21,7 +21,8 @@
 // All are chosen by hand: smaller ones cost panels, larger ones break the tolerance, which tests/solver, tests/physics and the
 // hunt hold. Those of plans decide the cost alone.
 
-// Of its bound. Of 200 000 random panels no error came to 0.4 of its bound, and 99 of 100 not to 0.02 (test_bounded_panel).
+// What the bound may be. Of 200 000 random panels no error came to 0.4 of its bound, and 99 of 100 not to 0.02
+// (test_bounded_panel).
 static const double FC_SHARE_OF_BOUNDED_PANEL = 0.5;
 
 // A judged Gauss panel passes where its estimate is at most this many times what is allowed: most estimates are 10 to 1e5

@@ -25,7 +25,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-// All by hand but for the rules of quadrature: finer ones cost steps, coarser ones break the tolerance (tests/solver/test_cvode.py).
+// All by hand but for the rules of quadrature: finer ones cost steps, coarser ones break the tolerance
+// (tests/solver/test_cvode.py).
 // CVODE bounds the local error of one step: this fraction of solver.tolerance keeps the sum of them within it.
 #define LOCAL_ERROR_FRACTION 0.01
 // Below the smallest, 45 eps, rounding governs: the true error stops following solver.tolerance between 1e-10 and 1e-12. Above

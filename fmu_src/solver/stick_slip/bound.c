@@ -7,7 +7,8 @@
 const double FC_NO_BOUND = 1e200;
 
 // The longest smooth time, over the time to a pole. By hand: panels of the quadratures for six digits and more then end well
-// before the pole (at most 6.75 of them); for fewer WAY_TO_POLE sees to it where E or the load falls (regime_integrals.c). Less costs cells.
+// before the pole (at most 6.75 of them); for fewer WAY_TO_POLE sees to it where E or the load falls (regime_integrals.c). Less
+// costs cells.
 static const double POLE = 0.12;
 // The shortest smooth time that is good for all places, over that of the phase alone. By hand: costs cells, not accuracy.
 static const double SHORTEST_COMMON = 0.1;

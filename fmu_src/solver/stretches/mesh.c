@@ -32,7 +32,8 @@ static const double DISTANCES[FINEST + 1] = {40,  30,  20,  14,  10,  6.5, 4.2, 
 static const double SMOOTH[FINEST + 1] = {8,   8,   8,    3.2,  3.2,  3.2,  3.2,  3.2,
                                           3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66};
 static const double PEAK[FINEST + 1] = {4, 3, 1.7, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-// Accuracy, by hand: where the contact moves by decades no panel is longer, whatever is allowed: it would step over what is to be seen.
+// Accuracy, by hand: where the contact moves by decades no panel is longer, whatever is allowed: it would step over what is to
+// be seen.
 static const double MOST_SMOOTH = 1.6;
 // Derived: a panel that ends on a reversal and steps over its layer leaves an error of LAST lags, (9^2 + 1) / 2, the last
 // diagonal entry of the inverse of the method's matrix, at its last node, whose weight is 1 / stages^2.
