@@ -8,14 +8,15 @@
 
 #include "solver/methods/method.h"
 
-// Below this the limit mu F_n is no longer a normal number, and the surfaces are metres of R_q apart.
+// The smallest limit mu F_n that is computed. By hand: eight decades above the smallest normal number, for what it is divided by.
 static const double SMALLEST_LIMIT = 1e-300; // N
 
-// Vibration periods since time 0 beyond which its phase is refused: neighbouring numbers of time are then more than
-// 1/64 of a period apart.
+// Vibration periods since time 0 beyond which its phase is refused. By hand: neighbouring numbers of time are then more than
+// 2^-52 of it, 1/64 of a period, apart.
 static const double MOST_CYCLES = 0x1p46;
 
-// Speed that is still computed: from about 1e33 F_C vibration.f / sigma on the numbers of a step overflow.
+// The largest |V| + V_1 that is computed. By hand, beyond any machine: from about 1e33 F_C vibration.f / sigma on the numbers
+// of a step overflow.
 static const double MOST_SPEED = 1e15; // m/s
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
@@ -172,7 +173,7 @@ static void set_outputs(FcVariables* v, const FcOutputs* now) {
     v->A_r = now->A_r;
 }
 
-static const double HELD[FC_INPUT_COUNT] = {0};
+static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still
 
 // The time t [s] must tell the phase of the vibration.
 static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
@@ -241,8 +242,8 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// Asking for less than this is asking for more digits than there are: of a force, and of one that the damping multiplies,
-// which is small against what the tolerance is relative to.
+// The finest tolerances that the solver is given, of a force, and of one that the damping multiplies, which is small against
+// what the tolerance is relative to. Rounding: 4500 and 5 eps; there are no more digits.
 static const double SMALLEST_TOLERANCE = 1e-12;
 static const double SMALLEST_DAMPED = 1e-15;
 

@@ -12,6 +12,7 @@
 #include "model/regime.h"
 #include "model/scene.h"
 
+// The values that modelDescription.xml gives them.
 typedef enum { FC_STATE_GIVEN = 1, FC_STATE_SETTLED = 2 } FcInitialState;
 
 typedef struct {
@@ -69,6 +70,7 @@ typedef struct {
     double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
+    int no_hole;       // 0, so that sizeof tells of every new member (fmi2/saved_state_bytes.c)
     FcHybrid hybrid;
 } FcFrictionState;
 

@@ -4,21 +4,22 @@
 #include <math.h>
 #include <string.h>
 
+#include "model/constants.h"
 #include "solver/stick_slip/bound.h"
 
-// Of the bound, and of the velocities: far above rounding, far below what a host's integrator tells apart.
+// What an event is late by, of the bound and of the velocities. By hand: far above rounding, far below what a host's
+// integrator tells apart.
 static const double HYSTERESIS = 1e-10;
 
-// A bristle that is so near to its bound lies on it.
-static const double ON_THE_BOUND = 1.0 - 1e-12;
+// At an event a bristle deflected by this much of its bound lies on it. By hand: 4500 eps, and a hundredth of HYSTERESIS.
+static const double ON_BOUND_AT_EVENT = 1.0 - 1e-12;
 
-// A bristle that turns back farther from its bound has not met it between two steps of an integrator.
+// A bristle that turns back farther from its bound has not met it between two steps of an integrator. By hand: less makes
+// more events, more may pass over such a meeting.
 static const double NEAR_THE_BOUND = 0.9;
 
-// Shorter times [of the time itself] tell no speed: rounding rules.
+// The shortest time, over the time itself, that tells an input's speed. By hand: rounding leaves it four digits.
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
-
-static const double TWO_PI = 6.283185307179586;
 
 bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
     if (contact->state.variables.friction.model == FC_COULOMB) {
@@ -213,7 +214,7 @@ static FcRegime next_regime(FcFrictionContact* contact) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const double D = fc_regime_bound(&scene);
     const double delta = contact->state.variables.delta;
-    if (fabs(delta) < ON_THE_BOUND * D) {
+    if (fabs(delta) < ON_BOUND_AT_EVENT * D) {
         return FC_FREE;
     }
     const int side = delta < 0.0 ? -1 : 1;
@@ -259,7 +260,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
     const FcVibration* vibration = &scene.drive.vibration;
     const double force = fc_scene_force_scale(&scene);
     const double length = force / fc_contact_stiffness(&scene.at_E, scene.drive.d.value);
-    const double amplitude = vibration->V_1 / (TWO_PI * vibration->f);
+    const double amplitude = vibration->V_1 / (FC_TWO_PI * vibration->f);
     const double energy = force * fmax(length, amplitude);
     if (!(length > 0.0 && energy > 0.0) || !isfinite(length) || !isfinite(energy)) {
         return fc_message_set(message,

@@ -13,6 +13,7 @@
 
 #include "friction_contact.h"
 
+// As many as modelDescription.xml declares.
 enum { FC_STATE_COUNT = 3, FC_EVENT_INDICATOR_COUNT = 4 };
 
 typedef struct {

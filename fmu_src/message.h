@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+// Lets the compiler check the arguments by the format.
 #if defined __GNUC__
 #define FC_PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 #else

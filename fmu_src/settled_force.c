@@ -7,19 +7,22 @@
 #include "model/constants.h"
 #include "solver/methods/method.h"
 
-// The tolerance of the forces whose differences make a derivative, as fine as the solver goes.
-static const double TOLERANCE = 1e-12;
+// The tolerance of the forces whose differences make a derivative: as fine as the solver goes (friction_contact.c).
+static const double TOLERANCE_OF_FORCES = 1e-12;
 
-// A derivative is good where its error is estimated as this of it, or as that of this over the force's scale.
-static const double ACCURATE = 1e-9;
-static const double ROUNDING = 1e-10;
+// A derivative is good where its error is estimated as this part of it, or, over the range, as that part of the force's scale.
+// By hand: a tenth of what the tests ask. Rounding: TOLERANCE_OF_FORCES times 2 POINTS^2, about.
+static const double GOOD_OVER_SLOPE = 1e-9;
+static const double GOOD_OVER_FORCE = 1e-10;
 
-// What a way is shortened by, and how often.
-static const double SHORTER = 0.25;
-enum { MOST_WAYS = 20 };
+// What a range is shortened by where it is not good, and how many ranges are tried. By hand: costs tries, not accuracy; the
+// last range is 4^-19 of the first, where rounding rules.
+static const double RANGE_SHORTENED_BY = 0.25;
+enum { MOST_RANGES = 20 };
 
-// No force is another one over such a speed [m/s] and not over less.
-static const double FAST = 1e12;
+// The largest scale [m/s] that a range of V is taken from where a bristle is very soft. By hand, below MOST_SPEED
+// (friction_contact.c).
+static const double LARGEST_SCALE_OF_V = 1e12;
 
 // The contact at time 0 with its inputs held.
 static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
@@ -75,9 +78,9 @@ static double* input_of(FcVariables* v, FcInput input) {
     return inputs[input];
 }
 
-// The way [over the input's unit] over which the force is fitted at first, with its sign: it passes neither V = 0 nor
+// The range [the input's unit] over which the force is fitted at first, with its sign: it passes neither V = 0 nor
 // |V| = V_1, where the force has jumps and kinks, and leads to surfaces farther apart.
-static double first_way(const FcFrictionContact* held, const FcScene* scene, FcInput input) {
+static double first_range(const FcFrictionContact* held, const FcScene* scene, FcInput input) {
     const FcVariables* v = &held->state.variables;
     const double V_1 = v->vibration.V_1;
     const double speed = fabs(v->V);
@@ -87,8 +90,9 @@ static double first_way(const FcFrictionContact* held, const FcScene* scene, FcI
         double scale = fmax(V_1, speed - V_1);
         if (V_1 == 0.0) {
             const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-            const double range = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
-            scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(range, FAST) : v->friction.V_S);
+            const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
+            scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V)
+                                                                 : v->friction.V_S);
         }
         const double room = speed >= V_1 ? speed - V_1 : speed; // towards 0
         return copysign(part * scale, room > part * scale ? -v->V : v->V);
@@ -102,37 +106,37 @@ static double first_way(const FcFrictionContact* held, const FcScene* scene, FcI
     }
 }
 
-// The derivative at the start of a way by the polynomial through the force at NODES Chebyshev points of it, and what its last
-// terms come to. With c_k the coefficients of T_k over the way, the derivative there is 2 / way times the sum of
-// (-1)^(k + 1) k^2 c_k.
-enum { NODES = 8 };
-static bool slope_over(FcFrictionContact* held, FcInput input, double way, double* slope, double* error,
+// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points of it, and what its
+// last terms come to. With c_k the coefficients of T_k over the range, the derivative there is 2 / range times the sum of
+// (-1)^(k + 1) k^2 c_k. By hand: fewer points need a shorter range, more multiply rounding by more.
+enum { POINTS = 8 };
+static bool slope_over(FcFrictionContact* held, FcInput input, double range, double* slope, double* error,
                        double* evaluations, FcMessage* message) {
     double* const x = input_of(&held->state.variables, input);
     const double start = *x;
-    double force[NODES];
-    for (int j = 0; j < NODES; j++) {
-        *x = start + 0.5 * way * (1.0 + cos(FC_PI * (j + 0.5) / NODES));
-        if (!dry_force(held, TOLERANCE, &force[j], evaluations, message)) {
+    double force[POINTS];
+    for (int j = 0; j < POINTS; j++) {
+        *x = start + 0.5 * range * (1.0 + cos(FC_PI * (j + 0.5) / POINTS));
+        if (!dry_force(held, TOLERANCE_OF_FORCES, &force[j], evaluations, message)) {
             return false;
         }
     }
     *x = start;
     *slope = 0.0;
     *error = 0.0;
-    for (int k = 1; k < NODES; k++) {
+    for (int k = 1; k < POINTS; k++) {
         double c = 0.0;
-        for (int j = 0; j < NODES; j++) {
-            c += 2.0 / NODES * (force[j] - force[0]) * cos(FC_PI * k * (j + 0.5) / NODES);
+        for (int j = 0; j < POINTS; j++) {
+            c += 2.0 / POINTS * (force[j] - force[0]) * cos(FC_PI * k * (j + 0.5) / POINTS);
         }
-        const double term = 2.0 * k * k * c / way;
+        const double term = 2.0 * k * k * c / range;
         *slope += k % 2 == 1 ? term : -term;
-        *error = k >= NODES - 2 ? fmax(*error, fabs(term)) : 0.0;
+        *error = k >= POINTS - 2 ? fmax(*error, fabs(term)) : 0.0;
     }
     return true;
 }
 
-// The way is shortened until the last terms are small, or rounding.
+// The range is shortened until the last terms are small, or rounding.
 bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, double* slope,
                             FcMessage* message) {
     FcFrictionContact held = at_time_0(contact);
@@ -141,25 +145,25 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, dou
     }
     const FcScene scene = fc_friction_contact_scene(&held);
     const double force = fc_scene_force_scale(&scene);
-    double way = first_way(&held, &scene, input);
-    const double usual = force / fabs(way);
+    double range = first_range(&held, &scene, input);
+    const double usual = force / fabs(range);
     double least = DBL_MAX;
     *slope = NAN;
     double evaluations = 0.0;
-    for (int shorter = 0; shorter < MOST_WAYS; shorter++) {
+    for (int tried = 0; tried < MOST_RANGES; tried++) {
         double found;
         double error;
-        if (!slope_over(&held, input, way, &found, &error, &evaluations, message)) {
+        if (!slope_over(&held, input, range, &found, &error, &evaluations, message)) {
             return false;
         }
         if (error < least * (fabs(found) + usual)) {
             least = error / (fabs(found) + usual);
             *slope = found;
         }
-        if (error <= ACCURATE * fabs(found) || error * fabs(way) <= ROUNDING * force) {
+        if (error <= GOOD_OVER_SLOPE * fabs(found) || error * fabs(range) <= GOOD_OVER_FORCE * force) {
             break;
         }
-        way *= SHORTER;
+        range *= RANGE_SHORTENED_BY;
     }
     *slope += input == FC_INPUT_V ? held.state.variables.friction.sigma_2 : 0.0;
     return is_finite(*slope, "the derivative of F_t_settled", message);

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 
+// Short names for the table below: its columns, and the interfaces.
 enum {
     A = FC_START_END,
     I = FC_INSTANTIATED,

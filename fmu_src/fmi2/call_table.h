@@ -19,6 +19,7 @@
 
 #include <stddef.h>
 
+// One bit each, so that the states in which a call is legal are a sum.
 typedef enum {
     FC_START_END = 1 << 0, // no instance yet, or no more
     FC_INSTANTIATED = 1 << 1,
@@ -34,7 +35,7 @@ typedef enum {
     FC_CONTINUOUS_TIME_MODE = 1 << 11
 } FcMode;
 
-// Which interface an instance was made for.
+// Which interface an instance was made for; one bit each, for the same reason.
 typedef enum { FC_MODEL_EXCHANGE = 1 << 0, FC_CO_SIMULATION = 1 << 1 } FcInterface;
 
 typedef enum {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+// Bytes of a message; longer ones are cut off. By hand: room for the longest FcMessage and what stands around it.
 enum { TEXT_SIZE = 512 };
 
 unsigned fc_log_category_bit(fmi2String category) {

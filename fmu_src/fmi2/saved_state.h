@@ -5,9 +5,8 @@
 
 #include "fmi2/instance.h"
 
-enum {
-    FC_SAVED_STATE_MARK = 0x46435354
-}; // tells a saved state from other memory, as far as that is possible
+// Tells a saved state from other memory, as far as that is possible. By hand: the letters FCST.
+enum { FC_SAVED_STATE_MARK = 0x46435354 };
 
 typedef struct {
     int mark;

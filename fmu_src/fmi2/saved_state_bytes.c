@@ -10,7 +10,7 @@
 //                   8 bytes each; whether the latter were set: 4
 //                   of model exchange: regime, whether a state was changed: 4 bytes each; when the inputs were seen
 //                   last, they and their speeds, two nominal values, the lag, its force and heat: 8 bytes each
-//                   interface, state, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
+//                   interface, mode, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
 //                   8
 //     end - 8 8     FNV-1a hash of all the bytes before it
 //
@@ -25,21 +25,21 @@
 #include "fmi2/saved_state.h"
 #include "fmi2/variables.h"
 
-enum {
-    LAYOUT_VERSION = 3,
-    MAGIC_SIZE = 8,
-    GUID_SIZE = 38,
-    HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE,
-    HASH_SIZE = 8
-};
+// Counted from 1: rises when anything but the variables changes in the layout above. With the variables the guid changes.
+enum { LAYOUT_VERSION = 3 };
+
+// Bytes of the parts above: the length of magic, of a guid in braces, of a 64-bit hash.
+enum { MAGIC_SIZE = 8, GUID_SIZE = 38, HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE, HASH_SIZE = 8 };
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
-_Static_assert(sizeof(FcHybrid) == (7 + 2 * FC_INPUT_COUNT) * sizeof(double),
+_Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FcHybrid must be added to transfer_hybrid");
-_Static_assert(sizeof(FcFrictionState) ==
-                   sizeof(FcVariables) + (5 + 2 * FC_INPUT_COUNT) * sizeof(double) + sizeof(FcHybrid),
-               "a new member of FrictionState must be added to transfer_state");
+_Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
+                                              2 * sizeof(int) + sizeof(FcHybrid),
+               "a new member of FcFrictionState must be added to transfer_state");
+_Static_assert(sizeof(FcExperiment) == 6 * sizeof(int) + 2 * sizeof(double),
+               "a new member of FcExperiment must be added to transfer_state");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
     uint64_t hash = 14695981039346656037u;

@@ -50,6 +50,7 @@ extern const char fc_model_identifier[]; // modelIdentifier of the XML
 extern const char* const fc_log_categories[]; // names under LogCategories
 extern const unsigned fc_log_categories_count;
 
+// Names under LogCategories of modelDescription.xml: the first three are FMI's own, logSolver is ours.
 #define FC_LOG_STATUS_ERROR "logStatusError"
 #define FC_LOG_STATUS_WARNING "logStatusWarning"
 #define FC_LOG_EVENTS "logEvents" // life cycle: instantiated, initialized, terminated

@@ -1,4 +1,4 @@
-// Mathematical constants that C11 does not promise.
+// Mathematical constants that C11 does not promise, to all digits of a double: pi, 2 pi, Euler's constant.
 #ifndef FC_MODEL_CONSTANTS_H
 #define FC_MODEL_CONSTANTS_H
 

@@ -23,6 +23,7 @@
 #ifndef FC_MODEL_CONTACT_H
 #define FC_MODEL_CONTACT_H
 
+// The values that modelDescription.xml gives them.
 typedef enum { FC_CONTACT_ASPERITIES = 1, FC_CONTACT_CONSTANT = 2, FC_CONTACT_MINDLIN = 3 } FcContactModel;
 typedef enum { FC_CONTACT_SEPARATION = 1, FC_CONTACT_LOAD = 2 } FcContactInput;
 

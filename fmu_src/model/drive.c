@@ -161,8 +161,8 @@ double fc_drive_largest_speed(const FcDrive* drive, double h) {
     return fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
 }
 
-// Half an angle below which the displacement is taken from a series, whose remainder is then under 1e-16.
-static const double SHORT = 0.5;
+// Half an angle [rad] up to which the displacement is taken from a series. Derived: what that leaves out is then under 1e-16.
+static const double SERIES_UP_TO = 0.5;
 
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
     const double duration = t1 - t0;
@@ -173,7 +173,7 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
     const double half = 0.5 * drive->omega * duration;
     const FcPhase at_middle = fc_drive_phase(drive, middle);
     const double V_c = drive->vibration.V_1 * at_middle.cosine;
-    if (half > SHORT) {
+    if (half > SERIES_UP_TO) {
         return linear(drive->V, middle) * duration + 2.0 * V_c / drive->omega * sin(half);
     }
     // V in the middle as a whole, since it may nearly cancel V_1, less what the vibration bends: 1 - sin(half) / half.
@@ -186,7 +186,7 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
 double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at_t0, double t1,
                                      FcPhase at_t1) {
     const double duration = t1 - t0;
-    if (!(0.5 * drive->omega * duration > SHORT)) {
+    if (!(0.5 * drive->omega * duration > SERIES_UP_TO)) {
         return fc_drive_displacement(drive, t0, t1);
     }
     return linear(drive->V, 0.5 * (t0 + t1)) * duration +
@@ -255,7 +255,8 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
     return square < CANCELS * (still + own) ? square_by_quadrature(drive, middle, 0.5 * duration) : square;
 }
 
-// What rounding may make of a root's angle, over 1 + the angle.
+// Roots of V nearer than this, over 1 + the angle [rad], are one. By hand, 450 eps: if smaller, rounding finds a root again; if
+// larger, a second root is passed over.
 static const double SAME_ANGLE = 1e-13;
 
 static double least_ahead(double angle) { return SAME_ANGLE * (1.0 + fabs(angle)); }
@@ -289,7 +290,8 @@ static bool is_dip(const FcDrive* drive, double t) {
            fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
-// Up to this |V|, over V_1, V goes through zero steeply enough for acos and its cosine to keep their digits.
+// Up to this |V|, over V_1, V goes through zero steeply enough for acos and its cosine to keep their digits. By hand: there
+// acos multiplies rounding by 1 / sqrt(1 - 0.9^2) = 2.3.
 static const double AWAY_FROM_GRAZING = 0.9;
 
 // acos(-V / V_1), which loses half of its digits next to 1 and -1.
@@ -322,7 +324,7 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     const double V_1 = drive->vibration.V_1;
     const double V = drive->V.value;
     const double now = theta(drive, t);
-    const double least = t > 0.0 ? least_ahead(now) : 0.0; // what begins is no root that has been passed
+    const double least = t > 0.0 ? least_ahead(now) : 0.0; // at t = 0 no root has been passed
     if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
         const double to_root = angle_ahead(now, root, least);

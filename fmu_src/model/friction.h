@@ -16,6 +16,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+// The values that modelDescription.xml gives them.
 typedef enum { FC_DAHL = 1, FC_COULOMB = 2, FC_ELASTIC_PLASTIC = 3, FC_LUGRE = 4 } FcFrictionModel;
 typedef enum { FC_LIMIT_CONSTANT = 1, FC_LIMIT_LOAD = 2 } FcFrictionLimit;
 

@@ -13,6 +13,7 @@
 
 #include "model/scene.h"
 
+// The sign of the bound along which the bristle slips; 0 where it touches none.
 typedef enum { FC_SLIPS_BACK = -1, FC_FREE = 0, FC_SLIPS_FORWARD = 1 } FcRegime;
 
 // Time derivatives of the states.

@@ -161,9 +161,10 @@ static double bound_at(const FcScene* scene, const FcCoefficients* at) {
     return at->limit * fc_bound_over_limit(scene->friction, at->V);
 }
 
-// A bristle that slips has the deflection of the bound but for the rounding of the phase at the end of a step. What an input
-// that has fallen by decades rounds by may be more, which the step itself mends (fc_stick_slip_end).
-static const double ON_THE_BOUND = 1.0 - 1e-10;
+// The least force of a bristle that slips, over its bound: at the end of a step the phase's rounding may take it off the bound.
+// By hand: room for that, and one that sticks so near is taken to slip. What an input that has fallen by decades rounds by
+// may be more, which the step itself mends (fc_stick_slip_end).
+static const double LEAST_FORCE_OF_SLIP = 1.0 - 1e-10;
 
 double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
     if (!fc_is_bounded(scene->friction)) {
@@ -171,7 +172,7 @@ double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
     }
     const FcCoefficients at = fc_scene_coefficients(scene, t);
     const double bound = bound_at(scene, &at);
-    if (at.sigma * fabs(delta) < ON_THE_BOUND * bound) {
+    if (at.sigma * fabs(delta) < LEAST_FORCE_OF_SLIP * bound) {
         return 0.0;
     }
     const double side = delta < 0.0 ? -1.0 : 1.0;

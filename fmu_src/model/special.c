@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-static const double SQRT_PI = 1.77245385090551602730;
+static const double SQRT_PI = 1.77245385090551602730; // sqrt(pi), to all digits of a double
 
 // x^a e^-x sum x^k / (a (a+1) ... (a+k)): all terms positive, so nothing cancels.
 static double lower_gamma_series(double a, double x) {

@@ -13,20 +13,25 @@
 //     settled panel            0.3                                                  terms of higher order
 //     Stribeck peak            a hundredth beyond its edges                         the sum over the peaks of a step
 //
-// An estimate that is too small matters less for the mean, where it is one of many panels, than at the end.
+// An estimate that is too small matters less for the mean, where it is one of many panels, than at the end. Of a judged panel
+// that relaxes by z < 1 a Radau panel may use z times its share, a Gauss panel z times that at the end (panels/judge.c).
 #ifndef FC_SOLVER_BUDGET_H
 #define FC_SOLVER_BUDGET_H
 
-// Of 200 000 random panels no error came to 0.4 of its bound, and 99 of 100 not to 0.02 (test_bounded_panel).
+// All are chosen by hand: smaller ones cost panels, larger ones break the tolerance, which tests/solver, tests/physics and the
+// hunt hold. Those of plans decide the cost alone.
+
+// What the bound may be. Of 200 000 random panels no error came to 0.4 of its bound, and 99 of 100 not to 0.02
+// (test_bounded_panel).
 static const double FC_SHARE_OF_BOUNDED_PANEL = 0.5;
 
 // A judged Gauss panel passes where its estimate is at most this many times what is allowed: most estimates are 10 to 1e5
 // times too large. In a Stribeck peak they are less so, and now and then too small. Over a panel that relaxes by more than
-// STEEP the estimate of the mean may be but twice the error.
+// FC_STEEP, which is no share, the estimate of the mean may be but twice the error.
 static const double FC_SHARE_OF_GAUSS_PANEL = 10.0;
 static const double FC_SHARE_OF_GAUSS_PANEL_IN_PEAK = 1.0;
 static const double FC_STEEP = 4.0;
-static const double FC_SHARE_OF_STEEP_PANEL = 0.2; // of the above, for the mean
+static const double FC_SHARE_OF_STEEP_PANEL = 0.2; // of whichever of the two shares holds, for the mean
 
 // What a Radau panel is planned for.
 static const double FC_PLAN_FOR_MEAN = 0.003;
@@ -38,9 +43,10 @@ static const double FC_SHARE_OF_RADAU_MEAN_IN_PEAK = 1.0;
 static const double FC_SHARE_OF_RADAU_END_IN_PEAK = 0.05;
 // Where the contact moves by decades in an interval (FcPace.is_local), estimates may be a hundred times too small.
 static const double FC_TRUST_IN_LOCAL_ESTIMATES = 0.01;
-// Rounding of a panel's force, over the limit: asking for less would only shorten panels.
+// Rounding of a panel's force, over the limit, 900 eps: asking a Radau panel for less would only shorten it.
 static const double FC_ROUNDING_OF_PANEL = 2e-13;
 
+// What the closed form of a settled panel may miss.
 static const double FC_SHARE_OF_SETTLED_PANEL = 0.3;
 // What may be left of the Stribeck curve, in the mean, where a settled panel begins.
 static const double FC_SHARE_OF_CURVE_LEFT = 0.05;

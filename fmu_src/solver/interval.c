@@ -5,8 +5,9 @@
 #include <stdint.h>
 #include <string.h>
 
-// E or the load that moves by more than this factor is followed along the interval.
-static const double FAR = 4.0;
+// E or the load that moves by more than this factor is followed along the interval (FcPace.is_local). By hand: less costs
+// panels, more trusts estimates that are too small.
+static const double MOVES_FAR = 4.0;
 
 double fc_digits(double x) {
     uint64_t bits;
@@ -25,9 +26,9 @@ static FcPace pace_of(const FcScene* scene, double h) {
     const double by_nearness = 3.0 / fc_scene_smallest_d(scene, h);
     const double E = fc_drive_smallest_E(drive, h);
     const double load = fmin(drive->load.value, fc_drive_load(drive, h));
-    const bool load_moves_far = fmax(drive->load.value, fc_drive_load(drive, h)) > FAR * load;
-    pace.is_local = (d_rate > 0.0 && by_nearness > by_decay) || fc_drive_largest_E(drive, h) > FAR * E ||
-                    (scene->floats && load_moves_far);
+    const bool load_moves_far = fmax(drive->load.value, fc_drive_load(drive, h)) > MOVES_FAR * load;
+    pace.is_local = (d_rate > 0.0 && by_nearness > by_decay) ||
+                    fc_drive_largest_E(drive, h) > MOVES_FAR * E || (scene->floats && load_moves_far);
     pace.log_sigma = by_decay * d_rate;
     if (!pace.is_local) {
         const double by_E = fabs(drive->E.rate) / E;

@@ -7,6 +7,7 @@
 #include "message.h"
 #include "model/scene.h"
 
+// The values that modelDescription.xml gives them.
 typedef enum {
     FC_METHOD_COLLOCATION = 1,
     FC_METHOD_CVODE = 2,
@@ -30,7 +31,7 @@ typedef struct {
     double evaluations; // 1     evaluations of the coefficients of the equation of the bristle
 } FcStepResult;
 
-// Evaluations in one communication step, up to 40 s of computing: a step that needs more is refused, so that none
+// Evaluations in one communication step. By hand, up to 40 s of computing: a step that needs more is refused, so that none
 // seems to hang. Only inputs that move over many orders of magnitude get there.
 #ifndef FC_MOST_EVALUATIONS
 #define FC_MOST_EVALUATIONS 1e8

@@ -1,6 +1,6 @@
 """Fits what the rule of the settled lag misses: error_of_rule in solver/stretches/settled_lag.c.
 
-    python -m workshop.constants.lag_rule
+    .venv/bin/python -m workshop.constants.lag_rule
 
 Between two reversals V = mean + cos(theta) and ln(sigma) = m cos(theta + alpha), in units of 1/omega.
 The lag -(1 / sigma)' / |V| has a pole at each reversal. With the poles taken out, that of the end as it

@@ -1,6 +1,6 @@
-"""Fits the bound of a Gauss panel's error: prints the table RULE of fmu_src/solver/panels/gauss_panel.c.
+"""Fits the bound of a Gauss panel's error: prints the table BOUND of fmu_src/solver/panels/gauss_panel.c.
 
-    python -m workshop.constants.panel_bound
+    .venv/bin/python -m workshop.constants.panel_bound
 
 With the panel [-1, 1] in x, the bristle obeys delta' = V - r delta with
 
@@ -15,6 +15,7 @@ panel and is no less than half its largest value where it dips inside.
 
 An error e is written as K = 2.94 n e^(1/2n): about the K for which n nodes miss cos(K x) by e. A linear
 programme finds the least linear function of phi, phi mu, z and sqrt(z) that is nowhere below.
+The solver calls phi mu mu.
 tests/unit/test_bounded_panel.c holds the table against panels of other scenes.
 """
 

@@ -1,6 +1,6 @@
 """Writes the tables of the solver's panels: fmu_src/solver/panels/panel_tables.h.
 
-    python -m workshop.constants.panel_tables
+    .venv/bin/python -m workshop.constants.panel_tables
 
 They are kept with the sources, so that a build needs no mpmath; tests/unit/test_panel_tables.c holds them to
 other formulas. All follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for
@@ -117,7 +117,8 @@ def columns(matrix: mp.matrix, n: int) -> list[list]:
 
 def gauss_table(n: int) -> str:
     rule = Rule(gauss_nodes(n))
-    return f"""static const FcGaussRule FC_GAUSS_{n} = {{
+    return f"""// Computed by workshop.constants.panel_tables: the Gauss rule of {n} nodes.
+static const FcGaussRule FC_GAUSS_{n} = {{
     {row([c - mpf(1) / 2 for c in rule.nodes])},
     {row(rule.weights)},
     {rows(columns(rule.integral, n))},
@@ -127,7 +128,7 @@ def gauss_table(n: int) -> str:
 
 
 def slope_table(n: int) -> str:
-    return f"""// [j][i]: weight of node j in the slope at node i
+    return f"""// Computed so too. [j][i]: weight of node j in the slope at node i
 static const double FC_GAUSS_{n}_SLOPE[{n}][{n}] = {rows(columns(Rule(gauss_nodes(n)).slope, n))};
 """
 
@@ -135,7 +136,8 @@ static const double FC_GAUSS_{n}_SLOPE[{n}][{n}] = {rows(columns(Rule(gauss_node
 def radau_table(n: int) -> str:
     rule = Rule(radau_nodes(n))
     inverse = rule.integral**-1
-    return f"""static const FcRadauRule FC_RADAU_{n} = {{
+    return f"""// Computed so too: Radau IIA of {n} stages.
+static const FcRadauRule FC_RADAU_{n} = {{
     {row([*(c - mpf(1) / 2 for c in rule.nodes), -mpf(1) / 2])},
     {row([*rule.weights, mpf(0)])},
     {row([*rule.start, -mpf(1)])},

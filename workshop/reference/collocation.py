@@ -1,4 +1,4 @@
-"""Second reference, of a different kind: the differential equation itself, by Gauss collocation at 40 digits.
+"""For `solution` to agree with: the differential equation itself, by Gauss collocation at 40 digits.
 
     D_i = delta_a + h sum_j A_ij (a(t_j) D_j + V(t_j)),     a = -sigma |V| / g
 

@@ -1,4 +1,4 @@
-"""Third reference: constant stiffness, held inputs and a vibrating velocity, in closed form.
+"""Constant stiffness, held inputs and a vibrating velocity, in closed form.
 
 Between reversals F relaxes toward s F_C over the path: F_1 = s F_C + (F_0 - s F_C) e^(-sigma L / F_C).
 """

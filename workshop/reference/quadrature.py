@@ -1,4 +1,4 @@
-"""First reference: the integrating factor, by Gauss quadrature between reversals.
+"""The integrating factor, by Gauss quadrature between reversals.
 
     delta(t) = e^-G(w,t) delta(w) + integral_w^t e^-G(s,t) V(s) ds,      G(s,t) = integral_s^t sigma |V| / g
 

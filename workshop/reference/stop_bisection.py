@@ -1,4 +1,4 @@
-"""Second reference of ElasticPlastic, of a different kind: no event is sought, cells shrink at the clamp.
+"""For `stop` to agree with in ElasticPlastic: no event is sought, cells shrink at the clamp.
 
 On nodes t_k the stop operator is delta_k = clamp(delta_(k-1) + X_k - X_(k-1), -D_k, D_k). A cell whose nodes
 all stick, or all slip on one side, is integrated as it stands; another is cut into smaller cells, down to

@@ -25,10 +25,12 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-// CVODE bounds the local error of one step: this fraction of solver.tolerance keeps the sum of them within
-// it.
+// All by hand but for the rules of quadrature: finer ones cost steps, coarser ones break the tolerance
+// (tests/solver/test_cvode.py).
+// CVODE bounds the local error of one step: this fraction of solver.tolerance keeps the sum of them within it.
 #define LOCAL_ERROR_FRACTION 0.01
-// Below this rounding governs: the true error stops following solver.tolerance between 1e-10 and 1e-12.
+// Below the smallest, 45 eps, rounding governs: the true error stops following solver.tolerance between 1e-10 and 1e-12. Above
+// the largest an error is no longer small beside the force.
 #define SMALLEST_LOCAL_ERROR 1e-14
 #define LARGEST_LOCAL_ERROR 1e-3
 
@@ -46,15 +48,15 @@
 // Kronrod extension with seven, exact for the degree 9: W. Gander, W. Gautschi, BIT 40 (2000) 84. What counts is the
 // latter; their difference may be this fraction of solver.tolerance, in each quadrature of a piece.
 #define QUADRATURE_FRACTION 0.1
-#define QUADRATURE_ROUNDING 1e-13 // of the integral of the magnitude: a smaller difference says nothing
-#define MOST_HALVINGS 40          // of a step of CVODE: what is left is 1e-12 of it
-enum { NODES = 7 };
-static const double node_at[NODES] = {-1.0, -0.81649658092772603273, -0.44721359549995793928,
-                                      0.0,  0.44721359549995793928,  0.81649658092772603273,
-                                      1.0};
-static const double lobatto[NODES] = {1.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 1.0 / 6.0};
-static const double kronrod[NODES] = {11.0 / 210.0,  72.0 / 245.0, 125.0 / 294.0, 16.0 / 35.0,
-                                      125.0 / 294.0, 72.0 / 245.0, 11.0 / 210.0};
+#define QUADRATURE_ROUNDING 1e-13 // 450 eps, of the integral of the magnitude: less says nothing
+#define MOST_STEP_HALVINGS 40     // of a step of CVODE: what is left is 1e-12 of it
+enum { KRONROD_NODES = 7 };
+static const double node_at[KRONROD_NODES] = {-1.0, -0.81649658092772603273, -0.44721359549995793928,
+                                              0.0,  0.44721359549995793928,  0.81649658092772603273,
+                                              1.0};
+static const double lobatto[KRONROD_NODES] = {1.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 1.0 / 6.0};
+static const double kronrod[KRONROD_NODES] = {11.0 / 210.0,  72.0 / 245.0, 125.0 / 294.0, 16.0 / 35.0,
+                                              125.0 / 294.0, 72.0 / 245.0, 11.0 / 210.0};
 
 // What is integrated besides the deflection; see FcStepResult.
 enum { IMPULSE, WORK, HEAT, DRAG, INTEGRALS };
@@ -248,8 +250,8 @@ static Integrals integrands(FcCvode* solver, double tau, double y) {
 static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals first, Integrals last,
                           int halvings) {
     const double half = 0.5 * (tau_end - tau);
-    Integrals at[NODES] = {[0] = first, [NODES - 1] = last};
-    for (int i = 1; i < NODES - 1; ++i) {
+    Integrals at[KRONROD_NODES] = {[0] = first, [KRONROD_NODES - 1] = last};
+    for (int i = 1; i < KRONROD_NODES - 1; ++i) {
         const double node = tau + half * (1.0 + node_at[i]);
         if (CVodeGetDky(solver->cvode, node, 0, solver->dense) != CV_SUCCESS) {
             return false;
@@ -260,15 +262,15 @@ static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals
     bool agree = true;
     for (int k = 0; k < INTEGRALS; ++k) {
         double difference = 0.0, size = 0.0;
-        for (int i = 0; i < NODES; ++i) {
+        for (int i = 0; i < KRONROD_NODES; ++i) {
             sum.of[k] += solver->unit * half * kronrod[i] * at[i].of[k];
             difference += solver->unit * half * (kronrod[i] - lobatto[i]) * at[i].of[k];
             size += solver->unit * half * kronrod[i] * fabs(at[i].of[k]);
         }
         agree = agree && !(fabs(difference) > fmax(solver->allowed.of[k], QUADRATURE_ROUNDING * size));
     }
-    if (!agree && halvings < MOST_HALVINGS && solver->evaluations <= FC_MOST_EVALUATIONS) {
-        const Integrals middle = at[NODES / 2];
+    if (!agree && halvings < MOST_STEP_HALVINGS && solver->evaluations <= FC_MOST_EVALUATIONS) {
+        const Integrals middle = at[KRONROD_NODES / 2];
         return add_integrals(solver, tau, tau + half, first, middle, halvings + 1) &&
                add_integrals(solver, tau + half, tau_end, middle, last, halvings + 1);
     }

@@ -11,18 +11,21 @@
 
 #include "solver/methods/methods.h"
 
-#define MOST_STEPS 1e8
+// In a communication step. By hand, as FC_MOST_EVALUATIONS (solver.h): more would seem to hang.
+#define MOST_FIXED_STEPS 1e8
 
-// A step that fits this fraction of a step less or more than a whole number of times is taken to fit exactly.
+// A step that fits this fraction of a step less or more than a whole number of times is taken to fit exactly. By hand: room for
+// what hosts round their steps by.
 #define STEP_ROUNDING 1e-6
 
-// sigma |V| h / g up to which |growth per step| <= 1: of 1 - z, and of 1 - z + z^2/2 - z^3/6 + z^4/24.
+// sigma |V| h / g up to which |growth per step| <= 1. Derived: of 1 - z, and of 1 - z + z^2/2 - z^3/6 + z^4/24.
 #define EXPLICIT_EULER_LIMIT 2.0
 #define RK4_LIMIT 2.785293563405282
 
-// Samples of sigma |V| per vibration period; the largest one is within 0.1 % of the maximum.
+// Samples of sigma |V| / g per vibration period, and in a step. By hand: the largest one is within 0.1 % of the maximum; more
+// would take longer than the step, so the bound is taken.
 #define SAMPLES_PER_PERIOD 256.0
-#define MOST_SAMPLES 1e6
+#define MOST_RATE_SAMPLES 1e6
 
 // The deflection and the integrals of FcStepResult.
 typedef struct {
@@ -80,7 +83,8 @@ static double rate_at(const FcScene* scene, double t) {
     return fc_relaxation_rate(&at);
 }
 
-// The largest sigma |V| / g over [0, h] [1/s], sampled; the bound where that would take too many samples.
+// The largest sigma |V| / g over [0, h] [1/s], sampled; the bound where that would take too many samples. Where the limit follows
+// the load, or d and V vibrate out of phase, the extremes do not meet, and the bound alone would refuse steps that are stable.
 static double largest_rate(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     if (fc_drive_is_constant(drive)) {
@@ -95,7 +99,7 @@ static double largest_rate(const FcScene* scene, double h) {
         periods = fmax(1.0, duration * drive->vibration.f);
     }
     const double samples = ceil(SAMPLES_PER_PERIOD * periods);
-    if (!(samples <= MOST_SAMPLES)) {
+    if (!(samples <= MOST_RATE_SAMPLES)) {
         return rate_bound(scene, h);
     }
     double largest = 0.0;
@@ -195,12 +199,12 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
     }
     const double ratio = h / options->step_size;
     const double steps = fmax(1.0, ceil(ratio - STEP_ROUNDING));
-    if (!(steps <= MOST_STEPS)) {
+    if (!(steps <= MOST_FIXED_STEPS)) {
         fc_message_set(
             message,
             "solver.stepSize = %.5g s cuts the communication step of %.5g s into %.5g steps; at most %.0e "
             "are allowed",
-            options->step_size, h, ratio, MOST_STEPS);
+            options->step_size, h, ratio, MOST_FIXED_STEPS);
         return false;
     }
     const bool fits = fabs(steps - ratio) <= STEP_ROUNDING;

@@ -5,14 +5,15 @@
 #include "solver/methods/methods.h"
 #include "solver/solver.h"
 
-// The step [0, h], h [s] >= 0, from delta_0 [m]. Coulomb and ElasticPlastic are solved exactly whatever the method is, and
-// what cvode does not know of, a bristle that may touch its bound.
+// The step [0, h], h [s] >= 0, from delta_0 [m]. Whatever the method is, Coulomb and ElasticPlastic are solved
+// in the default's way: exactly, or to the tolerance where sigma or g moves. So is what cvode does not know of, a bristle that
+// may touch its bound.
 // cvode is the solver of FC_METHOD_CVODE, unused by the others. Returns false, with *message filled and *result as it
 // was, where the method refuses.
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, double delta_0, FcStepResult* result, FcMessage* message);
 
-// The deflection [m] that a step from delta [m] starts at: in ElasticPlastic at most the bound, beyond which inputs or
+// The deflection [m] that a step from delta [m] starts at: of a bounded bristle at most the bound, beyond which inputs or
 // parameters may have left it.
 double fc_method_start(const FcScene* scene, double delta);
 

@@ -4,14 +4,15 @@
 #include <math.h>
 #include <stddef.h>
 
-// More periods than this with moving inputs are refused: they would take minutes.
+// More periods than this with moving inputs are refused. By hand: they would take minutes.
 static const double MOST_CHANGING_PERIODS = 1e6;
 
 // A period that touches a bound ends on one of two deflections, and the deflection goes one way: all that follow the
-// second one end alike. The third shows it.
+// second one end alike. Derived: the third shows it.
 enum { MOST_TOUCHES = 3 };
 
-// Two ends of periods that differ by less than this, over the larger, are the same but for rounding.
+// Two ends of periods that differ by less than this, over the first, are the same. By hand: less costs a third period, more
+// takes an end that still changes.
 static const double SAME_END = 1e-9;
 
 static FcFreePeriod free_period(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,

@@ -6,7 +6,7 @@
 // Compilers do not find all such pairs by themselves. The first has an even place in an array that is FC_PAIRED.
 typedef double FcPair __attribute__((vector_size(16), may_alias));
 
-#define FC_PAIRED __attribute__((aligned(16)))
+#define FC_PAIRED __attribute__((aligned(16))) // the bytes of two
 
 static inline FcPair fc_pair(const double* first) { return *(const FcPair*)first; }
 
@@ -14,7 +14,7 @@ static inline void fc_pair_put(double* first, FcPair pair) { *(FcPair*)first = p
 
 static inline double fc_pair_sum(FcPair pair) { return pair[0] + pair[1]; }
 
-// Largest argument of this series and of those of nodes.c: their remainders are then under 1e-17.
+// Largest argument of this series and of those of nodes.c. Derived: their remainders are then under 1e-17.
 static const double FC_SERIES_RANGE = 0.25;
 
 // By Taylor series. In pairs of terms, which a processor adds up side by side, where Horner's scheme waits for each sum.

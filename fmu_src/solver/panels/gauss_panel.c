@@ -86,13 +86,13 @@ void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const F
     panel_of_nodes(count, scene, t, h, from, true, panel);
 }
 
-// n nodes, and K at the most: 1, and what multiplies phi, mu, z and sqrt(z). The upper envelope of what
-// workshop.constants.panel_bound measured.
-enum { RULES = 4 };
+// n nodes, and K at the most: 1, and what multiplies phi, mu, z and sqrt(z). Fitted by workshop.constants.panel_bound: the upper
+// envelope of what it measured. Its phi mu is mu here.
+enum { BOUNDED_RULES = 4 };
 static const struct {
     int n;
     double one, phi, mu, z, sqrt_z;
-} RULE[RULES] = {
+} BOUND[BOUNDED_RULES] = {
     {4, 3.30, 1.23, 1.34, 1.35, 1.03},
     {6, 3.49, 2.01, 1.80, 1.31, 2.15},
     {8, 4.55, 2.50, 1.99, 1.02, 3.41},
@@ -111,9 +111,9 @@ static double to_the_2n(double x, int n) {
 static double bound(const FcPace* pace, int rule, double h, double z) {
     const double phi = 0.5 * pace->phase * h;
     const double mu = 0.5 * pace->log_sigma * h;
-    const double K = RULE[rule].one + RULE[rule].phi * phi + RULE[rule].mu * mu + RULE[rule].z * z +
-                     RULE[rule].sqrt_z * sqrt(z);
-    return to_the_2n(K / (2.94 * RULE[rule].n), RULE[rule].n);
+    const double K = BOUND[rule].one + BOUND[rule].phi * phi + BOUND[rule].mu * mu + BOUND[rule].z * z +
+                     BOUND[rule].sqrt_z * sqrt(z);
+    return to_the_2n(K / (2.94 * BOUND[rule].n), BOUND[rule].n);
 }
 
 // What the bound may be: force is that of the deflection in it, of a bristle that settles at |X| / z. Heat goes with the
@@ -134,12 +134,12 @@ bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t
     const double allowed = allowed_bound(interval, X, z, from);
     int rule = 0;
     while (!(bound(&interval->pace, rule, h, z) <= allowed)) {
-        if (++rule == RULES) {
+        if (++rule == BOUNDED_RULES) {
             return false;
         }
     }
-    panel_of_nodes(RULE[rule].n, scene, t, h, from, false, panel);
-    *evaluations += RULE[rule].n;
+    panel_of_nodes(BOUND[rule].n, scene, t, h, from, false, panel);
+    *evaluations += BOUND[rule].n;
     // The displacement is known; a bristle that forgets little would sum up what its quadrature misses.
     panel->map.offset += (1.0 - panel->map.relaxation) * (X - panel->displacement);
     return panel->z <= z || bound(&interval->pace, rule, h, panel->z) <= allowed_bound(interval, X, z, from);

@@ -20,7 +20,7 @@
 void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
                     FcPanel* panel);
 
-// No panel that relaxes by more is bounded.
+// No panel that relaxes by more is bounded: the largest z that workshop.constants.panel_bound measured.
 static const double FC_MOST_BOUNDED = 7.0;
 
 // The panel [t, t + h] of the scene over which V keeps its sign, of the displacement X [m] and the relaxation of about z, with

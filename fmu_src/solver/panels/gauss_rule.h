@@ -8,6 +8,7 @@
 #include "solver/panels/panel.h"
 #include "solver/panels/panel_tables.h"
 
+// Nodes of the largest rule. By hand: where these do not suffice a panel is halved.
 enum { FC_GAUSS_MOST_NODES = 12 };
 
 // The next number of nodes that there is a rule of.

@@ -23,8 +23,9 @@ static inline double series_cos_less_1(double x) {
     return y * (low + y_2 * y_2 * high);
 }
 
-// How often arguments of this size have to be halved for the series. More than MOST_HALVINGS lose digits.
-enum { MOST_HALVINGS = 4 };
+// How often arguments of this size have to be halved for the series. By hand: each doubling back loses digits, more than these
+// too many.
+enum { MOST_SERIES_HALVINGS = 4 };
 typedef struct {
     int count;
     double factor; // 2^-count
@@ -32,7 +33,7 @@ typedef struct {
 
 static inline Halvings halvings(double size) {
     Halvings halved = {0, 1.0};
-    while (size * halved.factor > FC_SERIES_RANGE && halved.count <= MOST_HALVINGS) {
+    while (size * halved.factor > FC_SERIES_RANGE && halved.count <= MOST_SERIES_HALVINGS) {
         halved.factor *= 0.5;
         halved.count++;
     }
@@ -147,8 +148,8 @@ void fc_node_coefficients(const FcScene* scene, double t, double h, const double
     const double moves = 0.5 * h * fabs(drive->d.rate) + drive->vibration.a_d * fmin(half_angle, 2.0);
     const Halvings angle = halvings(half_angle);
     const Halvings exponent = halvings(fc_scene_depends_on_d(scene) ? scene->at_E.decay * moves : 0.0);
-    if (scene->floats || drive->E.rate != 0.0 || angle.count > MOST_HALVINGS ||
-        exponent.count > MOST_HALVINGS) {
+    if (scene->floats || drive->E.rate != 0.0 || angle.count > MOST_SERIES_HALVINGS ||
+        exponent.count > MOST_SERIES_HALVINGS) {
         with_library(scene, t, h, node, count, at);
         return;
     }

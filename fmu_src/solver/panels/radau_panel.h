@@ -12,6 +12,7 @@
 
 #include "solver/panels/panel.h"
 
+// By hand: fewer stages need more panels for the same error, more cost a larger linear system.
 enum { FC_RADAU_STAGES = 9 };
 
 // The panel [t, t + h], h > 0. sign is the sign of V over it.

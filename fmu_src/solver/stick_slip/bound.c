@@ -3,14 +3,17 @@
 #include <assert.h>
 #include <math.h>
 
+// By hand: far beyond any deflection, and D L^2 is a number for rates L up to 1e50 1/s.
 const double FC_NO_BOUND = 1e200;
 
-// The longest smooth time, over the time to a pole: the longest panel of the quadratures then ends well before the pole.
+// The longest smooth time, over the time to a pole. By hand: panels of the quadratures for six digits and more then end well
+// before the pole (at most 6.75 of them); for fewer WAY_TO_POLE sees to it where E or the load falls (regime_integrals.c). Less
+// costs cells.
 static const double POLE = 0.12;
-// The shortest smooth time that is good for all places, over that of the phase alone.
+// The shortest smooth time that is good for all places, over that of the phase alone. By hand: costs cells, not accuracy.
 static const double SHORTEST_COMMON = 0.1;
-// The step of a central difference, over the smooth time.
-static const double SMALL_PART = 1e-4;
+// The step of a central difference, over the smooth time. By hand: it misses 1e-8, and keeps rounding below 1e-11.
+static const double DIFFERENCE_STEP = 1e-4;
 
 static bool nothing_moves(const FcScene* scene) {
     return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
@@ -43,11 +46,11 @@ static double ratio(const FcScene* scene, const FcContactAtModulus* at_E, double
     return D < FC_NO_BOUND ? D : FC_NO_BOUND;
 }
 
-// Beyond this decay d, e^(-decay d) is 0 in rounding: sigma and g are, or stand still.
+// Beyond this decay d, e^(-decay d) is 0 in rounding: sigma and g are, or stand still. Derived: e^-746 is rounded to 0.
 static const double GONE = 750.0;
-// The longest smooth time, over the time until d may be back from there: the longest panel of the quadratures then ends
-// before that.
-static const double RETURN = 0.08;
+// The longest smooth time, over the time until d may be back from there, or V at the Stribeck curve. Derived: the longest panel of
+// the quadratures, 12 of them, then ends before that.
+static const double WAY_TO_RETURN = 0.08;
 
 // The least time [s] that d takes to fall by a distance [m].
 static double time_to_fall(const FcScene* scene, double distance, double d_rate) {
@@ -69,7 +72,7 @@ static double time_to_pole(const FcScene* scene, double t, double d, double d_ra
     return time;
 }
 
-// Beyond this velocity, over V_S, the Stribeck curve is 1 in rounding.
+// Beyond this velocity, over V_S, the Stribeck curve is 1 in rounding. Derived: e^(-6^2) is one eps.
 static const double END_OF_PEAK = 6.0;
 
 // The time [s] from t on over which V moves by half of V_S, or until it may be back at the Stribeck curve's peak.
@@ -78,7 +81,7 @@ static double stribeck_time(const FcScene* scene, double t) {
     const double V_S = scene->friction->V_S;
     const double fastest = fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega; // m/s2
     const double beyond = fabs(fc_drive_V(drive, t)) - END_OF_PEAK * V_S;
-    return fmax(0.5 * V_S, RETURN * beyond) / fastest;
+    return fmax(0.5 * V_S, WAY_TO_RETURN * beyond) / fastest;
 }
 
 // Rate [1/m] at which ln sigma or ln g moves with d, at the most.
@@ -99,7 +102,7 @@ static double smooth_time_of_contact(const FcScene* scene, double t, double d, d
     double time = fc_time_to_move(rate, curvature, 1.0);
     const double gone = GONE / scene->at_E.decay;
     if (d > gone && !scene->floats) {
-        const double returning = RETURN * time_to_fall(scene, d - gone, d_rate);
+        const double returning = WAY_TO_RETURN * time_to_fall(scene, d - gone, d_rate);
         time = fmax(time, drive->omega > 0.0 ? fmin(returning, 1.0 / drive->omega) : returning);
     }
     return fmin(pole, time);
@@ -179,7 +182,7 @@ static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
         return;
     }
     const double log_rate = log_rate_at(scene, t);
-    const double tau = SMALL_PART * fc_bound_smooth_time(scene, t, at->d, at->d_rate);
+    const double tau = DIFFERENCE_STEP * fc_bound_smooth_time(scene, t, at->d, at->d_rate);
     const double log_curvature =
         isfinite(tau) ? (log_rate_at(scene, t + tau) - log_rate_at(scene, t - tau)) / (2.0 * tau) : 0.0;
     at->D_rate = at->D * log_rate;

@@ -8,10 +8,10 @@
 #include "solver/panels/panel_tables.h"
 #include "solver/solver.h"
 
-// The longest panels of n nodes, in smooth times, for k digits: n 10^(-k / 2n), the error falling with the length to the
-// power 2n.
-enum { RULES = 4, MOST_DIGITS = 13 };
-static const double LONGEST[RULES][MOST_DIGITS + 1] = {
+// The longest panels of n nodes, in smooth times, for k digits. Derived but for the factor 1, by hand: n 10^(-k / 2n), the error
+// falling with the length to the power 2n.
+enum { GAUSS_RULES = 4, MOST_DIGITS = 13 };
+static const double LONGEST[GAUSS_RULES][MOST_DIGITS + 1] = {
     {4, 3, 2.25, 1.69, 1.26, 0.949, 0.711, 0.533, 0.4, 0.3, 0.225, 0.169, 0.126, 0.0949},
     {6, 4.95, 4.09, 3.37, 2.78, 2.3, 1.9, 1.57, 1.29, 1.07, 0.881, 0.727, 0.6, 0.495},
     {8, 6.93, 6, 5.2, 4.5, 3.9, 3.37, 2.92, 2.53, 2.19, 1.9, 1.64, 1.42, 1.23},
@@ -19,7 +19,7 @@ static const double LONGEST[RULES][MOST_DIGITS + 1] = {
 };
 
 // No panel is longer than this part of the time to a zero of E or the load, where ln g has a pole, which the longest panels
-// for few digits would reach. This far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls
+// for few digits would reach. By hand: this far from it (5/3 of half the panel's length, from its middle) the error of n nodes falls
 // like 3^(-2n).
 static const double WAY_TO_POLE = 0.75;
 
@@ -43,7 +43,7 @@ static double longest_before_pole(const FcDrive* drive, double t) {
     return WAY_TO_POLE / fmax(fc_drive_E_growth(drive, t), fc_drive_load_growth(drive, t));
 }
 
-// Where V grazes zero |V| is at most this part of V_1.
+// Where V grazes zero |V| is at most this part of V_1. By hand: less breaks the work's accuracy there, more costs nodes.
 static const double GRAZES = 0.05;
 
 static bool grazes(const FcDrive* drive, double t) {
@@ -73,11 +73,12 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
             ? integrator->smooth_time
             : fc_bound_smooth_time(scene, t, fc_scene_d(scene, t), fc_scene_d_rate(scene, t));
     const double left = end - t;
-    const double longest =
-        fmin(LONGEST[RULES - 1][integrator->digits] * smooth_time, longest_before_pole(&scene->drive, t));
+    const double longest = fmin(LONGEST[GAUSS_RULES - 1][integrator->digits] * smooth_time,
+                                longest_before_pole(&scene->drive, t));
     const double count = fmax(1.0, ceil(left / longest));
     Panel panel = {.start = t, .length = left / count, .end = end};
-    while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time && panel.rule < RULES - 1) {
+    while (panel.length > LONGEST[panel.rule][integrator->digits] * smooth_time &&
+           panel.rule < GAUSS_RULES - 1) {
         panel.rule++;
     }
     if (count > 1.0 && t + panel.length > t) {
@@ -86,12 +87,14 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
     return panel;
 }
 
-static const FcGaussRule* const RULE[RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
-static const int NODES[RULES] = {4, 6, 8, 12};
+// The Gauss rules there are, and their nodes.
+static const FcGaussRule* const GAUSS_RULE[GAUSS_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8,
+                                                           &FC_GAUSS_12};
+static const int GAUSS_NODES[GAUSS_RULES] = {4, 6, 8, 12};
 
 static FcMap stick_panel(const FcScene* scene, const Panel* panel) {
-    const FcGaussRule* rule = RULE[panel->rule];
-    const int n = NODES[panel->rule];
+    const FcGaussRule* rule = GAUSS_RULE[panel->rule];
+    const int n = GAUSS_NODES[panel->rule];
     const double h = panel->length;
     FcNodeCoefficients at;
     fc_node_coefficients(scene, panel->start, h, rule->node, n, &at);
@@ -132,7 +135,7 @@ FcMap fc_stick_map(const FcIntegrator* integrator, double start, double end, dou
             const Panel panel = panel_at(&of_work, t, end);
             const FcMap next = stick_panel(scene, &panel);
             fc_map_append(&map, &next);
-            *evaluations += NODES[panel.rule];
+            *evaluations += GAUSS_NODES[panel.rule];
             t = panel.end;
         }
     }
@@ -144,8 +147,8 @@ FcMap fc_stick_map(const FcIntegrator* integrator, double start, double end, dou
 // Adds the panel's part; where the rates of the bound count, what it recedes too.
 static void add_slip_panel(const FcScene* scene, const Panel* panel, bool with_rates, FcSlipIntegrals* sum,
                            double* evaluations) {
-    const FcGaussRule* rule = RULE[panel->rule];
-    const int n = NODES[panel->rule];
+    const FcGaussRule* rule = GAUSS_RULE[panel->rule];
+    const int n = GAUSS_NODES[panel->rule];
     const double h = panel->length;
     FcNodeCoefficients at;
     fc_node_coefficients(scene, panel->start, h, rule->node, n, &at);

@@ -9,22 +9,24 @@
 #include "solver/stick_slip/regime_integrals.h"
 #include "solver/stick_slip/turning_points.h"
 
-// A bristle nearer to the bound than this, over D, is on it: the end of a step loses as much in rounding.
+// A bristle nearer to the bound than this, over D, is on it. Rounding: the end of a step loses up to 45 eps.
 static const double ON_BOUND = 1e-14;
 
 // The rounding of a bound that follows an input, over the bound and over how many times the input has fallen; and the most
-// that passes for rounding.
+// that passes for rounding. By hand: less takes one that slips for one that sticks, more the other way round.
 static const double ROUNDING_OF_INPUT = 32.0 * DBL_EPSILON;
 static const double MOST_ROUNDING = 1e-3;
 
-// A bristle that stays farther from the bound than this, over D, does not meet it in rounding.
+// A bristle whose deflection stays below this part of D does not meet the bound. By hand: far more than rounding; costs turning
+// points that are not needed.
 static const double CLEAR_OF_BOUND = 0.999;
 
 // The errors at the ends of the intervals between a bristle's turning points add up, until it meets a bound: each may be
-// this share of the tolerance.
+// this share of the tolerance. By hand: less costs panels, more breaks the tolerance.
 static const double SHARE_OF_PIECE = 0.3;
 
-// The largest tolerance of a free motion, where the force's scale has fallen by decades since the start.
+// The largest tolerance of a free motion, where the force's scale has fallen by decades since the start. By hand: ten times
+// the largest that a user may set.
 static const double LARGEST_TOLERANCE = 0.1;
 
 // The motion of a bristle that touches no bound, from a time on.

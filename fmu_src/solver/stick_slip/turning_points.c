@@ -6,30 +6,36 @@
 #include "model/root.h"
 #include "solver/solver.h"
 
-// A cell lasts this many smooth times, in each of which the phase, ln sigma and ln g move by 1 at the most (bound.h).
+// All are chosen by hand but MISSED_OF_PEAK.
+//
+// A cell lasts this many smooth times, in each of which the phase, ln sigma and ln g move by 1 at the most (bound.h). Less costs
+// samples, more may hide two turns from the samples at its ends.
 static const double CELL = 1.5;
-// A root's tolerance where everything else is exact but for rounding.
-static const double ROUNDING = 1e-12;
-// In a cell the bound is at least this part of what it is at the start, since ln D moves by about 1.
+// A root's tolerance where everything else is exact but for rounding, 4500 eps.
+static const double ROUNDING_OF_TURN = 1e-12;
+// In a cell the bound is at least this part of what it is at the start, since ln D moves by about 1. Less costs turns that are
+// not needed, more misses some.
 static const double LEAST_BOUND = 0.25;
-// A piece of a bristle that relaxes ends where the bound has fallen to this part of what it was at the start.
+// A piece of a bristle that relaxes ends where the bound has fallen to this part of what it was at the start. Less may pass over
+// a meeting, more costs pieces.
 static const double FARTHEST_FALL = 0.25;
-// A bound that moves by no more than this, over D, stands still; the slope of its rate has a rounding of that.
+// A bound that moves by no more than this, over D, stands still, 5 eps; the slope of its rate has a rounding of that.
 static const double STANDS = 1e-15;
 static const double SLOPE_OF_STANDING = 1e-11;
-// Over the peak's height: 43 / (2^5 384), and three times that for what moves besides.
+// Over the peak's height. Derived (may_turn_in_peak): 43 / (2^5 384), and three times that for what moves besides.
 static const double MISSED_OF_PEAK = 0.01;
-// A bristle within this of the bound, over D, may be on it.
+// A bristle within this of the bound, over D, may be on it. Less may miss its turn, more costs turns.
 static const double NEAR_BOUND = 1e-6;
-// Two turning points this near to each other, over what is left of the cell, count as one time.
+// Two turning points this near to each other, over what is left of the cell, count as one time: far above rounding, far below
+// what moves the bristle.
 static const double SAME_TIME = 1e-9;
 // Turns are found at least as well as for this tolerance: where V only just reverses a turn that is taken a little early or
 // late lets the bristle stick past its bound.
 static const double LOOSEST_TURN = 1e-6;
-// A cell is divided at most this often in a row: what two roots still closer enclose is below rounding.
+// A cell is divided at most this often in a row: what two roots still closer enclose is below rounding, about 2^-30 squared.
 enum { MOST_DIVISIONS = 30 };
 // And by no more samples in all: where the rates are beyond the largest numbers nothing excludes two roots.
-enum { MOST_SAMPLES = 4096 };
+enum { MOST_SAMPLES_IN_CELL = 4096 };
 
 // The rate [m/s] at which the upper bound (0) or the lower one (1) comes nearer, and its slope [m/s2].
 static double approach(const FcTurningPoints* points, const FcBoundMotion* at, int which) {
@@ -59,7 +65,7 @@ void fc_turning_points_start(FcTurningPoints* points, const FcScene* scene, doub
     }
     points->end = end;
     points->constant_bound = !points->relaxes && fc_bound_is_constant(scene);
-    points->last_step = cbrt(1e-4 * (points->constant_bound ? fmin(ROUNDING, tolerance) : tolerance));
+    points->last_step = cbrt(1e-4 * (points->constant_bound ? fmin(ROUNDING_OF_TURN, tolerance) : tolerance));
     points->tolerance = 0.01 * tolerance;
     points->at = &points->sample[0];
     points->ahead = points->sample_count = 0;
@@ -248,7 +254,7 @@ static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, 
     int samples = 0;
     for (int last = 0; last >= 0;) {
         const FcBoundMotion* right = &ahead[last];
-        if (divisions[last] < MOST_DIVISIONS && samples++ < MOST_SAMPLES &&
+        if (divisions[last] < MOST_DIVISIONS && samples++ < MOST_SAMPLES_IN_CELL &&
             may_turn_between(points, &left, right, which)) {
             divisions[last + 1] = ++divisions[last];
             ahead[last + 1] = fc_turning_points_motion(points, dividing_time(points, &left, right, which));
@@ -369,7 +375,7 @@ static void next_with_moving_bound(FcTurningPoints* points, double lowest, doubl
 
 // A bristle that relaxes may be anywhere. Its cells are joined up to the next reversal, since what it costs to tell where it
 // is, is dear, but not where the bound falls by more than FARTHEST_FALL: a bristle that has met it might be back at it. Where
-// the bound's rate is rounding alone each cell may cost MOST_SAMPLES, so the evaluations are limited here too.
+// the bound's rate is rounding alone each cell may cost MOST_SAMPLES_IN_CELL, so the evaluations are limited here too.
 static void next_of_relaxing(FcTurningPoints* points, FcPiece* piece) {
     next_with_moving_bound(points, -FC_NO_BOUND, FC_NO_BOUND, piece);
     points->piece_start = *piece->start;

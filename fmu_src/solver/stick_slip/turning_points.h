@@ -38,6 +38,7 @@ typedef struct {
     bool nears_after; // else it recedes
 } FcTurningPoint;
 
+// By hand: samples taken together, which costs memory alone, and turns of a cell; any more are left out.
 enum { FC_CELLS_AT_ONCE = 16, FC_MOST_TURNS_IN_CELL = 16 };
 
 // Goes through [0, end] piece by piece.

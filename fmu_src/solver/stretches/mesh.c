@@ -5,23 +5,25 @@
 #include "solver/budget.h"
 #include "solver/panels/radau_panel.h"
 
-// Where the limit stands still, panels of the lag miss about five times less than DISTANCES says, for errors no smaller than
-// COARSE.
+// All but LAST are chosen by hand. What plans panels costs tries, not accuracy, since panels are judged afterwards.
+//
+// Plans: where the limit stands still, panels of the lag miss about five times less than DISTANCES says, for errors no smaller
+// than COARSE.
 static const double LAG_BEHIND_CONSTANT_LIMIT = 5.0;
 static const double COARSE = 1e-4;
-// Panels may miss this part of a stretch's path, which decides in the stiffest contacts.
+// Plans: below this tolerance, times the excess of the static ratio over 1 where that is larger than 1, the first panel of a
+// transient in a Stribeck peak, which is no exponential, is a decade finer.
+static const double FINE_IN_PEAK = 5e-5;
+// Accuracy: the part of a stretch's path that panels may have missed, which decides in the stiffest contacts, and safety factors
+// on how much relaxes until the end of a stretch: on the measured relaxation of the whole stretch, and on what is left of it
+// after what has relaxed so far. Less path or larger factors take errors for forgotten that the end sees.
 static const double MISSED_OF_PATH = 0.1;
-// Safety factors on how much relaxes until the end of a stretch: on the measured relaxation of the whole stretch, and on what
-// is left of it after what has relaxed so far.
 static const double SURE_OF_WHOLE = 0.9;
 static const double SURE_OF_REST = 0.5;
-// Below this tolerance, times the excess of the static ratio over 1 where that is larger than 1, the first panel of a
-// transient in a Stribeck peak, which is no exponential, is planned a decade finer.
-static const double FINE_IN_PEAK = 5e-5;
 
-// Lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST. LAYERS: of a decaying transient, in layers.
+// Plans, by hand: lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST. LAYERS: of a decaying transient, in layers.
 // DISTANCES: of the lag, in distances from its event. SMOOTH: in the time over which a logarithm of the coefficients
-// moves by 1. PEAK: in a Stribeck peak, in lengths that resolve it.
+// moves by 1. PEAK: in a Stribeck peak, in lengths that resolve it. FINEST: beyond it rounding rules.
 enum { FINEST = 15 };
 static const double LAYERS[FINEST + 1] = {25,  14,   9,   6.5, 4.5,  3.5, 2.8, 2.3,
                                           1.9, 1.65, 1.4, 1.2, 1.02, .9,  .8,  .7};
@@ -30,10 +32,11 @@ static const double DISTANCES[FINEST + 1] = {40,  30,  20,  14,  10,  6.5, 4.2, 
 static const double SMOOTH[FINEST + 1] = {8,   8,   8,    3.2,  3.2,  3.2,  3.2,  3.2,
                                           3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66};
 static const double PEAK[FINEST + 1] = {4, 3, 1.7, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-// Where the contact moves by decades no panel is longer, whatever is allowed: it would step over what is to be seen.
+// Accuracy, by hand: where the contact moves by decades no panel is longer, whatever is allowed: it would step over what is to
+// be seen.
 static const double MOST_SMOOTH = 1.6;
-// A panel that ends on a reversal and steps over its layer leaves an error of LAST lags, the last diagonal entry of the
-// inverse of the method's matrix, at its last node, whose weight is 1 / stages^2.
+// Derived: a panel that ends on a reversal and steps over its layer leaves an error of LAST lags, (9^2 + 1) / 2, the last
+// diagonal entry of the inverse of the method's matrix, at its last node, whose weight is 1 / stages^2.
 static const double LAST = 41.0;
 
 // Decades of accuracy that a panel needs for this allowed relative error.

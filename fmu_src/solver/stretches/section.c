@@ -5,6 +5,9 @@
 #include "model/constants.h"
 #include "solver/panels/gauss_rule.h"
 
+// All of this file plans what is judged afterwards: it costs tries and time, not accuracy. What is not said to be derived or
+// fitted is chosen by hand.
+//
 // Gauss panels may be cheaper for a section over which the bristle relaxes by less than this, in a peak and elsewhere, and
 // the phase and ln(sigma) move by less than SLOW.
 static const double SOFT_IN_PEAK = 2.5;
@@ -12,36 +15,36 @@ static const double SOFT = 40.0;
 static const double SLOW = 15.0;
 // Where the bristle may relax by this much, sigma is sampled in the section: it may be many times that at the interval's
 // start.
-static const double MATTERS = 0.5;
+static const double WORTH_SAMPLING = 0.5;
 // A peak adds this to the change over a panel, beyond its width.
 static const double PEAK_CHANGE = 2.0;
-// n nodes resolve e^z where z is less than half of n.
+// n nodes resolve e^z where z is less than half of n (panels/judge.c); a little less, as z is an estimate here.
 static const double RESOLVED = 0.47;
 // The time of Radau panels, over that of a Gauss panel of 4 nodes: of those between two reversals half a period apart, up to
 // FEW_DECADES of accuracy and for each decade more; and of one panel.
-static const double RADAU = 7.0;
+static const double TIME_OF_RADAU = 7.0;
 static const double FEW_DECADES = 3.0;
-static const double RADAU_FOR_EACH = 2.3;
-static const double RADAU_PANEL = 2.3;
-// phi, half of the angle [rad] by which the vibration turns, of half a period.
+static const double TIME_FOR_EACH_DECADE = 2.3;
+static const double TIME_OF_RADAU_PANEL = 2.3;
+// phi, half of the angle [rad] by which the vibration turns, of half a period. Derived: pi / 2.
 static const double PHI_OF_HALF_PERIOD = 0.5 * FC_PI;
 
-// A panel that lasts for a whole stretch is accurate up to a tolerance of 10^-(one + phi sqrt(phi) + mu sqrt(mu) +
-// z sqrt(z)), about, with a scatter of half a decade (4 nodes) to one and a half (12): a plan of cost, judged afterwards. time: of a panel, over that
-// of 4 nodes.
-enum { RULES = 4 };
+// n nodes are accurate over a whole stretch at tolerances down to 10^(one + a sqrt(phi) + b sqrt(mu) + c sqrt(z)), about, a, b and c
+// standing under phi, mu and z: fitted by least squares to random panels, with a scatter of half a decade (4 nodes) to one and a half
+// (12). The program of that fit is not kept, since an error of the plan costs tries alone. time: of a panel, over that of 4 nodes.
+enum { PLANNED_RULES = 4 };
 static const struct {
     int nodes;
     double time;
     double one, phi, mu, z;
-} RULE[RULES] = {
+} PLAN[PLANNED_RULES] = {
     {4, 1.00, -4.44, 2.14, 0.42, 0.65},
     {6, 1.25, -10.16, 5.06, 0.99, 1.91},
     {8, 1.40, -15.04, 6.49, 1.65, 3.05},
     {12, 1.93, -19.12, 6.23, 2.21, 3.30},
 };
 
-// The mean sees each of n pieces by its share of the stretch, so each may have SPARED[n] decades of accuracy less.
+// The mean sees each of n pieces by its share of the stretch, so each may have SPARED[n] decades of accuracy less. Derived: lg n.
 enum { MOST_PIECES = 12 };
 static const double SPARED[MOST_PIECES + 1] = {0, 0, .3, .48, .6, .7, .78, .85, .9, .95, 1, 1.04, 1.08};
 
@@ -78,7 +81,7 @@ static void find_relaxation(const FcStretch* stretch, FcSection* section, double
     const double X = fabs(fc_stretch_displacement(stretch, section->start, section->end));
     const double z = stretch->per_path * X;
     const double most = interval->stiffness / interval->limit * X;
-    section->is_measured = !section->in_peak && most > MATTERS && z < SOFT;
+    section->is_measured = !section->in_peak && most > WORTH_SAMPLING && z < SOFT;
     section->z = section->is_measured ? measured(section, evaluations) : (FcRelaxation){z, z, z};
 }
 
@@ -110,32 +113,32 @@ int fc_sections(const FcStretch* stretch, FcSection* sections, double* evaluatio
     return count;
 }
 
-// The first rule whose estimate will be small enough; RULES if there is none.
+// The first rule whose estimate will be small enough; PLANNED_RULES if there is none.
 static int rule_for(double phi, double mu, double z, double decades) {
     const double root_phi = sqrt(phi);
     const double root_mu = sqrt(mu);
     const double root_z = sqrt(z);
-    for (int i = 0; i < RULES; i++) {
+    for (int i = 0; i < PLANNED_RULES; i++) {
         const double of_estimate =
-            RULE[i].one + RULE[i].phi * root_phi + RULE[i].mu * root_mu + RULE[i].z * root_z;
-        if (of_estimate < -decades && z < RESOLVED * RULE[i].nodes) {
+            PLAN[i].one + PLAN[i].phi * root_phi + PLAN[i].mu * root_mu + PLAN[i].z * root_z;
+        if (of_estimate < -decades && z < RESOLVED * PLAN[i].nodes) {
             return i;
         }
     }
-    return RULES;
+    return PLANNED_RULES;
 }
 
 FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades) {
-    const double of_half_period = RADAU + RADAU_FOR_EACH * fc_most(0.0, decades - FEW_DECADES);
+    const double of_half_period = TIME_OF_RADAU + TIME_FOR_EACH_DECADE * fc_most(0.0, decades - FEW_DECADES);
     double least =
-        fc_most(RADAU_PANEL, of_half_period * fc_least(1.0, fc_most(phi, mu) / PHI_OF_HALF_PERIOD));
+        fc_most(TIME_OF_RADAU_PANEL, of_half_period * fc_least(1.0, fc_most(phi, mu) / PHI_OF_HALF_PERIOD));
     FcGaussPieces cheapest = {0, FC_GAUSS_MOST_NODES};
-    for (int n = 1; n <= MOST_PIECES && n * RULE[0].time < least; n++) {
+    for (int n = 1; n <= MOST_PIECES && n * PLAN[0].time < least; n++) {
         const double of_piece = n == 1 ? z->whole : n == 2 ? z->half : z->fastest / n;
         const int i = rule_for(phi / n, mu / n, of_piece, decades - SPARED[n]);
-        if (i < RULES && n * RULE[i].time < least) {
-            least = n * RULE[i].time;
-            cheapest = (FcGaussPieces){n, RULE[i].nodes};
+        if (i < PLANNED_RULES && n * PLAN[i].time < least) {
+            least = n * PLAN[i].time;
+            cheapest = (FcGaussPieces){n, PLAN[i].nodes};
         }
     }
     return cheapest;

@@ -27,6 +27,7 @@ typedef struct {
     bool soft;        // Gauss panels may be cheaper
 } FcSection;
 
+// A peak, what is between, a peak.
 enum { FC_MOST_SECTIONS = 3 };
 
 // How many sections the stretch has. Adds to *evaluations what it takes.

@@ -14,6 +14,7 @@
 
 #include "solver/stretches/stretch.h"
 
+// Of that rule. By hand: the largest there is (gauss_rule.h); error_of_rule is fitted for it.
 enum { FC_LAG_NODES = 12 };
 
 // Where the bristle follows its limit, from here to there, the stretch's end or before.

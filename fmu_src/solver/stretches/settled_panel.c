@@ -6,11 +6,12 @@
 #include "solver/budget.h"
 #include "solver/stretches/settled_lag.h"
 
-// A transient of this much of the force is there where the bristle is told to have settled.
-static const double ROUNDING = 4e-16;
-// The integral of x / (x + tau) over a duration is at least this part, ln 2, of the smaller of x and the duration.
+// Two roundings of the force: no transient is taken to be smaller, and none to be 0, by which is divided.
+static const double LEAST_TRANSIENT = 4e-16;
+// The integral of x / (x + tau) over a duration is at least this part of the smaller of x and the duration. Derived: ln 2.
 static const double LEAST_FADING = 0.69;
-// A layer at the end that is no longer than this part of the span may be resolved by the poles of the lag.
+// A layer at the end that is no longer than this part of the span may be resolved by the poles of the lag. By hand: costs tries,
+// not accuracy.
 static const double LONGEST_LAYER = 0.02;
 
 // Where and of what the panel begins, and where it ends.
@@ -131,7 +132,8 @@ static Settled settled(const Span* span, double too_long, Course* course) {
     // What is left of the Stribeck curve counts as a transient.
     const double lag = at->lag + fabs(span->limit / interval->scene->F_C - 1.0);
     const double of_heat = fc_most(1.0, lag); // which goes with the square of the force
-    const double allowed_changes = allowed_time * at->rate * at->rate / (lag * of_heat + ROUNDING); // 1/s
+    const double allowed_changes =
+        allowed_time * at->rate * at->rate / (lag * of_heat + LEAST_TRANSIENT); // 1/s
     if (pace + 1.0 / after > allowed_changes) {
         return NOT_SETTLED;
     }
