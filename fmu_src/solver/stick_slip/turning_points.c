@@ -69,6 +69,7 @@ void fc_turning_points_start(FcTurningPoints* points, const FcScene* scene, doub
     points->event = (FcDriveEvent){.time = 0.0};
     points->sample[0] = fc_turning_points_motion(points, 0.0);
     points->smooth_time = fc_bound_common_smooth_time(scene, end);
+    points->peak_time = 0.0;
     points->speed = fc_drive_largest_speed(&scene->drive, end);
 }
 
@@ -305,7 +306,9 @@ static void take_samples(FcTurningPoints* points) {
             points->sample[points->sample_count].t = end;
         }
     } else {
-        const double t = start.t + CELL * fc_bound_smooth_time(points->law, start.t, start.d, start.d_rate);
+        const double smooth_time = fc_bound_smooth_time(points->law, &start);
+        points->peak_time = fc_has_stribeck_curve(points->law->friction) ? smooth_time : 0.0;
+        const double t = start.t + CELL * smooth_time;
         *next = fc_turning_points_motion(points, t > start.t && t < end ? t : end);
     }
     FcBoundMotion* last = &points->sample[points->sample_count];
@@ -327,9 +330,6 @@ static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     const double reach = points->speed * (end->t - start->t);
     const double bound = LEAST_BOUND * start->D;
     const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
-    points->peak_time = fc_has_stribeck_curve(points->law->friction)
-                            ? fc_bound_smooth_time(points->law, start->t, start->d, start->d_rate)
-                            : 0.0;
     const double on_bound = (1.0 - NEAR_BOUND) * start->D;
     const bool may_be_on[2] = {highest >= on_bound, lowest <= -on_bound};
     const int first = may_be_on[1] ? 1 : 0;
