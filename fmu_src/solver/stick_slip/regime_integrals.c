@@ -70,10 +70,11 @@ static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
     const FcScene* scene = integrator->scene;
     double smooth_time = integrator->smooth_time;
     if (!(smooth_time > 0.0)) {
+        const FcPhase at_t = fc_drive_phase(&scene->drive, t);
         const FcBoundMotion at = {.t = t,
-                                  .V = fc_drive_V(&scene->drive, t),
-                                  .d = fc_scene_d(scene, t),
-                                  .d_rate = fc_scene_d_rate(scene, t)};
+                                  .V = fc_drive_V_at_phase(&scene->drive, t, at_t),
+                                  .d = fc_scene_d_at_phase(scene, t, at_t),
+                                  .d_rate = fc_scene_d_rate_at_phase(scene, t, at_t)};
         smooth_time = fc_bound_smooth_time(scene, &at);
     }
     const double left = end - t;

@@ -234,12 +234,11 @@ static double dividing_time(const FcTurningPoints* points, const FcBoundMotion* 
 // Adds the turning points of a bound between two samples: from left to right, dividing as needed.
 static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* start,
                       const FcBoundMotion* end) {
-    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND) || stands_still(points, start, end, which)) {
+    const bool keeps_sign = (approach(points, start, which) < 0.0) == (approach(points, end, which) < 0.0);
+    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND) ||
+        (keeps_sign && !may_turn_between(points, start, end, which)) ||
+        stands_still(points, start, end, which)) {
         return; // nothing is met, or it makes no difference
-    }
-    if (!may_turn_between(points, start, end, which)) {
-        add_turn(points, which, may_be_on_bound, start, end);
-        return;
     }
     const int before = points->turn_count;
     FcBoundMotion left = *start;
@@ -318,6 +317,14 @@ static void take_samples(FcTurningPoints* points) {
     points->evaluations += points->sample_count;
 }
 
+// Whether D rises all the time between the samples. A bristle that relaxes then meets no bound: its k is at least 1, so that
+// either comes nearer by -D' at the most; and D' has no Stribeck peak. Both must recede at the start too, by which the piece
+// is judged: where D hardly moves that is a matter of V, which may not have turned yet but for rounding.
+static bool rises(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b) {
+    return a->D_rate > 0.0 && b->D_rate > 0.0 && !nears(points, a, 0) && !nears(points, a, 1) &&
+           !may_turn_within(a->D_rate, b->D_rate, a->D_curvature, b->D_curvature, b->t - a->t);
+}
+
 static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     if (points->ahead == points->sample_count) {
         take_samples(points);
@@ -327,6 +334,9 @@ static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     points->at = start;
     points->turn_count = 0;
     points->next_turn = 0;
+    if (points->relaxes && rises(points, start, end)) {
+        return;
+    }
     const double reach = points->speed * (end->t - start->t);
     const double bound = LEAST_BOUND * start->D;
     const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
