@@ -34,7 +34,7 @@ FUZZERS = {"call_sequence": 100, "model_exchange": 160, "state_bytes": 900}  # n
 OF_LIBRARY = ("tests/fmi2", "tests/solver", "tests/physics", "tests/batch", "tests/package", "tests/paper")
 LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
 LEAST_BRANCHES = 95.0  # percent of the branches of fmu_src/solver that the hunt's corpus takes
-# What no sequence can lead to: failures of CVODE and of memory, numbers that overflow, and the limit of evaluations.
+# What no sequence leads to: failures of CVODE and of memory, numbers that overflow, the limit of evaluations.
 FAILURES = (
     r".*(assert|FC_MOST_EVALUATIONS|CV\w*_SUCCESS|isfinite\((y|sum)\."
     r"|!?solver->(y|dense|matrix|linear_solver|cvode)\b).*"
