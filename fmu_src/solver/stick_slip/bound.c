@@ -27,11 +27,12 @@ bool fc_bound_is_constant(const FcScene* scene) {
 }
 
 bool fc_bound_may_fall(const FcScene* scene) {
+    assert(!fc_has_stribeck_curve(scene->friction));
     const FcDrive* drive = &scene->drive;
     if (fc_bound_is_constant(scene)) {
         return false;
     }
-    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0 || fc_has_stribeck_curve(scene->friction)) {
+    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {
         return true;
     }
     const double apart = scene->floats ? -drive->load.rate : drive->d.rate; // the way that d goes

@@ -59,7 +59,7 @@ double fc_bound_loss(const FcBoundMotion* at, double delta);
 // Whether D stands still over the step.
 bool fc_bound_is_constant(const FcScene* scene);
 
-// Whether D may fall in the step.
+// Whether D may fall in the step, without a Stribeck curve: of the bound of a law that relaxes.
 bool fc_bound_may_fall(const FcScene* scene);
 
 #endif
