@@ -86,6 +86,11 @@ static double rate_error(const ReferenceScene* s, const ReferenceStep* now, doub
     if (now->gap_start > 0.0 && now->gap_start < 8.0 * x * now->sigma * top) { // it meets its bound soon
         return -1.0;
     }
+    // A limit that follows the load binds the bristle of Dahl and LuGre as well, without a jump of F_t.
+    const double left = s->staticRatio * now->limit - now->largest;
+    if (isinf(now->gap_start) && s->limit == LIMIT_LOAD && left < 8.0 * x * pace * largest) {
+        return -1.0;
+    }
     for (int k = 0; k < 4; k++) {
         force[k] = force_after(s, (k + 1) * x);
     }
