@@ -65,10 +65,19 @@ Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const F
     return errors;
 }
 
-double judge_ratio(const Errors* errors, const ReferenceStep* truth, double tolerance, int* which) {
+// How many times as large E, the load or the least separation is at the start as at the end, if one of them falls.
+static double fall(const ReferenceScene* s) {
+    const double d_end = s->d + s->d_rate * s->h - s->a_d;
+    const double of_surfaces = fmax(s->E / (s->E + s->E_rate * s->h), s->d / d_end);
+    return fmax(1.0, fmax(of_surfaces, s->load / (s->load + s->load_rate * s->h)));
+}
+
+double judge_ratio(const ReferenceScene* s, const Errors* errors, const ReferenceStep* truth,
+                   double tolerance, int* which) {
     const double force =
         fmax(fmax(truth->largest, fabs(truth->F_t_start)), fmax(fabs(truth->F_t), fabs(truth->F_t_mean)));
-    const double granted = fmax(fmax(tolerance, FLOOR), FLOOR_OF_FORCE * force / truth->scale);
+    const double digits = fmax(FLOOR_OF_FORCE, 4.0 * DBL_EPSILON * fall(s));
+    const double granted = fmax(fmax(tolerance, FLOOR), digits * force / truth->scale);
     double worst = -1.0;
     for (int k = 0; k < JUDGED; k++) {
         if (errors->error[k] / granted > worst) {

@@ -108,7 +108,7 @@ static double difference(const ReferenceScene* scene, const ReferenceStep* frame
     }
     const Errors errors = judge_errors(scene, &as_truth, step, tolerance);
     int which = 0;
-    return judge_ratio(&errors, &as_truth, tolerance, &which);
+    return judge_ratio(scene, &errors, &as_truth, tolerance, &which);
 }
 
 double relation_ratio(int relation, const ReferenceScene* scene, const ReferenceStep* truth, int method,

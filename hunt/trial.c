@@ -121,7 +121,7 @@ Verdict trial_verdict(const Trial* trial, int k, int method, double tolerance) {
     }
     if (taken->graded) {
         const Errors errors = judge_errors(&taken->scene, &taken->truth, &taken->step, tolerance);
-        verdict.ratio = judge_ratio(&errors, &taken->truth, tolerance, &verdict.of);
+        verdict.ratio = judge_ratio(&taken->scene, &errors, &taken->truth, tolerance, &verdict.of);
     }
     if (!(taken->derivatives <= fmax(1.0, verdict.ratio))) {
         verdict.ratio = taken->derivatives;
@@ -161,7 +161,7 @@ static double ratio_of_reference(const TrialStep* taken, const ReferenceScene* o
                              .F_t_start = found.F_t_start};
     const Errors errors = judge_errors(&taken->scene, &taken->truth, &as_step, tolerance);
     int which = 0;
-    return judge_ratio(&errors, &taken->truth, tolerance, &which);
+    return judge_ratio(&taken->scene, &errors, &taken->truth, tolerance, &which);
 }
 
 // Whether a start that is moved by the rounding of times, earlier or later, explains a fifth of the error.
