@@ -26,9 +26,7 @@ static void panels_resolve_what_relaxes(void) {
         if (plan.count == 0) {
             continue;
         }
-        const double most = plan.count == 1   ? z.whole
-                            : plan.count == 2 ? z.half
-                                                : z.fastest / plan.count;
+        const double most = plan.count == 1 ? z.whole : plan.count == 2 ? z.half : z.fastest / plan.count;
         CHECK(plan.nodes > 2.0 * most);
     }
 }

@@ -37,8 +37,8 @@ typedef struct {
     FcPanel panel;       // the last one
     // Judged Gauss panels.
     FcGaussPlan plan; // of the section
-    double h;             // s, of the next one
-    int nodes;            // of the next one
+    double h;         // s, of the next one
+    int nodes;        // of the next one
     // Radau and settled panels.
     FcPlace at;
     double missed;   // m, of the path
