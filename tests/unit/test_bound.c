@@ -179,7 +179,8 @@ static void smooth_times(void) {
         if (!(d > 0.0)) {
             continue;
         }
-        const double x = fc_bound_smooth_time(&scene, 0.0, d, d_rate);
+        const FcBoundMotion at = {.V = 0.1 + vibration.V_1 * cos(drive.theta_0), .d = d, .d_rate = d_rate};
+        const double x = fc_bound_smooth_time(&scene, &at);
         if (fc_scene_stiffness_is_constant(&scene) && fc_scene_limit_is_constant(&scene)) {
             const double expected = with_stribeck_curve(&scene, 1.0 / drive.omega);
             CHECK(x == expected || fabs(x / expected - 1.0) < 1e-12);

@@ -17,6 +17,7 @@ import random
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -32,6 +33,12 @@ FUZZERS = {"call_sequence": 100, "model_exchange": 160, "state_bytes": 900}  # n
 # or start something of their own; times; and the references, which load no FMU.
 OF_LIBRARY = ("tests/fmi2", "tests/solver", "tests/physics", "tests/batch", "tests/package", "tests/paper")
 LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
+LEAST_BRANCHES = 95.0  # percent of the branches of fmu_src/solver that the hunt's corpus takes
+# What no sequence leads to: failures of CVODE and of memory, numbers that overflow, the limit of evaluations.
+FAILURES = (
+    r".*(assert|FC_MOST_EVALUATIONS|CV\w*_SUCCESS|isfinite\((y|sum)\."
+    r"|!?solver->(y|dense|matrix|linear_solver|cvode)\b).*"
+)
 
 
 class Skipped(Exception):
@@ -236,6 +243,18 @@ def check_coverage(extent: Extent) -> None:
     _run([*gcovr, "--print-summary", "--fail-under-line", str(LEAST_LINES)])
 
 
+def check_hunt_coverage(extent: Extent) -> None:
+    """Branches of fmu_src/solver that the corpus of the guided hunt takes by itself, failures left out."""
+    folder = build_targets("coverage", ["replay_hunt"])
+    for counts in folder.rglob("*.gcda"):
+        counts.unlink()
+    with tempfile.TemporaryDirectory() as inputs:
+        _run([str(folder / "hunt/replay_hunt"), *write_hunt_corpus(Path(inputs))])
+    gcovr = [sys.executable, "-m", "gcovr", "--root", ".", "--filter", "fmu_src/solver/", str(folder)]
+    options = ["--txt-metric=branch", "--print-summary", f"--exclude-branches-by-pattern={FAILURES}"]
+    _run([*gcovr, *options, "--fail-under-branch", str(LEAST_BRANCHES)])
+
+
 def write_bad_input(extent: Extent) -> None:
     """Writes docs/bad-input.md anew from the tests' bad calls."""
     build_fmu()
@@ -250,6 +269,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "soak": check_soak,
     "hunt": check_hunt,
     "hunt-guided": check_hunt_guided,
+    "hunt-coverage": check_hunt_coverage,
     "advice": check_advice,
     "leaks": check_leaks,
     "coverage": check_coverage,

@@ -87,10 +87,7 @@ double fc_method_start(const FcScene* scene, double delta) {
 
 double fc_method_settled(const FcScene* scene, const FcSolverOptions* options, double delta_0,
                          double* evaluations) {
-    assert(!fc_drive_is_linear(&scene->drive));
-    if (scene->friction->model == FC_COULOMB) {
-        return 0.0;
-    }
+    assert(!fc_drive_is_linear(&scene->drive) && scene->friction->model != FC_COULOMB);
     const double start = fc_method_start(scene, delta_0);
     if (fc_drive_vibrates(&scene->drive)) {
         const double settled = fc_periods_settled(integration(scene), scene, options, start, evaluations);

@@ -18,8 +18,8 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
 double fc_method_start(const FcScene* scene, double delta);
 
 // The deflection [m] that delta_0 [m] tends to after infinitely many periods of a scene with held inputs, at the phase
-// of its start; without vibration after sliding for ever. delta_0 where nothing moves. Adds what it spends to
-// *evaluations.
+// of its start; without vibration after sliding for ever. delta_0 where nothing moves. Not for Coulomb's law, which has none.
+// Adds what it spends to *evaluations.
 double fc_method_settled(const FcScene* scene, const FcSolverOptions* options, double delta_0,
                          double* evaluations);
 

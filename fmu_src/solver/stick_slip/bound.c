@@ -27,11 +27,12 @@ bool fc_bound_is_constant(const FcScene* scene) {
 }
 
 bool fc_bound_may_fall(const FcScene* scene) {
+    assert(!fc_has_stribeck_curve(scene->friction));
     const FcDrive* drive = &scene->drive;
     if (fc_bound_is_constant(scene)) {
         return false;
     }
-    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0 || fc_has_stribeck_curve(scene->friction)) {
+    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {
         return true;
     }
     const double apart = scene->floats ? -drive->load.rate : drive->d.rate; // the way that d goes
@@ -75,12 +76,12 @@ static double time_to_pole(const FcScene* scene, double t, double d, double d_ra
 // Beyond this velocity, over V_S, the Stribeck curve is 1 in rounding. Derived: e^(-6^2) is one eps.
 static const double END_OF_PEAK = 6.0;
 
-// The time [s] from t on over which V moves by half of V_S, or until it may be back at the Stribeck curve's peak.
-static double stribeck_time(const FcScene* scene, double t) {
+// The time [s] from now on over which V moves by half of V_S, or until it may be back at the Stribeck curve's peak.
+static double stribeck_time(const FcScene* scene, double V) {
     const FcDrive* drive = &scene->drive;
     const double V_S = scene->friction->V_S;
     const double fastest = fabs(drive->V.rate) + drive->vibration.V_1 * drive->omega; // m/s2
-    const double beyond = fabs(fc_drive_V(drive, t)) - END_OF_PEAK * V_S;
+    const double beyond = fabs(V) - END_OF_PEAK * V_S;
     return fmax(0.5 * V_S, WAY_TO_RETURN * beyond) / fastest;
 }
 
@@ -108,9 +109,10 @@ static double smooth_time_of_contact(const FcScene* scene, double t, double d, d
     return fmin(pole, time);
 }
 
-double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_rate) {
-    const double time = smooth_time_of_contact(scene, t, d, d_rate);
-    return fc_has_stribeck_curve(scene->friction) ? 1.0 / (1.0 / time + 1.0 / stribeck_time(scene, t)) : time;
+double fc_bound_smooth_time(const FcScene* scene, const FcBoundMotion* at) {
+    const double time = smooth_time_of_contact(scene, at->t, at->d, at->d_rate);
+    return fc_has_stribeck_curve(scene->friction) ? 1.0 / (1.0 / time + 1.0 / stribeck_time(scene, at->V))
+                                                  : time;
 }
 
 double fc_bound_common_smooth_time(const FcScene* scene, double h) {
@@ -182,7 +184,7 @@ static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
         return;
     }
     const double log_rate = log_rate_at(scene, t);
-    const double tau = DIFFERENCE_STEP * fc_bound_smooth_time(scene, t, at->d, at->d_rate);
+    const double tau = DIFFERENCE_STEP * fc_bound_smooth_time(scene, at);
     const double log_curvature =
         isfinite(tau) ? (log_rate_at(scene, t + tau) - log_rate_at(scene, t - tau)) / (2.0 * tau) : 0.0;
     at->D_rate = at->D * log_rate;

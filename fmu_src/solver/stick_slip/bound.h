@@ -44,9 +44,9 @@ FcBoundMotion fc_bound_nearby(const FcScene* scene, const FcBoundMotion* at, dou
 // Of a bound that stands still: the phase, V and its rate; the rest stays as it was.
 FcBoundMotion fc_bound_standing(const FcScene* scene, const FcBoundMotion* at, double t);
 
-// The time [s] from t on over which the phase, ln sigma and ln g move by 1 at the most, and V by half of V_S where a
-// Stribeck curve counts, at the separation d [m] and its rate [m/s].
-double fc_bound_smooth_time(const FcScene* scene, double t, double d, double d_rate);
+// The time [s] from at->t on over which the phase, ln sigma and ln g move by 1 at the most, and V by half of V_S where a
+// Stribeck curve counts; t, V, d and d_rate are what it takes.
+double fc_bound_smooth_time(const FcScene* scene, const FcBoundMotion* at);
 
 // A time that is no longer than that anywhere in [0, h]; 0 where that is of no use: where it would be much shorter than at
 // other places, without vibration, with a Stribeck curve, and where the inputs E or load move.
@@ -59,7 +59,7 @@ double fc_bound_loss(const FcBoundMotion* at, double delta);
 // Whether D stands still over the step.
 bool fc_bound_is_constant(const FcScene* scene);
 
-// Whether D may fall in the step.
+// Whether D may fall in the step, without a Stribeck curve: of the bound of a law that relaxes.
 bool fc_bound_may_fall(const FcScene* scene);
 
 #endif

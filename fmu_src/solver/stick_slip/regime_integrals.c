@@ -68,10 +68,15 @@ static FcIntegrator where_it_grazes(const FcIntegrator* integrator, double start
 
 static Panel panel_at(const FcIntegrator* integrator, double t, double end) {
     const FcScene* scene = integrator->scene;
-    const double smooth_time =
-        integrator->smooth_time > 0.0
-            ? integrator->smooth_time
-            : fc_bound_smooth_time(scene, t, fc_scene_d(scene, t), fc_scene_d_rate(scene, t));
+    double smooth_time = integrator->smooth_time;
+    if (!(smooth_time > 0.0)) {
+        const FcPhase at_t = fc_drive_phase(&scene->drive, t);
+        const FcBoundMotion at = {.t = t,
+                                  .V = fc_drive_V_at_phase(&scene->drive, t, at_t),
+                                  .d = fc_scene_d_at_phase(scene, t, at_t),
+                                  .d_rate = fc_scene_d_rate_at_phase(scene, t, at_t)};
+        smooth_time = fc_bound_smooth_time(scene, &at);
+    }
     const double left = end - t;
     const double longest = fmin(LONGEST[GAUSS_RULES - 1][integrator->digits] * smooth_time,
                                 longest_before_pole(&scene->drive, t));

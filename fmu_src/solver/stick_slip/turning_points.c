@@ -75,6 +75,7 @@ void fc_turning_points_start(FcTurningPoints* points, const FcScene* scene, doub
     points->event = (FcDriveEvent){.time = 0.0};
     points->sample[0] = fc_turning_points_motion(points, 0.0);
     points->smooth_time = fc_bound_common_smooth_time(scene, end);
+    points->peak_time = 0.0;
     points->speed = fc_drive_largest_speed(&scene->drive, end);
 }
 
@@ -239,12 +240,11 @@ static double dividing_time(const FcTurningPoints* points, const FcBoundMotion* 
 // Adds the turning points of a bound between two samples: from left to right, dividing as needed.
 static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* start,
                       const FcBoundMotion* end) {
-    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND) || stands_still(points, start, end, which)) {
+    const bool keeps_sign = (approach(points, start, which) < 0.0) == (approach(points, end, which) < 0.0);
+    if (!(start->D < FC_NO_BOUND || end->D < FC_NO_BOUND) ||
+        (keeps_sign && !may_turn_between(points, start, end, which)) ||
+        stands_still(points, start, end, which)) {
         return; // nothing is met, or it makes no difference
-    }
-    if (!may_turn_between(points, start, end, which)) {
-        add_turn(points, which, may_be_on_bound, start, end);
-        return;
     }
     const int before = points->turn_count;
     FcBoundMotion left = *start;
@@ -311,7 +311,9 @@ static void take_samples(FcTurningPoints* points) {
             points->sample[points->sample_count].t = end;
         }
     } else {
-        const double t = start.t + CELL * fc_bound_smooth_time(points->law, start.t, start.d, start.d_rate);
+        const double smooth_time = fc_bound_smooth_time(points->law, &start);
+        points->peak_time = fc_has_stribeck_curve(points->law->friction) ? smooth_time : 0.0;
+        const double t = start.t + CELL * smooth_time;
         *next = fc_turning_points_motion(points, t > start.t && t < end ? t : end);
     }
     FcBoundMotion* last = &points->sample[points->sample_count];
@@ -319,6 +321,14 @@ static void take_samples(FcTurningPoints* points) {
         last->V = 0.0; // and no rounding, beside which D' may be nothing
     }
     points->evaluations += points->sample_count;
+}
+
+// Whether D rises all the time between the samples. A bristle that relaxes then meets no bound: its k is at least 1, so that
+// either comes nearer by -D' at the most; and D' has no Stribeck peak. Both must recede at the start too, by which the piece
+// is judged: where D hardly moves that is a matter of V, which may not have turned yet but for rounding.
+static bool rises(const FcTurningPoints* points, const FcBoundMotion* a, const FcBoundMotion* b) {
+    return a->D_rate > 0.0 && b->D_rate > 0.0 && !nears(points, a, 0) && !nears(points, a, 1) &&
+           !may_turn_within(a->D_rate, b->D_rate, a->D_curvature, b->D_curvature, b->t - a->t);
 }
 
 static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
@@ -330,12 +340,12 @@ static void enter_cell(FcTurningPoints* points, double lowest, double highest) {
     points->at = start;
     points->turn_count = 0;
     points->next_turn = 0;
+    if (points->relaxes && rises(points, start, end)) {
+        return;
+    }
     const double reach = points->speed * (end->t - start->t);
     const double bound = LEAST_BOUND * start->D;
     const bool reachable[2] = {fmax(highest, -bound) + reach >= bound, fmin(lowest, bound) - reach <= -bound};
-    points->peak_time = fc_has_stribeck_curve(points->law->friction)
-                            ? fc_bound_smooth_time(points->law, start->t, start->d, start->d_rate)
-                            : 0.0;
     const double on_bound = (1.0 - NEAR_BOUND) * start->D;
     const bool may_be_on[2] = {highest >= on_bound, lowest <= -on_bound};
     const int first = may_be_on[1] ? 1 : 0;
