@@ -92,7 +92,8 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message);
 void fc_friction_contact_free(FcFrictionContact* contact); // frees what the two above allocated
 
-// Advances from t to t + h [s], h >= 0. The inputs move at next_rate and stay where they end.
+// Advances from t to t + h [s]; refuses an h below 0 or subnormal, and an end that is no finite number. The inputs move at
+// next_rate and stay where they end. With h = 0 time stands still: F_t_mean is F_t, and next_rate is used up as by any step.
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
 
 // Recomputes F_t, F_n, sigma, A_r from the state and the present inputs and parameters, whose combination it checks

@@ -1,5 +1,6 @@
-// Derivatives in time (of inputs, given; of F_t, exact) and of outputs and rates with respect to inputs and states
-// (analytic).
+// Derivatives in time, in co-simulation: of inputs, given, and of F_t. Directional ones of outputs and rates: by V, d, E and load
+// from initialization mode on, in model exchange by the states too. All are formulas but F_t_settled's (settled_force.c) and,
+// in co-simulation, what the damping of a bristle that slips adds to those of F_t: differences (model/derivatives.c).
 #include <math.h>
 
 #include "fmi2/instance.h"

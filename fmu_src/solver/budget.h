@@ -13,8 +13,9 @@
 //     settled panel            0.3                                                  terms of higher order
 //     Stribeck peak            a hundredth beyond its edges                         the sum over the peaks of a step
 //
-// An estimate that is too small matters less for the mean, where it is one of many panels, than at the end. Of a judged panel
-// that relaxes by z < 1 a Radau panel may use z times its share, a Gauss panel z times that at the end (panels/judge.c).
+// An estimate that is too small matters less for the mean, where it is one of many panels, than at the end. Where z < 1 a judged
+// Radau panel may use z times its shares, a judged Gauss panel all of its share in the mean and z times it at the end
+// (panels/judge.c).
 #ifndef FC_SOLVER_BUDGET_H
 #define FC_SOLVER_BUDGET_H
 

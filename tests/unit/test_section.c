@@ -16,20 +16,18 @@ static const double HALF_PERIOD = 25e-6;
 static FcRelaxation evenly(double z) { return (FcRelaxation){z, 0.5 * z, z}; }
 
 // A panel of z resolves e^z with more than 2 z nodes.
-static void pieces_resolve_what_relaxes(void) {
+static void panels_resolve_what_relaxes(void) {
     for (int k = 0; k < 2000; k++) {
         const double whole = random_log(1e-3, 60.0);
         const double more = 0.5 + 0.5 * random_01();
         const FcRelaxation z = {whole, more * whole, whole * (1.0 + random_01())};
         const double decades = 2.0 + 10.0 * random_01();
-        const FcGaussPieces pieces = fc_gauss_pieces(3.0 * random_01(), 3.0 * random_01(), &z, decades);
-        if (pieces.count == 0) {
+        const FcGaussPlan plan = fc_gauss_plan(3.0 * random_01(), 3.0 * random_01(), &z, decades);
+        if (plan.count == 0) {
             continue;
         }
-        const double most = pieces.count == 1   ? z.whole
-                            : pieces.count == 2 ? z.half
-                                                : z.fastest / pieces.count;
-        CHECK(pieces.nodes > 2.0 * most);
+        const double most = plan.count == 1 ? z.whole : plan.count == 2 ? z.half : z.fastest / plan.count;
+        CHECK(plan.nodes > 2.0 * most);
     }
 }
 
@@ -37,21 +35,21 @@ static void more_decades_take_more_nodes(void) {
     double before = 0.0;
     for (double decades = 2.0; decades <= 12.0; decades += 1.0) {
         const FcRelaxation z = evenly(2.0);
-        const FcGaussPieces pieces = fc_gauss_pieces(1.57, 1.0, &z, decades);
-        CHECK(pieces.count > 0 && pieces.count * pieces.nodes >= before);
-        before = pieces.count * pieces.nodes;
+        const FcGaussPlan plan = fc_gauss_plan(1.57, 1.0, &z, decades);
+        CHECK(plan.count > 0 && plan.count * plan.nodes >= before);
+        before = plan.count * plan.nodes;
     }
     const FcRelaxation little = evenly(1e-4);
-    CHECK(fc_gauss_pieces(0.1, 0.0, &little, 3.0).count == 1);
-    CHECK(fc_gauss_pieces(0.1, 0.0, &little, 3.0).nodes == 4);
+    CHECK(fc_gauss_plan(0.1, 0.0, &little, 3.0).count == 1);
+    CHECK(fc_gauss_plan(0.1, 0.0, &little, 3.0).nodes == 4);
 }
 
 static void stiff_stretches_are_left_to_radau_panels(void) {
     const FcRelaxation much = evenly(90.0);
     const FcRelaxation unknown = evenly(NAN);
-    CHECK(fc_gauss_pieces(1.57, 1.3, &much, 6.0).count == 0);
-    CHECK(fc_gauss_pieces(1.57, 1.3, &unknown, 6.0).count == 0);
-    CHECK(fc_gauss_pieces(1.57, 1.3, &much, 2.0).count == 0);
+    CHECK(fc_gauss_plan(1.57, 1.3, &much, 6.0).count == 0);
+    CHECK(fc_gauss_plan(1.57, 1.3, &unknown, 6.0).count == 0);
+    CHECK(fc_gauss_plan(1.57, 1.3, &much, 2.0).count == 0);
 }
 
 // Between two reversals, V being a sine that starts at one, of a settled bristle: of the panels that were planned, how many
@@ -82,17 +80,17 @@ static void hardly_a_panel_is_refused(void) {
                                       fmax(fmax(z[0], z[1]), fmax(z[2], z[3]))};
         const double decades = 2.0 + (k % 5);
         const double mu = at_E.decay * vibration.a_d * OMEGA * HALF_PERIOD;
-        const FcGaussPieces pieces = fc_gauss_pieces(0.5 * OMEGA * HALF_PERIOD, mu, &relaxes, decades);
+        const FcGaussPlan plan = fc_gauss_plan(0.5 * OMEGA * HALF_PERIOD, mu, &relaxes, decades);
         const double tolerance = F_C * pow(10.0, -decades);
         double delta = F_C / fc_scene_stiffness(&scene, 0.0); // V goes the other way
-        for (int i = 0; i < pieces.count; i++) {
+        for (int i = 0; i < plan.count; i++) {
             const FcTrajectories from = {.delta_0 = delta, .speed = 1.44};
-            const double h = HALF_PERIOD / pieces.count;
+            const double h = HALF_PERIOD / plan.count;
             FcPanel panel;
-            fc_gauss_panel(&scene, i * h, h, pieces.nodes, &from, &panel);
+            fc_gauss_panel(&scene, i * h, h, plan.nodes, &from, &panel);
             taken++;
             refused +=
-                !fc_gauss_panel_is_accurate(&panel, pieces.nodes, 1.0 / pieces.count, false, 0.0, tolerance);
+                !fc_gauss_panel_is_accurate(&panel, plan.nodes, 1.0 / plan.count, false, 0.0, tolerance);
             delta = (1.0 - panel.map.relaxation) * delta + panel.map.offset;
         }
     }
@@ -101,7 +99,7 @@ static void hardly_a_panel_is_refused(void) {
 }
 
 int main(void) {
-    pieces_resolve_what_relaxes();
+    panels_resolve_what_relaxes();
     more_decades_take_more_nodes();
     stiff_stretches_are_left_to_radau_panels();
     hardly_a_panel_is_refused();

@@ -131,8 +131,9 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     return true;
 }
 
-// The fixed point of the period's map: that of the affine map where it is a free start, else what the nearest free start
-// leads to, which only just touches.
+// The fixed point of the period's map. Where no start is free, periods end alike after MOST_TOUCHES. Where the affine map's fixed
+// point is a free start, it is that. Where it is beyond them, what the nearest free start leads to: that one only just touches,
+// so all starts beyond it end there too, and it is beyond it itself.
 static double settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
                       const FcFreePeriod* free, double delta_0, double* evaluations) {
     if (free->lowest > free->highest) {

@@ -24,7 +24,7 @@
 
 #include "solver/stick_slip/bound.h"
 
-// A stretch of time between turning points or the ends of cells.
+// The time between turning points or the ends of cells.
 typedef struct {
     const FcBoundMotion* start; // both until the next piece is asked for
     const FcBoundMotion* end;

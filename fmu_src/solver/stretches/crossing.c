@@ -36,9 +36,9 @@ typedef struct {
     PanelKind first;     // that may still be tried
     FcPanel panel;       // the last one
     // Judged Gauss panels.
-    FcGaussPieces pieces; // as planned
-    double h;             // s, of the next one
-    int nodes;            // of the next one
+    FcGaussPlan plan; // of the section
+    double h;         // s, of the next one
+    int nodes;        // of the next one
     // Radau and settled panels.
     FcPlace at;
     double missed;   // m, of the path
@@ -91,14 +91,14 @@ static bool take_judged_gauss(Crossing* crossing) {
     const FcSection* section = crossing->section;
     const double length = section->end - section->start;
     if (crossing->t == section->start) {
-        crossing->pieces = fc_section_pieces(crossing->stretch, section);
-        crossing->nodes = crossing->pieces.nodes;
-        crossing->h = length / fmax(1.0, crossing->pieces.count);
+        crossing->plan = fc_section_plan(crossing->stretch, section);
+        crossing->nodes = crossing->plan.nodes;
+        crossing->h = length / fmax(1.0, crossing->plan.count);
     }
-    if (crossing->pieces.count == 0) {
+    if (crossing->plan.count == 0) {
         return false;
     }
-    const double planned = length / crossing->pieces.count;
+    const double planned = length / crossing->plan.count;
     const double t = crossing->t;
     const double left = section->end - t;
     const FcTrajectories from = fc_crossed_trajectories(crossing->crossed);

@@ -9,7 +9,7 @@
 // fitted is chosen by hand.
 //
 // Gauss panels may be cheaper for a section over which the bristle relaxes by less than this, in a peak and elsewhere, and
-// the phase and ln(sigma) move by less than SLOW.
+// the phase and ln(sigma) move by less than SLOW. Less leaves sections to Radau panels that cost more, more plans what is refused.
 static const double SOFT_IN_PEAK = 2.5;
 static const double SOFT = 40.0;
 static const double SLOW = 15.0;
@@ -44,9 +44,9 @@ static const struct {
     {12, 1.93, -19.12, 6.23, 2.21, 3.30},
 };
 
-// The mean sees each of n pieces by its share of the stretch, so each may have SPARED[n] decades of accuracy less. Derived: lg n.
-enum { MOST_PIECES = 12 };
-static const double SPARED[MOST_PIECES + 1] = {0, 0, .3, .48, .6, .7, .78, .85, .9, .95, 1, 1.04, 1.08};
+// The mean sees each of n panels by its share of the stretch, so each may have SPARED[n] decades of accuracy less. Derived: lg n.
+enum { MOST_PANELS = 12 };
+static const double SPARED[MOST_PANELS + 1] = {0, 0, .3, .48, .6, .7, .78, .85, .9, .95, 1, 1.04, 1.08};
 
 // Whether a stretch that is all in a peak goes through so much of it that nodes spread evenly may miss it.
 static bool is_narrow_somewhere(const FcStretch* stretch) {
@@ -128,17 +128,17 @@ static int rule_for(double phi, double mu, double z, double decades) {
     return PLANNED_RULES;
 }
 
-FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades) {
+FcGaussPlan fc_gauss_plan(double phi, double mu, const FcRelaxation* z, double decades) {
     const double of_half_period = TIME_OF_RADAU + TIME_FOR_EACH_DECADE * fc_most(0.0, decades - FEW_DECADES);
     double least =
         fc_most(TIME_OF_RADAU_PANEL, of_half_period * fc_least(1.0, fc_most(phi, mu) / PHI_OF_HALF_PERIOD));
-    FcGaussPieces cheapest = {0, FC_GAUSS_MOST_NODES};
-    for (int n = 1; n <= MOST_PIECES && n * PLAN[0].time < least; n++) {
-        const double of_piece = n == 1 ? z->whole : n == 2 ? z->half : z->fastest / n;
-        const int i = rule_for(phi / n, mu / n, of_piece, decades - SPARED[n]);
+    FcGaussPlan cheapest = {0, FC_GAUSS_MOST_NODES};
+    for (int n = 1; n <= MOST_PANELS && n * PLAN[0].time < least; n++) {
+        const double of_panel = n == 1 ? z->whole : n == 2 ? z->half : z->fastest / n;
+        const int i = rule_for(phi / n, mu / n, of_panel, decades - SPARED[n]);
         if (i < PLANNED_RULES && n * PLAN[i].time < least) {
             least = n * PLAN[i].time;
-            cheapest = (FcGaussPieces){n, PLAN[i].nodes};
+            cheapest = (FcGaussPlan){n, PLAN[i].nodes};
         }
     }
     return cheapest;
@@ -147,13 +147,13 @@ FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, doub
 // The number of nodes for a panel in a peak, over which about this much changes.
 static double nodes_for(double decades, double change) { return 2.0 + 0.6 * decades + 0.5 * change; }
 
-static FcGaussPieces pieces_in_peak(double change, double decades) {
+static FcGaussPlan plan_in_peak(double change, double decades) {
     const double room = fc_most(2.0, FC_GAUSS_MOST_NODES - nodes_for(decades, 0.0));
     const double count = fc_most(1.0, ceil(0.5 * change / room));
-    return (FcGaussPieces){(int)fc_least(count, 1e9), fc_gauss_count(nodes_for(decades, change / count))};
+    return (FcGaussPlan){(int)fc_least(count, 1e9), fc_gauss_count(nodes_for(decades, change / count))};
 }
 
-FcGaussPieces fc_section_pieces(const FcStretch* stretch, const FcSection* section) {
+FcGaussPlan fc_section_plan(const FcStretch* stretch, const FcSection* section) {
     const FcPace* pace = &stretch->interval->pace;
     const double duration = section->end - section->start;
     const double phase = pace->phase * duration;
@@ -161,8 +161,8 @@ FcGaussPieces fc_section_pieces(const FcStretch* stretch, const FcSection* secti
     if (section->in_peak) {
         const double change =
             1.4 * (phase + log_sigma) + 2.0 * section->z.whole + PEAK_CHANGE + stretch->peaks.reach;
-        return pieces_in_peak(change, stretch->peaks.digits);
+        return plan_in_peak(change, stretch->peaks.digits);
     }
     const double decades = fc_digits(stretch->interval->tolerance) - fc_digits(section->share);
-    return fc_gauss_pieces(0.5 * phase, 0.5 * log_sigma, &section->z, decades);
+    return fc_gauss_plan(0.5 * phase, 0.5 * log_sigma, &section->z, decades);
 }

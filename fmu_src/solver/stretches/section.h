@@ -36,13 +36,13 @@ int fc_sections(const FcStretch* stretch, FcSection* sections, double* evaluatio
 typedef struct {
     int count; // of equal lengths; 0 where Radau panels are about cheaper
     int nodes; // 4, 6, 8 or 12
-} FcGaussPieces;
+} FcGaussPlan;
 
 // The Gauss panels for a section of the stretch.
-FcGaussPieces fc_section_pieces(const FcStretch* stretch, const FcSection* section);
+FcGaussPlan fc_section_plan(const FcStretch* stretch, const FcSection* section);
 
 // The same between peaks, by phi, half the angle by which the vibration turns, mu, half of what ln(sigma) may move by, and
 // the decades of accuracy asked for.
-FcGaussPieces fc_gauss_pieces(double phi, double mu, const FcRelaxation* z, double decades);
+FcGaussPlan fc_gauss_plan(double phi, double mu, const FcRelaxation* z, double decades);
 
 #endif
