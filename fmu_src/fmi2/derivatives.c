@@ -1,6 +1,7 @@
 // Derivatives in time, in co-simulation: of inputs, given, and of F_t. Directional ones of outputs and rates: by V, d, E and load
-// from initialization mode on, in model exchange by the states too. All are formulas but F_t_settled's (settled_force.c) and,
-// in co-simulation, what the damping of a bristle that slips adds to those of F_t: differences (model/derivatives.c).
+// from initialization mode on, in model exchange by the states too. All are formulas but F_t_settled's (settled_force.c) and
+// what the rate of a bound adds where the bristle slips, to F_t by its damping, to der(delta) and der(Q_f): central differences
+// (model/derivatives.c).
 #include <math.h>
 
 #include "fmi2/instance.h"

@@ -160,17 +160,17 @@ static double bound_rate_with(const FcScene* scene, size_t input, double value) 
     return fc_scene_bound_rate(&moved, 0.0);
 }
 
-// The damping of a bristle that slips is sigma_1 times the rate of the bound: by a central difference over an input.
-static double slip_damping_slope(const FcScene* scene, double side, size_t input) {
-    const double sigma_1 = scene->friction->sigma_1;
-    if (sigma_1 == 0.0 || side == 0.0) {
-        return 0.0;
-    }
+double fc_bound_rate_slope(const FcScene* scene, size_t input) {
     const double value = ((const FcLinearInput*)(const void*)((const char*)&scene->drive + input))->value;
     const double change = input == offsetof(FcDrive, V) ? 1e-5 * scene->friction->V_S : 1e-5 * value;
-    const double difference =
-        bound_rate_with(scene, input, value + change) - bound_rate_with(scene, input, value - change);
-    return side * sigma_1 * difference / (2.0 * change);
+    return (bound_rate_with(scene, input, value + change) - bound_rate_with(scene, input, value - change)) /
+           (2.0 * change);
+}
+
+// The damping of a bristle that slips is sigma_1 times the rate of the bound.
+static double slip_damping_slope(const FcScene* scene, double side, size_t input) {
+    const double sigma_1 = scene->friction->sigma_1;
+    return sigma_1 == 0.0 || side == 0.0 ? 0.0 : side * sigma_1 * fc_bound_rate_slope(scene, input);
 }
 
 // The elastic part depends on V where it is a bound with a Stribeck curve.

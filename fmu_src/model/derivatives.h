@@ -2,6 +2,8 @@
 #ifndef FC_MODEL_DERIVATIVES_H
 #define FC_MODEL_DERIVATIVES_H
 
+#include <stddef.h>
+
 #include "model/scene.h"
 
 // Time derivative of F_t [N/s] of a bristle deflected by delta [m], the inputs moving as the drive says.
@@ -29,5 +31,9 @@ typedef struct {
     FcSlopes by_load;
 } FcGradient;
 FcGradient fc_gradient(const FcScene* scene, double delta);
+
+// The derivative of the bound's rate D' at the start of the scene by the input at this offset in FcDrive, by a central
+// difference: good to 1e-8 of itself.
+double fc_bound_rate_slope(const FcScene* scene, size_t input);
 
 #endif

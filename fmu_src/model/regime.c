@@ -1,5 +1,7 @@
 #include "model/regime.h"
 
+#include <stddef.h>
+
 #include "model/derivatives.h"
 
 // What a motion is made of, or their derivatives along a direction.
@@ -11,12 +13,6 @@ typedef struct {
 
 static double free_rate(const FcScene* scene, const FcCoefficients* at, double delta) {
     return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
-}
-
-// Time derivative of ln D; scene is that of the bound.
-static double log_bound_rate(const FcScene* bound) {
-    const FcLogRates rates = fc_scene_log_rates(bound, 0.0);
-    return rates.limit - rates.sigma;
 }
 
 static Parts parts(const FcScene* scene, FcRegime regime, double delta) {
@@ -75,28 +71,8 @@ static double free_rate_along(const FcScene* scene, const FcCoefficients* at, do
     return along->V - r_along * delta - r * along->delta;
 }
 
-// Of (ln D)' = (ln g)' - (ln sigma)', which moves with d, by which ln sigma is curved, and with V along the Stribeck curve.
-// d_along is what the direction moves the separation by.
-static double log_bound_rate_along(const FcScene* bound, double d_along, const FcDirection* along) {
-    double change = 0.0;
-    if (bound->at_E.model != FC_CONTACT_CONSTANT) {
-        const double bend = fc_contact_stiffness_bend(&bound->at_E, fc_scene_d(bound, 0.0));
-        change -= bend * fc_scene_d_rate(bound, 0.0) * d_along;
-    }
-    const FcFriction* friction = bound->friction;
-    if (fc_has_stribeck_curve(friction)) {
-        const FcVelocity at = fc_drive_velocity(&bound->drive, 0.0);
-        const double factor = fc_stribeck(friction, at.V);
-        const double slope = fc_stribeck_slope(friction, at.V) / factor;
-        const double bend = fc_stribeck_curvature(friction, at.V) / factor - slope * slope;
-        change += bend * at.rate * along->V;
-    }
-    return change;
-}
-
 // How a direction moves what the contact gives.
 typedef struct {
-    double d; // m
     double log_sigma, log_F_n;
 } ContactAlong;
 
@@ -105,14 +81,20 @@ static ContactAlong contact_along(const FcScene* scene, const FcDirection* along
     const double E = along->E;
     const double d = along->d;
     const double load = along->load;
-    ContactAlong change = {
+    return (ContactAlong){
         .log_sigma = slopes.by_d.sigma * d + slopes.by_E.sigma * E + slopes.by_load.sigma * load,
         .log_F_n = slopes.by_d.F_n * d + slopes.by_E.F_n * E + slopes.by_load.F_n * load,
     };
-    change.d = d;
-    if (scene->contact->input == FC_CONTACT_LOAD) { // ln F_n(d, E) = ln load + what vibrates
-        const double by_E = fc_contact_slope_by_E(scene->contact, scene->drive.E.value).F_n;
-        change.d = (by_E * E - load / scene->drive.load.value) / scene->at_E.decay;
+}
+
+static double bound_rate_along(const FcScene* scene, const FcDirection* along) {
+    const bool floats = scene->contact->input == FC_CONTACT_LOAD; // d is no input
+    const double by[] = {along->V, floats ? 0.0 : along->d, along->E, along->load};
+    const size_t input[] = {offsetof(FcDrive, V), offsetof(FcDrive, d), offsetof(FcDrive, E),
+                            offsetof(FcDrive, load)};
+    double change = 0.0;
+    for (int k = 0; k < 4; k++) {
+        change += by[k] != 0.0 ? by[k] * fc_bound_rate_slope(scene, input[k]) : 0.0;
     }
     return change;
 }
@@ -123,12 +105,9 @@ static Parts slipping_along(const FcScene* scene, FcRegime regime, const Contact
     const FcScene bound = fc_scene_of_bound(scene, &friction);
     const FcCoefficients at = fc_scene_coefficients(&bound, 0.0);
     const double log_limit = log_limit_along(&bound, at.V, contact->log_F_n, along);
-    const double D = at.limit / at.sigma;
-    const double rate_along = (log_limit - contact->log_sigma) * log_bound_rate(&bound) +
-                              log_bound_rate_along(&bound, contact->d, along);
     return (Parts){.V = along->V,
                    .force = (double)regime * at.limit * log_limit,
-                   .delta_rate = (double)regime * D * rate_along};
+                   .delta_rate = (double)regime * bound_rate_along(scene, along)};
 }
 
 static Parts parts_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along) {

@@ -41,7 +41,7 @@ typedef struct {
     double delta; // m
 } FcDirection;
 
-// The derivative of the motion along the direction, by the chain rule: exact where E and load are held.
+// The derivative of the motion along the direction, by the chain rule; of the rate of a bound by a central difference.
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along);
 
 // The bound D [m] at the start of the scene of a bounded law.
