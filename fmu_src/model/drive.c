@@ -324,7 +324,7 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     const double V_1 = drive->vibration.V_1;
     const double V = drive->V.value;
     const double now = theta(drive, t);
-    const double least = t > 0.0 ? least_ahead(now) : 0.0; // at t = 0 no root has been passed
+    const double least = t > 0.0 ? least_ahead(now) : 0.0; // at t = 0 any root ahead counts
     if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
         const double to_root = angle_ahead(now, root, least);

@@ -121,8 +121,9 @@ typedef struct {
         then_ahead; // rad, to the next reversal and from there on, by turns; 0 where that is to be found first
 } FcDriveEvent;
 
-// The first one after t and before end; if there is none, the time end and no phase. For t > 0 one that is ahead by no more
-// than the rounding of the phase or of V is t itself, and so is passed; at 0, where a scene begins, none is.
+// The first one after t and before end; if there is none, the time end and no phase. One exactly at t is none. At t = 0, where
+// a scene begins, one that is ahead by any amount counts; for t > 0 one that is ahead by no more than the rounding of the
+// phase or of V is t itself.
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
 
 // The same after an event.

@@ -9,7 +9,7 @@
 // fitted is chosen by hand.
 //
 // Gauss panels may be cheaper for a section over which the bristle relaxes by less than this, in a peak and elsewhere, and
-// the phase and ln(sigma) move by less than SLOW. Less leaves sections to Radau panels that cost more, more plans what is refused.
+// the phase and ln(sigma) together move by less than SLOW. Less leaves sections to Radau panels that cost more, more plans what is refused.
 static const double SOFT_IN_PEAK = 2.5;
 static const double SOFT = 40.0;
 static const double SLOW = 15.0;
