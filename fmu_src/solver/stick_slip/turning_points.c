@@ -157,16 +157,17 @@ static FcRootFunction evaluate(void* context, double t) {
     return root_function(of, &of->last);
 }
 
-// The turning point between two samples at which a bound's approach changes its sign. One that vanishes at the first may
-// have its turn later.
+// The turning point between two samples at which a bound's approach changes its sign. One that vanishes at the first, but for
+// rounding which may hold for a while, may have its turn later.
 static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBoundMotion* a,
                                   const FcBoundMotion* b) {
     FcBoundMotion from = *a;
-    if (approach(points, a, which) == 0.0) {
-        from = fc_turning_points_motion(points, a->t + SAME_TIME * (b->t - a->t));
-        if ((approach(points, &from, which) < 0.0) == (approach(points, b, which) < 0.0)) {
-            return *a;
-        }
+    for (double part = SAME_TIME; approach(points, &from, which) == 0.0 && part < 1.0; part *= 32.0) {
+        from = fc_turning_points_motion(points, a->t + part * (b->t - a->t));
+        points->evaluations += 1.0;
+    }
+    if ((approach(points, &from, which) < 0.0) == (approach(points, b, which) < 0.0)) {
+        return *a;
     }
     Approach of = {points, which, from};
     const double t = fc_root(evaluate, &of, from.t, root_function(&of, &from), b->t, root_function(&of, b),
