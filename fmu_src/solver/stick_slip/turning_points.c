@@ -31,7 +31,7 @@ static const double NEAR_BOUND = 1e-6;
 static const double SAME_TIME = 1e-9;
 // Turns are found at least as well as for this tolerance: where V only just reverses a turn that is taken a little early or
 // late lets the bristle stick past its bound.
-static const double LOOSEST_TURN = 1e-6;
+static const double LOOSEST_TURN = 1e-9;
 // A cell is divided at most this often in a row: what two roots still closer enclose is below rounding, about 2^-30 squared.
 enum { MOST_DIVISIONS = 30 };
 // And by no more samples in all: where the rates are beyond the largest numbers nothing excludes two roots.
