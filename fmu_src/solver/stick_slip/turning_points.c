@@ -176,12 +176,13 @@ static FcBoundMotion turn_between(FcTurningPoints* points, int which, const FcBo
 }
 
 // Adds the turning point of a bound between two samples, if there is one. Where the bound starts to come nearer it is
-// one only for a bristle that may be on the bound by then.
-static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, const FcBoundMotion* a,
-                     const FcBoundMotion* b) {
+// one only for a bristle that may be on the bound by then. Of a bound that hardly moves there may be any number in rounding:
+// the list ends at `most`.
+static void add_turn(FcTurningPoints* points, int which, bool may_be_on_bound, int most,
+                     const FcBoundMotion* a, const FcBoundMotion* b) {
     const bool recedes = approach(points, a, which) < 0.0;
     if (recedes == (approach(points, b, which) < 0.0) || (recedes && !may_be_on_bound) ||
-        points->turn_count == FC_MOST_TURNS_IN_CELL) {
+        points->turn_count == most) {
         return;
     }
     points->turn[points->turn_count++] = (FcTurningPoint){turn_between(points, which, a, b), which, recedes};
@@ -248,6 +249,7 @@ static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, 
         return; // nothing is met, or it makes no difference
     }
     const int before = points->turn_count;
+    const int most = before + FC_MOST_TURNS_IN_CELL / 2; // as many for either bound
     FcBoundMotion left = *start;
     FcBoundMotion ahead[MOST_DIVISIONS + 1]; // nearer ones last
     int divisions[MOST_DIVISIONS + 1] = {0}; // of the stretch that ends there
@@ -262,7 +264,7 @@ static void add_turns(FcTurningPoints* points, int which, bool may_be_on_bound, 
             points->evaluations += 1.0;
             last++;
         } else {
-            add_turn(points, which, may_be_on_bound || points->turn_count > before, &left, right);
+            add_turn(points, which, may_be_on_bound || points->turn_count > before, most, &left, right);
             left = *right;
             last--;
         }
