@@ -38,7 +38,9 @@ def test_a_miss_is_told_and_made_plain() -> None:
     scene = "law=Dahl V_1=0.3 stiffnessScale=1e-6 h=3e-5 then F_C=30"
     replay = ("--tolerance", "1e-9", "--minimize", "1", "--replay", "method=explicitEuler " + scene)
     done = hunt("--strict", *replay)
-    assert "miss class=fixed steps; cvode by decades law=Dahl" in done.stdout and "step=2" in done.stdout, done.stdout
+    assert "miss class=fixed steps; cvode by decades law=Dahl" in done.stdout and "step=2" in done.stdout, (
+        done.stdout
+    )
     assert done.stdout.count("plain: tolerance=1e-09 method=explicitEuler") == 1, done.stdout
     assert "miss" not in hunt(*replay).stdout
     assert hunt("--replay", scene).stdout.count("ratio") == 10
