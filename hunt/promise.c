@@ -49,7 +49,7 @@ static const struct {
     [CLASS_FIXED] = {"fixed steps; cvode by decades", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
     [CLASS_CVODE] = {"cvode", {10, 100, 100, 1000, 1e7}},
     [CLASS_BEYOND] = {"force beyond the limit", {10, 10, 100, 1e3, 1e6}},
-    [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 1000}},
+    [CLASS_DECADES] = {"inputs by decades", {1, 1, 10, 1, 1000}},
     [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},
 };
 
