@@ -65,11 +65,10 @@ Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const F
     return errors;
 }
 
-// How many times as large E, the load or the least separation is at the start as at the end, if one of them falls.
+// How many times as large E or the load is at the start as at the end, if one of them falls.
 static double fall(const ReferenceScene* s) {
-    const double d_end = s->d + s->d_rate * s->h - s->a_d;
-    const double of_surfaces = fmax(s->E / (s->E + s->E_rate * s->h), s->d / d_end);
-    return fmax(1.0, fmax(of_surfaces, s->load / (s->load + s->load_rate * s->h)));
+    const double of_E = s->E / (s->E + s->E_rate * s->h);
+    return fmax(1.0, fmax(of_E, s->load / (s->load + s->load_rate * s->h)));
 }
 
 double judge_ratio(const ReferenceScene* s, const Errors* errors, const ReferenceStep* truth,

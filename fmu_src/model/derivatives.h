@@ -33,7 +33,7 @@ typedef struct {
 FcGradient fc_gradient(const FcScene* scene, double delta);
 
 // The derivative of the bound's rate D' at the start of the scene by the input at this offset in FcDrive, by a central
-// difference: good to 1e-8 of itself.
+// difference over 1e-5 of the input, or of V_S for V.
 double fc_bound_rate_slope(const FcScene* scene, size_t input);
 
 #endif
