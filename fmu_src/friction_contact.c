@@ -242,23 +242,24 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// The finest tolerances that the solver is given, of a force, and of one that the damping multiplies, which is small against
-// what the tolerance is relative to. Rounding: 4500 and 5 eps; there are no more digits.
+// The finest tolerances that the solver is given, of a force, and, where the damping multiplies its error, of the least limit.
+// Rounding: 4500 and 5 eps; there are no more digits.
 static const double SMALLEST_TOLERANCE = 1e-12;
 static const double SMALLEST_DAMPED = 1e-15;
 
-// How much more an error of the deflection does to F_t through the damping sigma_1 delta' than through sigma delta, at
-// the most: delta' = V - sigma |V| delta / g passes it on times sigma |V| / g.
-static double damping_gain(const FcScene* scene, double h) {
-    const double sigma_1 = scene->friction->sigma_1;
-    return sigma_1 == 0.0
-               ? 1.0
-               : 1.0 + sigma_1 * fc_drive_largest_speed(&scene->drive, h) / fc_scene_smallest_limit(scene, h);
+// The tolerance of a force, over what the damping multiplies an error with. An error of the deflection acts through sigma delta
+// and, since delta' = V - sigma |V| delta / g, through sigma_1 delta': there times sigma |V| / g.
+static double damped_tolerance(const FcScene* scene, double h, double tolerance) {
+    const double limit = fmax(DBL_MIN, fc_scene_smallest_limit(scene, h));
+    const double gain = 1.0 + scene->friction->sigma_1 * fc_drive_largest_speed(&scene->drive, h) / limit;
+    const double rounding = SMALLEST_DAMPED * limit / fc_scene_force_scale(scene);
+    return fmax(fmax(DBL_MIN, rounding), tolerance / gain);
 }
 
 static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h) {
     const double tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance);
-    return (FcSolverOptions){.tolerance = fmax(SMALLEST_DAMPED, tolerance / damping_gain(scene, h)),
+    return (FcSolverOptions){.tolerance = v->friction.sigma_1 == 0.0 ? tolerance
+                                                                     : damped_tolerance(scene, h, tolerance),
                              .step_size = v->solver.stepSize};
 }
 

@@ -140,7 +140,7 @@ static void friction(Draw* draw, const Grammar* grammar, ReferenceScene* s) {
     }
     const double damping = limit_now(s) / top_speed(s);
     if (s->law != LAW_COULOMB && chance(draw, 0.3)) {
-        s->sigma_1 = damping * log_between(draw, 1e-4, 1.0);
+        s->sigma_1 = damping * log_between(draw, 1e-4, chance(draw, 0.15) ? 1e4 : 1.0);
     }
     if (chance(draw, 0.3)) {
         s->sigma_2 = damping * log_between(draw, 1e-4, 1.0);

@@ -28,11 +28,11 @@ static const double FC_SHARE_OF_BOUNDED_PANEL = 0.5;
 
 // A judged Gauss panel passes where its estimate is at most this many times what is allowed: most estimates are 10 to 1e5
 // times too large. In a Stribeck peak they are less so, and now and then too small. Over a panel that relaxes by more than
-// FC_STEEP, which is no share, the estimate of the mean may be but twice the error.
+// FC_STEEP, which is no share, or begins as if it did, the estimate of the mean may be half the error.
 static const double FC_SHARE_OF_GAUSS_PANEL = 10.0;
 static const double FC_SHARE_OF_GAUSS_PANEL_IN_PEAK = 1.0;
 static const double FC_STEEP = 4.0;
-static const double FC_SHARE_OF_STEEP_PANEL = 0.2; // of whichever of the two shares holds, for the mean
+static const double FC_SHARE_OF_STEEP_PANEL = 0.05; // of whichever of the two shares holds, for the mean
 
 // What a Radau panel is planned for.
 static const double FC_PLAN_FOR_MEAN = 0.003;

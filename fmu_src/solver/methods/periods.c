@@ -29,7 +29,7 @@ static FcFreePeriod free_period(FcIntegration law, const FcScene* scene, const F
 // How many periods from a free start delta on touch no bound. The deflection moves by s (1 - P^n) / (1 - P) in n of them,
 // s being how far it moves in the first.
 static double free_periods(const FcFreePeriod* free, double delta, double s, double periods) {
-    const double relaxation = free->map.relaxation;
+    const double relaxation = fmin(1.0, free->map.relaxation); // which rounding may exceed
     const double room = (s > 0.0 ? free->highest - delta : delta - free->lowest) / fabs(s);
     if (!(room * relaxation < 1.0)) { // also where s is 0: never
         return periods;

@@ -8,7 +8,7 @@ static bool is_resolved(const FcPanel* panel, int nodes) { return panel->z >= 0.
 bool fc_gauss_panel_is_accurate(const FcPanel* panel, int nodes, double share, bool in_peak, double forgets,
                                 double allowed) {
     const double may_be = (in_peak ? FC_SHARE_OF_GAUSS_PANEL_IN_PEAK : FC_SHARE_OF_GAUSS_PANEL) * allowed;
-    const double of_mean = panel->z < FC_STEEP ? 1.0 : FC_SHARE_OF_STEEP_PANEL;
+    const double of_mean = fc_most(panel->z, panel->z_from_start) < FC_STEEP ? 1.0 : FC_SHARE_OF_STEEP_PANEL;
     const double of_end = fc_least(1.0, in_peak ? forgets : panel->z); // which may be 0, as the error then is
     return is_resolved(panel, nodes) && share * panel->mean_error <= of_mean * may_be &&
            panel->end_error <= of_end * may_be;

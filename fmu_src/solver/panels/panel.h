@@ -13,6 +13,7 @@
 typedef struct {
     FcMap map;
     double z;                  // integral of r = sigma |V| / g over the panel
+    double z_from_start;       // what it were if r stayed as it is at the start (of a Gauss panel)
     double rate, sigma, limit; // r [1/s], sigma [N/m] and g [N] at the end (of a Radau panel)
     double displacement;       // m, of V by the panel's quadrature
     double end_error;          // N, estimated, of the force at the end
