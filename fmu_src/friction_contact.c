@@ -250,7 +250,7 @@ static const double SMALLEST_DAMPED = 1e-15;
 // The tolerance of a force, over what the damping multiplies an error with. An error of the deflection acts through sigma delta
 // and, since delta' = V - sigma |V| delta / g, through sigma_1 delta': there times sigma |V| / g.
 static double damped_tolerance(const FcScene* scene, double h, double tolerance) {
-    const double limit = fmax(DBL_MIN, fc_scene_smallest_limit(scene, h));
+    const double limit = fc_scene_smallest_limit(scene, h);
     const double gain = 1.0 + scene->friction->sigma_1 * fc_drive_largest_speed(&scene->drive, h) / limit;
     const double rounding = SMALLEST_DAMPED * limit / fc_scene_force_scale(scene);
     return fmax(fmax(DBL_MIN, rounding), tolerance / gain);

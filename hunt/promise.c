@@ -11,8 +11,10 @@ static double log_change(double value, double change) {
     return fabs(log(fmax(1e-300, 1.0 + change / value)));
 }
 
+// By d the load moves like e^(-lambda d / R_q), and the stiffness by d^-3 besides.
 static bool moves_by_decades(const ReferenceScene* s) {
-    const double by_d = fabs(s->d_rate) * s->h * s->lambda / s->R_q;
+    const double change = s->d_rate * s->h;
+    const double by_d = fabs(change) * s->lambda / s->R_q + 3.0 * log_change(s->d - s->a_d, change);
     const double by_load = s->input == INPUT_LOAD ? log_change(s->load, s->load_rate * s->h) : by_d;
     const double by_vibration = 2.0 * s->a_d * s->lambda / s->R_q;
     return fmax(by_load, log_change(s->E, s->E_rate * s->h)) > log(3.0) || by_vibration > log(1e6);

@@ -10,8 +10,8 @@ enum {
     CLASS_FIXED,  // Dahl and LuGre by fixed steps, or by cvode while inputs move by decades
     CLASS_CVODE,  // Dahl and LuGre by cvode else
     CLASS_BEYOND, // the bristle's force is, or starts, at more than three times the limit
-    CLASS_DECADES, // an input moves E, the load or what d makes of it by a factor of 3 and more in the step, or the
-                   // vibration of d moves the load by 1e6
+    CLASS_DECADES, // an input moves E, the load, or what d makes of load or stiffness by a factor of 3 and more in
+                   // the step, or the vibration of d moves the load by 1e6
     CLASS_USUAL,
     CLASSES
 };
