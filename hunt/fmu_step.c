@@ -4,6 +4,7 @@
 
 #include "friction_contact.h"
 #include "model/derivatives.h"
+#include "settled_force.h"
 
 struct FmuRun {
     FcFrictionContact contact;
@@ -125,6 +126,10 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     step->heat = (v->Q_f - before.variables.Q_f) + (state->Q_f_rest - before.Q_f_rest);
     step->evaluations = v->solver.evaluations;
     return true;
+}
+
+bool fmu_settled_force(FmuRun* run, double* force) {
+    return run->started && fc_settled_force(&run->contact, force, &run->message);
 }
 
 const char* fmu_message(const FmuRun* run) { return run->message.text; }

@@ -31,6 +31,9 @@ void fmu_close(FmuRun* run);
 // where the core refuses it, or refused to start.
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step);
 
+// F_t_settled [N] at the inputs that the run was opened with. Returns false where the core refuses it, or refused to start.
+bool fmu_settled_force(FmuRun* run, double* force);
+
 // Why the core refused.
 const char* fmu_message(const FmuRun* run);
 

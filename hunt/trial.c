@@ -7,10 +7,12 @@
 
 #include "promise.h"
 #include "relations.h"
+#include "settled.h"
 #include "slopes.h"
 
-const char* const GRADE_NAMES[GRADES] = {"F_t",         "F_t_mean", "W_f",    "Q_f",   "delta",   "F_t_start",
-                                         "derivatives", "split",    "mirror", "shift", "restored"};
+const char* const GRADE_NAMES[GRADES] = {"F_t",   "F_t_mean",  "W_f",         "Q_f",
+                                         "delta", "F_t_start", "derivatives", "F_t_settled",
+                                         "split", "mirror",    "shift",       "restored"};
 
 // The reference takes some ms for each period.
 static const double MOST_PERIODS = 31.0;
@@ -134,6 +136,10 @@ Verdict trial_verdict(const Trial* trial, int k, int method, double tolerance) {
             verdict.of = BY_SPLIT + relation;
         }
     }
+    const SettledGrade settled = settled_grade(&taken->scene, tolerance);
+    if (settled.ratio / settled.granted > verdict.ratio / verdict.granted) {
+        verdict = (Verdict){settled.ratio, settled.granted, BY_SETTLED, settled.kind, k};
+    }
     return verdict;
 }
 
@@ -182,7 +188,7 @@ static bool is_by_clock(const TrialStep* taken, const Verdict* miss, double tole
 
 bool trial_is_unsure(const Trial* trial, const Verdict* miss, double tolerance) {
     const TrialStep* taken = &trial->taken[miss->step];
-    if (!taken->graded) {
+    if (!taken->graded || miss->of == BY_SETTLED) {
         return false;
     }
     return !(ratio_of_reference(taken, &taken->scene, 2, tolerance) < 0.1) ||
