@@ -28,8 +28,8 @@ typedef struct {
 // so that one trial may be run with several tolerances.
 void trial_run(Trial* trial, const Sequence* sequence, int most_steps, double tolerance);
 
-// What a step is graded by: the errors of judge.h; the derivatives of F_t; F_t_settled at its start; the same step taken as two, mirrored, some
-// periods later, and again from a saved state.
+// What a step is graded by: the errors of judge.h; the derivatives of F_t; F_t_settled at its start; the same step taken
+// as two, mirrored, some periods later, and again from a saved state.
 enum { BY_DERIVATIVES = JUDGED, BY_SETTLED, BY_SPLIT, BY_MIRROR, BY_SHIFT, BY_RESTORED, GRADES };
 extern const char* const GRADE_NAMES[GRADES];
 
