@@ -148,6 +148,9 @@ static void try_sequence(const Options* options, const Sequence* sequence, uint6
             }
         }
         judge_steps(options, sequence, number, k, &trial, tally);
+        if (trial.refused && trial.steps == 0) {
+            break; // finer ones would be refused too
+        }
     }
 }
 

@@ -28,9 +28,10 @@ static double largest_force(const ReferenceScene* s, const ReferenceStep* truth)
 
 // The class but for the method: the first that holds.
 static int class_of_scene(const ReferenceScene* s, const ReferenceStep* truth) {
-    return largest_force(s, truth) > 3.0 * truth->scale ? CLASS_BEYOND
-           : moves_by_decades(s)                        ? CLASS_DECADES
-                                                        : CLASS_USUAL;
+    if (largest_force(s, truth) > 3.0 * truth->scale) {
+        return moves_by_decades(s) ? CLASS_BEYOND_BY_DECADES : CLASS_BEYOND;
+    }
+    return moves_by_decades(s) ? CLASS_DECADES : CLASS_USUAL;
 }
 
 int promise_class(const ReferenceScene* s, const ReferenceStep* truth, int method) {
@@ -50,6 +51,7 @@ static const struct {
 } PROMISES[CLASSES] = {
     [CLASS_FIXED] = {"fixed steps; cvode by decades", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
     [CLASS_CVODE] = {"cvode", {1, 1, 1, 100, 1e7}},
+    [CLASS_BEYOND_BY_DECADES] = {"both of the next two", {100, 100, 100, 1e4, 1e7}},
     [CLASS_BEYOND] = {"force beyond the limit", {10, 10, 10, 10, 100}},
     [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 10}},
     [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},

@@ -104,7 +104,7 @@ long tally_print(const Tally* tally, const double* tolerance, int tolerances) {
     for (int row = 0; row < GRADES; row++) {
         print_row(GRADE_NAMES[row], tally->by_grade[row], tolerances);
     }
-    printf("\n%ld sequences drawn, %ld refused, %ld misses; the reference is unsure of %ld\n", tally->drawn,
-           tally->refused, misses, tally->unsure);
+    printf("\n%ld sequences drawn, %ld refused or too dear, %ld misses; the reference is unsure of %ld\n",
+           tally->drawn, tally->refused, misses, tally->unsure);
     return misses;
 }

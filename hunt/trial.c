@@ -14,6 +14,8 @@ const char* const GRADE_NAMES[GRADES] = {"F_t",   "F_t_mean",  "W_f",         "Q
                                          "delta", "F_t_start", "derivatives", "F_t_settled",
                                          "split", "mirror",    "shift",       "restored"};
 
+// A step that takes more evaluations is not judged: its parts and the reference would take minutes.
+static const double MOST_EVALUATIONS = 1e6;
 // The reference takes some ms for each period.
 static const double MOST_PERIODS = 31.0;
 static const double FROM_ONE_REVERSAL =
@@ -96,7 +98,7 @@ void trial_run(Trial* trial, const Sequence* sequence, int most_steps, double to
     for (trial->steps = 0; trial->steps < steps; trial->steps++) {
         TrialStep* taken = &trial->taken[trial->steps];
         scene = sequence_scene(sequence, trial->steps, &scene, delta);
-        if (!fmu_step(run, &scene, &taken->step)) {
+        if (!fmu_step(run, &scene, &taken->step) || taken->step.evaluations > MOST_EVALUATIONS) {
             break;
         }
         const bool known = !taken->screened && memcmp(&taken->scene, &scene, sizeof scene) == 0;

@@ -19,8 +19,8 @@ typedef struct {
 typedef struct {
     bool screens;      // whether the reference is asked only of steps that do not agree with their parts
     int steps;         // that were taken
-    bool refused;      // whether the one after them was refused
-    char message[320]; // why
+    bool refused;      // whether the one after them was refused, or took too many evaluations to be judged
+    char message[320]; // why; empty where it took too many
     TrialStep taken[MOST_STEPS];
 } Trial;
 

@@ -21,7 +21,7 @@ def test_scenes_that_were_found() -> None:
     done = hunt("--file", str(SCENES))
     assert done.returncode == 0, done.stdout + done.stderr
     count = sum(line.startswith("tolerance=") for line in SCENES.read_text().splitlines())
-    assert f"{count} sequences drawn, 0 refused, 0 misses" in done.stdout
+    assert f"{count} sequences drawn, 0 refused or too dear, 0 misses" in done.stdout
 
 
 def test_the_corpus_of_the_guided_hunt(tmp_path: Path) -> None:
