@@ -177,6 +177,7 @@ static bool is_by_clock(const TrialStep* taken, const Verdict* miss, double tole
     for (int sign = -1; sign <= 1; sign += 2) {
         ReferenceScene moved = taken->scene;
         moved.start += sign * fmax(CLOCK / moved.f, 2.0 * DBL_EPSILON * (fabs(moved.start) + moved.h));
+        moved.V += sign * 2.0 * DBL_EPSILON * fabs(moved.V); // by which a moving V reverses earlier or later
         if (miss->of == BY_DERIVATIVES) {
             if (slopes_ratio(&moved, &taken->truth, &taken->step) < 0.8 * miss->ratio) {
                 return true;

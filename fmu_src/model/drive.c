@@ -229,8 +229,8 @@ static double square_by_quadrature(const FcDrive* drive, double middle, double h
     return square * half;
 }
 
-// Of the sum of its terms: below it the square of V has lost three digits to their cancelling, as where V grazes zero. The
-// vibration turns by less than 2 rad there, over which eight nodes err by less than 1e-13 of the terms.
+// Of the sum of its terms: below it the square of V has lost three digits to their cancelling, as where V grazes zero, or in a
+// short step around a reversal. The vibration turns by less than 2 rad there, over which eight nodes err by less than 1e-13 of the terms.
 static const double CANCELS = 1e-3;
 
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
@@ -252,7 +252,7 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
         2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * sine_moment(omega, s) * sin(angle));
     const double own = V_1 * V_1 * (0.5 * duration + 0.5 * sin(2.0 * s) / omega * cos(2.0 * angle));
     const double square = still + mixed + own;
-    return square < CANCELS * (still + own) ? square_by_quadrature(drive, middle, 0.5 * duration) : square;
+    return square < CANCELS * (still + V_1 * V_1 * duration) ? square_by_quadrature(drive, middle, 0.5 * duration) : square;
 }
 
 // Roots of V nearer than this, over 1 + the angle [rad], are one. By hand, 450 eps: if smaller, rounding finds a root again; if
