@@ -252,7 +252,9 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
         2.0 * V_1 * (2.0 * v * sin(s) / omega * cos(angle) - rate * sine_moment(omega, s) * sin(angle));
     const double own = V_1 * V_1 * (0.5 * duration + 0.5 * sin(2.0 * s) / omega * cos(2.0 * angle));
     const double square = still + mixed + own;
-    return square < CANCELS * (still + V_1 * V_1 * duration) ? square_by_quadrature(drive, middle, 0.5 * duration) : square;
+    return square < CANCELS * (still + V_1 * V_1 * duration)
+               ? square_by_quadrature(drive, middle, 0.5 * duration)
+               : square;
 }
 
 // Roots of V nearer than this, over 1 + the angle [rad], are one. By hand, 450 eps: if smaller, rounding finds a root again; if

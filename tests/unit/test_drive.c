@@ -425,6 +425,17 @@ static void the_square_of_a_grazing_V(void) {
     }
 }
 
+// From a reversal on V is -V_1 sin(omega t), whose square is (V_1 omega)^2 h^3 / 3 but for (omega h)^2 / 5 of it.
+static void the_square_of_V_after_a_reversal(void) {
+    const FcDrive drive = drive_of((Case){.V_1 = 0.7, .start = 0.25 / F});
+    const double omega = TWO_PI * F;
+    for (double part = 1e-7; part < 2e-4; part *= 10.0) {
+        const double h = part / omega;
+        const double square = 0.7 * 0.7 * part * part * h / 3.0;
+        CHECK_WITHIN(fc_drive_square(&drive, 0.0, h), square, 1e-8 * square);
+    }
+}
+
 // From 0.1 to -0.4 m/s and back: the vibration's amplitude comes on top of the larger speed.
 static void the_largest_speed_is_at_an_end(void) {
     for (double sign = -1.0; sign < 2.0; sign += 2.0) {
@@ -487,6 +498,7 @@ int main(void) {
     slopes_are_derivatives();
     integrals_of_V();
     the_square_of_a_grazing_V();
+    the_square_of_V_after_a_reversal();
     bounds_hold();
     reversals_of_held_vibration();
     events_tell_what_follows();
