@@ -149,7 +149,7 @@ static void try_sequence(const Options* options, const Sequence* sequence, uint6
         }
         judge_steps(options, sequence, number, k, &trial, tally);
         if (trial.refused && trial.steps == 0) {
-            break; // finer ones would be refused too
+            break; // the others would take as long
         }
     }
 }

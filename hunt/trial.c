@@ -172,7 +172,7 @@ static double ratio_of_reference(const TrialStep* taken, const ReferenceScene* o
     return judge_ratio(&taken->scene, &errors, &taken->truth, tolerance, &which);
 }
 
-// Whether a start that is moved by the rounding of times, earlier or later, explains a fifth of the error.
+// Whether a start and a V that are moved by rounding explain a fifth of the error.
 static bool is_by_clock(const TrialStep* taken, const Verdict* miss, double tolerance) {
     for (int sign = -1; sign <= 1; sign += 2) {
         ReferenceScene moved = taken->scene;

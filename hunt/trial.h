@@ -47,7 +47,7 @@ Verdict trial_verdict(const Trial* trial, int k, int method, double tolerance);
 Verdict trial_worst(const Trial* trial, int method, double tolerance);
 
 // Whether the reference is unsure of a miss: with more panels and stages it says something else by a tenth of the
-// tolerance, or a start as much earlier or later as times are rounded explains a fifth of the error.
+// tolerance, or a start and a V that are moved by rounding explain a fifth of the error.
 bool trial_is_unsure(const Trial* trial, const Verdict* miss, double tolerance);
 
 #endif

@@ -230,7 +230,8 @@ static double square_by_quadrature(const FcDrive* drive, double middle, double h
 }
 
 // Of the sum of its terms: below it the square of V has lost three digits to their cancelling, as where V grazes zero, or in a
-// short step around a reversal. The vibration turns by less than 2 rad there, over which eight nodes err by less than 1e-13 of the terms.
+// short step around a reversal. The vibration turns by less than 2 rad there, over which eight nodes err by less than 1e-13 of
+// the terms.
 static const double CANCELS = 1e-3;
 
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
