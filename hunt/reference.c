@@ -1067,7 +1067,7 @@ static AtJump force_at_start(const World* w, const Settled* start) {
 
 void reference_step(const ReferenceScene* scene, int fineness, ReferenceStep* result) {
     World w = make_world(scene, fineness);
-    *result = (ReferenceStep){.path = (double)w.path};
+    *result = (ReferenceStep){.path = (double)w.path, .changed = -1.0};
     if (scene->law == LAW_COULOMB) {
         step_of_coulomb(&w, result);
         return;
@@ -1098,6 +1098,7 @@ void reference_step(const ReferenceScene* scene, int fineness, ReferenceStep* re
     result->scale = force_scale(&w, result->limit);
     const At at_start = scene_at(&w, 0.0L, false);
     result->largest = (double)fmaxl(march.sums.peak, at_start.sigma * fabsl(from.delta));
+    result->changed = (double)march.changed;
     result->panels = (double)w.panels;
     result->unresolved = (double)w.unresolved;
 }

@@ -52,6 +52,7 @@ typedef struct {
     double scale; // N, that, or F_C or mu times the mean of F_n over a period at the start, whichever is less
     double path;  // m, time integral of |V|
     double largest;    // N, largest |sigma delta| seen at a node
+    double changed;    // s into the step, when the bristle last met or left its bound; negative: at no time
     double panels;     // panels that were solved
     double unresolved; // panels that did not agree at the smallest size
 } ReferenceStep;

@@ -233,7 +233,8 @@ static ReferenceScene first_step(Draw* draw, const Grammar* grammar) {
         rates(draw, &s);
     }
     s.delta_0 = s.law == LAW_COULOMB ? 0.0 : deflection(draw, &s);
-    if (grammar->settled == 2 || (grammar->settled == 1 && chance(draw, 0.1))) {
+    const double settles = s.sigma_1 > 0.0 ? 0.3 : 0.1;
+    if (grammar->settled == 2 || (grammar->settled == 1 && chance(draw, settles))) {
         s.initial = START_SETTLED;
     }
     if (chance(draw, 0.3)) {

@@ -179,7 +179,8 @@ static bool is_by_clock(const TrialStep* taken, const Verdict* miss, double tole
         moved.start += sign * fmax(CLOCK / moved.f, 2.0 * DBL_EPSILON * (fabs(moved.start) + moved.h));
         moved.V += sign * 2.0 * DBL_EPSILON * fabs(moved.V); // by which a moving V reverses earlier or later
         if (miss->of == BY_DERIVATIVES) {
-            if (slopes_ratio(&moved, &taken->truth, &taken->step) < 0.8 * miss->ratio) {
+            const double ratio = slopes_ratio(&moved, &taken->truth, &taken->step);
+            if (fabs(ratio - miss->ratio) > 0.2 * miss->ratio) {
                 return true;
             }
         } else if (ratio_of_reference(taken, &moved, 1, tolerance) > 0.2 * miss->ratio) {

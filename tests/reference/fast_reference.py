@@ -19,7 +19,7 @@ CHOICES = {
     "input": ("Separation", "Load"),
 }
 RESULTS = """delta F_t F_t_other gap sigma F_t_mean work heat delta_start F_t_start F_t_start_other
-    gap_start limit scale path largest panels unresolved"""
+    gap_start limit scale path largest changed panels unresolved"""
 
 
 class _Scene(ctypes.Structure):
