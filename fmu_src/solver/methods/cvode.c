@@ -1,9 +1,10 @@
 // SUNDIALS CVODE: variable-order BDF with the exact 1x1 Jacobian.
 //
-//     y = delta / L,     y' = a(t) y + V(t) / L,     a = -sigma |V| / g                         (Eq. 2)
+//     y = (delta - origin) / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
 //
-// L = g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
-// of F_t / F_C; less where the surfaces move less than that. The step is cut at the reversals of V. CVODE is
+// The origin is 0, or in a short step delta(0), so that the change keeps its digits. L = g / sigma at the stiffest moment of
+// the step, so that an error of y is at least as large as the error of F_t / F_C; less where the surfaces move less than
+// that, or where damping multiplies the error. The step is cut at the reversals of V. CVODE is
 // started anew, in a time that begins at 0, on every piece: it never steps over a kink and no history
 // outlives a step. The error of y is bounded absolutely: y is large where the contact is soft, and an error
 // made there is multiplied when it stiffens. A Stribeck curve is a bump of g around V = 0: steps shrink with
@@ -75,6 +76,7 @@ struct FcCvode {
     const FcScene* scene;
     double start;       // s, local time at which the piece starts; CVODE's time is 0 there
     double unit;        // s, of CVODE's time: 1 s, or the piece's duration where that is very short
+    double origin;      // m
     double L;           // m
     double evaluations; // of a(t), b(t)
     double last_tau;    // of the last evaluation on this piece; NaN before the first
@@ -94,10 +96,13 @@ static FcCoefficients coefficients_at(FcCvode* solver, double tau) {
     return solver->last;
 }
 
+static double deflection(const FcCvode* solver, double y) { return solver->origin + solver->L * y; }
+
 static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
     FcCvode* solver = user;
     const FcCoefficients at = coefficients_at(solver, tau);
-    NV_Ith_S(slope, 0) = solver->unit * (at.V / solver->L - fc_relaxation_rate(&at) * NV_Ith_S(y, 0));
+    const double delta = deflection(solver, NV_Ith_S(y, 0));
+    NV_Ith_S(slope, 0) = solver->unit * (at.V - fc_relaxation_rate(&at) * delta) / solver->L;
     return 0;
 }
 
@@ -185,22 +190,30 @@ static bool failed(const FcCvode* solver, double tau, double h, const char* reas
                           solver->start + solver->unit * tau, h, reason);
 }
 
-// The deflection's scale over a step of h [s] from delta_0, see the head of this file.
+// delta(0) where delta keeps at least half of it, 0 elsewhere: a deflection that decays by decades keeps its digits.
+static double origin_of_change(const FcScene* scene, double h, double delta_0) {
+    const double path = fc_drive_largest_speed(&scene->drive, h) * h;
+    const double saturated = fc_scene_smallest_saturation(scene, h);
+    return path < 0.5 * fmin(fabs(delta_0), saturated) ? delta_0 : 0.0;
+}
+
+// The deflection's scale over a step of h [s] from delta_0, see the head of this file. Of the damping the mean force has
+// sigma_1 (delta(h) - delta(0)) / h: over a short step that multiplies an error of the deflection.
 static double deflection_scale(const FcScene* scene, double h, double delta_0) {
     const double saturated = fc_scene_smallest_saturation(scene, h);
     const double moved = fabs(delta_0) + fc_drive_largest_speed(&scene->drive, h) * h;
-    const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
+    const double damped = h * fc_scene_force_scale(scene) / scene->friction->sigma_1;
+    double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
+    L = damped > 0.0 ? fmin(L, damped) : L;
     return isfinite(L) && L > 0.0 ? L : 1.0;
 }
 
-// The errors of as many vibration periods as the bristle remembers, a path of L, add up in its deflection. Of the damping
-// the mean force has sigma_1 (delta(h) - delta(0)) / h: over a short step that multiplies an error of the deflection.
+// The errors of as many vibration periods as the bristle remembers, a path of L, add up in its deflection.
 static double local_error_bound(const FcScene* scene, double tolerance, double h, double L) {
     const FcDrive* drive = &scene->drive;
     const double memory = fmin(h, L / fc_drive_largest_speed(drive, h));
     const double periods = fc_drive_vibrates(drive) ? fmax(1.0, memory * drive->vibration.f) : 1.0;
-    const double gain = fmax(1.0, scene->friction->sigma_1 * L / (h * fc_scene_force_scale(scene)));
-    const double local_error = LOCAL_ERROR_FRACTION * tolerance / (periods * gain);
+    const double local_error = LOCAL_ERROR_FRACTION * tolerance / periods;
     return fmin(fmax(local_error, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
 }
 
@@ -239,7 +252,7 @@ static Integrals allowed_difference(const FcScene* scene, double start, double d
 // The integrands at CVODE's time tau, where the deflection is y.
 static Integrals integrands(FcCvode* solver, double tau, double y) {
     const FcCoefficients at = coefficients_at(solver, tau);
-    const double delta = solver->L * y;
+    const double delta = deflection(solver, y);
     const double F = at.sigma * delta;
     const double slip = fc_relaxation_rate(&at) * delta; // V - delta'
     return (Integrals){{F, F * at.V, F * slip, (at.V - slip) * at.V}};
@@ -337,10 +350,11 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
         return false;
     }
     solver->scene = scene;
+    solver->origin = origin_of_change(scene, h, delta_0);
     solver->L = deflection_scale(scene, h, delta_0);
     const double local_error = local_error_bound(scene, options->tolerance, h, solver->L);
     solver->evaluations = 0.0;
-    N_VConst(delta_0 / solver->L, solver->y);
+    N_VConst((delta_0 - solver->origin) / solver->L, solver->y);
 
     solver->sum = (Integrals){{0.0}};
     double t = 0.0;
@@ -356,7 +370,7 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
         }
         t = t_next;
     }
-    const FcStepResult sum = {.delta = h > 0.0 ? solver->L * NV_Ith_S(solver->y, 0) : delta_0,
+    const FcStepResult sum = {.delta = deflection(solver, NV_Ith_S(solver->y, 0)),
                               .impulse = solver->sum.of[IMPULSE],
                               .work = solver->sum.of[WORK],
                               .heat = solver->sum.of[HEAT],
