@@ -51,10 +51,10 @@ static const struct {
 } PROMISES[CLASSES] = {
     [CLASS_FIXED] = {"fixed steps; cvode by decades", {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}},
     [CLASS_CVODE] = {"cvode", {1, 1, 1, 1, 10}},
-    [CLASS_BEYOND_BY_DECADES] = {"both of the next two", {100, 100, 100, 1e4, 1e7}},
-    [CLASS_BEYOND] = {"force beyond the limit", {1, 1, 1, 1, 100}},
+    [CLASS_BEYOND_BY_DECADES] = {"both of the next two", {1, 1, 1, 1, 10}},
+    [CLASS_BEYOND] = {"force beyond the limit", {1, 1, 1, 1, 10}},
     [CLASS_DECADES] = {"inputs by decades", {1, 1, 1, 1, 10}},
-    [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 100}},
+    [CLASS_USUAL] = {"usual", {1, 1, 1, 1, 10}},
 };
 
 const char* promise_name(int kind) { return PROMISES[kind].name; }

@@ -162,10 +162,19 @@ static double bound_at(const FcScene* scene, const FcCoefficients* at) {
     return at->limit * fc_bound_over_limit(scene->friction, at->V);
 }
 
-// The least force of a bristle that slips, over its bound: at the end of a step the phase's rounding may take it off the bound.
-// By hand: room for that, and one that sticks so near is taken to slip. What an input that has fallen by decades rounds by
-// may be more, which the step itself mends (fc_stick_slip_end).
-static const double LEAST_FORCE_OF_SLIP = 1.0 - 1e-10;
+// By how much of its bound a bristle that slips may be inside it. By hand: at the end of a step the phase's rounding may take
+// it off the bound, the further the steeper Stribeck's curve is there. What an input that has fallen by decades rounds by may
+// be more, which the step itself mends (fc_stick_slip_end).
+static const double INSIDE_BOUND = 1e-10;
+static const double ROUNDING_OF_V = 1e-15; // of the top speed
+static const double MOST_INSIDE_BOUND = 1e-6;
+
+static double inside_bound(const FcScene* scene, double V) {
+    const FcDrive* drive = &scene->drive;
+    const double top = fabs(drive->V.value) + fabs(drive->vibration.V_1);
+    const double by_V = fc_stribeck_slope(scene->friction, V) / fc_stribeck(scene->friction, V);
+    return fmin(MOST_INSIDE_BOUND, INSIDE_BOUND + ROUNDING_OF_V * top * fabs(by_V));
+}
 
 double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
     if (!fc_is_bounded(scene->friction)) {
@@ -173,7 +182,7 @@ double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
     }
     const FcCoefficients at = fc_scene_coefficients(scene, t);
     const double bound = bound_at(scene, &at);
-    if (at.sigma * fabs(delta) < LEAST_FORCE_OF_SLIP * bound) {
+    if (at.sigma * fabs(delta) < (1.0 - inside_bound(scene, at.V)) * bound) {
         return 0.0;
     }
     const double side = delta < 0.0 ? -1.0 : 1.0;
