@@ -7,13 +7,11 @@
 
 // In the order in which a step is given to the first that fits.
 enum {
-    CLASS_FIXED,             // Dahl and LuGre by fixed steps, or by cvode while inputs move by decades
-    CLASS_CVODE,             // Dahl and LuGre by cvode else
-    CLASS_BEYOND_BY_DECADES, // both of the next two
-    CLASS_BEYOND,            // the bristle's force is, or starts, at more than three times the limit
-    CLASS_DECADES, // an input moves E, the load, or what d makes of load or stiffness by a factor of 3 and more in
-                   // the step, or the vibration of d moves the load by 1e6
-    CLASS_USUAL,
+    CLASS_FIXED, // Dahl and LuGre by fixed steps, or by cvode while inputs move by decades
+    CLASS_BEYOND_BY_DECADES, // the bristle's force, or its damping, at more than three times the limit, while in the step E,
+    // the load, or what d makes of load or stiffness moves by a factor of 3 and more, or the
+    // vibration of d moves the load by 1e6
+    CLASS_HELD, // all others
     CLASSES
 };
 
