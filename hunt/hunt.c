@@ -1,6 +1,6 @@
 // Hunts for wrong answers: draws sequences of steps at random, takes them with the FMU's core and with the reference, and
 // prints each step that misses what is promised (promise.h). The reference takes long: it is asked of every hundredth
-// sequence, and of a step that differs from its two parts at a finer tolerance by half of what is granted.
+// sequence, and of a step that differs from its two parts at a finer tolerance by half of the tolerance.
 //
 //     cmake --preset default && cmake --build --preset default --target hunt
 //     build/hunt/hunt --seed 1 --scenes 20000 --tolerance 1e-2,1e-3,1e-4,1e-6,1e-9
@@ -257,7 +257,7 @@ static void usage(void) {
         "default) or all of the scenes start settled. --method: 0 is the default, and now and then cvode.\n"
         "--thorough: of so many sequences (100) one is held against the reference from the start, and of "
         "the\n"
-        "others what differs from its parts at a finer tolerance by half of what is granted.\n"
+        "others what differs from its parts at a finer tolerance by half of the tolerance.\n"
         "--minimize: makes K misses of each law and class plain. --file: the sequences of a file, one a "
         "line.\n"
         "--brief: only the tables. --show: every sequence before it is tried. --strict: the tolerance alone "

@@ -51,8 +51,8 @@ static bool is_short(const ReferenceScene* scene) {
     return scene->h * scene->f <= MOST_PERIODS || (scene->V_1 == 0.0 && scene->a_d == 0.0);
 }
 
-// Whether the step agrees with its parts by half of what is granted. More than the usual is not granted here to a force
-// beyond the limit, since the frame's limit is the least. A reversal that is missed just after the start shows in no part.
+// Whether the step agrees with its parts by half of the tolerance, or nothing is promised. A reversal that is missed just
+// after the start shows in no part.
 static bool agrees(TrialStep* taken, const ReferenceScene* scene, int method, double tolerance) {
     ReferenceScene short_one = *scene;
     ReferenceStep frame;
@@ -65,8 +65,7 @@ static bool agrees(TrialStep* taken, const ReferenceScene* scene, int method, do
     frame.path *= scene->h / short_one.h;
     frame.sigma = sigma_at_end(scene);
     const double ratio = parts_ratio(scene, &taken->step, &frame, tolerance);
-    frame.largest = 0.0;
-    if (!(ratio < 0.5 * promise_factor(promise_class(scene, &frame, method), tolerance))) {
+    if (!(ratio < 0.5) && !isinf(promise_factor(promise_class(scene, &frame, method), tolerance))) {
         return false;
     }
     taken->parts = ratio;
