@@ -4,11 +4,10 @@
 //
 // The origin is 0, or in a short step delta(0), so that the change keeps its digits. L = g / sigma at the stiffest moment of
 // the step, so that an error of y is at least as large as the error of F_t / F_C; less where the surfaces move less than
-// that, or where damping multiplies the error. The step is cut at the reversals of V. CVODE is
-// started anew, in a time that begins at 0, on every piece: it never steps over a kink and no history
-// outlives a step. The error of y is bounded absolutely: y is large where the contact is soft, and an error
-// made there is multiplied when it stiffens. A Stribeck curve is a bump of g around V = 0: steps shrink with
-// |V| so that none goes over it unseen.
+// that, or where damping multiplies the error. The step is cut at the reversals of V. CVODE is started anew, in a time that
+// begins at 0, on every piece: it never steps over a kink and no history outlives a step. The error of y is bounded
+// absolutely: y is large where the contact is soft, and an error made there is multiplied when it stiffens. A Stribeck curve
+// is a bump of g around V = 0: steps shrink with |V| so that none goes over it unseen.
 //
 // Impulse, work, heat and drag are quadratures on the dense output. Where delta is smooth, sigma, V or delta^2 need not
 // be as smooth: a step of CVODE is halved until two rules agree, at no cost to CVODE.
