@@ -76,7 +76,10 @@ double judge_ratio(const ReferenceScene* s, const Errors* errors, const Referenc
     const double force =
         fmax(fmax(truth->largest, fabs(truth->F_t_start)), fmax(fabs(truth->F_t), fabs(truth->F_t_mean)));
     const double digits = fmax(FLOOR_OF_FORCE, 4.0 * DBL_EPSILON * fall(s));
-    const double granted = fmax(fmax(tolerance, FLOOR), digits * force / truth->scale);
+    // sigma_1 delta' is the difference of two such where the bristle slides
+    const double top = fmax(fabs(s->V), fabs(s->V + s->V_rate * s->h)) + s->V_1;
+    const double rounding = fmax(digits * force, 64.0 * DBL_EPSILON * s->sigma_1 * top);
+    const double granted = fmax(fmax(tolerance, FLOOR), rounding / truth->scale);
     double worst = -1.0;
     for (int k = 0; k < JUDGED; k++) {
         if (errors->error[k] / granted > worst) {

@@ -18,7 +18,7 @@ Errors judge_errors(const ReferenceScene* scene, const ReferenceStep* truth, con
                     double tolerance);
 
 // The largest of the errors over the tolerance, and which it is. Rounding is granted: no tolerance is held to less than
-// 1e-10, nor to less than 1e-11 of the largest force; a time in the step is known to its rounding, so that E or a load
+// 1e-10, nor to less than 1e-11 of the largest force or 1e-14 of the damping of all of V; a time in the step is known to its rounding, so that E or a load
 // that falls by decades loses as many digits of the force.
 double judge_ratio(const ReferenceScene* scene, const Errors* errors, const ReferenceStep* truth,
                    double tolerance, int* which);
