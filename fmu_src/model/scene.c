@@ -106,17 +106,19 @@ double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coef
 
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDrive* drive = &scene->drive;
-    FcLogRates rates = {0.0, 0.0};
+    FcLogRates rates = {0.0, 0.0, 0.0};
     if (fc_scene_depends_on_d(scene)) {
         const double d_rate = fc_scene_d_rate_at_phase(scene, t, at_t);
         const FcContactLogSlope by_d =
             fc_contact_slope_by_d(&scene->at_E, fc_scene_d_at_phase(scene, t, at_t));
         rates.sigma = by_d.sigma * d_rate;
         rates.limit = by_d.F_n * d_rate;
+        rates.ratio = (by_d.F_n - by_d.sigma) * d_rate;
         if (drive->E.rate != 0.0) {
             const FcContactLogSlope by_E = fc_contact_slope_by_E(scene->contact, fc_drive_E(drive, t));
             rates.sigma += by_E.sigma * drive->E.rate;
             rates.limit += by_E.F_n * drive->E.rate;
+            rates.ratio += (by_E.F_n - by_E.sigma) * drive->E.rate;
         }
         if (scene->floats) { // the surfaces follow the load: what E does to F_n cancels, also in rounding
             rates.limit =
@@ -124,12 +126,16 @@ FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase a
         }
         if (!fc_limit_follows_load(scene->friction)) {
             rates.limit = 0.0;
+            rates.ratio = -rates.sigma;
+        } else if (rates.sigma == 0.0) {
+            rates.ratio = rates.limit;
         }
     }
     if (fc_has_stribeck_curve(scene->friction)) {
         const FcVelocity at = fc_drive_velocity_at_phase(drive, t, at_t);
-        rates.limit +=
-            fc_stribeck_slope(scene->friction, at.V) / fc_stribeck(scene->friction, at.V) * at.rate;
+        const double by_V = fc_stribeck_slope(scene->friction, at.V) / fc_stribeck(scene->friction, at.V);
+        rates.limit += by_V * at.rate;
+        rates.ratio += by_V * at.rate;
     }
     return rates;
 }
@@ -150,7 +156,7 @@ double fc_scene_bound_rate(const FcScene* scene, double t) {
     const FcScene bound = fc_scene_of_bound(scene, &friction);
     const FcCoefficients at = fc_scene_coefficients(&bound, t);
     const FcLogRates rates = fc_scene_log_rates(&bound, t);
-    return at.limit / at.sigma * (rates.limit - rates.sigma);
+    return at.limit / at.sigma * rates.ratio;
 }
 
 // delta' of a bristle that touches no bound.

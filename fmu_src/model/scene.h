@@ -69,10 +69,11 @@ static inline double fc_relaxation_rate(const FcCoefficients* at) {
     return at->sigma * fabs(at->V) / at->limit;
 }
 
-// Time derivatives of ln(sigma) and ln(g) [1/s]; 0 for what has become 0.
+// Time derivatives of ln(sigma), ln(g) and ln(g / sigma) [1/s], the last without what cancels in it; 0 for what has become 0.
 typedef struct {
     double sigma;
     double limit;
+    double ratio;
 } FcLogRates;
 FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t);

@@ -169,8 +169,7 @@ static void set_held(FcBoundMotion* at, const FcScene* scene) {
 }
 
 static double log_rate_at(const FcScene* scene, double t) {
-    const FcLogRates rates = fc_scene_log_rates(scene, t);
-    return rates.limit - rates.sigma;
+    return fc_scene_log_rates(scene, t).ratio;
 }
 
 static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
