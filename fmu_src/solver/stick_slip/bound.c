@@ -168,9 +168,7 @@ static void set_held(FcBoundMotion* at, const FcScene* scene) {
     }
 }
 
-static double log_rate_at(const FcScene* scene, double t) {
-    return fc_scene_log_rates(scene, t).ratio;
-}
+static double log_rate_at(const FcScene* scene, double t) { return fc_scene_log_rates(scene, t).ratio; }
 
 static void set_moving(FcBoundMotion* at, const FcScene* scene, double t) {
     const FcCoefficients now = fc_scene_coefficients(scene, t);
