@@ -30,10 +30,16 @@ static double off_force(double F_t, double truth, double other, bool near_jump) 
     return F_t - fmin(fmax(F_t, low), high);
 }
 
+// How many times as large E or the load is at the start as at the end, if one of them falls.
+static double fall(const ReferenceScene* s) {
+    const double of_E = s->E / (s->E + s->E_rate * s->h);
+    return fmax(1.0, fmax(of_E, s->load / (s->load + s->load_rate * s->h)));
+}
+
 Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const FmuStep* step,
                     double tolerance) {
-    // the double that holds a soft bristle far longer than its way rounds coarser than the way's share
-    const double rounding = 16.0 * DBL_EPSILON * fmax(fabs(truth->delta), fabs(truth->delta_start));
+    // the double that holds a soft bristle far longer than its way rounds coarser than the way's share, and so does its bound
+    const double rounding = 32.0 * DBL_EPSILON * fall(s) * fmax(fabs(truth->delta), fabs(truth->delta_start));
     const double limit = truth->scale;
     const double swap = 2.0 * limit * fmin(1.0, unknown_sign(s) / s->h);
     const double slipped = fabs(truth->delta - truth->delta_start);
@@ -63,12 +69,6 @@ Errors judge_errors(const ReferenceScene* s, const ReferenceStep* truth, const F
     errors.error[OF_DEFLECTION] =
         s->law == LAW_COULOMB ? 0.0 : over((step->delta - truth->delta) * truth->sigma, 0.0, limit);
     return errors;
-}
-
-// How many times as large E or the load is at the start as at the end, if one of them falls.
-static double fall(const ReferenceScene* s) {
-    const double of_E = s->E / (s->E + s->E_rate * s->h);
-    return fmax(1.0, fmax(of_E, s->load / (s->load + s->load_rate * s->h)));
 }
 
 double judge_ratio(const ReferenceScene* s, const Errors* errors, const ReferenceStep* truth,

@@ -87,6 +87,7 @@ static double rate_error(const ReferenceScene* s, const ReferenceStep* now, doub
         }
         force[k] = step.F_t;
     }
+    largest = fmax(largest, fabs(force[0])); // the bound's own motion may move the bristle faster than V
     if (!one_sided(force, x, largest * pace, &first) || !one_sided(force + 1, x, largest * pace, &later)) {
         return -1.0;
     }
