@@ -35,13 +35,19 @@ static double start_velocity(const ReferenceScene* s) {
     return s->V + s->V_1 * cos(2.0 * PI * fmod(s->f * s->start, 1.0));
 }
 
+// How far [m] d moves before load and stiffness are other ones. Surfaces under a load are as far apart as it lets them.
+static double length_of_contact(const ReferenceScene* s) {
+    const double decay = s->R_q / s->lambda;
+    return s->input == INPUT_LOAD ? decay : fmin(decay, s->d - s->a_d);
+}
+
 // How far [its unit] an input moves before F_t is another one. At a reversal the differences by V lie on both sides,
 // elsewhere they do not cross V = 0.
 static double scale_of(const ReferenceScene* s, int input) {
     const double V = start_velocity(s);
     const bool at_reversal = fabs(V) <= AT_ZERO * (fabs(s->V) + s->V_1);
     const double speed = at_reversal ? fmax(s->V_1, 1e-6) : fabs(V);
-    const double length = fmin(s->R_q / s->lambda, s->d - s->a_d);
+    const double length = length_of_contact(s);
     const double scales[] = {s->staticRatio == 1.0 ? speed : fmin(speed, s->V_S), length, s->E, s->load};
     return exp2(floor(log2(scales[input])));
 }
@@ -70,7 +76,7 @@ static double rate_error(const ReferenceScene* s, const ReferenceStep* now, doub
     const double top = fabs(s->V) + s->V_1 + 1e-30, omega = 2.0 * PI * s->f;
     const double bend = fabs(s->V_rate) + omega * s->V_1;
     double pace = omega + now->sigma * top / now->limit + sqrt(now->sigma * bend / now->limit);
-    pace += (fabs(s->d_rate) + omega * s->a_d) * (s->lambda / s->R_q + 1.0 / (s->d - s->a_d));
+    pace += (fabs(s->d_rate) + omega * s->a_d) * 2.0 / length_of_contact(s);
     pace += fabs(s->E_rate) / s->E + fabs(s->load_rate) / s->load + bend / fmin(top, s->V_S);
     const double x = SHARE_OF_TIME / pace;
     double force[4], first, later;
