@@ -9,8 +9,8 @@
 #include "model/regime.h"
 #include "solver/budget.h"
 
-// Points of the interpolation: the first lie among the second.
-enum { FEW = 5, MOST_POINTS = 9 };
+// Points of the interpolation: 4, 7 and 13, which lie among each other.
+enum { FEWEST_POINTS = 4, MOST_POINTS = 13 };
 
 // Fewer periods are gone through one by one. By hand: a block costs about as many.
 static const double FEWEST = 9.0;
@@ -33,7 +33,7 @@ typedef struct {
     int side;            // of the bound at which they begin, 0 for any start
     double delta;        // m, size of the start
     double* evaluations;
-    Numbers point[MOST_POINTS];       // at the Chebyshev points, then their coefficients
+    Numbers point[MOST_POINTS]; // at the Chebyshev points, then their coefficients
     int points;
 } Block;
 
@@ -52,11 +52,13 @@ static FcBristle on_bound(const FcScene* scene, int side) {
 // The map of period k of the block; false if it has pieces, or does not begin at the bound where it should.
 static bool sample(const Block* block, double k, Numbers* numbers) {
     FcScene scene = scene_at(block, k);
-    if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period || scene.is_open) {
+    if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period ||
+        scene.is_open) {
         return false;
     }
     if (block->side == 0) {
-        numbers->map = block->law->free_map(&scene, block->options, block->period, block->delta, block->evaluations);
+        numbers->map =
+            block->law->free_map(&scene, block->options, block->period, block->delta, block->evaluations);
         return true;
     }
     const FcBristle start = on_bound(&scene, block->side);
@@ -139,35 +141,39 @@ static double place_of(const Block* block, int j, int points) {
     return 0.5 * (block->count - 1.0) * (1.0 - cos(FC_PI * j / (points - 1)));
 }
 
-// Samples the block with so many points; false if it is not smooth enough.
-static bool interpolate(Block* block, const Numbers* known, int points, Numbers* sampled) {
-    const int step = known ? (points - 1) / (FEW - 1) : points;
-    for (int j = 0; j < points; j++) {
-        if (known && j % step == 0) {
-            sampled[j] = known[j / step];
-        } else if (!sample(block, place_of(block, j, points), &sampled[j])) {
-            return false;
+typedef enum { SMOOTH, ROUGH, NO_MAP } Interpolated;
+
+// Interpolates the block through so many points, of which sampled holds the first half, each second one, if there are more than the
+// fewest.
+static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
+    const bool has_half = points > FEWEST_POINTS;
+    for (int j = points - 1; j >= 0 && has_half; j -= 2) {
+        sampled[j] = sampled[j / 2];
+    }
+    for (int j = has_half ? 1 : 0; j < points; j += has_half ? 2 : 1) {
+        if (!sample(block, place_of(block, j, points), &sampled[j])) {
+            return NO_MAP;
         }
     }
     find_coefficients(sampled, points, block->point);
     block->points = points;
     const Numbers weight = weights(block, &sampled[points / 2]);
     const double may = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
-    if (!(largest_error(&weight, block->point[points - 1].of) <= may &&
-          largest_error(&weight, block->point[points - 2].of) <= may)) {
-        return false;
+    if (!(largest_error(&weight, block->point[points - 1].of) <= may)) {
+        return ROUGH;
     }
-    // A period between two points, where the next polynomial would be largest.
+    // A period between two points, off the middle, where even and odd errors are seen.
     Numbers between;
-    const double k = 0.5 * (place_of(block, points / 2, points) + place_of(block, points / 2 + 1, points));
+    const double k =
+        0.6 * place_of(block, points / 2, points) + 0.4 * place_of(block, points / 2 - 1, points);
     if (!sample(block, k, &between)) {
-        return false;
+        return NO_MAP;
     }
     Numbers found = {.map = map_at(block, k)};
     for (int i = 0; i < NUMBERS; i++) {
         found.of[i] -= between.of[i];
     }
-    return largest_error(&weight, found.of) <= may;
+    return largest_error(&weight, found.of) <= may ? SMOOTH : ROUGH;
 }
 
 // Whether a bristle that has a bound would meet it in period k, from that deflection.
@@ -185,14 +191,19 @@ static bool meets(const Block* block, double k, double delta) {
 
 // Takes *total through the block; false, with *total as it was, if the block is not smooth or a free bristle meets its bound.
 static bool take_block(Block* block, FcStepResult* total) {
-    Numbers few[MOST_POINTS];
-    Numbers more[MOST_POINTS];
-    if (!interpolate(block, NULL, FEW, few) && (block->points != FEW || !interpolate(block, few, MOST_POINTS, more))) {
+    Numbers sampled[MOST_POINTS];
+    int points = FEWEST_POINTS;
+    Interpolated is = interpolate(block, points, sampled);
+    while (is == ROUGH && 2 * points - 1 <= fmin(MOST_POINTS, block->count)) {
+        points = 2 * points - 1;
+        is = interpolate(block, points, sampled);
+    }
+    if (is != SMOOTH) {
         return false;
     }
     FcStepResult result = *total;
     const bool is_watched = block->side == 0 && block->law->is_bounded;
-    const double each = is_watched ? fmax(1.0, floor(block->count / FEW)) : HUGE_VAL;
+    const double each = is_watched ? fmax(1.0, floor(block->count / FEWEST_POINTS)) : HUGE_VAL;
     double next = 0.0;
     for (double k = 0.0; k < block->count; k += 1.0) {
         if (is_watched && (k >= next || k == block->count - 1.0)) {
@@ -213,8 +224,8 @@ static bool take_block(Block* block, FcStepResult* total) {
 }
 
 // One period, or the part [from, to] of it.
-static void take_part(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double k, double from,
-                      double to, FcStepResult* total) {
+static void take_part(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double k,
+                      double from, double to, FcStepResult* total) {
     FcScene part = fc_scene_later(scene, k / scene->drive.vibration.f);
     if (from > 0.0) {
         part = fc_scene_from(&part, from);

@@ -4,7 +4,7 @@
 // need not be whole: it is sampled at the Chebyshev points of a block of n periods and interpolated, and the n maps are applied
 // one after the other, some 50 ns each.
 //
-//     block of n periods      k = (n - 1) (1 - cos(pi j / (m - 1))) / 2,  j = 0 .. m - 1,  m = 5 or 9
+//     block of n periods      k = (n - 1) (1 - cos(pi j / (m - 1))) / 2,  j = 0 .. m - 1,  m = 4, 7 or 13
 //
 // A bristle that slips in each period forgets: then periods begin while it slips, at the bound, and their results are smooth functions
 // of k. The last coefficients of the interpolation, and a period between its points, tell whether the block is smooth. It is

@@ -18,7 +18,7 @@ static const double SAME_END = 1e-10;
 enum { MOST_MEETINGS = 1000 };
 
 void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
-                 FcStepResult* total) {
+                     FcStepResult* total) {
     FcPieces pieces;
     fc_pieces_start(&pieces, scene, duration);
     while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
