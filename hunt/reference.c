@@ -1445,7 +1445,7 @@ static Real force_at(const World* w, Real t, Real delta, int slip, bool open) {
     const At at = scene_at(w, t, true);
     Real rate = at.V - relaxation(w, &at, sign_of(at.V)) * delta;
     const bool on_bound =
-        slip && fabsl((Real)slip * slip_bound(w, &at) - delta) <= 1e-15L * slip_bound(w, &at) &&
+        slip && fabsl((Real)slip * slip_bound(w, &at) - delta) <= 1e-11L * slip_bound(w, &at) &&
         outward(w, t, slip) > 0.0L;
     if (on_bound) {
         rate = (Real)slip * slip_rate(w, &at);
@@ -1606,12 +1606,14 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
         } else {
             sums.heat = jump(before, &w, &delta, &slip);
         }
-        if (scene->law == LAW_ELASTIC_PLASTIC && slip == 0 && w.excess == 0.0L) {
-            const At at = scene_at(&w, 0.0L, false);
-            slip = fabsl(delta) >= at.B / at.sigma ? sign_of(delta) : 0;
-        }
     }
-    result->F_t_start = (double)force_at(&held, 0.0L, delta, slip, is_open(&w, 0.0L));
+    const bool open = is_open(&w, 0.0L);
+    int slip_start = slip;
+    if (!open && (w.bounded || (scene->law == LAW_ELASTIC_PLASTIC && w.excess == 0.0L))) {
+        const At at = scene_at(&w, 0.0L, false); // a state that was rounded may lie next to its bound
+        slip_start = fabsl(delta) >= (1.0L - 1e-11L) * at.B / at.sigma ? sign_of(delta) : 0;
+    }
+    result->F_t_start = (double)force_at(&held, 0.0L, delta, slip_start, open);
     if (bristle) {
         step_of_bristle(&w, &delta, &slip, result, &sums);
     } else {

@@ -290,6 +290,7 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
     s->V_1 = full->V_1 * signal->vibration[k];
     s->a_d = full->a_d * signal->vibration[k];
     if (linear && k > 0) {
+        s->V = full->V * signal->V[k - 1]; // as the user samples it, not as the last step's rate left it
         s->V_rate = (V - s->V) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;

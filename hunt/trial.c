@@ -6,7 +6,8 @@
 
 const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f", "Q_f", "F_t_start", "side", "F_t_settled"};
 
-static const double ROUNDING = 1e-11; // of S, beside the tolerance
+static const double ROUNDING = 1e-11;               // of S, beside the tolerance
+static const double DIGITS = 32.0 * DBL_EPSILON;    // of a deflection, as the state holds it
 static const double SMALLEST = 1e-290; // N: where nothing acts, S is 0
 
 // Values of what is graded but F_t_settled, and what their errors are relative to.
@@ -22,21 +23,23 @@ static Values of_reference(const ReferenceStep* s) {
     return (Values){{s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->slips}};
 }
 
-static double over(double error, double tolerance, double scale) {
-    return isnan(error) ? INFINITY : fabs(error) / ((tolerance + ROUNDING) * scale + SMALLEST);
+static double over(double error, double tolerance, double scale, double rounding) {
+    return isnan(error) ? INFINITY : fabs(error) / ((tolerance + ROUNDING) * scale + rounding + SMALLEST);
 }
 
 // The worst error of a step between the least and the largest that the reference says.
 static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, const Values* least,
                                const Values* largest, double tolerance) {
     const double energy = truth->S * truth->path;
+    const double stored = DIGITS * truth->S * (fabs(step->delta_start) + fabs(step->delta));
     const double scale[OF_SETTLED] = {truth->S, truth->S, energy, energy, truth->S, 1.0};
+    const double rounding[OF_SETTLED] = {0.0, 0.0, stored, stored, 0.0, 0.0};
     const Values found = of_fmu(step);
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < OF_SETTLED; k++) {
         const double x = found.value[k];
         const double off = x - fmin(fmax(x, least->value[k]), largest->value[k]);
-        const double ratio = k == OF_SIDE ? (off == 0.0 ? 0.0 : INFINITY) : over(off, tolerance, scale[k]);
+        const double ratio = k == OF_SIDE ? (off == 0.0 ? 0.0 : INFINITY) : over(off, tolerance, scale[k], rounding[k]);
         if (ratio > worst.ratio) {
             worst = (Verdict){ratio, k};
         }
@@ -88,7 +91,7 @@ static double settled_ratio(const ReferenceScene* scene, int method, double tole
     still.initial = START_GIVEN;
     FmuRun* run = fmu_open(&still, method, tolerance);
     if (fmu_settled_force(run, &force) && reference_settled_force(&still, &truth, &S)) {
-        ratio = over(force - truth, tolerance, S);
+        ratio = over(force - truth, tolerance, S, 0.0);
     }
     fmu_close(run);
     return ratio;
