@@ -88,7 +88,7 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     const FcFrictionState before = *state;
     const bool first = run->steps++ == 0;
     step->delta_start = v->delta;
-    step->slips_start = 0;
+    step->slips_start = state->slips;
     const ReferenceScene still = {0};
     set_tunable(v, scene);
     set_rates(state, &still);
@@ -101,7 +101,7 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
         return false;
     }
     step->delta = v->delta;
-    step->slips = 0;
+    step->slips = state->slips;
     step->F_t = v->F_t;
     step->F_t_mean = v->F_t_mean;
     step->work = v->W_f + state->W_f_rest;
