@@ -283,7 +283,8 @@ double fc_force_rate(const FcScene* scene, FcBristle bristle) {
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
         change = slipping_along(&bound, regime, &contact, &in_time);
-        change.delta_rate = scene->friction->sigma_1 != 0.0 ? (double)regime * bound_acceleration(&bound) : 0.0;
+        change.delta_rate =
+            scene->friction->sigma_1 != 0.0 ? (double)regime * bound_acceleration(&bound) : 0.0;
     }
     return whole_force(scene->friction, &change);
 }

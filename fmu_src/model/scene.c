@@ -22,7 +22,8 @@ static double open_separation(const FcContactAtModulus* at_E) {
     // Of sigma = stiffness_0 e^(-2 decay d) / d^3 at the d where F_n has gone halfway.
     const double d = 0.5 * without_load;
     const double powers = at_E->model == FC_CONTACT_ASPERITIES ? 2.0 : 1.0;
-    const double front = at_E->model == FC_CONTACT_ASPERITIES ? at_E->stiffness_0 / (d * d * d) : at_E->stiffness_0;
+    const double front =
+        at_E->model == FC_CONTACT_ASPERITIES ? at_E->stiffness_0 / (d * d * d) : at_E->stiffness_0;
     return fmin(without_load, log(front / NOTHING) / (powers * at_E->decay));
 }
 
@@ -39,7 +40,8 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     }
     scene.is_open = !(drive->load.value > NOTHING);
     scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
-    scene.drive.d = (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
+    scene.drive.d =
+        (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
     return scene;
 }
 
@@ -127,7 +129,8 @@ double fc_scene_d_rate(const FcScene* scene, double t) {
 
 FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
     if (scene->is_open) {
-        return (FcContactResponse){.sigma = scene->at_E.model == FC_CONTACT_CONSTANT ? scene->at_E.stiffness_0 : 0.0};
+        return (FcContactResponse){.sigma = scene->at_E.model == FC_CONTACT_CONSTANT ? scene->at_E.stiffness_0
+                                                                                     : 0.0};
     }
     const FcContactAtModulus at_E = contact_at(scene, t);
     return fc_contact_response(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
@@ -255,8 +258,9 @@ double fc_scene_largest_saturation(const FcScene* scene, double h) {
     for (int end = 0; end <= moves; end++) {
         const FcContactAtModulus at_E = contact_at(scene, end == 0 ? 0.0 : h);
         for (int i = 0; i < 2; i++) {
-            const double g =
-                fc_limit_follows_load(friction) ? friction->mu * fc_contact_response(&at_E, d[i]).F_n : scene->F_C;
+            const double g = fc_limit_follows_load(friction)
+                                 ? friction->mu * fc_contact_response(&at_E, d[i]).F_n
+                                 : scene->F_C;
             largest = fmax(largest, g / fc_contact_stiffness(&at_E, d[i]));
         }
     }

@@ -22,7 +22,8 @@ typedef struct {
     FcDrive drive;
     FcContactAtModulus at_E; // the contact at the modulus of the start of the step
     double log_swell;        // ln of the mean over a period of F_n over F_n without vibration
-    bool floats;  // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
+    bool
+        floats; // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
     bool is_open; // at the start: no load presses the surfaces together, or they are far apart
 } FcScene;
 
@@ -63,7 +64,7 @@ double fc_scene_d_rate(const FcScene* scene, double t); // m/s
 double fc_scene_d_at_phase(const FcScene* scene, double t, FcPhase at_t);
 double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t);
 FcContactResponse fc_scene_contact(const FcScene* scene, double t); // also of one that is open
-double fc_scene_stiffness(const FcScene* scene, double t); // N/m
+double fc_scene_stiffness(const FcScene* scene, double t);          // N/m
 
 // What the equation of the bristle needs at one moment.
 typedef struct {

@@ -176,8 +176,8 @@ static double end_of_push(March* m, int side, const Slip* slip) {
     double* evaluations = &m->result->evaluations;
     for (int i = 0; i + 1 < slip->at.count; i++) {
         if (slip->push[i + 1] <= 0.0) {
-            return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1], slip->push[i + 1],
-                                   evaluations);
+            return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1],
+                                   slip->push[i + 1], evaluations);
         }
         double t;
         const bool lowest = i > 0 && slip->push[i] < slip->push[i - 1] && slip->push[i] <= slip->push[i + 1];
@@ -185,7 +185,8 @@ static double end_of_push(March* m, int side, const Slip* slip) {
             const double at_dip = push(&of, t);
             *evaluations += 1.0;
             if (at_dip <= 0.0) {
-                return fc_root_between(push, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, evaluations);
+                return fc_root_between(push, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip,
+                                       evaluations);
             }
         }
     }
@@ -323,7 +324,11 @@ static bool is_stick_accurate(const March* m, const FcPoints* at, const double* 
 }
 
 static FcCourse course_of(const March* m, const FcScene* bound, const FcPoints* at, const double* x) {
-    FcCourse course = {.scene = m->scene, .bound = bound, .count = at->count, .from = m->t, .exact = true,
+    FcCourse course = {.scene = m->scene,
+                       .bound = bound,
+                       .count = at->count,
+                       .from = m->t,
+                       .exact = true,
                        .left = m->t == m->left_at ? m->left : 0};
     for (int i = 0; i < at->count; i++) {
         course.t[i] = at->t[i];
@@ -454,8 +459,8 @@ static bool stick_to_reversal(March* m, const Still* still, double end, int side
     }
     if (way > 0.0) {
         WayToBound of = {drive, m->t, way, side};
-        const double meets = fc_root(way_to_bound, &of, m->t, way_to_bound(&of, m->t), end, way_to_bound(&of, end),
-                                     LAST_STEP, INFINITY, &m->result->evaluations);
+        const double meets = fc_root(way_to_bound, &of, m->t, way_to_bound(&of, m->t), end,
+                                     way_to_bound(&of, end), LAST_STEP, INFINITY, &m->result->evaluations);
         stick_still(m, still, meets);
     }
     begin_slip(m, side);
@@ -509,14 +514,16 @@ static bool stands_still(const FcScene* scene) {
 // Whether a bristle deflected by delta [m] comes near no bound over the interval.
 static bool stays_clear(const March* m) {
     const FcDrive* drive = &m->scene->drive;
-    double reach = fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * m->duration)) * m->duration;
+    double reach =
+        fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * m->duration)) * m->duration;
     if (drive->vibration.V_1 != 0.0) {
         reach += drive->vibration.V_1 * fmin(m->duration, 2.0 / drive->omega);
     }
     return fabs(m->result->delta) + reach < 0.999 * fc_scene_smallest_saturation(&m->bound, m->duration);
 }
 
-void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                   FcStepResult* result) {
     assert(duration >= 0.0 && fc_is_bounded(scene->friction));
     March m;
     begin(&m, scene, options, duration, result);
@@ -549,7 +556,8 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     }
 }
 
-FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration, double* evaluations) {
+FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration,
+                     double* evaluations) {
     FcStepResult unused = {0};
     March m;
     begin(&m, scene, options, duration, &unused);
@@ -563,7 +571,8 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
     } else {
         m.cut = duration;
     }
-    while (!fc_scene_stiffness_is_constant(scene) && m.t < duration && unused.evaluations <= FC_MOST_EVALUATIONS) {
+    while (!fc_scene_stiffness_is_constant(scene) && m.t < duration &&
+           unused.evaluations <= FC_MOST_EVALUATIONS) {
         int rule;
         double h = fc_plan_panel(&m.planner, duration - m.t, m.smooth_time, &rule);
         for (int tries = 0;; tries++) {

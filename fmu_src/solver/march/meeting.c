@@ -9,10 +9,13 @@
 // whose points are a radian apart an eighth would do.
 static const double HIDDEN = 0.5;
 
-static double beyond_at(const FcCourse* course, int side, int i) { return side * course->delta[i] - course->D[i]; }
+static double beyond_at(const FcCourse* course, int side, int i) {
+    return side * course->delta[i] - course->D[i];
+}
 
 double fc_approach(const FcCourse* course, int side, int i) {
-    return side * (course->V[i] - course->r[i] * course->delta[i]) - fc_bound_rate(course->bound, course->t[i]);
+    return side * (course->V[i] - course->r[i] * course->delta[i]) -
+           fc_bound_rate(course->bound, course->t[i]);
 }
 
 typedef struct {
@@ -83,7 +86,8 @@ static double moves(const FcCourse* course, int side, int i) {
 }
 
 // Whether p goes above `over` inside the cell, being below at both ends; *t is where it crosses 0.
-static bool crosses_unseen(const FcCourse* course, int side, int i, double over, double* t, double* evaluations) {
+static bool crosses_unseen(const FcCourse* course, int side, int i, double over, double* t,
+                           double* evaluations) {
     const double p_a = beyond_at(course, side, i);
     const double p_b = beyond_at(course, side, i + 1);
     if (!(fmax(p_a, p_b) + HIDDEN * moves(course, side, i) > over)) {

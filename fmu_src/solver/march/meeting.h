@@ -28,8 +28,8 @@ typedef struct {
 } FcCourse;
 
 typedef struct {
-    int side;       // 1 or -1; 0 for no meeting
-    double t;       // s; by the cubic where the course is not exact
+    int side; // 1 or -1; 0 for no meeting
+    double t; // s; by the cubic where the course is not exact
 } FcMeeting;
 
 // The first meeting of the course with its bound, of which it goes beyond by more than `over` [m]. At the start it counts if the

@@ -27,8 +27,8 @@ bool fc_refine_panel(double* h, int* rule, int tries);
 // The panel [t, t + h]: its start, its nodes, its end.
 typedef struct {
     const FcGaussRule* rule;
-    int n, count; // nodes, points
-    double h;     // s
+    int n, count;                 // nodes, points
+    double h;                     // s
     double t[FC_MOST_POINTS];     // s
     double V[FC_MOST_POINTS];     // m/s
     double sigma[FC_MOST_POINTS]; // N/m

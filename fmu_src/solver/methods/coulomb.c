@@ -9,8 +9,8 @@
 #include "solver/methods/methods.h"
 
 // Adds side times the integrals over [t, end] of g and g V.
-static void add_limit(const FcScene* scene, const FcSolverOptions* options, double duration, double t, double end,
-                      FcStepResult* result) {
+static void add_limit(const FcScene* scene, const FcSolverOptions* options, double duration, double t,
+                      double end, FcStepResult* result) {
     const double side = fc_sign(fc_drive_V(&scene->drive, 0.5 * (t + end)));
     if (fc_scene_limit_is_constant(scene)) {
         const double force = side * fc_scene_coefficients(scene, t).limit;
@@ -47,7 +47,8 @@ static void add_limit(const FcScene* scene, const FcSolverOptions* options, doub
     }
 }
 
-void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* result) {
     const FcDrive* drive = &scene->drive;
     const double before = result->work;
     FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration);
