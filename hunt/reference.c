@@ -375,11 +375,11 @@ static Real kinetic_gap(const World* w, Real t, Real delta, int side) {
 // Open or closed
 // ---------------------------------------------------------------------------------------------------------------------
 
-static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration
+static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration, if d is given
 
-// The contact's bristle, or Coulomb's limit, depends on the separation.
+// The bristle, or Coulomb's limit, depends on the separation.
 static bool knows_contact(const ReferenceScene* s) {
-    return s->limit == LIMIT_LOAD || (s->contact != CONTACT_CONSTANT && s->law != LAW_COULOMB);
+    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
 }
 
 static bool is_open(const World* w, Real t) {
@@ -387,20 +387,12 @@ static bool is_open(const World* w, Real t) {
     if (!knows_contact(s)) {
         return false;
     }
-    const AtModulus at = modulus_at(w, t);
-    Real force, d;
     if (s->input == INPUT_LOAD) {
-        force = load_at(w, t);
-        if (!(force > 0.0L)) {
-            return true;
-        }
-        d = logl(at.force * w->swell / force) / w->decay;
-        force /= w->swell;
-    } else {
-        d = (Real)s->d + s->d_rate * t;
-        force = at.force * expl(-w->decay * d);
+        return !(load_at(w, t) > 0.0L);
     }
-    return force < OPEN || (s->law != LAW_COULOMB && stiffness_at(s, &at, force, d) < OPEN);
+    const AtModulus at = modulus_at(w, t);
+    const Real d = (Real)s->d + s->d_rate * t, force = at.force * expl(-w->decay * d);
+    return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
 }
 
 // The part of [0, h] in which the contact is closed; empty: from = to = h.
@@ -1179,15 +1171,14 @@ static bool go_periods(Period* p, Real* delta, int* slip, Real n, Sums* sums, Su
 // The ends of the ramp: what is linear, and what is so in its logarithm.
 typedef struct {
     Real V, d, E;
-    Real ln_force; // of F_n, given a load
     Real ln_limit, ln_scale, ln_ratio, ln_V_S; // of F_C or mu, of the stiffness's factor, of R and V_S
 } Corner;
 
 static Corner corner_of(const World* w) {
     const ReferenceScene* s = &w->scene;
     const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
-    Corner corner = {.V = velocity(w, 0.0L), .d = s->d + swing, .E = s->E};
-    corner.ln_force = s->input == INPUT_LOAD ? logl((Real)s->load / w->swell) - w->decay * swing : 0.0L;
+    const Real rest = s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
+    Corner corner = {.V = velocity(w, 0.0L), .d = rest + swing, .E = s->E};
     corner.ln_limit = logl(s->limit == LIMIT_LOAD ? s->mu : s->F_C);
     corner.ln_scale = logl(s->contact == CONTACT_CONSTANT ? s->contact_sigma : s->stiffnessScale);
     corner.ln_ratio = logl(1.0L + w->excess);
@@ -1210,11 +1201,7 @@ static OnRamp ramp_at(const Ramp* ramp, Real x) {
     s.stiffnessScale = 1.0;
     s.contact_sigma = 1.0;
     const AtModulus at = at_modulus(&s, LINEAR(E));
-    Real d = LINEAR(d), force = at.force * expl(-ramp->w->decay * d);
-    if (s.input == INPUT_LOAD) {
-        force = expl(LINEAR(ln_force));
-        d = logl(at.force / force) / ramp->w->decay;
-    }
+    const Real d = LINEAR(d), force = at.force * expl(-ramp->w->decay * d);
     const Real ratio = expl(LINEAR(ln_ratio)), slow = LINEAR(V) / expl(LINEAR(ln_V_S));
     const Real coulomb = expl(LINEAR(ln_limit)) * (s.limit == LIMIT_LOAD ? force : 1.0L);
     OnRamp on = {.sigma = expl(LINEAR(ln_scale)) * stiffness_at(&s, &at, force, d), .B = ratio * coulomb};
@@ -1343,6 +1330,15 @@ static Real largest_force(const World* w, Real delta) {
     return fmaxl(S, ((s->law == LAW_COULOMB ? 0.0L : (Real)s->sigma_1) + s->sigma_2) * top);
 }
 
+// The same with its inputs held.
+static World held_world(const World* w, Real h) {
+    World held = *w;
+    held.scene.V_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate = 0.0;
+    held.no_load = -INFINITY;
+    held.h = h;
+    return held;
+}
+
 static bool has_many_periods(const World* w) {
     return is_held(&w->scene) && vibrates(&w->scene) && w->h * w->scene.f > 4.0L;
 }
@@ -1460,7 +1456,7 @@ static Real jump(const ReferenceScene* before, const World* w, Real* delta, int*
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
     if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
         const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
-        const Real heat = slides ? 0.5L * before->contact_sigma * *delta * *delta : 0.0L;
+        const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
         *delta = 0.0L;
         *slip = 0;
         return heat;
@@ -1486,10 +1482,8 @@ static Real jump(const ReferenceScene* before, const World* w, Real* delta, int*
 // The deflection at the start that the periodic state of held inputs has, without vibration the one of sliding for ever.
 static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* length) {
     const ReferenceScene* s = &w->scene;
-    Period period = {.world = *w};
+    Period period = {.world = held_world(w, 1.0L / s->f)};
     World* held = &period.world;
-    held->scene.V_rate = held->scene.d_rate = held->scene.E_rate = held->scene.load_rate = 0.0;
-    held->h = 1.0L / s->f;
     *length = 1.0L;
     if (is_open(held, 0.0L)) {
         *delta = 0.0L;
@@ -1587,8 +1581,7 @@ ReferenceScene reference_scene(void) {
 
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness, ReferenceStep* result) {
     World w = make_world(scene, scene->h, fineness);
-    World held = w;
-    held.scene.V_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate = 0.0;
+    const World held = held_world(&w, w.h);
     w.S = largest_force(&w, scene->delta_0);
     find_path(&w);
     *result = (ReferenceStep){.path = (double)w.path, .S = (double)w.S, .known = true};

@@ -8,7 +8,7 @@ const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f", "Q_f", "F_t_s
 
 static const double ROUNDING = 1e-11;               // of S, beside the tolerance
 static const double DIGITS = 32.0 * DBL_EPSILON;    // of a deflection, as the state holds it
-static const double SMALLEST = 1e-290; // N: where nothing acts, S is 0
+static const double LEAST_S = 1e-20;                // N: where nothing acts, S is 0
 
 // Values of what is graded but F_t_settled, and what their errors are relative to.
 typedef struct {
@@ -24,15 +24,15 @@ static Values of_reference(const ReferenceStep* s) {
 }
 
 static double over(double error, double tolerance, double scale, double rounding) {
-    return isnan(error) ? INFINITY : fabs(error) / ((tolerance + ROUNDING) * scale + rounding + SMALLEST);
+    return isnan(error) ? INFINITY : fabs(error) / ((tolerance + ROUNDING) * scale + rounding);
 }
 
 // The worst error of a step between the least and the largest that the reference says.
 static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, const Values* least,
                                const Values* largest, double tolerance) {
-    const double energy = truth->S * truth->path;
-    const double stored = DIGITS * truth->S * (fabs(step->delta_start) + fabs(step->delta));
-    const double scale[OF_SETTLED] = {truth->S, truth->S, energy, energy, truth->S, 1.0};
+    const double S = fmax(truth->S, LEAST_S), energy = S * truth->path;
+    const double stored = DIGITS * S * (fabs(step->delta_start) + fabs(step->delta));
+    const double scale[OF_SETTLED] = {S, S, energy, energy, S, 1.0};
     const double rounding[OF_SETTLED] = {0.0, 0.0, stored, stored, 0.0, 0.0};
     const Values found = of_fmu(step);
     Verdict worst = {.ratio = -1.0};
@@ -91,7 +91,7 @@ static double settled_ratio(const ReferenceScene* scene, int method, double tole
     still.initial = START_GIVEN;
     FmuRun* run = fmu_open(&still, method, tolerance);
     if (fmu_settled_force(run, &force) && reference_settled_force(&still, &truth, &S)) {
-        ratio = over(force - truth, tolerance, S, 0.0);
+        ratio = over(force - truth, tolerance, fmax(S, LEAST_S), 0.0);
     }
     fmu_close(run);
     return ratio;
