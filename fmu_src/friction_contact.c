@@ -148,7 +148,7 @@ static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outpu
             scene->drive.V.value, scene->drive.vibration.V_1);
     }
     const FcContactResponse contact = fc_scene_contact(scene, 0.0);
-    *outputs = (Outputs){fc_motion(scene, fc_regime(scene, bristle), bristle.delta).F_t, contact};
+    *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
     if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
@@ -241,7 +241,10 @@ static const double SMALLEST_TOLERANCE = 1e-12;
 // the forces of damping and viscosity.
 static double force_scale(const FcScene* scene, double h, double delta) {
     const FcFriction* friction = scene->friction;
-    const double limit = fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+    double limit = fc_scene_mean_limit(scene, 0.0);
+    if (fc_scene_has_pieces(scene)) {
+        limit = fmax(limit, fc_scene_mean_limit(scene, h));
+    }
     const double speed = fc_drive_largest_speed(&scene->drive, h);
     const double viscous =
         friction->model == FC_COULOMB ? friction->sigma_2 : friction->sigma_1 + friction->sigma_2;

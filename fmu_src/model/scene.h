@@ -48,6 +48,11 @@ static inline bool fc_scene_is_loose(const FcScene* scene) {
     return scene->is_open && fc_scene_depends_on_d(scene);
 }
 
+// Whether the inputs that move the load, given or made from d, move, as far as the law asks for it.
+static inline bool fc_scene_has_pieces(const FcScene* scene) {
+    return fc_scene_depends_on_d(scene) && (scene->drive.load.rate != 0.0 || scene->drive.d.rate != 0.0);
+}
+
 // How long [s], up to `rest`, the scene may be taken as a whole from its start on, in a step of `whole` [s]: until the contact
 // opens or closes, or the load, given or made from d, has moved by a factor of 4. Sets is_open if the contact opens within
 // 2^-44 of the step.
@@ -74,6 +79,8 @@ typedef struct {
 } FcCoefficients;
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
+// At the start, from what fc_scene_contact says there.
+FcCoefficients fc_scene_coefficients_of(const FcScene* scene, const FcContactResponse* response);
 FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
 // r = sigma |V| / g [1/s]: the equation is delta' = V - r delta.

@@ -46,13 +46,14 @@ static FcIntegration integration(const FcScene* scene) {
 // By cvode or a fixed step, piece by piece.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                        double h, FcStepResult* result, FcMessage* message) {
-    FcPieces pieces = fc_pieces(scene, h);
+    FcPieces pieces;
+    fc_pieces_start(&pieces, scene, h);
     while (fc_next_piece(&pieces)) {
-        if (fc_scene_is_loose(&pieces.scene)) {
-            fc_loose_step(&pieces.scene, result);
+        if (fc_scene_is_loose(pieces.scene)) {
+            fc_loose_step(pieces.scene, result);
         } else if (method == FC_METHOD_CVODE
-                       ? !fc_cvode_step(cvode, &pieces.scene, options, pieces.h, result, message)
-                       : !fc_fixed_step(&pieces.scene, method, options, pieces.h, result, message)) {
+                       ? !fc_cvode_step(cvode, pieces.scene, options, pieces.h, result, message)
+                       : !fc_fixed_step(pieces.scene, method, options, pieces.h, result, message)) {
             return false;
         }
     }

@@ -18,12 +18,13 @@ enum { MOST_MEETINGS = 1000 };
 
 static void take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
                  FcStepResult* total) {
-    FcPieces pieces = fc_pieces(scene, duration);
+    FcPieces pieces;
+    fc_pieces_start(&pieces, scene, duration);
     while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
-        if (fc_scene_is_loose(&pieces.scene)) {
-            fc_loose_step(&pieces.scene, total);
+        if (fc_scene_is_loose(pieces.scene)) {
+            fc_loose_step(pieces.scene, total);
         } else {
-            law.step(&pieces.scene, options, pieces.h, total);
+            law.step(pieces.scene, options, pieces.h, total);
         }
     }
 }

@@ -125,7 +125,7 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
         return FC_UNRESOLVED;
     }
     const double over = fc_most(1e-13 * course.D[last], FC_SHARE_OF_EVENT * may);
-    const FcMeeting met = fc_first_meeting(&course, over, evaluations);
+    const FcMeeting met = fc_first_meeting(&course, over, 0.0, evaluations);
     if (met.side == 0) {
         return FC_MEETS_NONE;
     }
