@@ -90,6 +90,9 @@ static void print_step(const TrialStep* taken, int step, double tolerance) {
            s->F_t_mean, s->work, s->heat, s->delta, s->slips, s->F_t_start);
     printf("  reference F_t %.17g mean %.17g W %.17g Q %.17g delta %.17g side %g; start: F_t %.17g\n", t->F_t,
            t->F_t_mean, t->work, t->heat, t->delta, t->slips, t->F_t_start);
+    if (step == 0) {
+        printf("  F_t_settled: FMU %.17g, reference %.17g\n", taken->settled[0], taken->settled[1]);
+    }
 }
 
 static void try_at(const Options* options, const Sequence* sequence, uint64_t number, int column, Tally* tally) {

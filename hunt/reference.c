@@ -931,14 +931,19 @@ static Real arrival(const March* march, Gap* gap_of, int side, Real a, Real b) {
     return high;
 }
 
-// The bristle drops to the bound of what slips, at a time; returns the heat.
-static Real break_away(March* march, Real t, int side) {
+// The bristle drops to the bound of what slips, at a time: the limit of a fast motion, which the damping feels.
+static void break_away(March* march, Real t, int side) {
     const At at = scene_at(march->w, t, false);
-    const Real from = march->delta;
-    march->delta = (Real)side * at.g / at.sigma;
+    const Real from = march->delta, to = (Real)side * at.g / at.sigma;
+    march->delta = to;
     march->slip = side;
     march->slipped = true;
-    return march->w->excess == 0.0L ? 0.0L : 0.5L * at.sigma * (from - march->delta) * (from + march->delta);
+    if (march->w->excess != 0.0L) {
+        const Real damping = march->w->scene.sigma_1 * (to - from);
+        march->sums.impulse += damping;
+        march->sums.work += damping * at.V;
+        march->sums.heat += damping * at.V + 0.5L * at.sigma * (from - to) * (from + to);
+    }
 }
 
 static void stretch_of_elastic(March* march, Real a, Real b) {
@@ -978,7 +983,7 @@ static void stretch_of_elastic(March* march, Real a, Real b) {
                 go_over(march, &stuck, a, until);
             }
             if (breaks) {
-                march->sums.heat += break_away(march, until, breaks);
+                break_away(march, until, breaks);
             }
             a = until;
         }

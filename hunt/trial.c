@@ -85,15 +85,17 @@ static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* t
     return verdict_between(&taken->truth, &taken->step, &least, &largest, tolerance);
 }
 
-static double settled_ratio(const ReferenceScene* scene, int method, double tolerance) {
-    ReferenceScene still = *scene;
-    double force, truth, S, ratio = -1.0;
+static double settled_ratio(TrialStep* taken, int method, double tolerance) {
+    ReferenceScene still = taken->scene;
+    double force = NAN, truth = NAN, S, ratio = -1.0;
     still.initial = START_GIVEN;
     FmuRun* run = fmu_open(&still, method, tolerance);
     if (fmu_settled_force(run, &force) && reference_settled_force(&still, &truth, &S)) {
         ratio = over(force - truth, tolerance, fmax(S, LEAST_S), 0.0);
     }
     fmu_close(run);
+    taken->settled[0] = force;
+    taken->settled[1] = truth;
     return ratio;
 }
 
@@ -109,7 +111,7 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
     if (!(taken->verdict.ratio <= 1.0)) {
         taken->verdict = verdict_by_clock(before, taken, tolerance);
     }
-    const double settled = before == NULL ? settled_ratio(&taken->scene, method, tolerance) : -1.0;
+    const double settled = before == NULL ? settled_ratio(taken, method, tolerance) : -1.0;
     if (settled > taken->verdict.ratio) {
         taken->verdict = (Verdict){settled, OF_SETTLED};
     }

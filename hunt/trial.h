@@ -19,6 +19,7 @@ typedef struct {
     ReferenceScene scene; // from where the FMU stood
     FmuStep step;
     ReferenceStep truth;
+    double settled[2]; // N, F_t_settled of the FMU and of the reference, at the first step
     Verdict verdict;
 } TrialStep;
 
