@@ -47,7 +47,8 @@ static double now(void) {
 // One sequence
 // ---------------------------------------------------------------------------------------------------------------------
 
-static void report(const Sequence* sequence, const Trial* trial, int step, uint64_t number, double tolerance) {
+static void report(const Sequence* sequence, const Trial* trial, int step, uint64_t number,
+                   double tolerance) {
     const TrialStep* taken = &trial->taken[step];
     char text[SEQUENCE_TEXT];
     sequence_text(sequence, text, sizeof text);
@@ -66,8 +67,8 @@ static bool still_misses(const Sequence* sequence, const void* context) {
 }
 
 // So many misses of each law and grade are made plain, as lines that --file takes.
-static void make_plain(const Options* options, const Sequence* sequence, double tolerance, const Verdict* verdict,
-                       Tally* tally) {
+static void make_plain(const Options* options, const Sequence* sequence, double tolerance,
+                       const Verdict* verdict, Tally* tally) {
     int* done = &tally->minimized[sequence->step[0].law - 1][verdict->of];
     if (*done >= options->minimize || !still_misses(sequence, &tolerance)) {
         return;
@@ -83,7 +84,8 @@ static void make_plain(const Options* options, const Sequence* sequence, double 
 static void print_step(const TrialStep* taken, int step, double tolerance) {
     const FmuStep* s = &taken->step;
     const ReferenceStep* t = &taken->truth;
-    printf("tolerance %g, step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g side %d, %g evaluations\n",
+    printf("tolerance %g, step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g side %d, %g "
+           "evaluations\n",
            tolerance, step + 1, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path,
            taken->scene.delta_0, taken->scene.slips, s->evaluations);
     printf("  FMU       F_t %.17g mean %.17g W %.17g Q %.17g delta %.17g side %g; start: F_t %.17g\n", s->F_t,
@@ -95,7 +97,8 @@ static void print_step(const TrialStep* taken, int step, double tolerance) {
     }
 }
 
-static void try_at(const Options* options, const Sequence* sequence, uint64_t number, int column, Tally* tally) {
+static void try_at(const Options* options, const Sequence* sequence, uint64_t number, int column,
+                   Tally* tally) {
     static Trial trial;
     const double tolerance = options->tolerance[column];
     trial_run(&trial, sequence, tolerance);
@@ -233,10 +236,13 @@ static void replay_file(const Options* options, Tally* tally) {
 static void usage(void) {
     fprintf(stderr,
             "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--law NAME]\n"
-            "     [--limit Constant|Load] [--jobs J] [--minimize K] [--brief] [--show] [--replay \"NAME=VALUE ..\"]\n"
+            "     [--limit Constant|Load] [--jobs J] [--minimize K] [--brief] [--show] [--replay "
+            "\"NAME=VALUE ..\"]\n"
             "     [--file FILE]\n"
-            "--first: number of the first sequence; with --scenes 1 a single one. --minimize: makes K misses of each\n"
-            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables. --show:\n"
+            "--first: number of the first sequence; with --scenes 1 a single one. --minimize: makes K misses "
+            "of each\n"
+            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables. "
+            "--show:\n"
             "every sequence before it is tried.\n");
     exit(2);
 }
@@ -306,11 +312,8 @@ static void read_option(Options* options, const char* name, const char* value) {
 }
 
 int main(int argc, char** argv) {
-    Options options = {.seed = 1,
-                       .scenes = 1000,
-                       .tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8},
-                       .tolerances = 5,
-                       .jobs = 1};
+    Options options = {
+        .seed = 1, .scenes = 1000, .tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, .tolerances = 5, .jobs = 1};
     for (int k = 1; k < argc; k++) {
         if (strcmp(argv[k], "--brief") == 0) {
             options.brief = true;

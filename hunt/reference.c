@@ -583,9 +583,11 @@ static const Real LEAST = 1e-16L;
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
-    const Real least = w->fineness == 1 ? LEAST : 0.01L * LEAST, same = w->fineness == 1 ? AGREE : 0.01L * AGREE;
+    const Real least = w->fineness == 1 ? LEAST : 0.01L * LEAST,
+               same = w->fineness == 1 ? AGREE : 0.01L * AGREE;
     const Real force = least * two->force / size;
-    const Real impulse = same * two->force + force * w->h, energy = same * two->power + force * w->path;
+    const Real impulse = same * two->force + force * w->h,
+               energy = same * two->power + force * (w->path + two->length);
     return fabsl(one->end - two->end) <= same * two->length + two->blur &&
            fabsl(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
            fabsl(one->heat - two->heat) <= energy;
@@ -1012,7 +1014,7 @@ static void march_over(March* march, Closed part) {
 // fixed), or delta to delta + shift. Its sums are then polynomials of degree 2 in delta, of degree 1 without relaxation.
 typedef struct {
     World world;
-    bool drifts; // kept is 1
+    bool drifts;                // kept is 1
     Real shift, fixed, relaxed; // relaxed: 1 - kept
 } Period;
 
@@ -1064,7 +1066,8 @@ static void add_times(Sums* sums, const Sums* one, Real factor) {
 // The sums of n periods from delta, none of which touches a bound.
 static void add_untouched(Period* p, Real delta, Real n, Sums* sums) {
     if (p->drifts) {
-        const Real far = n > 1.0L ? (n - 1.0L) * p->shift : 0.0L; // linear in delta: the mean of the first and the last
+        const Real far =
+            n > 1.0L ? (n - 1.0L) * p->shift : 0.0L; // linear in delta: the mean of the first and the last
         const March first = one_period(p, delta, 0, true), last = one_period(p, delta + far, 0, true);
         add_times(sums, &first.sums, 0.5L * n);
         add_times(sums, &last.sums, 0.5L * n);
@@ -1094,7 +1097,8 @@ static Real untouched(Period* p, Real delta, Real n) {
     if (p->drifts ? p->shift == 0.0L : !touches(p, p->fixed)) {
         return n;
     }
-    while (high < n && !touches(p, after_periods(p, delta, high - 1.0L))) { // the period number high touches none
+    while (high < n &&
+           !touches(p, after_periods(p, delta, high - 1.0L))) { // the period number high touches none
         low = high;
         high *= 2.0L;
         if (high > 1e30L) {
@@ -1142,7 +1146,8 @@ static bool go_periods(Period* p, Real* delta, int* slip, Real n, Sums* sums, Su
         done += 1.0L;
         const Real size = scene_at(&p->world, 0.0L, false).B / scene_at(&p->world, 0.0L, false).sigma;
         int k = count - 1;
-        while (k >= 0 && !(marks[k].slip == *slip && fabsl(marks[k].delta - *delta) <= 1e-16L * (size + fabsl(*delta)))) {
+        while (k >= 0 && !(marks[k].slip == *slip &&
+                           fabsl(marks[k].delta - *delta) <= 1e-16L * (size + fabsl(*delta)))) {
             k--;
         }
         if (k >= 0) {
@@ -1182,7 +1187,8 @@ typedef struct {
 static Corner corner_of(const World* w) {
     const ReferenceScene* s = &w->scene;
     const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
-    const Real rest = s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
+    const Real rest =
+        s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
     Corner corner = {.V = velocity(w, 0.0L), .d = rest + swing, .E = s->E};
     corner.ln_limit = logl(s->limit == LIMIT_LOAD ? s->mu : s->F_C);
     corner.ln_scale = logl(s->contact == CONTACT_CONSTANT ? s->contact_sigma : s->stiffnessScale);
@@ -1405,7 +1411,9 @@ static void without_bristle(const World* w, Real a, Real b, Sums* sums) {
             const Real time = size * w->rule->weight[i % w->rule->stages], V = velocity(w, t);
             Real limit = 0.0L;
             if (w->scene.law == LAW_COULOMB) {
-                limit = w->scene.limit == LIMIT_CONSTANT ? w->scene.F_C : open ? 0.0L : scene_at(w, t, false).coulomb;
+                limit = w->scene.limit == LIMIT_CONSTANT ? w->scene.F_C
+                        : open                           ? 0.0L
+                                                         : scene_at(w, t, false).coulomb;
             }
             const Real force = sign * limit + w->scene.sigma_2 * V;
             sums->impulse += time * force;
@@ -1445,9 +1453,9 @@ static Real force_at(const World* w, Real t, Real delta, int slip, bool open) {
     }
     const At at = scene_at(w, t, true);
     Real rate = at.V - relaxation(w, &at, sign_of(at.V)) * delta;
-    const bool on_bound =
-        slip && fabsl((Real)slip * slip_bound(w, &at) - delta) <= 1e-11L * slip_bound(w, &at) &&
-        outward(w, t, slip) > 0.0L;
+    const bool on_bound = slip &&
+                          fabsl((Real)slip * slip_bound(w, &at) - delta) <= 1e-11L * slip_bound(w, &at) &&
+                          outward(w, t, slip) > 0.0L;
     if (on_bound) {
         rate = (Real)slip * slip_rate(w, &at);
     }
@@ -1584,7 +1592,8 @@ ReferenceScene reference_scene(void) {
                             .initial = START_GIVEN};
 }
 
-void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness, ReferenceStep* result) {
+void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
+                    ReferenceStep* result) {
     World w = make_world(scene, scene->h, fineness);
     const World held = held_world(&w, w.h);
     w.S = largest_force(&w, scene->delta_0);

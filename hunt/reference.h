@@ -35,16 +35,16 @@ typedef struct {
 enum { REFERENCE_DOUBLES = 31 };
 
 typedef struct {
-    double delta;    // m, at the end
-    double slips;    // -1, 0 or 1 at the end
-    double F_t;      // N, at the end
-    double F_t_mean; // N
-    double work;     // J, of F_t in the step
-    double heat;     // J, with that of a jump before the step
+    double delta;     // m, at the end
+    double slips;     // -1, 0 or 1 at the end
+    double F_t;       // N, at the end
+    double F_t_mean;  // N
+    double work;      // J, of F_t in the step
+    double heat;      // J, with that of a jump before the step
     double F_t_start; // N, after that jump, the inputs held
-    double S;        // N, what the errors of forces are relative to
-    double path;     // m, time integral of |V|
-    bool known;      // false: more periods than the reference takes, and nothing but S and path is known
+    double S;         // N, what the errors of forces are relative to
+    double path;      // m, time integral of |V|
+    bool known;       // false: more periods than the reference takes, and nothing but S and path is known
 } ReferenceStep;
 
 // Scenes with Table 1's surfaces and the start values of modelDescription.xml.
@@ -52,7 +52,8 @@ ReferenceScene reference_scene(void);
 
 // before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for smaller
 // panels with more stages: for checks of the result itself.
-void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness, ReferenceStep* result);
+void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
+                    ReferenceStep* result);
 
 // F_t_settled [N] of the scene's inputs, held, from delta_0; false where no cycle of periods was found. S is that of a step
 // of no length.

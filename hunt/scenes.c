@@ -127,7 +127,8 @@ static void friction(Draw* draw, const Grammar* grammar, ReferenceScene* s) {
     s->contact = 1 + pick(draw, 3);
     s->input = chance(draw, 0.45) ? INPUT_LOAD : INPUT_SEPARATION;
     s->load = log_between(draw, 1e-1, 1e3);
-    const double scale = log_between(draw, LEAST_KAPPA, chance(draw, 0.5) ? 1e3 : MOST_KAPPA) / scene_kappa(s);
+    const double scale =
+        log_between(draw, LEAST_KAPPA, chance(draw, 0.5) ? 1e3 : MOST_KAPPA) / scene_kappa(s);
     *(s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
         s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
@@ -148,17 +149,18 @@ static double deflection(Draw* draw, const ReferenceScene* s) {
     if (kind < 0.4) {
         return 0.0;
     }
-    return most * (kind < 0.45 ? sign(draw) : kind < 0.6 ? sign(draw) * log_between(draw, 1.0, 100.0)
-                                                           : between(draw, -1.0, 1.0));
+    return most * (kind < 0.45  ? sign(draw)
+                   : kind < 0.6 ? sign(draw) * log_between(draw, 1.0, 100.0)
+                                : between(draw, -1.0, 1.0));
 }
 
 // A length of a step [s]; with moving inputs the reference takes each period by itself.
 static double length(Draw* draw, const ReferenceScene* s, bool linear) {
     const double kind = unit(draw);
-    const double periods = kind < 0.1                ? log_between(draw, 1e-6, 1e-3)
-                           : kind < 0.9              ? log_between(draw, 1e-3, 4.0)
-                           : linear || kind < 0.96   ? log_between(draw, 4.0, 30.0)
-                                                     : log_between(draw, 30.0, MOST_PERIODS);
+    const double periods = kind < 0.1              ? log_between(draw, 1e-6, 1e-3)
+                           : kind < 0.9            ? log_between(draw, 1e-3, 4.0)
+                           : linear || kind < 0.96 ? log_between(draw, 4.0, 30.0)
+                                                   : log_between(draw, 30.0, MOST_PERIODS);
     return fmax(SHORTEST, periods / s->f);
 }
 
@@ -260,14 +262,20 @@ static const Signal SIGNALS[] = {
     // a tool approaches, presses, slides, lifts off, and is set down again
     {{0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1}, {0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
     // a bounce
-    {{0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {{0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
     // a mass on a belt sticks and slips
     {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
      {0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0},
      {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
     // a sweep of V, and of the load
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
-    {{0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {{0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
     // the vibration is switched on and off; a contact that is held; stop and go
     {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0}},
     {{1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 1, 1, 0, 0, 1, 1}},
@@ -309,7 +317,7 @@ static bool is_in_domain(const ReferenceScene* s) {
     const ReferenceScene end = scene_after(s);
     const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
     const bool vibrates = s->V_1 != 0.0 || s->a_d != 0.0;
-    return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 && 
+    return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
            !(vibrates && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
            (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }

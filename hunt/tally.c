@@ -6,13 +6,16 @@
 #include "scenes.h"
 
 const char* const LAW_NAMES[] = {"any", "Dahl", "Coulomb", "ElasticPlastic", "LuGre"};
-static const char* const KAPPA_NAMES[KAPPAS] = {"below 1",    "1 to 1e2",   "1e2 to 1e4", "1e4 to 1e6",
+static const char* const KAPPA_NAMES[KAPPAS] = {"below 1",    "1 to 1e2",  "1e2 to 1e4",  "1e4 to 1e6",
                                                 "1e6 to 1e8", "above 1e8", "no vibration"};
 
 static int kappa_class(const ReferenceScene* scene) {
     const double kappa = scene_kappa(scene);
     const double tens = kappa > 1.0 ? log10(kappa) / 2.0 : -1.0;
-    return scene->V_1 == 0.0 && scene->a_d == 0.0 ? KAPPAS - 1 : tens < 0.0 ? 0 : tens >= 4.0 ? 5 : 1 + (int)tens;
+    return scene->V_1 == 0.0 && scene->a_d == 0.0 ? KAPPAS - 1
+           : tens < 0.0                           ? 0
+           : tens >= 4.0                          ? 5
+                                                  : 1 + (int)tens;
 }
 
 static void count(Cell* cell, const Verdict* verdict) {

@@ -6,9 +6,9 @@
 
 const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f", "Q_f", "F_t_start", "side", "F_t_settled"};
 
-static const double ROUNDING = 1e-11;               // of S, beside the tolerance
-static const double DIGITS = 32.0 * DBL_EPSILON;    // of a deflection, as the state holds it
-static const double LEAST_S = 1e-20;                // N: where nothing acts, S is 0
+static const double ROUNDING = 1e-11;            // of S, beside the tolerance
+static const double DIGITS = 32.0 * DBL_EPSILON; // of a deflection, as the state holds it
+static const double LEAST_S = 1e-20;             // N: where nothing acts, S is 0
 
 // Values of what is graded but F_t_settled, and what their errors are relative to.
 typedef struct {
@@ -39,7 +39,8 @@ static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, 
     for (int k = 0; k < OF_SETTLED; k++) {
         const double x = found.value[k];
         const double off = x - fmin(fmax(x, least->value[k]), largest->value[k]);
-        const double ratio = k == OF_SIDE ? (off == 0.0 ? 0.0 : INFINITY) : over(off, tolerance, scale[k], rounding[k]);
+        const double ratio =
+            k == OF_SIDE ? (off == 0.0 ? 0.0 : INFINITY) : over(off, tolerance, scale[k], rounding[k]);
         if (ratio > worst.ratio) {
             worst = (Verdict){ratio, k};
         }
@@ -99,7 +100,8 @@ static double settled_ratio(TrialStep* taken, int method, double tolerance) {
     return ratio;
 }
 
-static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, int method, double tolerance) {
+static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, int method,
+                  double tolerance) {
     step_of_reference(before, &taken->scene, &taken->step, &taken->truth);
     if (!taken->truth.known) {
         trial->unknown++;
