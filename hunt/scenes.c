@@ -347,7 +347,8 @@ static Sequence sequence_of(Draw draw, const Grammar* grammar) {
             }
         }
         if (k == 0) {
-            s.delta_0 = s.law == LAW_COULOMB || (of_user && chance(&draw, 0.7)) ? 0.0 : deflection(&draw, &s);
+            s.delta_0 =
+                s.law == LAW_COULOMB || (of_user && chance(&draw, 0.7)) ? 0.0 : deflection(&draw, &full);
             s.initial = chance(&draw, 0.15) ? START_SETTLED : START_GIVEN;
         }
         if (!is_in_domain(&s)) {
