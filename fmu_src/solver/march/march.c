@@ -553,7 +553,12 @@ static void march_between_reversals(March* m, double D) {
         const double x = fc_drive_displacement(drive, sticks_to, end);
         m->result->evaluations += 1.0;
         const double way = D - side * delta;
-        if (!(side * x > way)) {
+        bool goes_on = !(side * x > way);
+        if (!goes_on && way <= ROUNDING_OF_BOUND * D && fc_has_static_friction(scene->friction)) {
+            // It sticks at the static bound if V comes to its reversal faster than it could slip: what is left of the way is rounding.
+            goes_on = !(fc_push(scene, scene, sticks_to, side) > 0.0);
+        }
+        if (goes_on) {
             sticks_to = end;
             delta += x;
             if (end >= m->duration) {
