@@ -9,10 +9,7 @@ import pytest
 
 from workshop.bench.driver import Bench
 from workshop.bench.grade import Point
-from workshop.bench.periodic_means import SCENES, closed_form, harmonic_balance
-from workshop.bench.work_precision import cheapest, cost_at, step_size_points
-from workshop.reference import solution as reference
-from workshop.reference.start_values import scene_of
+from workshop.bench.work_precision import cheapest, cost_at, ratios, step_size_points
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:
@@ -35,14 +32,15 @@ def test_failures_do_not_count() -> None:
     assert math.isnan(cost_at([made(1e-9, 1.0, "refused")], 1e-6))
 
 
-@pytest.mark.parametrize("title", SCENES)
-def test_peers_of_the_periodic_mean_solve_the_same_scene(title: str) -> None:
-    scene = scene_of(SCENES[title])
-    right = float(reference.periodic_mean(scene))
-    still = float(reference.sigma(replace(scene, a_d=0.0), 0))
-    assert harmonic_balance(scene, still, 2048) == pytest.approx(right, abs=1e-3)
-    if scene.contact.model == "Constant":
-        assert closed_form(scene, still, 512) == pytest.approx(right, abs=1e-11)
+def test_ratios_are_over_the_default_at_the_same_error() -> None:
+    def line(method: str, cpu: float) -> list[Point]:
+        return [replace(made(10.0**-k, cpu * k), method=method) for k in (3, 12)]
+
+    calls = replace(made(math.nan, 1.5), method="calls")
+    rows = ratios([calls, *line("collocation", 1.0), *line("Radau 9", 3.0)])
+    assert [row["error"] for row in rows] == [1e-6, 1e-9]
+    assert [row["Radau 9"] for row in rows] == pytest.approx([3.0, 3.0])
+    assert rows[0]["calls"] == pytest.approx(1.5 / (1e-6 * rows[0]["collocation_us_per_period"]))  # type: ignore[operator]
 
 
 def test_the_table_of_ratios_leads_with_the_best_peer() -> None:
