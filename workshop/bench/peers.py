@@ -99,7 +99,7 @@ def scipy_radau(case: Case, start: float, tolerance: float, most_evaluations: in
                 equation.values[name] = float(samples[k])
                 if case.linear:
                     equation.rates[name] = float(samples[k + 1] - samples[k]) / case.step
-            y_tolerance = {"rtol": tolerance, "atol": (tolerance, tolerance * case.step)}
+            atol = (tolerance, tolerance * case.step)
             with warnings.catch_warnings():  # its numerical Jacobian overflows where the contact is stiff
                 warnings.simplefilter("ignore", RuntimeWarning)
                 result = solve_ivp(
