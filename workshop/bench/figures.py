@@ -55,8 +55,9 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
         panel.set_xticks([1.0, 1e-4, 1e-8, 1e-12, 1e-16])
     for panel in axes.flat[len(names) :]:
         panel.set_visible(False)
-    figure.supxlabel(r"largest error of $F_t$ and its mean, over $F_C$", fontsize=10)
-    figure.supylabel("CPU time per 50 µs simulated [µs]", fontsize=10)
+    for panel in axes[-1]:
+        panel.set_xlabel(r"error of $F_t$ and its mean, over $F_C$")
+    figure.supylabel("CPU time for 50 µs [µs]", fontsize=10)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return style.save_both(figure, folder, "work-precision")
 
