@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from workshop.bench.driver import (
 )
 from workshop.bench.grade import FIXED_STEP, Point, grade_point
 from workshop.bench.peers import PLAIN_PROGRAMS, plain, scipy_radau
+from workshop.project import ROOT
 
 DESCRIPTION = """\
 Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
@@ -37,6 +39,7 @@ independent reference. The peers are not FMUs: the time of the FMI calls, measur
 added to theirs. Then the error against the communication step for held and linear inputs, and the cost of
 one step against the number of vibration periods in it."""
 
+PAGE = ROOT / "docs" / "numerics.md"
 MATCHED_ERRORS = (1e-6, 1e-9)
 DEFAULT, CALLS, BARE = "collocation", "calls", "best Radau without calls"
 RADAU = ("Radau 5", "Radau 9", "Radau 13")
@@ -240,41 +243,60 @@ def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
     return rows
 
 
-COLUMNS: dict[str, Sequence[str]] = {  # of the table of ratios: the least of these methods
-    **{name: (name,) for name in (*RADAU, BARE, "plain CVODE", "cvode")},
+COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of these methods
+    **{name: (name,) for name in RADAU},
+    "best, bare": (BARE,),
+    "CVODE": ("plain CVODE",),
+    "cvode": ("cvode",),
     "fixed step": FIXED_STEP,
     "Python": ("scipy Radau",),
 }
 
 
+def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[str]]:
+    """A line a scene: the calls' part of the default's time, and each peer's time over the default's."""
+    return [
+        [
+            str(row["case"]),
+            f"{100 * float(str(row['calls'])):.0f} %",
+            *(cheapest(row, names) for names in COLUMNS.values()),
+        ]
+        for row in rows
+        if row["error"] == error
+    ]
+
+
 def ratio_table(rows: Sequence[dict[str, object]], error: float) -> Table:
-    """The calls' part of the default's time, and each peer's time over the default's."""
     table = Table(
-        title=f"CPU time over that of the default, both with errors of at most {error:.0e} F_C",
-        title_justify="left",
+        title=f"CPU time over the default's, errors of at most {error:.0e} F_C", title_justify="left"
     )
     table.add_column("scene", no_wrap=True)
-    for heading in ("default", "of which calls", *COLUMNS):
+    for heading in ("calls", *COLUMNS):
         table.add_column(heading, justify="right")
-    for row in rows:
-        if row["error"] == error:
-            own = f"{row['collocation_us_per_period']:.2f} us"
-            table.add_row(
-                str(row["case"]),
-                own,
-                f"{100 * float(str(row['calls'])):.0f} %",
-                *(cheapest(row, names)[0] for names in COLUMNS.values()),
-            )
+    for cells in ratio_cells(rows, error):
+        table.add_row(*cells)
     return table
 
 
-def cheapest(row: dict[str, object], names: Sequence[str]) -> tuple[str, str]:
-    """The least ratio of these methods, and whose it is."""
-    known = {name: float(row[name]) for name in names if not math.isnan(row.get(name, math.nan))}  # type: ignore[arg-type]
+def renew_tables(rows: Sequence[dict[str, object]], titles: Mapping[str, str]) -> Path:
+    """The tables of docs/numerics.md, each under the words that name its error."""
+    text = PAGE.read_text(encoding="utf-8")
+    for error in MATCHED_ERRORS:
+        lines = [["scene", "calls", *COLUMNS], ["---"] * (2 + len(COLUMNS))]
+        lines += [[titles[name], *cells] for name, *cells in ratio_cells(rows, error)]
+        table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+        head = f"errors of at most {error:.0e} `F_C`:\n\n".replace("e-0", "e-")
+        text = re.sub(rf"(?<={re.escape(head)})(?:\|.*\n)*", f"{table}\n", text)
+    PAGE.write_text(text, encoding="utf-8")
+    return PAGE
+
+
+def cheapest(row: dict[str, object], names: Sequence[str]) -> str:
+    """The least ratio of these methods."""
+    known = [float(str(row[name])) for name in names if name in row and not math.isnan(float(str(row[name])))]
     if not known:
-        return "not reached", ""
-    best = min(known, key=known.__getitem__)
-    return f"{known[best]:.3g}", best
+        return "not reached"
+    return f"{min(known):.3g}" if min(known) < 1000 else f"{min(known):.0f}"
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -322,11 +344,12 @@ def run(options: argparse.Namespace) -> None:
         write_csv(periods, output / "periods.csv"),
         write_machine(output / "machine.json"),
     ]
-    written += figures.work_precision(points, {case.name: case.title for case in chosen}, output)
+    titles = {case.name: case.title for case in chosen}
+    written += figures.work_precision(points, titles, output)
     written += figures.step_sizes(step_sizes, output)
     written += figures.periods(periods, output)
     if options.docs:
-        written += renew_docs(written)
+        written += [*renew_docs(written), renew_tables(compared, titles)]
     for error in MATCHED_ERRORS:
         wide_console().print(ratio_table(compared, error))
     if options.against:
