@@ -1,5 +1,6 @@
 #include "model/root.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -68,4 +69,43 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
         }
     }
     return t;
+}
+
+double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
+                       double at_b, double close, double* evaluations) {
+    const double rounding = DBL_EPSILON * (b - a);
+    // The root lies between near and far; before is the end that was replaced last.
+    double near = b, far = a, before = a;
+    double at_near = at_b, at_far = at_a, at_before = at_a;
+    const bool ends_negative = at_b < 0.0;
+    double part = at_b / (at_b - at_a);
+    for (int i = 0; i < MOST_ROOT_STEPS; i++) {
+        const bool on_side = (at_near < 0.0) == ends_negative;
+        if (at_near == 0.0 || (on_side && fabs(at_near) <= close) || fabs(near - far) <= rounding) {
+            break;
+        }
+        const double t = near + fmax(1e-9, fmin(1.0 - 1e-9, part)) * (far - near);
+        const double at_t = f(context, t);
+        *evaluations += 1.0;
+        before = near;
+        at_before = at_near;
+        if ((at_t < 0.0) != (at_near < 0.0)) {
+            before = far;
+            at_before = at_far;
+            far = near;
+            at_far = at_near;
+        }
+        near = t;
+        at_near = at_t;
+        // Inverse quadratic interpolation through the three, if they rise or fall together enough.
+        const double x = (near - far) / (before - far);
+        const double y = (at_near - at_far) / (at_before - at_far);
+        part = 0.5;
+        if (y * y < x && (1.0 - y) * (1.0 - y) < 1.0 - x) {
+            part = at_near / (at_far - at_near) * (at_before / (at_far - at_before)) +
+                   (before - near) / (far - near) * (at_near / (at_before - at_near)) *
+                       (at_far / (at_before - at_far));
+        }
+    }
+    return (at_near < 0.0) == ends_negative || at_near == 0.0 ? near : far;
 }

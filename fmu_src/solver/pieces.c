@@ -1,0 +1,42 @@
+#include "solver/pieces.h"
+
+#include <stddef.h>
+
+void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
+    pieces->of = scene;
+    pieces->whole = whole;
+    pieces->t = 0.0;
+    pieces->scene = NULL;
+}
+
+bool fc_next_piece(FcPieces* pieces) {
+    const bool first = pieces->scene == NULL;
+    if (!first && !(pieces->t < pieces->whole)) {
+        return false;
+    }
+    pieces->scene = pieces->of;
+    pieces->h = pieces->whole;
+    if (first && !fc_scene_has_pieces(pieces->of)) {
+        pieces->t = pieces->whole;
+        return true;
+    }
+    pieces->own = first ? *pieces->of : fc_scene_from(pieces->of, pieces->t);
+    pieces->scene = &pieces->own;
+    const double rest = pieces->whole - pieces->t;
+    pieces->h = fc_scene_piece(&pieces->own, rest, pieces->whole);
+    const double next = pieces->t + pieces->h;
+    const bool is_last = !(pieces->h < rest && next > pieces->t);
+    pieces->h = is_last ? rest : pieces->h;
+    pieces->t = is_last ? pieces->whole : next;
+    return true;
+}
+
+void fc_loose_step(const FcScene* scene, FcStepResult* result) {
+    if (result->delta != 0.0) {
+        const double sigma = fc_scene_contact(scene, 0.0).sigma;
+        result->heat += 0.5 * sigma * result->delta * result->delta;
+        result->lost += result->delta;
+        result->delta = 0.0;
+    }
+    result->slips = 0;
+}
