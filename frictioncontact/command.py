@@ -7,6 +7,7 @@ import csv
 import importlib.util
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +16,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from frictioncontact import resources
-from frictioncontact.errors import UserError
+from frictioncontact.errors import FrictionWarning, UserError
 from frictioncontact.files import whole_file
 
 TABLE = 120  # characters, of the widest table
@@ -36,6 +37,13 @@ def add_fmu(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fmu", type=Path, help="use this FMU instead of the package's own")
 
 
+def add_set(parser: argparse.ArgumentParser, of: str) -> None:
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
+        help=f"start value {of}, in SI units; of an enumeration an item or its number; again for each",
+    )  # fmt: skip
+
+
 def add_output(parser: argparse.ArgumentParser, default: Path) -> None:
     parser.add_argument("--output", type=Path, default=default, help=f"folder to write to ({place(default)})")
 
@@ -47,6 +55,8 @@ def place(path: Path) -> str:
 
 def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespace) -> None:
     """Runs a command. What its user can mend becomes one line on standard error, and the exit status 1."""
+    warnings.simplefilter("always", FrictionWarning)
+    warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
     try:
         run(options)
         sys.stdout.flush()
@@ -96,7 +106,8 @@ def shown(path: Path) -> str:
 
 
 def say_written(paths: Sequence[Path]) -> None:
-    print("Written:", ", ".join(map(shown, paths)))
+    if paths:
+        print("Written:", ", ".join(map(shown, paths)))
 
 
 def write_csv(rows: Sequence[Mapping[str, object]], path: Path) -> Path:

@@ -25,6 +25,10 @@ def whole_file(path: Path) -> Iterator[Path]:
     try:
         yield unfinished
         unfinished.replace(path)
+    except OSError as error:
+        if str(error.filename) == str(unfinished):  # the user knows nothing of this one
+            error.filename = str(path)
+        raise
     finally:
         unfinished.unlink(missing_ok=True)
 

@@ -25,7 +25,7 @@ PHASES = tuple(k / 5.0 for k in range(5))
 STEPS = (1.0, 0.37, 1.0)  # over the communication step
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advice:
     """What to set, and what it was graded by. str() gives it in words."""
 
@@ -45,6 +45,10 @@ class Advice:
     def knows_the_mean(self) -> bool:
         """Whether some tolerance gives that accuracy of the mean friction."""
         return self.asked.accuracy * abs(self.mean) >= LEAST * self.scale
+
+    def __repr__(self) -> str:
+        settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
+        return f"<advice: {settings}; within {self.asked.accuracy:g}>"
 
     def __str__(self) -> str:
         asked, known = self.asked, self.knows_the_mean
@@ -86,9 +90,16 @@ def advise(
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
     fmu       another .fmu file of this model
+    returns   an `Advice`: settings, start_values, mean and error [N]; str() says it in words
+    raises    UserError: the question is wrong, or the FMU refuses the scene
+    warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 
-    The advice is held against the FMU at solver.tolerance = 1e-10, from rest and settled. UserError names
-    what is wrong with the question.
+    The advice is graded against the FMU at solver.tolerance = 1e-10, from rest and settled.
+
+        import frictioncontact as fc
+        advice = fc.advise({"V": 0.5, "vibration.V_1": 1.44}, accuracy=1e-3, step=1e-3, output="F_t_mean")
+        print(advice)
+        fc.simulate(advice.start_values, stop=0.01, step=1e-3, outputs=["F_t_mean"])
     """
     loaded = opened(fmu)
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)

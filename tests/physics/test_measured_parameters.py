@@ -10,8 +10,8 @@ import pytest
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.validate import measurements, record
 from workshop.project import ROOT
+from workshop.validate import measurements, record
 
 PAGE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 LINES = re.findall(r"^    ((?:[\w.]+ [-\d.e]+ ?)+)$", re.sub(r"\\\n +", "", PAGE), re.MULTILINE)

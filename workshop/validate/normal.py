@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.validate.measurements import NormalVibration
+from workshop.validate.measurements import NormalVibration
 
 LAWS = ("Dahl", "ElasticPlastic")
 SWINGS = np.array([1.0, 1.3, 1.5, 2.0, 3.0, 5.0])  # alpha, how far the normal force swings: by e^(2 alpha)
