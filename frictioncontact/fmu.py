@@ -108,7 +108,8 @@ class FrictionFmu:
     ) -> Session:
         """An initialized instance.
 
-        start_values  name of an input or parameter -> its value, SI units; of an enumeration an item or number
+        start_values  name of an input or parameter -> its value, SI units; of an enumeration an item or its
+                      number
         start         time at which it starts, s
         tolerance     solver.tolerance, if the start values have none
         raises        UserError: an unknown name or a wrong value; FrictionError: the FMU refuses them

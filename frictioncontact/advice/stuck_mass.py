@@ -79,7 +79,7 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
             f"Set {damping:.6g} N s/m, the smallest and a tenth: more errs more.",
             "It adds sigma_1 delta' to F_t, also while the contact slides under a vibration: F_t may then",
             "swing by many times F_C, though its mean stays. Set it only where the mass sticks.",
-            f"At break-away F_t exceeds the static friction by sigma_1 V, {damping:.6g} N for each m/s. If that",
-            "matters, take Gauss-Seidel, which needs no damping.",
+            f"At break-away F_t exceeds the static friction by sigma_1 V, {damping:.6g} N for each m/s.",
+            "If that matters, take Gauss-Seidel, which needs no damping.",
         ]
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}

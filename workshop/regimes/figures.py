@@ -193,10 +193,11 @@ def _table_2_points() -> list[Line]:
     from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
 
     points = []
-    for parameters in (PRINTED, IDENTIFIED):
+    for parameters, colour in ((PRINTED, INK), (IDENTIFIED, ORANGE)):
         V_1 = TABLE_2[2].V_1
         kappa = parameters.stiffness * V_1 / (2.0 * math.pi * FREQUENCY * COULOMB_FORCE)
-        points.append(Line([kappa], [parameters.V / V_1], "", INK, markers=True))
+        label = f"row 3 of Table 2, {parameters.name}"
+        points.append(Line([kappa], [parameters.V / V_1], label, colour, markers=True))
     return points
 
 
