@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NoReturn
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -23,9 +24,18 @@ TABLE = 120  # characters, of the widest table
 called_as: str | None = None  # what a file of scripts/ calls the command of its user
 
 
+class Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """As argparse's, with the grammar of values."""
+        words = message.partition("unrecognized arguments: ")[2].split()
+        if words and "=" in words[0] and "--set" in self.format_usage():
+            message += f"; write --set {words[0].lstrip('-')}"
+        super().error(message)
+
+
 def command_line(prog: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
     """The parser of a command; its texts keep their lines, and %(prog)s in them is what it is called."""
-    return argparse.ArgumentParser(
+    return Parser(
         prog=called_as or prog,
         description=description,
         epilog=epilog,

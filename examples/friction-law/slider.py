@@ -1,4 +1,4 @@
-"""A slider on an ultrasonic contact, driven by its friction law: an ordinary differential equation of two states.
+"""A slider on an ultrasonic contact, driven by its friction law: a differential equation of two states.
 
 Needs the package alone: python slider.py
 """

@@ -121,6 +121,6 @@ def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | 
         import frictioncontact as fc
         law = fc.friction_law({"vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7})
         print(law(0.5), law.derivative(0.5))
-        print(law(np.linspace(0.1, 2.0, 5), load=[[100.0], [300.0]]).shape)
+        print(law(np.linspace(0.1, 2.0, 5), E=[[44.6e9], [58.6e9]]).shape)
     """
     return FrictionLaw(scene, fmu)

@@ -15,7 +15,7 @@ import slider  # noqa: E402
 
 
 def test_a_few_calls_meet_the_resolved_system() -> None:
-    times, x, calls = slider.slide(0.02, 21)
+    _, x, calls = slider.slide(0.02, 21)
     _, resolved = slow_plant.reference(0.02, 21)
     assert calls < 150
     assert np.abs(x - resolved[0]).max() * slider.K / 55.0 < 3e-4

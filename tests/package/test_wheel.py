@@ -147,7 +147,7 @@ def test_every_command_that_needs_no_extra(user: User) -> None:
     user.run("frictioncontact", "simulate", "--stop", "1e-3", "--step", "5e-4", "--output", "out.csv")
     assert len((user.work / "out.csv").read_text().splitlines()) == 4
     assert "stiffnessScale" in user.run("frictioncontact", "identify", "--quick")
-    assert "Promise" in user.run("frictioncontact", "advise", "--quick", "V=0.5")
+    assert "Promise" in user.run("frictioncontact", "advise", "--quick", "--set", "V=0.5")
     user.run("frictioncontact", "playground", "--output", "page.html")
     assert (user.work / "page.html").read_text(encoding="utf-8") == PAGE
     assert "misfit: 0.049 N" in user.run("frictioncontact", "validate", "--quick")
@@ -186,8 +186,8 @@ def test_every_block_of_the_pages_runs(user: User, code: str) -> None:
 @pytest.mark.parametrize("line", LINES)
 def test_every_line_of_the_pages_runs(user: User, line: str) -> None:
     """mine.csv and drive.csv are the user's own."""
-    mine = "V [mm/s],vibration.V_1 [m/s],F_t_mean [N]\n100,1.44,5.5\n500,1.44,26.4\n1000,1.44,46.6\n1400,1.44,54.6\n"
-    (user.work / "mine.csv").write_text(mine, encoding="utf-8")
+    rows = "V [mm/s],vibration.V_1 [m/s],F_t_mean [N]", "100,1.44,5.5", "500,1.44,26.4", "1000,1.44,46.6"
+    (user.work / "mine.csv").write_text("\n".join([*rows, "1400,1.44,54.6"]), encoding="utf-8")
     user.run(*shlex.split(line, comments=True))
 
 
