@@ -17,7 +17,7 @@ typedef struct {
     N_Vector tolerance; // absolute
     SUNMatrix matrix;
     SUNLinearSolver linear_solver;
-    void* integrator; // of CVODE or ARKODE, made and freed by the peer
+    void* integrator; // made and freed by the peer
 } PlainSolver;
 
 // y at the start of the job; false where there is no memory.

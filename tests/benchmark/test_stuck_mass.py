@@ -1,4 +1,4 @@
-"""A mass and a stuck contact that exchange values: the edges of stability that docs/using.md promises.
+"""A mass and a stuck contact that exchange values: the edges of stability that docs/tools.md promises.
 
 They are measured with the FMU in a master written here, and held against eigenvalues where it is one's turn.
 """
@@ -29,8 +29,8 @@ from workshop.project import ROOT
 M, SIGMA = 1.0, 1e6
 TIME = math.sqrt(M / SIGMA)
 COUNT = 600  # steps
-GUIDE = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
-TITLES = {  # of the rows in docs/using.md
+GUIDE = (ROOT / "docs" / "tools.md").read_text(encoding="utf-8")
+TITLES = {  # of the rows in docs/tools.md
     JACOBI: "Jacobi, held values",
     REREAD: "Jacobi that reads",
     LINEAR: "Jacobi with input and output derivatives",
@@ -144,7 +144,7 @@ def test_damping_outside_sets_the_held_step(fmu: FrictionFmu) -> None:
 
 
 def test_damping_swings_the_force_of_a_contact_that_slides_under_vibration(fmu: FrictionFmu) -> None:
-    """As docs/using.md says; from F_t = sigma delta + sigma_1 delta' of the same motion of the bristle."""
+    """As docs/tools.md says; from F_t = sigma delta + sigma_1 delta' of the same motion of the bristle."""
     start = {"V": 0.5, "vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.54e6}
     ranges, heats, means = [], [], []
     for sigma_1 in (0.0, 500.0):

@@ -156,9 +156,7 @@ def test_every_command_that_needs_no_extra(user: User) -> None:
 
 PAGES = (
     "README.md",
-    "docs/using.md",
-    "docs/api.md",
-    "docs/measured-parameters.md",
+    *(f"docs/{name}.md" for name in ("using", "python", "tools", "api", "measured-parameters")),
     "examples/friction-law/README.md",
 )
 PYTHON = [

@@ -225,10 +225,15 @@ def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, perio
     return np.array(after)
 
 
-@pytest.mark.parametrize("mass", [0.1, 1.0])
-def test_a_mass_follows_it_but_for_the_ripple(fmu: FrictionFmu, mass: float) -> None:
-    """Within twice F_C / (2 pi f m), the velocity of the ripple, of a mass that sees the vibration."""
-    pull, sigma, V_1, f, periods = 40.0, 2.5e6, 1.44, 20e3, 300
+@pytest.mark.parametrize(
+    ("mass", "sigma", "periods", "least", "most"),
+    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 1000, 7.0, 9.0)],
+)
+def test_a_mass_follows_it_but_for_ripple_and_transient(
+    fmu: FrictionFmu, mass: float, sigma: float, periods: int, least: float, most: float
+) -> None:
+    """In ripples F_C / (2 pi f m): within two for kappa = 0.52, some 0.4 / kappa for kappa = 0.052."""
+    pull, V_1, f = 40.0, 1.44, 20e3
     contact = {"contact.model": "Constant", "contact.sigma": sigma, "vibration.V_1": V_1}
     with fmu.session(contact) as session:
 
@@ -240,7 +245,7 @@ def test_a_mass_follows_it_but_for_the_ripple(fmu: FrictionFmu, mass: float) -> 
         mean = solve_ivp(acceleration, (0.0, times[-1]), [0.0], t_eval=times, rtol=1e-8, atol=1e-10).y[0]
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
-    assert 0.01 * ripple < error < 2 * ripple
+    assert least * ripple < error < most * ripple
 
 
 def test_extreme_inputs_give_a_number_or_say_what_is_wrong(fmu: FrictionFmu) -> None:

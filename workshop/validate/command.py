@@ -55,7 +55,7 @@ def scatter_line(data: measurements.Record) -> str:
     )
 
 
-def cycles_table(fits: Sequence[record.RecordFit]) -> Table:
+def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
     table = Table(title="The cycles: fitted on two, 47 predicted. Misfit over the measured friction")
     for heading in ("", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
@@ -68,6 +68,10 @@ def cycles_table(fits: Sequence[record.RecordFit]) -> Table:
             f"{fit.rms_predicted:.1%}",
             f"{fit.work:.3f}",
         )
+    same, later = record.repeated(data), record.predicted_cycles(data)
+    error = record.rms(same.friction - later.friction) / record.sliding_friction(data)
+    ratio = record.work(same.friction, later) / record.work(later.friction, later)
+    table.add_row("no physics: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}")
     return table
 
 
@@ -129,6 +133,8 @@ def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.Norma
             f"{fit.between:.1%}" if reached else "",
             f"{fit.predicted:.1%}" if reached else "",
         )
+    at_second, between = normal.hyperbola(data)
+    table.add_row("no physics: 1 / (1 + V / V_0)", "", "", f"{between:.1%}", f"{at_second:.1%}")
     return table
 
 
@@ -155,7 +161,7 @@ def run(options: argparse.Namespace) -> None:
     if not options.quick:
         with FrictionFmu(path) as fmu:
             record_fits = [record.fit(fmu, whole, law) for law in record.LAWS]
-        console.print(scatter_line(whole), cycles_table(record_fits), sep="\n")
+        console.print(scatter_line(whole), cycles_table(whole, record_fits), sep="\n")
         console.print(elements_table(elements.fits(whole)), unloading_table(whole, record_fits), sep="\n")
 
     if draws:

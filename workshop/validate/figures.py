@@ -27,29 +27,29 @@ TWO_CYCLES = (100.75, 108.75)  # s, in the middle of the record
 
 
 def longitudinal(results: Mapping[str, tuple[Sliding, Sequence[Fit]]]) -> Figure:
-    figure, axes = style.subplots(1, len(results), size=(10.0, 4.2))
+    figure, axes = style.subplots(len(results), 1, size=(6.4, 6.6), sharex=True)
     for panel, (name, (data, fits)) in zip(axes, results.items(), strict=True):
         V = 1e3 * data.V
-        panel.loglog(V, data.without, "o", color=style.BLACK, mfc="white", label="measured,\nno vibration")
-        panel.loglog(V, data.vibrated, "o", color=style.BLACK, label="measured,\nvibrated")
+        panel.loglog(V, data.without, "o", color=style.BLACK, mfc="white", label="measured, no vibration")
+        panel.loglog(V, data.vibrated, "o", color=style.BLACK, label="measured, vibrated")
         for fit in fits:
             if fit.law == "Dahl":
                 panel.fill_between(V, fit.least, fit.most, color=LAW["Dahl"], alpha=0.3, lw=0)
-                panel.plot([], [], lw=6, color=LAW["Dahl"], alpha=0.4, label="Dahl, LuGre:\nany stiffness")
+                panel.plot([], [], lw=6, color=LAW["Dahl"], alpha=0.4, label="Dahl, LuGre: any stiffness")
             elif fit.law != "LuGre":
-                label = fit.law if fit.law != "ElasticPlastic" else "ElasticPlastic,\nstiffness fitted"
+                label = fit.law if fit.law != "ElasticPlastic" else "ElasticPlastic, stiffness fitted"
                 dash = ":" if fit.law.startswith("a ") else "--" if fit.law == "Coulomb" else "-"
                 panel.loglog(V, fit.model, dash, color=LAW[fit.law], label=label)
-        panel.set(xlabel="sliding velocity [mm/s]", title=f"{name}: 26 kHz, 0.35 µm along the sliding")
+        panel.set(ylabel="mean friction [N]", title=f"{name}: 26 kHz, 0.35 µm along the sliding")
         panel.set_ylim(1e-3, 20.0)
-    axes[0].set_ylabel("mean friction [N]")
+    axes[-1].set_xlabel("sliding velocity [mm/s]")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right center")
+    figure.legend(handles, labels, loc="outside lower center", ncols=2)
     return figure
 
 
 def cycles(data: Record, fits: Sequence[RecordFit]) -> Figure:
-    figure, (path, time) = style.subplots(1, 2, size=(10.0, 4.6))
+    figure, (path, time) = style.subplots(2, 1, size=(6.4, 7.6))
     whole = record.modelled(data)
     shown = (whole.time >= TWO_CYCLES[0]) & (whole.time <= TWO_CYCLES[1])
     middle = 0.5 * (whole.position[shown].min() + whole.position[shown].max())
@@ -61,14 +61,14 @@ def cycles(data: Record, fits: Sequence[RecordFit]) -> Figure:
             label = f"{fit.law}, {fit.stiffness * 1e-3:.1f} N/mm, µ {fit.mu:.3f}"
             path.plot(x, fit.friction[shown], color=LAW[fit.law], label=label)
             time.plot(t, fit.friction[shown], color=LAW[fit.law])
-    path.set(xlabel="position [µm]", ylabel="friction [N]", title="Two of the 47 predicted cycles")
-    time.set(xlabel="time [s]", title="The same along time")
-    figure.legend(*path.get_legend_handles_labels(), loc="outside lower center", ncols=3, markerscale=4)
+    path.set(xlabel="position [µm]", ylabel="friction [N]", title="Two of the 47 later cycles")
+    time.set(xlabel="time [s]", ylabel="friction [N]", title="The same along time")
+    figure.legend(*path.get_legend_handles_labels(), loc="outside lower center", ncols=1, markerscale=4)
     return figure
 
 
 def unloading(data: Record, fits: Sequence[RecordFit]) -> Figure:
-    figure, (force, ratio) = style.subplots(1, 2, size=(10.0, 4.8))
+    figure, (force, ratio) = style.subplots(2, 1, size=(6.4, 7.6))
     part = data.between(*record.UNLOADING)
     carrying = part.load > record.CARRYING
     dahl = next(fit for fit in fits if fit.law == "Dahl")
@@ -89,7 +89,7 @@ def unloading(data: Record, fits: Sequence[RecordFit]) -> Figure:
         ratio.plot(part.time[carrying], (-friction / part.load)[carrying], dash, color=colour)
     force.set(xlabel="time [s]", ylabel="friction [N]", title="The load falls from 5 N to 0: predicted")
     ratio.set(xlabel="time [s]", ylabel="friction / load", title="The same over the load", ylim=(0.0, 3.0))
-    figure.legend(*force.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    figure.legend(*force.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 

@@ -88,6 +88,18 @@ def scatter(record: Record) -> tuple[float, float, float]:
     return float(from_mean / sliding), float(from_last / sliding), float(np.std(works) / np.mean(works))
 
 
+def repeated(record: Record) -> Record:
+    """A baseline without physics: the mean of the fitted cycles, repeated over the predicted ones."""
+    phase = np.arange(0.0, CYCLE, 0.02)
+    later = predicted_cycles(record)
+
+    def mean(column: np.ndarray) -> np.ndarray:
+        cycles = [np.interp(FIRST + k * CYCLE + phase, record.time, column) for k in range(FITTED)]
+        return np.interp(later.time - FIRST, phase, np.mean(cycles, axis=0), period=CYCLE)
+
+    return Record(later.time, *map(mean, (record.load, record.position, record.friction)))
+
+
 def work(friction: np.ndarray, record: Record) -> float:
     """Work along the path [J], trapezoidal."""
     return float(np.trapezoid(friction, record.position))
