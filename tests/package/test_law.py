@@ -138,9 +138,8 @@ class TestWarnings:
             assert [text.split(":")[0] for text in warned(call)] == ["contact.sigma has no effect"]
 
     def test_a_fit_of_what_has_no_effect_is_refused(self) -> None:
-        with pytest.raises(
-            fc.UserError, match="^contact[.]sigma can't be fitted: contact[.]sigma has no effect: "
-        ):
+        message = re.escape("contact.sigma can't be fitted: contact.sigma has no effect: ")
+        with pytest.raises(fc.UserError, match=message):
             fc.identify(fc.contacts["steel-dry"].data, "contact.sigma")
 
     def test_the_tables_name_variables_and_items(self, fmu: FrictionFmu) -> None:

@@ -14,7 +14,7 @@ from workshop.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
 from workshop.paper.claims import Claim
 from workshop.project import ROOT
 from workshop.report.page import Section, Table
-from workshop.report.panels import text as as_html
+from workshop.report.page import text as as_html
 
 TITLE = "Friction under ultrasonic vibration: a paper reproduced and corrected"
 
