@@ -15,7 +15,7 @@ import shutil
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from functools import cache
 from pathlib import Path
@@ -35,7 +35,7 @@ from fmpy.fmi2 import (
 )
 
 from . import resources
-from .errors import FrictionError, UserError
+from .errors import FrictionError, UserError, shown
 from .platforms import library_in
 from .values import Value, Variables, pairs, path_of, real
 
@@ -168,6 +168,7 @@ class Session:
         self._callbacks = logging_callbacks(self.messages, self.warnings)
         slave.instantiate(callbacks=self._callbacks, loggingOn=True)
         try:
+            tolerance = None if tolerance is None else real(tolerance, "tolerance")
             self._call(slave.setupExperiment, tolerance, start)
             for name, value in pairs(start_values, "start_values").items():
                 self.set(name, value)
@@ -188,7 +189,7 @@ class Session:
         """Sets an input or a parameter, SI units; of an enumeration an item or its number."""
         variable = self.fmu.variables.get(name)
         if variable is None or type(value) is not float or variable.type != "Real":
-            code = float(self.fmu.known.numbers(name, value, f"set {name}"))
+            code = self.fmu.known.number(name, value, f"set {name}")
         else:
             code = value  # checked by the FMU
         is_real = self.fmu.variables[name].type == "Real"
@@ -198,7 +199,8 @@ class Session:
     def set_rates(self, **rates: float) -> None:
         """Time derivatives [SI units per s] of inputs over the next step."""
         references = [self.fmu.known.find(name, "set_rates", ("input",)).valueReference for name in rates]
-        self._call(self.slave.setRealInputDerivatives, references, [1] * len(rates), list(rates.values()))
+        values = [real(rate, name) for name, rate in rates.items()]
+        self._call(self.slave.setRealInputDerivatives, references, [1] * len(rates), values)
 
     def step(self, h: float) -> None:
         """Advances by h [s], with the inputs held or moving at the rates that were set."""
@@ -209,7 +211,7 @@ class Session:
     def step_many(self, h: float, count: int) -> None:
         """count steps of h [s] with held inputs, with as little Python as possible between them."""
         do_step, component, time = self.slave.fmi2DoStep, self.slave.component, self.time
-        for k in range(count):
+        for k in range(int(real(count, "count"))):
             self._call(do_step, component, time + k * h, h, 1)
         self.time = time + count * h
 
@@ -219,6 +221,8 @@ class Session:
 
     def read(self, names: Sequence[str] = OUTPUTS) -> np.ndarray:
         """The values of several variables now, an array of their number."""
+        if isinstance(names, str) or not isinstance(names, Iterable):
+            raise UserError(f"read: {shown(names)} is not a sequence of names")
         references = [self.fmu.known.readable(name, "read").valueReference for name in names]
         return np.array(self._call(self.slave.getReal, references))
 

@@ -199,12 +199,16 @@ class Variables:
         """The doubles that a value or an array of values stands for."""
         return numbers_of(value, where, self.items[self.find(name, where).name])
 
-    def value(self, name: object, value: object, where: str) -> Value:
-        """One value: a number, or of an enumeration the item's name. Bounds are left to the FMU."""
+    def number(self, name: object, value: object, where: str) -> float:
+        """The double that one value stands for. Bounds are left to the FMU."""
         found = self.numbers(name, value, where)
         if found.ndim:
             raise UserError(f"{where}: {shown(value)} is not one value")
-        return self.named(str(name), float(found))
+        return float(found)
+
+    def value(self, name: object, value: object, where: str) -> Value:
+        """One value: a number, or of an enumeration the item's name."""
+        return self.named(str(name), self.number(name, value, where))
 
     def named(self, name: str, number: float) -> Value:
         """The number; of an enumeration the item's name."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST = 1e-2  # solver.tolerance
+TIGHT = 1e-10  # the tolerance that grades
 # From five phases, since an error may vanish at one; steps of which not all are a whole number of periods.
 PHASES = tuple(k / 5.0 for k in range(5))
 STEPS = (1.0, 0.37, 1.0)  # over the communication step
@@ -82,7 +83,7 @@ def advise(
     """What to set so that F_t and F_t_mean are within an accuracy of F_C and of the mean friction.
 
     scene     start values of what describes it, SI units
-    accuracy  largest error, over F_C and over the mean friction, from 1e-10 to 1
+    accuracy  largest error, over F_C and over the mean friction, from 1e-8 to 1
     step      communication step, s (a period of the vibration)
     output    which output must be accurate: "F_t", "F_t_mean" or "both"
     inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load: the steps are
@@ -183,7 +184,7 @@ def _run_errors(fmu: FrictionFmu, asked: Question, settings: Mapping[str, Value]
         steps = asked.step * np.array(STEPS)
     held = {name: samples[: len(steps)] for name, samples in asked.inputs.items()}
     rates = {name: np.diff(samples) / steps for name, samples in asked.inputs.items()} if asked.linear else {}
-    tight = {"solver.tolerance": LEAST, **{name: settings[name] for name in SETTLED if name in settings}}
+    tight = {"solver.tolerance": TIGHT, **{name: settings[name] for name in SETTLED if name in settings}}
     advised, right = (
         run(fmu, {**asked.given, **chosen}, steps, held, rates, start, ("F_t", "F_t_mean"))[1:]
         for chosen in (settings, tight)

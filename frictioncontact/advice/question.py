@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Output = Literal["both", "F_t", "F_t_mean"]
 OUTPUTS: tuple[Output, ...] = ("both", "F_t", "F_t_mean")
 LONGEST = 400  # communication steps taken from a table of inputs
-LEAST = 1e-10  # of solver.tolerance: below, rounding may be more
+LEAST = 1e-8  # accuracy; solver.tolerance promises no more
 STEP_LENGTHS = (1e-15, 1e9)  # s
 
 

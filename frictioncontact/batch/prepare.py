@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import BatchError, shown
-from ..values import numbers_of
+from ..values import numbers_of, pairs
 from .columns import common_shape, flat, lengths_of
 from .run import Batch
 from .runner import STATISTICS
@@ -68,7 +68,7 @@ def prepared(
         int(samples),
         _read(fmu, outputs),
         fmu.variables.all["vibration.f"].valueReference if unit == "period" else None,
-        *_moving(fmu, inputs or {}, int(samples)),
+        *_moving(fmu, pairs(inputs, "inputs"), int(samples)),
         lengths,
     )
 

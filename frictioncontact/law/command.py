@@ -45,6 +45,8 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def run(options: argparse.Namespace) -> None:
+    if options.picture and options.picture.suffix not in (".png", ".svg", ".pdf"):
+        raise UserError(f"--picture {options.picture}: must end in .png, .svg or .pdf")
     known = opened(options.fmu).known
     law = friction_law(known.assigned(options.set), fmu=options.fmu)
     vary = assignments(options.vary, "--vary")

@@ -108,7 +108,7 @@ def test_advice_is_what_the_command_prints(fmu_path: Path, capsys: pytest.Captur
     [
         ({"scene": {"v": 1.0}}, "scene: v is no variable of the FMU; did you mean V?"),
         ({"scene": {"solver.tolerance": 1e-3}}, "solver.tolerance does not describe a scene; these do: V, d"),
-        ({"accuracy": 2.0}, "accuracy 2: must lie between 1e-10 and 1"),
+        ({"accuracy": 2.0}, "accuracy 2: must lie between 1e-08 and 1"),
         ({"output": "W_f"}, "output W_f: must be one of both, F_t, F_t_mean"),
         ({"inputs": {"time": [0.0, 1.0, 3.0], "V": [0.0] * 3}}, "inputs: time must grow in even steps"),
         ({"inputs": {"time": [0.0], "V": [0.0]}}, "inputs: needs at least two samples"),

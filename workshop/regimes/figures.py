@@ -24,7 +24,6 @@ from workshop.figure import (
     Span,
 )
 from workshop.regimes.mean import (
-    PARAMETERS,
     REGIMES,
     Probe,
     Regime,
@@ -89,27 +88,6 @@ def means(probe: Probe, quick: bool) -> Figure:
         "nothing reverses and, with d constant, the mean is F_C."
     )
     return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
-
-
-def sensitivities(probe: Probe, quick: bool) -> Figure:
-    """A map per parameter."""
-    n = STEPS_QUICK if quick else 33
-    kappas, zetas = np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 0.99, n)
-    panels = []
-    for name in PARAMETERS:
-        values = probe.sensitivity(on_map(kappas, zetas, ALPHA, PHASE), name)
-        top = 2.0 if name == "d" else 0.5
-        levels = (-1.0, -0.1, 0.1, 1.0) if name == "d" else (-0.2, -0.1, 0.0, 0.1, 0.2)
-        unit = "per rad" if name == "phase_d" else "per 100 %"
-        item = Map(kappas, zetas, values, f"of F_C, {unit}", -top, top, levels, True)
-        panels.append(Panel(f"To {SYMBOLS[name]}", KAPPA, ZETA, [item], True, True))
-    caption = (
-        "Change of the mean friction, in parts of F_C, per relative change of each quantity (the phase: "
-        "per rad), with a_d / R_q = 0.18 and a phase of 225° at d = 14 µm. Read 0.1 as: one percent more "
-        "of it changes the mean by 0.1 % of F_C. Note the wider scale of d: the stiffness follows its 17th "
-        "power here. E acts through the stiffness alone, so it shows minus a seventeenth of what d shows."
-    )
-    return Figure("sensitivity", "What the mean friction is sensitive to", caption, panels, 4, (18.0, 9.0))
 
 
 def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:

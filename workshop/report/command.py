@@ -75,7 +75,6 @@ def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], 
         regime_figures.means,
         regime_figures.regimes,
         regime_figures.reduction,
-        regime_figures.sensitivities,
         regime_figures.sensitivity_cuts,
         regime_figures.phases,
     ):

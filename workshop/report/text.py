@@ -57,7 +57,7 @@ def sections(table: Sequence[Result], made: Sequence[Claim], figures: Mapping[st
             "sensitivities",
             "Sensitivities",
             SENSITIVITY_INTRO,
-            [figures["sensitivity-cuts"], figures["sensitivity"]],
+            [figures["sensitivity-cuts"]],
         ),
         Section("errata", "Errata", errata(), []),
         Section("identification", "Identification", IDENTIFY_INTRO, [figures["recovery"]]),

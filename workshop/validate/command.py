@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from rich.table import Table
 
@@ -28,23 +28,36 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[longitudinal.Fit]) -> Table:
-    table = Table(title=f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]")
-    for heading in ("", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    table.add_row("measured", "", *(f"{force:.3f}" for force in data.vibrated), "", "")
-    for fit in fits:
-        stiffness = "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
-        if fit.law in ("Dahl", "LuGre"):
-            stiffness = "any"
-        table.add_row(
-            fit.law,
-            stiffness,
-            *(f"{force:.4f}" for force in fit.model),
-            f"{longitudinal.rms(fit.model, data.vibrated):.3f}",
-            f"{longitudinal.rms(fit.predicted, data.vibrated):.3f}",
-        )
+def as_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    """The first column names the rows, the others are numbers."""
+    table = Table(title=title)
+    for k, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if k else "left", no_wrap=not k)
+    for row in rows:
+        table.add_row(*row)
     return table
+
+
+def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[longitudinal.Fit]) -> Table:
+    def stiffness(fit: longitudinal.Fit) -> str:
+        if fit.law in ("Dahl", "LuGre"):
+            return "any"
+        return "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
+
+    return as_table(
+        f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]",
+        ["", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"],
+        [["measured", "", *(f"{force:.3f}" for force in data.vibrated), "", ""]]
+        + [
+            [
+                fit.law,
+                stiffness(fit),
+                *(f"{force:.4f}" for force in fit.model),
+                *(f"{longitudinal.rms(model, data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
+            ]
+            for fit in fits
+        ],
+    )
 
 
 def scatter_line(data: measurements.Record) -> str:
@@ -56,86 +69,76 @@ def scatter_line(data: measurements.Record) -> str:
 
 
 def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
-    table = Table(title="The cycles: fitted on two, 47 predicted. Misfit over the measured friction")
-    for heading in ("", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    for fit in fits:
-        table.add_row(
+    rows = [
+        [
             fit.law,
             "" if fit.stiffness is None else f"{1e-3 * fit.stiffness:.2f}",
-            f"{fit.mu:.3f}",
-            f"{fit.rms_fitted:.1%}",
-            f"{fit.rms_predicted:.1%}",
-            f"{fit.work:.3f}",
-        )
+            *(f"{fit.mu:.3f}", f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}", f"{fit.work:.3f}"),
+        ]
+        for fit in fits
+    ]
     same, later = record.repeated(data), record.predicted_cycles(data)
     error = record.rms(same.friction - later.friction) / record.sliding_friction(data)
     ratio = record.work(same.friction, later) / record.work(later.friction, later)
-    table.add_row("no physics: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}")
-    return table
+    return as_table(
+        "The cycles: fitted on two, 47 predicted. Misfit over the measured friction",
+        ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"],
+        [*rows, ["no physics: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"]],
+    )
 
 
 def elements_table(fits: Sequence[elements.ElementFit]) -> Table:
-    table = Table(title="What would mend ElasticPlastic, fitted to the same two cycles")
-    for heading in ("", "rms fitted", "rms predicted"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    for fit in fits:
-        name = f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name
-        table.add_row(name, f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}")
-    return table
+    names = (f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name for fit in fits)
+    return as_table(
+        "What would mend ElasticPlastic, fitted to the same two cycles",
+        ["", "rms fitted", "rms predicted"],
+        [[n, f"{f.rms_fitted:.1%}", f"{f.rms_predicted:.1%}"] for n, f in zip(names, fits, strict=True)],
+    )
 
 
 def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
-    part = data.between(*record.UNLOADING)
-    dahl, elastic_plastic = (
-        next(fit for fit in fits if fit.law == law) for law in ("Dahl", "ElasticPlastic")
-    )
-    table = Table(
-        title="The unloading, predicted by what the two cycles gave: rms over the "
+    part, by_law = data.between(*record.UNLOADING), {fit.law: fit for fit in fits}
+    dahl, elastic_plastic = by_law["Dahl"], by_law["ElasticPlastic"]
+    forces = {
+        "measured": part.friction,
+        "ElasticPlastic, limit mu F_n": elastic_plastic.unloading,
+        "mu F_n alone, mu of ElasticPlastic": -elastic_plastic.mu * part.load,
+        "Dahl, limit mu F_n, as the FMU has it": dahl.unloading,
+        "Dahl, limit mu F_n, Eq. 2 alone": record.without_bound(data, dahl),
+        "ElasticPlastic, constant limit": elastic_plastic.constant_limit,
+        "Dahl, constant limit": dahl.constant_limit,
+    }
+    return as_table(
+        "The unloading, predicted by what the two cycles gave: rms over the "
         f"{record.friction_before_unloading(data):.2f} N before it, "
-        f"and |F| / F_n while F_n > {record.CARRYING} N"
+        f"and |F| / F_n while F_n > {record.CARRYING} N",
+        ["", "rms", "least F / F_n", "largest"],
+        [
+            [
+                name,
+                "" if name == "measured" else f"{record.misfit_of_unloading(data, each):.1%}",
+                *(f"{ratio:.3f}" for ratio in record.over_the_load(data, each)),
+            ]
+            for name, each in forces.items()
+        ],
     )
-    for heading in ("", "rms", "least F / F_n", "largest"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    for name, forces in (
-        ("measured", part.friction),
-        ("ElasticPlastic, limit mu F_n", elastic_plastic.unloading),
-        ("mu F_n alone, mu of ElasticPlastic", -elastic_plastic.mu * part.load),
-        ("Dahl, limit mu F_n, as the FMU has it", dahl.unloading),
-        ("Dahl, limit mu F_n, Eq. 2 alone", record.without_bound(data, dahl)),
-        ("ElasticPlastic, constant limit", elastic_plastic.constant_limit),
-        ("Dahl, constant limit", dahl.constant_limit),
-    ):
-        rms = "" if forces is part.friction else f"{record.misfit_of_unloading(data, forces):.1%}"
-        table.add_row(name, rms, *(f"{ratio:.3f}" for ratio in record.over_the_load(data, forces)))
-    return table
 
 
 def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.NormalFit]) -> Table:
-    table = Table(
-        title=f"Normal vibration: fitted to {data.reduction[0]:.0%} at 20.3 mm/s; measured at 87 mm/s: "
+    rows = []
+    for fit in fits:
+        found = ["none reaches it", "", ""]
+        if fit.yielding is not None and fit.predicted is not None:
+            found = [f"{1e6 * fit.yielding:.3g}", f"{fit.between:.1%}", f"{fit.predicted:.1%}"]
+        rows.append([fit.law, f"{fit.swing:g}", *found])
+    at_second, between = normal.hyperbola(data)
+    rows.append(["no physics: 1 / (1 + V / V_0)", "", "", f"{between:.1%}", f"{at_second:.1%}"])
+    title = (
+        f"Normal vibration: fitted to {data.reduction[0]:.0%} at 20.3 mm/s; measured at 87 mm/s: "
         f"{data.reduction[1]:.0%}. A constant limit gives 0"
     )
-    for heading in (
-        "limit mu F_n, law",
-        "swing lambda a_d / R_q",
-        "mu load / k [um]",
-        "predicted at 40.6 mm/s",
-        "at 87 mm/s",
-    ):
-        table.add_column(heading, justify="left" if "law" in heading else "right")
-    for fit in fits:
-        reached = fit.yielding is not None and fit.predicted is not None
-        table.add_row(
-            fit.law,
-            f"{fit.swing:g}",
-            f"{1e6 * fit.yielding:.3g}" if reached else "none reaches it",
-            f"{fit.between:.1%}" if reached else "",
-            f"{fit.predicted:.1%}" if reached else "",
-        )
-    at_second, between = normal.hyperbola(data)
-    table.add_row("no physics: 1 / (1 + V / V_0)", "", "", f"{between:.1%}", f"{at_second:.1%}")
-    return table
+    headings = "limit mu F_n, law", "swing lambda a_d / R_q", "mu load / k [um]", "predicted at 40.6 mm/s"
+    return as_table(title, [*headings, "at 87 mm/s"], rows)
 
 
 def run(options: argparse.Namespace) -> None:
