@@ -123,26 +123,6 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
     return Figure("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
 
 
-def phases(probe: Probe, quick: bool) -> Figure:
-    """Mean friction over phase and amplitude of the separation."""
-    n = 25 if quick else 73
-    angles, alphas = np.linspace(0.0, 360.0, n), np.linspace(0.0, 0.5, n)
-    panels = []
-    for kappa, zeta in ((0.5, 0.35), (5.0, 0.1), (50.0, 0.02)):
-        values = probe.mean(Regime(kappa, zeta, alphas[:, None], np.radians(angles)))
-        top = max(0.1, round(float(np.max(np.abs(values))), 1))
-        item = Map(
-            angles, alphas, values, "mean F_t / F_C", -top, top, (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4), True
-        )
-        panels.append(Panel(f"κ = {kappa:g}, ζ = {zeta:g}", "phase of d [deg]", "a_d / R_q", [item]))
-    caption = (
-        "When the separation moves with the velocity, the phase decides: the contact is stiff on the way "
-        "in one direction and soft on the way back. Blue is negative mean friction: the vibration drives "
-        "the sliding, as in an ultrasonic motor."
-    )
-    return Figure("phase", "Phase and amplitude of the moving separation", caption, panels, 3, (15.0, 4.6))
-
-
 def regimes(probe: Probe, quick: bool) -> Figure:
     """Which model is enough, over kappa and zeta, for three amplitudes of the separation."""
     n = 21 if quick else 61

@@ -68,15 +68,12 @@ def run(options: argparse.Namespace) -> None:
 def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Figure]]:
     for draw in paper_figures.FIGURES:
         yield lambda draw=draw: draw(fmu)
-    yield lambda: text.table_2_waves(fmu)
     yield contact_figures.areas
-    yield contact_figures.loads
     for draw in (
         regime_figures.means,
         regime_figures.regimes,
         regime_figures.reduction,
         regime_figures.sensitivity_cuts,
-        regime_figures.phases,
     ):
         yield lambda draw=draw: draw(probe, quick)
     yield lambda: recovery.figure(fmu, 20 if quick else 100)
