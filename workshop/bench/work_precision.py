@@ -247,9 +247,7 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
     **{name: (name,) for name in RADAU},
     "best, bare": (BARE,),
     "CVODE": ("plain CVODE",),
-    "cvode": ("cvode",),
     "fixed step": FIXED_STEP,
-    "Python": ("scipy Radau",),
 }
 
 

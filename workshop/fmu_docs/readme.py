@@ -27,7 +27,7 @@ V_1 = TABLE_2[1].V_1
 
 def overview(fmu: FrictionFmu, path: Path) -> None:
     """What the vibration does within microseconds, and what a tool that steps at a millisecond sees of it."""
-    figure, (inside, coupled) = style.subplots(1, 2, size=(11.0, 4.2))
+    figure, (inside, coupled) = style.subplots(2, 1, size=(6.8, 6.0))
     _switched_on(inside, fmu)
     _ramped(coupled, fmu)
     style.save(figure, path)
@@ -93,6 +93,7 @@ def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
     axes.set_ylim(0.0, 82.0)
     axes.set_yticks([0, 20, 40, 60])
     axes.set_xlabel("time [ms]")
+    axes.set_ylabel("friction force [N]")
     axes.set_title("The same contact in a tool that steps at 1 ms")
     axes.legend(loc="upper center", ncols=2)
 

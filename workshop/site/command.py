@@ -44,7 +44,6 @@ def build(output: Path, older: Sequence[Path] = ()) -> None:
         options = ["-q", "-W", "--keep-going", "-c", HERE, "-d", doctrees, "-D", f"older={names}"]
         if build_main([str(word) for word in (*options, ROOT, output)]):
             raise UserError("the site has faults: see above")
-    shutil.copy(output / "README.html", output / "index.html")
     write_whole(output / "playground.html", playground)
     for folder in older:
         shutil.copytree(folder, output / folder.name)
