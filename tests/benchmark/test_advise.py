@@ -18,20 +18,13 @@ from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of, start_values_of
 
 
-def advised(fmu_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, float | str]:
-    """The start values that it prints."""
+def advised(fmu_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, float]:
+    """The start values that it prints for fmpy, which takes numbers alone."""
     words = [word if "=" not in word else f"--set={word}" for word in words]
     advise.main(["--quick", "--fmu", str(fmu_path), *words])
     text = capsys.readouterr().out
     pairs = text[text.index("--start-values") :].split()[1:]
-    return {name: _number(value) for name, value in zip(pairs[::2], pairs[1::2], strict=True)}
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    return {name: float(value) for name, value in zip(pairs[::2], pairs[1::2], strict=True)}
 
 
 SEEDS = [*range(8), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(8, 40))]
