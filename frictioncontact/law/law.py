@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import weakref
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,7 @@ class FrictionLaw:
         self._fmu = opened(fmu)
         self.start = self._fmu.known.values(start, "scene")
         self._session = self._fmu.session(self.start)
+        weakref.finalize(self, self._session.close)
         self._base = {name: self._session.get(name) for name in self._fmu.known.inputs}
         self._seen: set[str] = set()  # inputs that were set
         warn_of(self._fmu.known, self.start, self._session.warnings)
@@ -59,7 +61,9 @@ class FrictionLaw:
         self._fmu.known.find(by, "by", ("input",))
         return self._at(V, inputs, lambda: self._session.slope(FORCE, by))
 
-    def _at(self, V: npt.ArrayLike, inputs: Mapping[str, npt.ArrayLike], read: object) -> float | np.ndarray:
+    def _at(
+        self, V: npt.ArrayLike, inputs: Mapping[str, npt.ArrayLike], read: Callable[[], float]
+    ) -> float | np.ndarray:
         given = {}
         for name, value in {"V": V, **inputs}.items():
             self._fmu.known.find(name, "inputs", ("input",))
