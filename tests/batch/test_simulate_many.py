@@ -224,7 +224,7 @@ class TestRefusals:
             ({3: 0.1}, "column 3: 3 is no variable of the FMU"),
             ({"V": np.ma.array([[0.1, 0.2]], mask=[[0, 1]])}, r"column V, row \(0, 1\): is masked"),
             ({"V": [[0.1, 0.2], [0.3]]}, "column V: its rows are not of one length"),
-            ({"V": [0.1, 10**400]}, "column V, row 1: is beyond the largest number"),
+            ({"V": [0.1, 10**400]}, "column V, row 1: '1000"),
             ({"V": np.array([5], dtype="m8[s]")}, "column V, row 0: '5 seconds' is not a number"),
             ([0.1, 0.2], "values: must be a mapping of names to values, or a pandas frame"),
             (
