@@ -64,7 +64,7 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
 
 def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
     sigmas = list(dict.fromkeys(row["sigma"] for row in rows))
-    figure, axes = style.subplots(1, len(sigmas), size=(5.0 * len(sigmas), 4.0), squeeze=False)
+    figure, axes = style.subplots(len(sigmas), 1, size=(6.4, 3.6 * len(sigmas)), squeeze=False)
     for panel, sigma in zip(axes.flat, sigmas, strict=True):
         for kind, colour, slope in (("held", style.ORANGE, 1), ("linear", style.BLUE, 2)):
             own = [row for row in rows if row["sigma"] == sigma and row["inputs"] == kind]

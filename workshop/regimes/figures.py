@@ -82,10 +82,10 @@ def means(probe: Probe, quick: bool) -> Figure:
         Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)),
     ]
     caption = (
-        "Mean friction in the periodic state. Stiff contacts behave as Coulomb's, for κ above 100 with d "
-        "constant and above 3000 with d moving this much. Soft ones, below 0.1, hold a nearly constant "
-        "deflection and have a limit of their own: π²/4 times Coulomb's mean at small ζ. Beyond ζ = 1 "
-        "nothing reverses and, with d constant, the mean is F_C."
+        "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean: at κ = 100 within "
+        "0.001 F_C for ζ = 0.3, but not near ζ = 1; with d moving this much only above 3000. Soft ones, "
+        "below 0.1, keep a nearly constant deflection and have a limit of their own: π²/4 times Coulomb's "
+        "mean at small ζ. Beyond ζ = 1 nothing reverses and, with d constant, the mean is F_C."
     )
     return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
 

@@ -9,7 +9,7 @@
 // n-th power of the affine map, and n is known in closed form: the highest start that meets none is the one that ends
 // where the highest start of all ends. A period that meets the bound forgets its start, so that periods soon repeat. With
 // static friction, break-away is a drop, and what repeats may be several periods: some that stick, and one that slips.
-// With moving inputs the periods differ and are gone through one by one.
+// With moving inputs the periods differ (leap.h).
 #ifndef FC_SOLVER_PERIODS_H
 #define FC_SOLVER_PERIODS_H
 
@@ -22,12 +22,13 @@
 typedef enum { FC_MAP_THIS_START, FC_MAP_ANY_START } FcMapScope;
 
 // Takes *result over [0, duration] of the scene and adds what the interval gives.
-typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result);
+typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
+                       FcStepResult* result);
 
 // The map of [0, duration] that holds for any start of the size of delta_0 [m] from which no bound is met. Adds what it spends to
 // *evaluations.
-typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                           double* evaluations);
+typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
+                           double delta_0, double* evaluations);
 
 // How a law is integrated.
 typedef struct {
@@ -35,6 +36,10 @@ typedef struct {
     FcFreeMap free_map;
     bool is_bounded; // the bristle may meet a bound
 } FcIntegration;
+
+// Takes *total over an interval of at most a period, piece by piece (solver/pieces.h).
+void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* total);
 
 // How a step of h [s] >= 0 divides: whole periods of the vibration, and what is left [s]. None without vibration.
 typedef struct {
@@ -54,6 +59,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
 
 // What the bristle in *end tends to after infinitely many periods of a scene that vibrates with its inputs held, and the mean of F
 // (solver.h) [N] over a period from there on, or over those that repeat. Adds what it spends to end->evaluations.
-double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, FcStepResult* end);
+double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                          FcStepResult* end);
 
 #endif
