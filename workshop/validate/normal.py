@@ -44,8 +44,7 @@ def reduction(
     values = {
         "friction.model": law,
         "friction.limit": limit,
-        "friction.mu": MU,
-        "F_C": MU * LOAD,
+        **({"friction.mu": MU} if limit == "Load" else {"F_C": MU * LOAD}),
         "contact.model": "Constant",
         "contact.sigma": MU * LOAD / yielding,
         "contact.input": "Load",
