@@ -136,11 +136,11 @@ def test_what_is_wrong_is_named(fmu_path: Path, arguments: dict, message: str) -
 
 
 def test_a_refused_reading_has_the_fmu_s_own_words(fmu: FrictionFmu) -> None:
-    with fmu.session() as session:
+    with fmu.session({"friction.sigma_2": 1e10}) as session:
         session.set("V", 1e300)
-        with pytest.raises(fc.FrictionError, match="at most 1e\\+15 m/s"):
+        with pytest.raises(fc.FrictionError, match="is beyond the largest number"):
             session.get("F_t_settled")
-        with pytest.raises(fc.FrictionError, match="at most 1e\\+15 m/s"):
+        with pytest.raises(fc.FrictionError, match="is beyond the largest number"):
             session.read(["F_t", "F_t_settled"])
 
 
