@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.validate import command, elements, longitudinal, measurements, normal, record
 from workshop.project import ROOT
+from workshop.validate import command, elements, longitudinal, measurements, normal, record
 
 PAGE = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
 

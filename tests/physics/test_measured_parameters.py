@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import frictioncontact as fc
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.validate import measurements, record
 from workshop.project import ROOT
+from workshop.validate import measurements, record
 
 PAGE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 LINES = re.findall(r"^    ((?:[\w.]+ [-\d.e]+ ?)+)$", re.sub(r"\\\n +", "", PAGE), re.MULTILINE)
@@ -38,6 +39,21 @@ def lines_with(**values: float) -> list[dict[str, float | int]]:
 
 def test_every_line_is_read() -> None:
     assert len(LINES) == 3
+
+
+def test_the_package_has_the_contacts_of_the_page(fmu: FrictionFmu) -> None:
+    """Value for value; and what the page says of the first holds for the output that it names."""
+    starts = [
+        {name: float(fmu.known.numbers(name, value, name)) for name, value in contact.start.items()}
+        for contact in fc.contacts.values()
+    ]
+    assert len(starts) == len(LINES)
+    for line, start in zip(map(start_values, LINES), starts, strict=True):
+        assert line.items() <= start.items()
+    for contact in fc.contacts.values():
+        for name, (low, high) in contact.intervals.items():
+            assert low < contact.start[name] < high
+    assert fc.friction_law(fc.contacts["steel-dry"].start)(0.5e-3) == pytest.approx(0.283, abs=5e-4)
 
 
 def test_steel_under_vibration(fmu_path: Path) -> None:

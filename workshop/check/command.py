@@ -54,13 +54,12 @@ class Extent:
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
-    advised: int  # scenes
     seed: int = 0  # of the hunt and of the advice
 
 
-FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, 40)
-QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, 4)
-CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2, 4)
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
+QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -215,13 +214,6 @@ def check_hunt_guided(extent: Extent) -> None:
     _run([str(folder / "hunt/fuzz_hunt"), *options, str(found)])
 
 
-def check_advice(extent: Extent) -> None:
-    """Random scenes against the reference: what scripts/advise recommends holds its promise; its price."""
-    build_fmu()
-    words = [f"--scenes={extent.advised}", f"--seed={extent.seed}"]
-    _run([sys.executable, "-m", "workshop.check.advice", *words])
-
-
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
     valgrind = _tool("valgrind", "valgrind")
@@ -270,7 +262,6 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "hunt": check_hunt,
     "hunt-guided": check_hunt_guided,
     "hunt-coverage": check_hunt_coverage,
-    "advice": check_advice,
     "leaks": check_leaks,
     "coverage": check_coverage,
     "bad-input": write_bad_input,

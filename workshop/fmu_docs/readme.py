@@ -139,14 +139,16 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
         axes.fill_between(1e6 * steps, low, high, color=colour, alpha=strength, lw=0, label=name)
     exact = table2.mean_force(fmu, TABLE_2[1], IDENTIFIED)
     axes.axhline(exact, color=style.BLACK, lw=1.0, label=f"mean of the periodic state, {exact:.2f} N")
-    axes.axvline(0.5e6 * PERIOD, color=style.BLACK, lw=1.0, ls="--")
     axes.set_xscale("log")
+    for part, words in ((1 / 20, "1/20 of a period"), (1 / 2, "half a period")):
+        axes.axvline(1e6 * part * PERIOD, color=style.BLACK, lw=1.0, ls="--")
+        axes.text(1.07e6 * part * PERIOD, 62.5, words, fontsize=8.5, va="center")
     for place, text in (
-        (5.0, "resolves the vibration:\nuse $F_t$"),
-        (160.0, "too long for that:\nuse F_t_mean"),
+        (1.6, "use F_t"),
+        (7.9, "F_t or F_t_mean,\nas the plant needs"),
+        (160.0, "use F_t_mean"),
     ):
         axes.text(place, 55.0, text, ha="center", va="center", fontsize=10)
-    axes.text(0.5e6 * PERIOD * 1.07, 62.5, "half a period", fontsize=8.5, va="center")
     axes.set_ylim(0.0, 66.0)
     axes.set_xlim(1e6 * steps[0], 1e6 * steps[-1])
     axes.set_xticks([1, 10, 50, 100, 500, 1000], ["1", "10", "50", "100", "500", "1000"])

@@ -77,6 +77,7 @@ CONTENTS = {
     "Examples": {
         "Overview": "examples/README",
         "A mass on a belt": "examples/stick-slip/README",
+        "A friction law": "examples/friction-law/README",
         "A slow plant": "examples/ultrasonic-slider/README",
         "Validation in CI": "examples/ci-validation/README",
         "A million scenarios": "examples/simulate-many/README",
@@ -147,6 +148,7 @@ def plain_text(app: Sphinx, what: str, name: str, thing: object, options: object
             written += ["::", ""] if begins and not code else []
             code = line.startswith("    ") and (code or begins)
         if not code:
+            line = re.sub(r"^(returns|raises|warns) {2,}(?=\S)", r":\1: ", line)
             line = re.sub(r"^(\w+) {2,}(?=\S)", r":param \1: ", line)
             line = re.sub(r"(`[^`]*`)|([*|]|_(?!\w))", lambda found: found[1] or "\\" + found[2], line)
         written.append(line)

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.validate.measurements import Sliding
+from workshop.validate.measurements import Sliding
 
 LAWS = ("Coulomb", "Dahl", "LuGre", "ElasticPlastic")
 STIFFNESSES = np.logspace(3.0, 11.0, 161)  # N/m, searched; constant beyond for all laws

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from frictioncontact import style
-from frictioncontact.validate import record
-from frictioncontact.validate.longitudinal import Fit
-from frictioncontact.validate.measurements import NormalVibration, Record, Sliding
-from frictioncontact.validate.normal import NormalFit, reduction
-from frictioncontact.validate.record import RecordFit
+from workshop.validate import record
+from workshop.validate.longitudinal import Fit
+from workshop.validate.measurements import NormalVibration, Record, Sliding
+from workshop.validate.normal import NormalFit, reduction
+from workshop.validate.record import RecordFit
 
 LAW = {
     "Coulomb": style.GREY,

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.validate.measurements import NormalVibration
+from workshop.validate.measurements import NormalVibration
 
 LAWS = ("Dahl", "ElasticPlastic")
 SWINGS = np.array([1.0, 1.3, 1.5, 2.0, 3.0, 5.0])  # alpha, how far the normal force swings: by e^(2 alpha)
@@ -44,8 +44,7 @@ def reduction(
     values = {
         "friction.model": law,
         "friction.limit": limit,
-        "friction.mu": MU,
-        "F_C": MU * LOAD,
+        **({"friction.mu": MU} if limit == "Load" else {"F_C": MU * LOAD}),
         "contact.model": "Constant",
         "contact.sigma": MU * LOAD / yielding,
         "contact.input": "Load",

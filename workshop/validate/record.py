@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 
 from frictioncontact.fmu import FrictionFmu, Value, run
-from frictioncontact.validate.measurements import Record
+from workshop.validate.measurements import Record
 
 LAWS = ("Coulomb", "Dahl", "ElasticPlastic")
 CYCLE = 4.0  # s
