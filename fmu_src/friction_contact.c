@@ -8,16 +8,12 @@
 
 #include "solver/methods/method.h"
 
-// The smallest limit mu F_n that is computed. By hand: eight decades above the smallest normal number, for what it is divided by.
-static const double SMALLEST_LIMIT = 1e-300; // N
-
 // Vibration periods since time 0 beyond which its phase is refused. By hand: neighbouring numbers of time are then more than
 // 2^-52 of it, 1/64 of a period, apart.
 static const double MOST_CYCLES = 0x1p46;
 
-// The largest |V| + V_1 that is computed. By hand, beyond any machine: from about 1e33 F_C vibration.f / sigma on the numbers
-// of a step overflow.
-static const double MOST_SPEED = 1e15; // m/s
+// E may change by at most this factor in a step.
+static const double MOST_CHANGE_OF_E = 10.0;
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
     return fc_message_set(
@@ -91,54 +87,41 @@ static bool fail_separation(const FcScene* scene, double h, FcMessage* message) 
                           drive->d.value, drive->d.value + drive->d.rate * h, a_d);
 }
 
-static bool check_limit(const FcScene* scene, double h, FcMessage* message) {
-    const double limit = fc_scene_smallest_limit(scene, h);
-    if (limit >= SMALLEST_LIMIT && isfinite(fc_scene_force_scale(scene))) {
-        return true;
-    }
-    return fc_message_set(message,
-                          "friction.mu = %.9g times the normal force is %.9g N in the step: the limit of the "
-                          "friction must be finite and at least %.9g N; check d, load and contact.*",
-                          scene->friction->mu, limit, SMALLEST_LIMIT);
-}
-
-static bool fail_speed(const FcDrive* drive, double h, FcMessage* message) {
-    const double V_1 = drive->vibration.V_1;
-    if (drive->V.rate == 0.0) {
-        return fc_message_set(
-            message, "V = %.9g m/s with vibration.V_1 = %.9g m/s: the speed must stay at most %.9g m/s",
-            drive->V.value, V_1, MOST_SPEED);
-    }
-    return fc_message_set(message,
-                          "V moves from %.9g m/s to %.9g m/s in the step with vibration.V_1 = %.9g m/s: the "
-                          "speed must stay at most %.9g m/s",
-                          drive->V.value, drive->V.value + drive->V.rate * h, V_1, MOST_SPEED);
-}
-
-// Separation, modulus, load and limit must stay positive, the speed below its bound and the stiffness a number over
-// the step [0, h].
+// Separation and modulus must stay positive, E near itself, and the stiffness and the limit numbers over the step [0, h].
 static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     const FcDrive* drive = &scene->drive;
-    if (!(fc_drive_smallest_E(drive, h) > 0.0)) {
-        return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa",
-                              drive->E.value, drive->E.value + drive->E.rate * h);
+    const double E = drive->E.value;
+    const double end = fc_drive_E(drive, h);
+    if (!(fmin(E, end) > 0.0)) {
+        return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa", E, end);
     }
-    if (scene->contact->input == FC_CONTACT_LOAD && !(fc_drive_load(drive, h) > 0.0)) {
-        return fc_message_set(message, "load moves from %.9g N to %.9g N in the step: it must stay above 0 N",
-                              drive->load.value, fc_drive_load(drive, h));
+    if (fmax(E, end) > MOST_CHANGE_OF_E * fmin(E, end)) {
+        return fc_message_set(message,
+                              "E moves from %.9g Pa to %.9g Pa in the step: it may change by at most a factor of %g, "
+                              "up to %.9g Pa or down to %.9g Pa",
+                              E, end, MOST_CHANGE_OF_E, MOST_CHANGE_OF_E * E, E / MOST_CHANGE_OF_E);
+    }
+    if (!isfinite(scene->at_E.area_0) || !isfinite(scene->at_E.load_0) || !isfinite(scene->at_E.stiffness_0)) {
+        return fail_stiffness(message, drive->d.value, fc_drive_largest_E(drive, h));
+    }
+    const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
+    if (by_load && !(fmax(drive->load.value, fc_drive_load(drive, h)) > 0.0)) {
+        return true; // open throughout
     }
     const double d = fc_scene_smallest_d(scene, h);
     if (!(d > 0.0)) {
         return fail_separation(scene, h, message);
     }
-    if (!isfinite(fc_scene_largest_stiffness(scene, h)) || !isfinite(scene->at_E.area_0) ||
-        !isfinite(scene->at_E.load_0)) {
+    if (!isfinite(fc_scene_largest_stiffness(scene, h))) {
         return fail_stiffness(message, d, fc_drive_largest_E(drive, h));
     }
-    if (!(fc_drive_largest_speed(drive, h) <= MOST_SPEED)) {
-        return fail_speed(drive, h, message);
+    if (!isfinite(fc_scene_mean_limit(scene, 0.0)) || !isfinite(fc_scene_mean_limit(scene, h))) {
+        return fc_message_set(message,
+                              "friction.mu = %.9g times the normal force is beyond the largest number in the step; "
+                              "check d, load and contact.*",
+                              scene->friction->mu);
     }
-    return check_limit(scene, h, message);
+    return true;
 }
 
 // Single bounds say enough where nothing moves and no load decides.
@@ -147,30 +130,41 @@ static bool is_to_be_checked(const FcScene* scene) {
            fc_limit_follows_load(scene->friction);
 }
 
-// The outputs at the beginning of the scene; false where one of them is beyond the largest number.
-static bool find_outputs(const FcScene* scene, double delta, FcOutputs* outputs, FcMessage* message) {
-    *outputs = fc_scene_outputs(scene, 0.0, delta);
-    if (!isfinite(delta)) {
+// What can be seen of the scene at its start.
+typedef struct {
+    double F_t; // N
+    FcContactResponse contact;
+} Outputs;
+
+// Of a bristle that is within its bound; false if one of them is beyond the largest number.
+static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outputs, FcMessage* message) {
+    if (!isfinite(bristle.delta)) {
         return fc_message_set(
             message, "delta is beyond the largest number: V = %.9g m/s with vibration.V_1 = %.9g m/s",
             scene->drive.V.value, scene->drive.vibration.V_1);
     }
-    if (!isfinite(outputs->sigma) || !isfinite(outputs->A_r) || !isfinite(outputs->F_n)) {
+    const FcContactResponse contact = fc_scene_contact(scene, 0.0);
+    *outputs = (Outputs){fc_motion(scene, fc_regime(scene, bristle), bristle.delta).F_t, contact};
+    if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
     if (!isfinite(outputs->F_t)) {
         return fc_message_set(
             message, "F_t = sigma delta is beyond the largest number: sigma = %.9g N/m, delta = %.9g m",
-            outputs->sigma, delta);
+            contact.sigma, bristle.delta);
     }
     return true;
 }
 
-static void set_outputs(FcVariables* v, const FcOutputs* now) {
+static void set_outputs(FcVariables* v, const Outputs* now) {
     v->F_t = now->F_t;
-    v->F_n = now->F_n;
-    v->sigma = now->sigma;
-    v->A_r = now->A_r;
+    v->F_n = now->contact.F_n;
+    v->sigma = now->contact.sigma;
+    v->A_r = now->contact.A_r;
+}
+
+FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
+    return (FcBristle){contact->state.variables.delta, contact->state.slips};
 }
 
 static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still
@@ -202,8 +196,8 @@ bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
 static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    FcOutputs now;
-    if (!find_outputs(&scene, v->delta, &now, message)) {
+    Outputs now;
+    if (!find_outputs(&scene, fc_reach(&scene, fc_friction_contact_bristle(contact)), &now, message)) {
         return false;
     }
     set_outputs(v, &now);
@@ -217,14 +211,8 @@ bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message)
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    double delta = v->delta;
-    FcRegime regime = FC_FREE;
-    if (fc_is_bounded(scene.friction)) {
-        const double D = fc_regime_bound(&scene);
-        delta = fmax(-D, fmin(D, delta));
-        regime = (FcRegime)fc_scene_slip_side(&scene, 0.0, delta);
-    }
-    const FcStateRates rates = fc_motion(&scene, regime, delta).rates;
+    const FcBristle bristle = fc_reach(&scene, fc_friction_contact_bristle(contact));
+    const FcStateRates rates = fc_motion(&scene, fc_regime(&scene, bristle), bristle.delta).rates;
     if (!isfinite(rates.delta) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
         return fc_message_set(message,
                               "the rate of delta, W_f or Q_f is beyond the largest number: V = %.9g m/s with "
@@ -242,40 +230,57 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// The finest tolerances that the solver is given, of a force, and, where the damping multiplies its error, of the least limit.
-// Rounding: 4500 and 5 eps; there are no more digits.
+// The finest tolerance that the solver is given. Rounding: 4500 eps; there are no more digits.
 static const double SMALLEST_TOLERANCE = 1e-12;
-static const double SMALLEST_DAMPED = 1e-15;
 
-// The tolerance of a force, over what the damping multiplies an error with. An error of the deflection acts through sigma delta
-// and, since delta' = V - sigma |V| delta / g, through sigma_1 delta': there times sigma |V| / g.
-static double damped_tolerance(const FcScene* scene, double h, double tolerance) {
-    const double limit = fc_scene_smallest_limit(scene, h);
-    const double gain = 1.0 + scene->friction->sigma_1 * fc_drive_largest_speed(&scene->drive, h) / limit;
-    const double rounding = SMALLEST_DAMPED * limit / fc_scene_force_scale(scene);
-    return fmax(fmax(DBL_MIN, rounding), tolerance / gain);
+// What solver.tolerance is relative to [N]: the largest of the limit at both ends of the step, the bristle's force at its start, and
+// the forces of damping and viscosity.
+static double force_scale(const FcScene* scene, double h, double delta) {
+    const FcFriction* friction = scene->friction;
+    const double limit = fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+    const double speed = fc_drive_largest_speed(&scene->drive, h);
+    const double viscous = friction->model == FC_COULOMB ? friction->sigma_2 : friction->sigma_1 + friction->sigma_2;
+    const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
+                               ? 0.0
+                               : fabs(fc_scene_stiffness(scene, 0.0) * delta);
+    return fmax(fmax(fc_static_ratio(friction) * limit, elastic), fmax(viscous * speed, DBL_MIN));
 }
 
-static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h) {
-    const double tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance);
-    return (FcSolverOptions){.tolerance = v->friction.sigma_1 == 0.0 ? tolerance
-                                                                     : damped_tolerance(scene, h, tolerance),
+// The least limit of the step, but of one in which the contact opens or closes: there the mean limit at its closed end.
+static double least_limit(const FcScene* scene, double h) {
+    const double at_ends = fmin(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+    return at_ends > 0.0 ? fc_scene_smallest_limit(scene, h)
+                         : fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+}
+
+// An error of the deflection acts through sigma delta and, since delta' = V - sigma |V| delta / g, through sigma_1 delta': there times
+// sigma |V| / g. So the damping divides the tolerance of the bristle's force.
+static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, double delta) {
+    double tolerance = v->solver.tolerance;
+    const double limit = v->friction.sigma_1 != 0.0 ? least_limit(scene, h) : 0.0;
+    if (limit > 0.0) {
+        tolerance /= 1.0 + v->friction.sigma_1 * fc_drive_largest_speed(&scene->drive, h) / limit;
+    }
+    return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, tolerance),
+                             .force = force_scale(scene, h, delta),
                              .step_size = v->solver.stepSize};
 }
 
-// The deflection at the start [m].
-static double first_deflection(FcFrictionContact* contact) {
+// The bristle at the start.
+static FcBristle first_bristle(FcFrictionContact* contact) {
     FcVariables* v = &contact->state.variables;
     if (v->friction.model == FC_COULOMB) {
-        return 0.0;
+        return (FcBristle){0.0, 0};
     }
     if (v->initialState == FC_STATE_GIVEN) {
-        return v->delta_0;
+        return (FcBristle){v->delta_0, 0};
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const FcBristle start = fc_reach(&scene, (FcBristle){v->delta_0, 0});
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
-    const FcSolverOptions options = solver_options(v, &scene, period);
-    return fc_method_settled(&scene, &options, v->delta_0, &v->solver.evaluations);
+    const FcSolverOptions options = solver_options(v, &scene, period, start.delta);
+    double force;
+    return fc_method_settled(&scene, &options, start, &force, &v->solver.evaluations);
 }
 
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message) {
@@ -294,7 +299,10 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     v->W_f = 0.0;
     v->Q_f = 0.0;
     v->solver.evaluations = 0.0;
-    v->delta = first_deflection(&fresh);
+    const FcBristle first = first_bristle(&fresh);
+    v->delta = first.delta;
+    state->slips = first.slips;
+    state->past = (FcPast){.sigma = 0.0};
     if (v->solver.evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(
             message,
@@ -316,11 +324,11 @@ void fc_friction_contact_free(FcFrictionContact* contact) {
 }
 
 // Adds the damping of the bristle, which Coulomb's law has none of, and the viscous friction to what the method gives.
-static void add_damping(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
+static void add_damping(const FcScene* scene, double h, double start, FcStepResult* result) {
     const double sigma_1 = scene->friction->sigma_1;
     const double sigma_2 = scene->friction->sigma_2;
     if (sigma_1 != 0.0) {
-        result->impulse += sigma_1 * (result->delta - fc_method_start(scene, delta_0));
+        result->impulse += sigma_1 * (result->delta - start + result->lost);
         result->work += sigma_1 * result->drag;
         result->heat += sigma_1 * result->drag;
     }
@@ -347,8 +355,10 @@ static void accumulate(double* sum, double* rest, double part) {
 }
 
 // The inputs where they end, the deflection, the sums; the rates of the next step are those of the last one now.
-static void commit(FcFrictionState* state, double h, const FcStepResult* result) {
+static void commit(FcFrictionState* state, double h, const FcStepResult* result, const FcPast* past) {
     FcVariables* v = &state->variables;
+    state->slips = result->slips;
+    state->past = *past;
     v->V += state->next_rate[FC_INPUT_V] * h;
     v->d += state->next_rate[FC_INPUT_D] * h;
     v->E = fc_input_after((FcLinearInput){v->E, state->next_rate[FC_INPUT_E]}, h);
@@ -379,21 +389,24 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     const FcVariables* v = &before->variables;
-    const FcSolverOptions options = solver_options(v, &scene, h);
+    const FcSolverOptions options = solver_options(v, &scene, h, v->delta);
+    double heat;
+    const FcBristle start = fc_jump(&scene, &before->past, fc_friction_contact_bristle(contact), &heat);
     FcStepResult result;
-    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, v->delta, &result,
+    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, start, &result,
                         message)) {
         return false;
     }
-    add_damping(&scene, h, v->delta, &result);
+    result.heat += heat;
+    add_damping(&scene, h, start.delta, &result);
 
     // Evaluated at the phase of t + h itself, which is also that of the next step: a phase that is carried on from the
     // step's start loses digits with every period of it.
     const double time_rest = rounding_of_sum(t, h);
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
-    FcOutputs now;
-    if (!find_outputs(&end, result.delta, &now, message)) {
+    Outputs now;
+    if (!find_outputs(&end, (FcBristle){result.delta, result.slips}, &now, message)) {
         return false;
     }
     const double F_t_mean = h > 0.0 ? result.impulse / h : now.F_t;
@@ -405,7 +418,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
             "d = %.9g m",
             h, v->V, v->d);
     }
-    commit(&contact->state, h, &result);
+    const FcPast past = fc_is_bounded(&v->friction) ? fc_past(&end) : (FcPast){.sigma = 0.0};
+    commit(&contact->state, h, &result, &past);
     set_outputs(&contact->state.variables, &now);
     contact->state.variables.F_t_mean = F_t_mean;
     contact->state.time = t + h;

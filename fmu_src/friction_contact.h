@@ -11,6 +11,7 @@
 #include "message.h"
 #include "model/regime.h"
 #include "model/scene.h"
+#include "solver/jump.h"
 
 // The values that modelDescription.xml gives them.
 typedef enum { FC_STATE_GIVEN = 1, FC_STATE_SETTLED = 2 } FcInitialState;
@@ -70,7 +71,8 @@ typedef struct {
     double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
-    int no_hole;       // 0, so that sizeof tells of every new member (fmi2/saved_state_bytes.c)
+    int slips;         // the other part of the bristle's state (FcBristle); in model exchange too
+    FcPast past;       // what the last step left, from which inputs and parameters may jump
     FcHybrid hybrid;
 } FcFrictionState;
 
@@ -100,6 +102,9 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
 // (delta, F_t_mean, W_f and Q_f are what the last step left). Call after an input or a tunable parameter changed and
 // before an output is read.
 bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message);
+
+// The bristle as the last step left it, and what the present inputs and parameters make of it.
+FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact);
 
 // The scene that begins at the present time, with the inputs moving at the rates of the last step or, where new ones
 // have been set, of the next. It points into the contact.

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "model/constants.h"
-#include "solver/stick_slip/bound.h"
 
 // What an event is late by, of the bound and of the velocities. By hand: far above rounding, far below what a host's
 // integrator tells apart.
@@ -47,6 +46,25 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
     contact->state.time_rest = 0.0;
 }
 
+// The bound of the bristle at the start of a scene.
+static double bound_of(const FcFrictionContact* contact, const FcScene* scene) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, contact->state.slips, &friction);
+    return fc_bound(&bound, 0.0);
+}
+
+static double push_of(const FcFrictionContact* contact, const FcScene* scene, int side) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, contact->state.slips, &friction);
+    return fc_push(scene, &bound, 0.0, side);
+}
+
+static double bound_rate_of(const FcFrictionContact* contact, const FcScene* scene) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, contact->state.slips, &friction);
+    return fc_bound_rate(&bound, 0.0);
+}
+
 static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
 
 static bool fail_rates(const FcVariables* v, FcMessage* message) {
@@ -82,8 +100,8 @@ static double push(FcFrictionContact* contact, int side) {
     const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
     const FcDrive* drive = &moving.drive;
     const double speed =
-        fabs(drive->V.value) + drive->vibration.V_1 + fabs(fc_scene_bound_rate(&moving, 0.0));
-    return fc_regime_push(&moving, side) + HYSTERESIS * speed;
+        fabs(drive->V.value) + drive->vibration.V_1 + fabs(bound_rate_of(contact, &moving));
+    return push_of(contact, &moving, side) + HYSTERESIS * speed;
 }
 
 // Of a bristle of ElasticPlastic that sticks near a bound that moves: the velocity [m/s] at which it comes nearer. Where it
@@ -91,10 +109,10 @@ static double push(FcFrictionContact* contact, int side) {
 static double approach(FcFrictionContact* contact) {
     const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
     const double delta = contact->state.variables.delta;
-    if (fc_bound_is_constant(&moving) || fabs(delta) < NEAR_THE_BOUND * fc_regime_bound(&moving)) {
+    if (bound_rate_of(contact, &moving) == 0.0 || fabs(delta) < NEAR_THE_BOUND * bound_of(contact, &moving)) {
         return 1.0;
     }
-    return fc_regime_push(&moving, delta < 0.0 ? -1 : 1);
+    return push_of(contact, &moving, delta < 0.0 ? -1 : 1);
 }
 
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
@@ -109,7 +127,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     if (regime_of(contact) != FC_FREE) {
         z[3] = push(contact, regime_of(contact));
     } else if (fc_is_bounded(scene.friction)) {
-        const double reached = v->delta / fc_regime_bound(&scene);
+        const double reached = v->delta / bound_of(contact, &scene);
         z[1] = (1.0 - reached) + HYSTERESIS;
         z[2] = (1.0 + reached) + HYSTERESIS;
         if (v->friction.model == FC_ELASTIC_PLASTIC) {
@@ -155,7 +173,7 @@ static bool slips_along(FcFrictionContact* contact, double* bound, double* force
         return false;
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    *bound = (double)regime_of(contact) * fc_regime_bound(&scene);
+    *bound = (double)regime_of(contact) * bound_of(contact, &scene);
     *force = fc_scene_stiffness(&scene, 0.0) * *bound;
     return true;
 }
@@ -212,7 +230,7 @@ void fc_hybrid_event_begins(FcFrictionContact* contact) {
 // what it stored in between is heat.
 static FcRegime next_regime(FcFrictionContact* contact) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const double D = fc_regime_bound(&scene);
+    const double D = bound_of(contact, &scene);
     const double delta = contact->state.variables.delta;
     if (fabs(delta) < ON_BOUND_AT_EVENT * D) {
         return FC_FREE;
@@ -224,7 +242,7 @@ static FcRegime next_regime(FcFrictionContact* contact) {
         return push(contact, side) > 0.0 ? (FcRegime)side : FC_FREE;
     }
     const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
-    return fc_regime_push(&moving, side) > 0.0 ? (FcRegime)side : FC_FREE;
+    return push_of(contact, &moving, side) > 0.0 ? (FcRegime)side : FC_FREE;
 }
 
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
@@ -258,7 +276,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const FcVibration* vibration = &scene.drive.vibration;
-    const double force = fc_scene_force_scale(&scene);
+    const double force = fc_scene_mean_limit(&scene, 0.0);
     const double length = force / fc_contact_stiffness(&scene.at_E, scene.drive.d.value);
     const double amplitude = vibration->V_1 / (FC_TWO_PI * vibration->f);
     const double energy = force * fmax(length, amplitude);

@@ -31,6 +31,7 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
     state->variables.delta = 0.0;
     state->time = 0.0;
     state->time_rest = 0.0;
+    state->slips = 0;
     memset(state->rate, 0, sizeof state->rate);
     state->next_rate_set = 0;
     return held;
@@ -44,8 +45,11 @@ static bool dry_force(FcFrictionContact* held, double tolerance, double* force, 
     }
     const FcVariables* v = &held->state.variables;
     const FcScene scene = fc_friction_contact_scene(held);
-    const FcSolverOptions options = {.tolerance = tolerance, .step_size = v->solver.stepSize};
-    *force = fc_method_settled_force(&scene, &options, v->delta_0, evaluations);
+    const FcBristle start = fc_reach(&scene, (FcBristle){v->delta_0, 0});
+    const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
+    const FcSolverOptions options = {
+        .tolerance = tolerance, .force = fmax(scale, DBL_MIN), .step_size = v->solver.stepSize};
+    fc_method_settled(&scene, &options, start, force, evaluations);
     if (*evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(
             message,
@@ -144,7 +148,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, dou
         return false;
     }
     const FcScene scene = fc_friction_contact_scene(&held);
-    const double force = fc_scene_force_scale(&scene);
+    const double force = fc_scene_mean_limit(&scene, 0.0);
     double range = first_range(&held, &scene, input);
     const double usual = force / fabs(range);
     double least = DBL_MAX;

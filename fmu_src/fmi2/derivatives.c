@@ -87,7 +87,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
     const FcScene scene = fc_friction_contact_scene(&instance->contact);
-    const double rate = fc_force_rate(&scene, instance->contact.state.variables.delta);
+    const double rate = fc_force_rate(&scene, fc_reach(&scene, fc_friction_contact_bristle(&instance->contact)));
     if (!isfinite(rate)) {
         return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
     }
@@ -119,9 +119,14 @@ static double* state_of(FcStateRates* states, const FcVariableInfo* info) {
     }
 }
 
+// Derivatives of the outputs along a direction.
+typedef struct {
+    double F_t, F_n, sigma, A_r;
+} Slopes;
+
 // The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs. Before the
 // first step F_t_mean is F_t.
-static double slope_of(const FcSlopes* slopes, const FcVariableInfo* output, bool mean_is_force) {
+static double slope_of(const Slopes* slopes, const FcVariableInfo* output, bool mean_is_force) {
     switch (output->offset) {
     case offsetof(FcVariables, F_t):
         return slopes->F_t;
@@ -140,7 +145,7 @@ static double slope_of(const FcSlopes* slopes, const FcVariableInfo* output, boo
 
 // All derivatives along a direction.
 typedef struct {
-    FcSlopes outputs;
+    Slopes outputs;
     FcStateRates states;
     FcStateRates rates;
     double F_t_settled;
@@ -151,39 +156,41 @@ static double scaled(double slope, double change) {
     return slope != 0.0 && change != 0.0 ? slope * change : 0.0;
 }
 
-static void add_slopes(FcSlopes* sum, const FcSlopes* slopes, double change) {
-    sum->F_t += scaled(slopes->F_t, change);
-    sum->F_n += scaled(slopes->F_n, change);
-    sum->sigma += scaled(slopes->sigma, change);
-    sum->A_r += scaled(slopes->A_r, change);
+// A logarithm's change along the direction, from its slopes by d, E and load.
+static double log_along(const Direction* along, double by_d, double by_E, double by_load) {
+    return scaled(by_d, along->input[FC_INPUT_D]) + scaled(by_E, along->input[FC_INPUT_E]) +
+           scaled(by_load, along->input[FC_INPUT_LOAD]);
 }
 
 static Tangent tangent(FcInstance* instance, const Direction* along) {
     FcFrictionContact* contact = &instance->contact;
-    const double delta = contact->state.variables.delta;
     const bool hybrid = fc_instance_is_hybrid(instance);
     const FcScene scene =
         hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
-    const FcGradient gradient = fc_gradient(&scene, delta);
-    Tangent sum = {.states = along->state,
-                   .mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE};
-    add_slopes(&sum.outputs, &gradient.by_V, along->input[FC_INPUT_V]);
-    add_slopes(&sum.outputs, &gradient.by_d, along->input[FC_INPUT_D]);
-    add_slopes(&sum.outputs, &gradient.by_E, along->input[FC_INPUT_E]);
-    add_slopes(&sum.outputs, &gradient.by_load, along->input[FC_INPUT_LOAD]);
-    const FcDirection direction = {.V = along->input[FC_INPUT_V],
-                                   .d = along->input[FC_INPUT_D],
-                                   .E = along->input[FC_INPUT_E],
-                                   .load = along->input[FC_INPUT_LOAD],
-                                   .delta = along->state.delta};
-    const FcRegime regime =
-        hybrid ? (FcRegime)contact->state.hybrid.regime : (FcRegime)fc_scene_slip_side(&scene, 0.0, delta);
-    const FcMotion motion = fc_motion_along(&scene, regime, delta, &direction);
-    sum.rates = motion.rates;
-    if (hybrid) {
-        sum.outputs.F_t = motion.F_t;
+    const FcBristle bristle = fc_friction_contact_bristle(contact);
+    const FcBristle reached = hybrid ? bristle : fc_reach(&scene, bristle);
+    FcDirection direction = {.V = along->input[FC_INPUT_V],
+                             .d = along->input[FC_INPUT_D],
+                             .E = along->input[FC_INPUT_E],
+                             .load = along->input[FC_INPUT_LOAD],
+                             .delta = along->state.delta};
+    if (reached.delta != bristle.delta && !fc_scene_is_loose(&scene)) { // an input has pushed it onto its bound
+        direction.delta = fc_bound_along(&scene, reached, &direction);
     }
-    return sum;
+    const FcRegime regime =
+        hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
+    const FcMotion motion = fc_motion_along(&scene, regime, reached.delta, &direction);
+    const FcContactResponse now = fc_scene_contact(&scene, 0.0);
+    const FcLogSlopes by = fc_log_slopes(&scene);
+    return (Tangent){
+        .outputs = {.F_t = motion.F_t,
+                    .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
+                    .sigma = scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
+                    .A_r = scaled(now.A_r, log_along(along, by.by_d.A_r, by.by_E.A_r, by.by_load.A_r))},
+        .states = along->state,
+        .rates = motion.rates,
+        .mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE,
+    };
 }
 
 static bool is_settled_force(const FcVariableInfo* output) {

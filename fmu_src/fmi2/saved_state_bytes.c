@@ -7,7 +7,8 @@
 //     16      38    guid of the FMU
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
 //                   time and its rounding, roundings of W_f and Q_f, rates of the last step, rates of the next step:
-//                   8 bytes each; whether the latter were set: 4
+//                   8 bytes each; whether the latter were set, and to which side the bristle slips: 4 each
+//                   what the last step left, from which inputs may jump: 8 bytes each
 //                   of model exchange: regime, whether a state was changed: 4 bytes each; when the inputs were seen
 //                   last, they and their speeds, two nominal values, the lag, its force and heat: 8 bytes each
 //                   interface, mode, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
@@ -26,7 +27,7 @@
 #include "fmi2/variables.h"
 
 // Counted from 1: rises when anything but the variables changes in the layout above. With the variables the guid changes.
-enum { LAYOUT_VERSION = 3 };
+enum { LAYOUT_VERSION = 4 };
 
 // Bytes of the parts above: the length of magic, of a guid in braces, of a 64-bit hash.
 enum { MAGIC_SIZE = 8, GUID_SIZE = 38, HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE, HASH_SIZE = 8 };
@@ -35,8 +36,9 @@ static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
 _Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FcHybrid must be added to transfer_hybrid");
+_Static_assert(sizeof(FcPast) == 5 * sizeof(double), "a new member of FcPast must be added to transfer_past");
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
-                                              2 * sizeof(int) + sizeof(FcHybrid),
+                                              2 * sizeof(int) + sizeof(FcPast) + sizeof(FcHybrid),
                "a new member of FcFrictionState must be added to transfer_state");
 _Static_assert(sizeof(FcExperiment) == 6 * sizeof(int) + 2 * sizeof(double),
                "a new member of FcExperiment must be added to transfer_state");
@@ -89,6 +91,14 @@ static void transfer_real(Cursor* cursor, double* value) {
     memcpy(value, &bits, sizeof bits);
 }
 
+static void transfer_past(Cursor* cursor, FcPast* past) {
+    transfer_real(cursor, &past->d);
+    transfer_real(cursor, &past->V);
+    transfer_real(cursor, &past->E);
+    transfer_real(cursor, &past->limit);
+    transfer_real(cursor, &past->sigma);
+}
+
 static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
     transfer_integer(cursor, &hybrid->regime);
     transfer_integer(cursor, &hybrid->changed);
@@ -127,6 +137,8 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
         transfer_real(cursor, &friction->next_rate[input]);
     }
     transfer_integer(cursor, &friction->next_rate_set);
+    transfer_integer(cursor, &friction->slips);
+    transfer_past(cursor, &friction->past);
     transfer_hybrid(cursor, &friction->hybrid);
     FcExperiment* experiment = &saved->experiment;
     transfer_integer(cursor, &experiment->interface);

@@ -1,13 +1,14 @@
 // The laws of friction. The bristle's deflection delta [m] is the state of all but Coulomb's; g [N] is the limit of its
-// force, constant or proportional to the normal force:
+// force, constant or proportional to the normal force, and s(V) = 1 + (staticRatio - 1) e^(-(V / V_S)^2) Stribeck's curve:
 //
 //     Coulomb         F = g sgn V
-//     ElasticPlastic  delta' = V while sigma |delta| < g s(V); else it slips along that bound        (Prandtl, Jenkins)
-//     Dahl            delta' = V - sigma |V| delta / g                                               (Eq. 1, 2)
+//     ElasticPlastic  it sticks, delta' = V, until sigma |delta| reaches the static bound, staticRatio g; it breaks away and
+//                     slips along the kinetic bound g s(V), until it would move slower than that bound   (Prandtl, Jenkins)
+//     Dahl            delta' = V - sigma |V| delta / g                                                   (Eq. 1, 2)
 //     LuGre           delta' = V - sigma |V| delta / (g s(V))
 //
-// with the Stribeck curve s(V) = 1 + (staticRatio - 1) e^(-(V / V_S)^2). Where g follows the load, no bristle of Dahl
-// carries more than g and none of LuGre more than staticRatio g: it would slip along that bound.
+// If g follows the load, no bristle of Dahl carries more than g and none of LuGre more than staticRatio g: it slips along
+// that bound.
 //
 // Every law with a state gives F_t = sigma delta + sigma_1 delta' + sigma_2 V, Coulomb F_t = F + sigma_2 V.
 #ifndef FC_MODEL_FRICTION_H
@@ -30,6 +31,13 @@ typedef struct {
     double sigma_2;     // N s/m  viscous friction
 } FcFriction;
 
+// The state of a bristle. Only one of ElasticPlastic with static friction remembers whether it slips, and to which side:
+// 1 or -1, 0 if it sticks. One that slips may lie inside its kinetic bound after an input has jumped.
+typedef struct {
+    double delta; // m
+    int slips;
+} FcBristle;
+
 static inline bool fc_limit_follows_load(const FcFriction* friction) {
     return friction->limit == FC_LIMIT_LOAD;
 }
@@ -43,24 +51,23 @@ static inline bool fc_has_stribeck_curve(const FcFriction* friction) {
            friction->staticRatio != 1.0;
 }
 
+// Whether the bristle remembers that it slips.
+static inline bool fc_has_static_friction(const FcFriction* friction) {
+    return friction->model == FC_ELASTIC_PLASTIC && friction->staticRatio != 1.0;
+}
+
+// Static over Coulomb friction, 1 in the laws without.
+static inline double fc_static_ratio(const FcFriction* friction) {
+    return fc_has_stribeck_curve(friction) ? friction->staticRatio : 1.0;
+}
+
 // Whether the bristle's force has a bound along which it slips.
 static inline bool fc_is_bounded(const FcFriction* friction) {
     return friction->model == FC_ELASTIC_PLASTIC ||
            (friction->model != FC_COULOMB && fc_limit_follows_load(friction));
 }
 
-// The law of ElasticPlastic whose limit is the bound of a bounded law.
-static inline FcFriction fc_law_of_bound(const FcFriction* friction) {
-    FcFriction bound = *friction;
-    if (friction->model != FC_ELASTIC_PLASTIC) {
-        bound.model = FC_ELASTIC_PLASTIC;
-        bound.mu *= friction->model == FC_LUGRE ? friction->staticRatio : 1.0;
-        bound.staticRatio = 1.0;
-    }
-    return bound;
-}
-
-// Factor on the limit at the velocity V [m/s], and its derivatives with respect to V [s/m, s2/m2]: 1, 0 and 0 without a Stribeck curve.
+// Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a Stribeck curve.
 static inline double fc_stribeck(const FcFriction* friction, double V) {
     const double ratio = V / friction->V_S;
     return fc_has_stribeck_curve(friction) ? 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio) : 1.0;
@@ -70,16 +77,9 @@ static inline double fc_stribeck_slope(const FcFriction* friction, double V) {
     return -2.0 * V / (friction->V_S * friction->V_S) * (fc_stribeck(friction, V) - 1.0);
 }
 
-// The bound of a bounded law over its limit at V.
-static inline double fc_bound_over_limit(const FcFriction* friction, double V) {
-    return friction->model == FC_LUGRE && friction->staticRatio != 1.0
-               ? friction->staticRatio / fc_stribeck(friction, V)
-               : 1.0;
-}
-
-static inline double fc_stribeck_curvature(const FcFriction* friction, double V) {
-    const double ratio = V / friction->V_S;
-    return (4.0 * ratio * ratio - 2.0) / (friction->V_S * friction->V_S) * (fc_stribeck(friction, V) - 1.0);
+// The static limit over the limit at V.
+static inline double fc_static_over_limit(const FcFriction* friction, double V) {
+    return fc_has_stribeck_curve(friction) ? friction->staticRatio / fc_stribeck(friction, V) : 1.0;
 }
 
 #endif

@@ -1,8 +1,87 @@
 #include "model/regime.h"
 
+#include <math.h>
 #include <stddef.h>
 
 #include "model/derivatives.h"
+
+FcScene fc_scene_of_bound(const FcScene* scene, int slips, FcFriction* friction) {
+    FcScene bound = *scene;
+    *friction = *scene->friction;
+    friction->model = FC_ELASTIC_PLASTIC;
+    if (slips == 0 || scene->friction->model != FC_ELASTIC_PLASTIC) {
+        const double ratio = fc_static_ratio(scene->friction);
+        friction->mu *= ratio;
+        friction->staticRatio = 1.0;
+        bound.F_C *= ratio;
+    }
+    bound.friction = friction;
+    return bound;
+}
+
+double fc_bound(const FcScene* bound, double t) {
+    const FcCoefficients at = fc_scene_coefficients(bound, t);
+    return at.limit / at.sigma;
+}
+
+double fc_bound_rate(const FcScene* bound, double t) {
+    return fc_bound(bound, t) * fc_scene_log_rates(bound, t).ratio;
+}
+
+double fc_push(const FcScene* scene, const FcScene* bound, double t, int side) {
+    const FcCoefficients at = fc_scene_coefficients(scene, t);
+    return side * fc_free_rate(scene, &at, side * fc_bound(bound, t)) - fc_bound_rate(bound, t);
+}
+
+// That of the side at the start of the scene.
+static double push(const FcScene* scene, int slips, int side) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, slips, &friction);
+    return fc_push(scene, &bound, 0.0, side);
+}
+
+static double bound_now(const FcScene* scene, int slips) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, slips, &friction);
+    return fc_bound(&bound, 0.0);
+}
+
+FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
+    if (fc_scene_is_loose(scene)) {
+        return (FcBristle){0.0, 0};
+    }
+    if (!fc_is_bounded(scene->friction)) {
+        return bristle;
+    }
+    double D = bound_now(scene, bristle.slips);
+    const int side = bristle.delta < 0.0 ? -1 : 1;
+    if (fabs(bristle.delta) > D) {
+        if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
+            bristle.slips = side;
+            D = bound_now(scene, side);
+        }
+        bristle.delta = side * D;
+    }
+    if (bristle.slips != 0 && !(push(scene, bristle.slips, bristle.slips) > 0.0)) {
+        bristle.slips = 0;
+    }
+    return bristle;
+}
+
+// By how much of its bound a bristle that slips may be inside it. By hand: at the end of a step the phase's rounding may take
+// it off the bound.
+static const double INSIDE_BOUND = 1e-10;
+
+FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
+    if (!fc_is_bounded(scene->friction) || fc_scene_is_loose(scene) ||
+        (fc_has_static_friction(scene->friction) && bristle.slips == 0)) {
+        return FC_FREE;
+    }
+    const int side = bristle.delta < 0.0 ? -1 : 1;
+    const double D = bound_now(scene, bristle.slips);
+    const bool on_bound = fabs(bristle.delta) >= (1.0 - INSIDE_BOUND) * D && side * bristle.slips >= 0;
+    return on_bound && push(scene, bristle.slips, side) > 0.0 ? (FcRegime)side : FC_FREE;
+}
 
 // What a motion is made of, or their derivatives along a direction.
 typedef struct {
@@ -11,23 +90,22 @@ typedef struct {
     double delta_rate; // m/s
 } Parts;
 
-static double free_rate(const FcScene* scene, const FcCoefficients* at, double delta) {
-    return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
-}
-
 static Parts parts(const FcScene* scene, FcRegime regime, double delta) {
+    if (fc_scene_is_loose(scene)) {
+        return (Parts){.V = fc_drive_V(&scene->drive, 0.0)};
+    }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     if (scene->friction->model == FC_COULOMB) {
         return (Parts){.V = at.V, .force = fc_sign(at.V) * at.limit};
     }
     if (regime == FC_FREE) {
-        return (Parts){.V = at.V, .force = at.sigma * delta, .delta_rate = free_rate(scene, &at, delta)};
+        return (Parts){.V = at.V, .force = at.sigma * delta, .delta_rate = fc_free_rate(scene, &at, delta)};
     }
     FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, &friction);
+    const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
     return (Parts){.V = at.V,
                    .force = (double)regime * fc_scene_coefficients(&bound, 0.0).limit,
-                   .delta_rate = (double)regime * fc_scene_bound_rate(scene, 0.0)};
+                   .delta_rate = (double)regime * fc_bound_rate(&bound, 0.0)};
 }
 
 // F_t, and its derivative where parts are derivatives: it is linear in them.
@@ -87,44 +165,53 @@ static ContactAlong contact_along(const FcScene* scene, const FcDirection* along
     };
 }
 
-static double bound_rate_along(const FcScene* scene, const FcDirection* along) {
-    const bool floats = scene->contact->input == FC_CONTACT_LOAD; // d is no input
+static double bound_rate_along(const FcScene* bound, const FcDirection* along) {
+    const bool floats = bound->contact->input == FC_CONTACT_LOAD; // d is no input
     const double by[] = {along->V, floats ? 0.0 : along->d, along->E, along->load};
     const size_t input[] = {offsetof(FcDrive, V), offsetof(FcDrive, d), offsetof(FcDrive, E),
                             offsetof(FcDrive, load)};
     double change = 0.0;
     for (int k = 0; k < 4; k++) {
-        change += by[k] != 0.0 ? by[k] * fc_bound_rate_slope(scene, input[k]) : 0.0;
+        change += by[k] != 0.0 ? by[k] * fc_bound_rate_slope(bound, input[k]) : 0.0;
     }
     return change;
 }
 
-static Parts slipping_along(const FcScene* scene, FcRegime regime, const ContactAlong* contact,
+// But for delta_rate.
+static Parts slipping_along(const FcScene* bound, FcRegime regime, const ContactAlong* contact,
                             const FcDirection* along) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, &friction);
-    const FcCoefficients at = fc_scene_coefficients(&bound, 0.0);
-    const double log_limit = log_limit_along(&bound, at.V, contact->log_F_n, along);
-    return (Parts){.V = along->V,
-                   .force = (double)regime * at.limit * log_limit,
-                   .delta_rate = (double)regime * bound_rate_along(scene, along)};
+    const FcCoefficients at = fc_scene_coefficients(bound, 0.0);
+    const double log_limit = log_limit_along(bound, at.V, contact->log_F_n, along);
+    return (Parts){.V = along->V, .force = (double)regime * at.limit * log_limit};
 }
 
-static Parts parts_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along) {
-    const ContactAlong contact = contact_along(scene, along);
-    if (regime != FC_FREE) {
-        return slipping_along(scene, regime, &contact, along);
-    }
+static Parts free_along(const FcScene* scene, double delta, const ContactAlong* contact,
+                        const FcDirection* along) {
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double log_limit = log_limit_along(scene, at.V, contact.log_F_n, along);
+    const double log_limit = log_limit_along(scene, at.V, contact->log_F_n, along);
     if (scene->friction->model == FC_COULOMB) {
         return (Parts){.V = along->V, .force = fc_sign(at.V) * at.limit * log_limit};
     }
     return (Parts){
         .V = along->V,
-        .force = at.sigma * (contact.log_sigma * delta + along->delta),
-        .delta_rate = free_rate_along(scene, &at, delta, contact.log_sigma, log_limit, along),
+        .force = at.sigma * (contact->log_sigma * delta + along->delta),
+        .delta_rate = free_rate_along(scene, &at, delta, contact->log_sigma, log_limit, along),
     };
+}
+
+static Parts parts_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along) {
+    if (fc_scene_is_loose(scene)) {
+        return (Parts){.V = along->V};
+    }
+    const ContactAlong contact = contact_along(scene, along);
+    if (regime == FC_FREE) {
+        return free_along(scene, delta, &contact, along);
+    }
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
+    Parts change = slipping_along(&bound, regime, &contact, along);
+    change.delta_rate = (double)regime * bound_rate_along(&bound, along);
+    return change;
 }
 
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along) {
@@ -138,15 +225,65 @@ FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, double delta, co
                       .rates = {.delta = change.delta_rate, .W_f = power, .Q_f = power - stored}};
 }
 
-double fc_regime_bound(const FcScene* scene) {
+double fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along) {
     FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, &friction);
-    const FcCoefficients at = fc_scene_coefficients(&bound, 0.0);
-    return at.limit / at.sigma;
+    const FcScene bound = fc_scene_of_bound(scene, bristle.slips, &friction);
+    const ContactAlong contact = contact_along(scene, along);
+    const double V = fc_drive_V(&scene->drive, 0.0);
+    return bristle.delta * (log_limit_along(&bound, V, contact.log_F_n, along) - contact.log_sigma);
 }
 
-double fc_regime_push(const FcScene* scene, int side) {
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double D = fc_regime_bound(scene);
-    return side * free_rate(scene, &at, side * D) - fc_scene_bound_rate(scene, 0.0);
+// Second time derivative of the bound [m/s2], by a central difference of its rate, which is exact. Its pace is that of what moves
+// it; away from surfaces that would touch.
+static double bound_acceleration(const FcScene* bound) {
+    const FcDrive* drive = &bound->drive;
+    const FcLogRates rates = fc_scene_log_rates(bound, 0.0);
+    double pace = drive->omega + fabs(rates.sigma) + fabs(rates.limit) + fc_drive_E_growth(drive, 0.0);
+    if (drive->load.rate != 0.0) {
+        pace += fc_drive_load_growth(drive, 0.0);
+    }
+    if (fc_has_stribeck_curve(bound->friction)) {
+        pace += (fabs(drive->V.rate) + drive->omega * drive->vibration.V_1) / bound->friction->V_S;
+    }
+    double tau = 1e-4 / pace; // the error is some tau^2
+    if (!isfinite(tau)) {     // it stands still, but for less than the smallest number
+        return 0.0;
+    }
+    tau = copysign(tau, fc_scene_d_rate(bound, 0.0));
+    const double apart = fc_bound_rate(bound, tau);
+    if (fc_scene_d(bound, -tau) > 0.0) {
+        return (apart - fc_bound_rate(bound, -tau)) / (2.0 * tau);
+    }
+    return (4.0 * apart - 3.0 * fc_bound_rate(bound, 0.0) - fc_bound_rate(bound, 2.0 * tau)) / (2.0 * tau);
+}
+
+double fc_force_rate(const FcScene* scene, FcBristle bristle) {
+    const FcDrive* drive = &scene->drive;
+    const FcRegime regime = fc_regime(scene, bristle);
+    const FcDirection in_time = {
+        .V = fc_drive_V_rate(drive, 0.0),
+        .d = scene->contact->input == FC_CONTACT_LOAD ? 0.0 : fc_drive_d_rate(drive, 0.0),
+        .E = drive->E.rate,
+        .load = drive->load.rate,
+        .delta = fc_motion(scene, regime, bristle.delta).rates.delta,
+    };
+    if (fc_scene_is_loose(scene)) {
+        return scene->friction->sigma_2 * in_time.V;
+    }
+    ContactAlong contact = contact_along(scene, &in_time);
+    if (scene->contact->input == FC_CONTACT_LOAD) { // which the vibration moves besides
+        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, 0.0));
+        contact.log_sigma += by_d.sigma * fc_drive_d_rate(drive, 0.0);
+        contact.log_F_n += by_d.F_n * fc_drive_d_rate(drive, 0.0);
+    }
+    Parts change;
+    if (regime == FC_FREE) {
+        change = free_along(scene, bristle.delta, &contact, &in_time);
+    } else {
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
+        change = slipping_along(&bound, regime, &contact, &in_time);
+        change.delta_rate = scene->friction->sigma_1 != 0.0 ? (double)regime * bound_acceleration(&bound) : 0.0;
+    }
+    return whole_force(scene->friction, &change);
 }

@@ -1,11 +1,12 @@
-// The motion of a bristle whose regime is known: free, or slipping along its bound. In model exchange a regime holds from
-// one event to the next, so that the right-hand side is smooth between them:
+// The bound of a bristle, its regime, and its motion at the start of a scene:
 //
 //     free       delta' = V in ElasticPlastic, V - sigma |V| delta / g in Dahl and LuGre      F = sigma delta
 //     slipping   delta' = side D'                                                             F = side sigma D
 //
-// with the bound D = g / sigma, in LuGre with the static limit. The force of a bristle that slips is that of the bound
-// itself, so an integrator's error of delta does not reach it. With F_t = F + sigma_1 delta' + sigma_2 V
+// The bound D is g / sigma: in ElasticPlastic with the static limit while it sticks and the kinetic one while it slips, in LuGre
+// with the static limit. In model exchange a regime holds from one event to the next, so that the right-hand side is smooth
+// between them; the force of a bristle that slips is that of the bound itself, so an integrator's error of delta does not
+// reach it. With F_t = F + sigma_1 delta' + sigma_2 V
 //
 //     W_f' = F_t V        Q_f' = F_t V - F delta'
 #ifndef FC_MODEL_REGIME_H
@@ -15,6 +16,30 @@
 
 // The sign of the bound along which the bristle slips; 0 where it touches none.
 typedef enum { FC_SLIPS_BACK = -1, FC_FREE = 0, FC_SLIPS_FORWARD = 1 } FcRegime;
+
+// The scene whose limit, over sigma, is the bound of a bristle of a bounded law that slips or does not (FcBristle.slips). It points
+// to *friction, which it sets.
+FcScene fc_scene_of_bound(const FcScene* scene, int slips, FcFriction* friction);
+
+// The bound D at a local time of such a scene, and its rate.
+double fc_bound(const FcScene* bound, double t);      // m
+double fc_bound_rate(const FcScene* bound, double t); // m/s
+
+// delta' [m/s] of a bristle that touches no bound.
+static inline double fc_free_rate(const FcScene* scene, const FcCoefficients* at, double delta) {
+    return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
+}
+
+// Velocity [m/s] by which a bristle on the bound D of that side (1 or -1) is pushed beyond it: what it would move by if it were
+// free, less the motion of the bound. It slips while this is positive.
+double fc_push(const FcScene* scene, const FcScene* bound, double t, int side);
+
+// What the state is at the start of the scene: one beyond its bound is taken onto it, one that has lost its contact is 0, one
+// that slips sticks if it is not pushed.
+FcBristle fc_reach(const FcScene* scene, FcBristle bristle);
+
+// The regime of a bristle that is within its bound.
+FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 
 // Time derivatives of the states.
 typedef struct {
@@ -28,8 +53,7 @@ typedef struct {
     FcStateRates rates;
 } FcMotion;
 
-// At the start of the scene, of a bristle deflected by delta [m]. FC_FREE for a law without a bound; Coulomb's force has
-// no regime.
+// delta [m]. FC_FREE for a law without a bound; Coulomb's force has no regime.
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, double delta);
 
 // A direction in the space of what the motion depends on.
@@ -44,11 +68,10 @@ typedef struct {
 // The derivative of the motion along the direction, by the chain rule; of the rate of a bound by a central difference.
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along);
 
-// The bound D [m] at the start of the scene of a bounded law.
-double fc_regime_bound(const FcScene* scene);
+// How fast delta changes along the direction if the bristle is kept on the bound of its side.
+double fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along);
 
-// Velocity [m/s] by which a bristle on the bound of that side (1 or -1) is pushed beyond it: what it would move by if it were
-// free, less the motion of the bound. It slips where this is positive.
-double fc_regime_push(const FcScene* scene, int side);
+// Time derivative of F_t [N/s] of a bristle that is within its bound, the inputs moving as the drive says.
+double fc_force_rate(const FcScene* scene, FcBristle bristle);
 
 #endif

@@ -1,5 +1,6 @@
 #include "model/root.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -68,4 +69,33 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
         }
     }
     return t;
+}
+
+double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
+                       double at_b, double* evaluations) {
+    const double rounding = DBL_EPSILON * (b - a);
+    int kept = 0; // end that was kept the last time
+    for (int i = 0; i < MOST_ROOT_STEPS && at_b != 0.0 && b - a > rounding; i++) {
+        double t = a + (b - a) * (at_a / (at_a - at_b));
+        if (i % 8 == 7 || !(t > a && t < b)) {
+            t = 0.5 * (a + b);
+        }
+        if (!(t > a && t < b)) {
+            break;
+        }
+        const double at_t = f(context, t);
+        *evaluations += 1.0;
+        if ((at_t < 0.0) == (at_a < 0.0)) {
+            a = t;
+            at_a = at_t;
+            at_b *= kept == 1 ? 0.5 : 1.0;
+            kept = 1;
+        } else {
+            b = t;
+            at_b = at_t;
+            at_a *= kept == -1 ? 0.5 : 1.0;
+            kept = -1;
+        }
+    }
+    return b;
 }

@@ -21,4 +21,9 @@ typedef FcRootFunction (*FcRootEvaluation)(void* context, double t);
 double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
                FcRootFunction at_b, double last_step, double least_area, double* evaluations);
 
+// The root of f between a and b, a < b, of values of opposite signs there, to rounding: by the Illinois form of the rule of
+// false position, halved if that is slow.
+double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
+                       double at_b, double* evaluations);
+
 #endif

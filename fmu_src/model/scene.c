@@ -9,6 +9,23 @@ static double rest_separation(const FcScene* scene, const FcContactAtModulus* at
 
 static bool follows_load(const FcScene* scene) { return scene->contact->input == FC_CONTACT_LOAD; }
 
+// A load or a stiffness below this is none [N, N/m]. By hand, beyond anything that is seen: products of two such numbers
+// are still numbers.
+static const double NOTHING = 1e-100;
+
+// The separation [m] from which on F_n or sigma is nothing, if the load is not given.
+static double open_separation(const FcContactAtModulus* at_E) {
+    const double without_load = log(at_E->load_0 / NOTHING) / at_E->decay;
+    if (at_E->model == FC_CONTACT_CONSTANT) {
+        return without_load;
+    }
+    // Of sigma = stiffness_0 e^(-2 decay d) / d^3 at the d where F_n has gone halfway.
+    const double d = 0.5 * without_load;
+    const double powers = at_E->model == FC_CONTACT_ASPERITIES ? 2.0 : 1.0;
+    const double front = at_E->model == FC_CONTACT_ASPERITIES ? at_E->stiffness_0 / (d * d * d) : at_E->stiffness_0;
+    return fmin(without_load, log(front / NOTHING) / (powers * at_E->decay));
+}
+
 FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
                       const FcFriction* friction, double F_C, const FcDrive* drive) {
     FcScene scene = {.contact = contact, .friction = friction, .F_C = F_C, .drive = *drive, .at_E = *at_E};
@@ -17,11 +34,43 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     }
     if (!follows_load(&scene)) {
         scene.drive.load.rate = 0.0;
+        scene.is_open = drive->d.value > open_separation(at_E);
         return scene;
     }
+    scene.is_open = !(drive->load.value > NOTHING);
     scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
-    scene.drive.d = (FcLinearInput){scene.floats ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
+    scene.drive.d = (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
     return scene;
+}
+
+// By this factor a load may move in a piece. By hand: more needs finer panels, less more pieces.
+static const double LOAD_OF_PIECE = 4.0;
+// A contact opens earlier and closes later by this part of the step. Derived: what the bristle does in that time goes with
+// its square.
+static const double NEARLY_OPEN = 0x1p-44;
+
+double fc_scene_piece(FcScene* scene, double rest, double whole) {
+    const FcDrive* drive = &scene->drive;
+    const bool by_load = follows_load(scene);
+    const double rate = by_load ? drive->load.rate : drive->d.rate;
+    if (!fc_scene_depends_on_d(scene) || rate == 0.0) {
+        return rest;
+    }
+    // Time to where the contact opens or closes; behind if negative.
+    const double to_edge =
+        (by_load ? -drive->load.value : open_separation(&scene->at_E) - drive->d.value) / rate;
+    const double room = NEARLY_OPEN * whole;
+    scene->is_open = scene->is_open || (to_edge > 0.0 && to_edge <= room);
+    if (scene->is_open) {
+        const bool closes = by_load ? rate > 0.0 : rate < 0.0;
+        return closes ? fmin(rest, to_edge + room) : rest;
+    }
+    if (by_load) {
+        const double part = rate > 0.0 ? 1.0 - LOAD_OF_PIECE : 1.0 - 1.0 / LOAD_OF_PIECE;
+        return fmin(rest, part * to_edge);
+    }
+    const double moved = log(LOAD_OF_PIECE) / (scene->at_E.decay * fabs(rate));
+    return fmin(rest, to_edge > 0.0 ? fmin(moved, to_edge) : moved);
 }
 
 FcScene fc_scene_later(const FcScene* scene, double t) {
@@ -77,6 +126,9 @@ double fc_scene_d_rate(const FcScene* scene, double t) {
 }
 
 FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
+    if (scene->is_open) {
+        return (FcContactResponse){.sigma = scene->at_E.model == FC_CONTACT_CONSTANT ? scene->at_E.stiffness_0 : 0.0};
+    }
     const FcContactAtModulus at_E = contact_at(scene, t);
     return fc_contact_response(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
 }
@@ -144,101 +196,6 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
     return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
-FcScene fc_scene_of_bound(const FcScene* scene, FcFriction* friction) {
-    FcScene bound = *scene;
-    *friction = fc_law_of_bound(scene->friction);
-    bound.friction = friction;
-    return bound;
-}
-
-double fc_scene_bound_rate(const FcScene* scene, double t) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, &friction);
-    const FcCoefficients at = fc_scene_coefficients(&bound, t);
-    const FcLogRates rates = fc_scene_log_rates(&bound, t);
-    return at.limit / at.sigma * rates.ratio;
-}
-
-// delta' of a bristle that touches no bound.
-static double free_rate(const FcScene* scene, const FcCoefficients* at, double delta) {
-    return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
-}
-
-static double bound_at(const FcScene* scene, const FcCoefficients* at) {
-    return at->limit * fc_bound_over_limit(scene->friction, at->V);
-}
-
-// By how much of its bound a bristle that slips may be inside it. By hand: at the end of a step the phase's rounding may take
-// it off the bound, the further the steeper Stribeck's curve is there. What an input that has fallen by decades rounds by may
-// be more, which the step itself mends (fc_stick_slip_end).
-static const double INSIDE_BOUND = 1e-10;
-static const double ROUNDING_OF_V = 1e-15; // of the top speed
-static const double MOST_INSIDE_BOUND = 1e-6;
-
-static double inside_bound(const FcScene* scene, double V) {
-    const FcDrive* drive = &scene->drive;
-    const double top = fabs(drive->V.value) + fabs(drive->vibration.V_1);
-    const double by_V = fc_stribeck_slope(scene->friction, V) / fc_stribeck(scene->friction, V);
-    return fmin(MOST_INSIDE_BOUND, INSIDE_BOUND + ROUNDING_OF_V * top * fabs(by_V));
-}
-
-double fc_scene_slip_side(const FcScene* scene, double t, double delta) {
-    if (!fc_is_bounded(scene->friction)) {
-        return 0.0;
-    }
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double bound = bound_at(scene, &at);
-    if (at.sigma * fabs(delta) < (1.0 - inside_bound(scene, at.V)) * bound) {
-        return 0.0;
-    }
-    const double side = delta < 0.0 ? -1.0 : 1.0;
-    return side * free_rate(scene, &at, side * (bound / at.sigma)) >= fc_scene_bound_rate(scene, t) ? side
-                                                                                                    : 0.0;
-}
-
-double fc_scene_deflection_rate(const FcScene* scene, double t, double delta) {
-    if (scene->friction->model == FC_COULOMB) {
-        return 0.0;
-    }
-    const double side = fc_scene_slip_side(scene, t, delta);
-    if (side != 0.0) {
-        return side * fc_scene_bound_rate(scene, t);
-    }
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    if (fc_is_bounded(scene->friction)) {
-        const double D = bound_at(scene, &at) / at.sigma;
-        delta = fmax(-D, fmin(D, delta));
-    }
-    return free_rate(scene, &at, delta);
-}
-
-static double force(const FcScene* scene, double t, const FcCoefficients* at, double delta) {
-    const FcFriction* friction = scene->friction;
-    const double viscous = friction->sigma_2 != 0.0 ? friction->sigma_2 * at->V : 0.0;
-    if (friction->model == FC_COULOMB) {
-        return fc_sign(at->V) * at->limit + viscous;
-    }
-    const double damping =
-        friction->sigma_1 != 0.0 ? friction->sigma_1 * fc_scene_deflection_rate(scene, t, delta) : 0.0;
-    double elastic = at->sigma * delta; // Eq. 1
-    if (fc_is_bounded(friction)) {
-        const double bound = bound_at(scene, at);
-        elastic = fmax(-bound, fmin(bound, elastic));
-    }
-    return elastic + damping + viscous;
-}
-
-FcOutputs fc_scene_outputs(const FcScene* scene, double t, double delta) {
-    const FcContactAtModulus at_E = contact_at(scene, t);
-    const FcDriveValues now = fc_drive_values(&scene->drive, t);
-    const FcContactResponse response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
-    const FcCoefficients at = coefficients(scene, &response, now.V);
-    return (FcOutputs){.F_t = force(scene, t, &at, delta),
-                       .F_n = response.F_n,
-                       .sigma = response.sigma,
-                       .A_r = response.A_r};
-}
-
 // Bounds of the separation where the surfaces rest.
 static double smallest_rest(const FcScene* scene, double h) {
     const FcContactAtModulus end = contact_at(scene, h);
@@ -288,15 +245,22 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
 }
 
+// g / sigma is largest where E and the load are at one of their ends, and the surfaces farthest apart or, with a constant
+// stiffness, nearest.
 double fc_scene_largest_saturation(const FcScene* scene, double h) {
-    if (scene->floats || scene->drive.E.rate != 0.0) {
-        return INFINITY;
-    }
     const FcFriction* friction = scene->friction;
-    const double d = largest_d(scene, h);
-    const double g = fc_limit_follows_load(friction) ? friction->mu * fc_contact_response(&scene->at_E, d).F_n
-                                                     : scene->F_C;
-    return g * fc_stribeck(friction, 0.0) / fc_contact_stiffness(&scene->at_E, d);
+    const bool moves = scene->floats || scene->drive.E.rate != 0.0;
+    const double d[] = {largest_d(scene, h), fc_scene_smallest_d(scene, h)};
+    double largest = 0.0;
+    for (int end = 0; end <= moves; end++) {
+        const FcContactAtModulus at_E = contact_at(scene, end == 0 ? 0.0 : h);
+        for (int i = 0; i < 2; i++) {
+            const double g =
+                fc_limit_follows_load(friction) ? friction->mu * fc_contact_response(&at_E, d[i]).F_n : scene->F_C;
+            largest = fmax(largest, g / fc_contact_stiffness(&at_E, d[i]));
+        }
+    }
+    return largest * fc_static_ratio(friction);
 }
 
 static bool contact_moves(const FcScene* scene) {
@@ -312,10 +276,14 @@ bool fc_scene_limit_is_constant(const FcScene* scene) {
     return !fc_limit_follows_load(scene->friction) || !contact_moves(scene);
 }
 
-double fc_scene_force_scale(const FcScene* scene) {
+double fc_scene_mean_limit(const FcScene* scene, double t) {
     if (!fc_limit_follows_load(scene->friction)) {
         return scene->F_C;
     }
-    const double d = fc_scene_d(scene, 0.0) - (fc_drive_d(&scene->drive, 0.0) - scene->drive.d.value);
-    return scene->friction->mu * scene->at_E.load_0 * exp(scene->log_swell - scene->at_E.decay * d);
+    if (follows_load(scene)) {
+        return scene->friction->mu * fmax(0.0, fc_drive_load(&scene->drive, t));
+    }
+    const FcContactAtModulus at_E = contact_at(scene, t);
+    const double d = scene->drive.d.value + scene->drive.d.rate * t;
+    return scene->friction->mu * at_E.load_0 * exp(scene->log_swell - at_E.decay * d);
 }

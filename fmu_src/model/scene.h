@@ -3,7 +3,7 @@
 //
 //     delta' = V(t) - sigma(t) |V(t)| delta / g(t)                       (Eq. 2; g = F_C in the paper)
 //
-// and the force that a deflection means there. With contact.input = Load the surfaces float: the separation is the one
+// With contact.input = Load the surfaces float: the separation is the one
 // at which the mean of F_n over a period of the vibration is the load.
 #ifndef FC_MODEL_SCENE_H
 #define FC_MODEL_SCENE_H
@@ -22,8 +22,8 @@ typedef struct {
     FcDrive drive;
     FcContactAtModulus at_E; // the contact at the modulus of the start of the step
     double log_swell;        // ln of the mean over a period of F_n over F_n without vibration
-    bool
-        floats; // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
+    bool floats;  // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
+    bool is_open; // at the start: no load presses the surfaces together, or they are far apart
 } FcScene;
 
 // at_E is the contact at the drive's modulus at the start. Keeps the pointers.
@@ -36,10 +36,21 @@ FcScene fc_scene_later(const FcScene* scene, double t);
 // The same with t at any phase.
 FcScene fc_scene_from(const FcScene* scene, double t);
 
-// Whether sigma or g are functions of the separation.
+// Whether sigma or g, as far as the law asks for them, are functions of the separation.
 static inline bool fc_scene_depends_on_d(const FcScene* scene) {
-    return scene->at_E.model != FC_CONTACT_CONSTANT || fc_limit_follows_load(scene->friction);
+    return fc_limit_follows_load(scene->friction) ||
+           (scene->at_E.model != FC_CONTACT_CONSTANT && scene->friction->model != FC_COULOMB);
 }
+
+// Whether the bristle has lost its contact at the start: its force and its deflection are 0.
+static inline bool fc_scene_is_loose(const FcScene* scene) {
+    return scene->is_open && fc_scene_depends_on_d(scene);
+}
+
+// How long [s], up to `rest`, the scene may be taken as a whole from its start on, in a step of `whole` [s]: until the contact
+// opens or closes, or the load, given or made from d, has moved by a factor of 4. Sets is_open if the contact opens within
+// 2^-44 of the step.
+double fc_scene_piece(FcScene* scene, double rest, double whole);
 
 // Whether g / sigma is no function of it: F_n and Mindlin's stiffness fall with d alike.
 static inline bool fc_scene_ratio_is_constant(const FcScene* scene) {
@@ -51,7 +62,7 @@ double fc_scene_d(const FcScene* scene, double t);      // m
 double fc_scene_d_rate(const FcScene* scene, double t); // m/s
 double fc_scene_d_at_phase(const FcScene* scene, double t, FcPhase at_t);
 double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t);
-FcContactResponse fc_scene_contact(const FcScene* scene, double t);
+FcContactResponse fc_scene_contact(const FcScene* scene, double t); // also of one that is open
 double fc_scene_stiffness(const FcScene* scene, double t); // N/m
 
 // What the equation of the bristle needs at one moment.
@@ -78,40 +89,18 @@ typedef struct {
 FcLogRates fc_scene_log_rates(const FcScene* scene, double t);
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
-// The scene of ElasticPlastic whose limit is the bound of a bounded law. It points to *friction, which it sets.
-FcScene fc_scene_of_bound(const FcScene* scene, FcFriction* friction);
-
-// Rate [m/s] at which the bound of the deflection moves.
-double fc_scene_bound_rate(const FcScene* scene, double t);
-
-// +1 or -1 where a bristle deflected by delta [m] slips along that bound, 0 where it does not and in laws without one.
-double fc_scene_slip_side(const FcScene* scene, double t, double delta);
-
-// delta' [m/s] of a bristle that is deflected by delta [m], for every law. A bristle that an input has pushed beyond the
-// bound lies on it.
-double fc_scene_deflection_rate(const FcScene* scene, double t, double delta);
-
-// What can be seen of the scene, with a bristle deflected by delta [m]: F_t with damping and viscous friction.
-typedef struct {
-    double F_t;   // N
-    double F_n;   // N
-    double sigma; // N/m
-    double A_r;   // m2
-} FcOutputs;
-FcOutputs fc_scene_outputs(const FcScene* scene, double t, double delta);
-
 // Bounds over [0, h], h [s] >= 0.
 double fc_scene_smallest_d(const FcScene* scene, double h);          // m
 double fc_scene_largest_stiffness(const FcScene* scene, double h);   // N/m
 double fc_scene_smallest_limit(const FcScene* scene, double h);      // N
 double fc_scene_smallest_saturation(const FcScene* scene, double h); // m, of g / sigma
-double fc_scene_largest_saturation(const FcScene* scene, double h);  // m, infinite where E or load move
+double fc_scene_largest_saturation(const FcScene* scene, double h);  // m, of g / sigma
 
 // Whether sigma, and g but for the Stribeck curve, stand still over the step.
 bool fc_scene_stiffness_is_constant(const FcScene* scene);
 bool fc_scene_limit_is_constant(const FcScene* scene);
 
-// What solver.tolerance is relative to [N]: F_C, or mu times the mean of F_n over a period at the start.
-double fc_scene_force_scale(const FcScene* scene);
+// F_C, or mu times the mean of F_n over a period of the vibration with the inputs of the time t [N].
+double fc_scene_mean_limit(const FcScene* scene, double t);
 
 #endif

@@ -1,6 +1,6 @@
 // The budget: which part of solver.tolerance each part of the solver may use.
 //
-// The tolerance, times fc_scene_force_scale, bounds the error of F_t at the end of a communication step and of its mean
+// The tolerance, times the largest force of the step, bounds the error of F_t at the end of a communication step and of its mean
 // over the step; work and heat are held to the same over the path. "Allowed" below is that product [N] for a force, and
 // the tolerance alone [1] for what is relative to the force.
 //
@@ -9,7 +9,6 @@
 //     Gauss panel, judged      10 times; its estimate is 10 to 1e5 times too large  the few estimates that are too small
 //     Radau panel, planned     0.003 for the mean, 0.001 at the end                 what the plan's tables scatter by
 //     Radau panel, judged      10 times for the mean, a fifth at the end            as for Gauss panels
-//     the same                 a hundredth of that where sigma or g move by decades estimates that are far too small
 //     settled panel            0.3                                                  terms of higher order
 //     Stribeck peak            a hundredth beyond its edges                         the sum over the peaks of a step
 //
@@ -42,8 +41,6 @@ static const double FC_SHARE_OF_RADAU_MEAN = 10.0;
 static const double FC_SHARE_OF_RADAU_END = 0.2;
 static const double FC_SHARE_OF_RADAU_MEAN_IN_PEAK = 1.0;
 static const double FC_SHARE_OF_RADAU_END_IN_PEAK = 0.05;
-// Where the contact moves by decades in an interval (FcPace.is_local), estimates may be a hundred times too small.
-static const double FC_TRUST_IN_LOCAL_ESTIMATES = 0.01;
 // Rounding of a panel's force, over the limit, 900 eps: asking a Radau panel for less would only shorten it.
 static const double FC_ROUNDING_OF_PANEL = 2e-13;
 
@@ -51,6 +48,15 @@ static const double FC_ROUNDING_OF_PANEL = 2e-13;
 static const double FC_SHARE_OF_SETTLED_PANEL = 0.3;
 // What may be left of the Stribeck curve, in the mean, where a settled panel begins.
 static const double FC_SHARE_OF_CURVE_LEFT = 0.05;
+
+// The march. What a free motion may use, between meetings; the estimated error of a quadrature of a formula, which is 10 to 1e5 times
+// too large; a meeting that a bound is passed by less in is none; what is left to the bound where a panel is cut; what the
+// nodes of a panel that may graze the bound may miss between them.
+static const double FC_SHARE_OF_FREE = 0.5;
+static const double FC_SHARE_OF_FORMULA = 3.0;
+static const double FC_SHARE_OF_EVENT = 0.02;
+static const double FC_SHARE_OF_CUT = 0.1;
+static const double FC_SHARE_OF_GRAZE = 0.1;
 
 // What the Stribeck curve may do beyond the edges of its peak.
 static const double FC_SHARE_BEYOND_PEAK = 0.01;

@@ -6,15 +6,19 @@
 #include <stdbool.h>
 
 #include "model/scene.h"
+#include "solver/solver.h"
 
 // How fast the scene moves, at the most: the one measure of pace of every panel that is planned.
 typedef struct {
     double phase;     // 1/s, of the vibration's angle
     double log_sigma; // 1/s, of ln(sigma) and of ln(g) but for the Stribeck curve
-    // The surfaces come so close, or E or the load move so far, that log_sigma holds only what the decay of the contact
-    // with d gives; the rest is to be followed along the interval.
-    bool is_local;
 } FcPace;
+
+// Over [0, h], h [s] >= 0.
+FcPace fc_pace(const FcScene* scene, double h);
+
+// Time [s] over which the phase, ln(sigma) or ln(g) moves by 1, at the least; infinite if nothing moves.
+static inline double fc_smooth_time(const FcPace* pace) { return 1.0 / (pace->phase + pace->log_sigma); }
 
 typedef struct {
     const FcScene* scene;
@@ -25,7 +29,7 @@ typedef struct {
     double speed;                // m/s, largest |V|
     double stiffness;            // N/m, largest sigma
     double limit;                // N, smallest g
-    double saturation; // m, largest g / sigma: over this path errors fade by e at least; infinite if unknown
+    double saturation; // m, largest g / sigma: over this path errors fade by e at least
     double forgotten;  // m, over this path they fade below the square of the tolerance
     FcPace pace;
     bool has_peaks;      // g has a Stribeck curve
@@ -33,17 +37,14 @@ typedef struct {
     bool constant_sigma; // sigma is one
 } FcInterval;
 
-// Keeps the pointers. beyond_peaks is the scene itself where it has no Stribeck curve.
+// Keeps the pointers. beyond_peaks is the scene itself if it has no Stribeck curve.
 FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
-                            double tolerance);
+                            const FcSolverOptions* options);
 
 // What the tolerance allows of a force [N].
 static inline double fc_allowed_force(const FcInterval* interval) {
     return interval->tolerance * interval->force;
 }
-
-// Time [s] from t on over which the phase, ln(sigma) or ln(g) moves by 1, at the least; g by the normal force.
-double fc_smooth_time(const FcInterval* interval, double t);
 
 // About -log10(x), down to the next power of two; about 308 for 0 and the smallest numbers.
 double fc_digits(double x);

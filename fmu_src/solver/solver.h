@@ -18,12 +18,16 @@ typedef enum {
 } FcMethod;
 
 typedef struct {
-    double tolerance; // 1  bound of the error of F_t and of its mean, over fc_scene_force_scale
+    double tolerance; // 1  bound of the error of F_t and of its mean, over the force
+    double force;     // N  what the tolerance is relative to
     double step_size; // s  internal step of the fixed-step methods
 } FcSolverOptions;
 
 typedef struct {
     double delta;       // m     deflection at the end of the step
+    int slips;          //       the other part of the bristle's state (FcBristle)
+    int meetings;       //       how often the bristle met its bound, slipping along it at the start included
+    double lost;        // m     what opening contacts took from the deflection, which is not motion
     double impulse;     // N s   integral of F dt, F being F_t without its parts from sigma_1 and sigma_2
     double work;        // J     integral of F V dt
     double heat;        // J     integral of F (V - delta') dt

@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 
 #include "solver/panels/gauss_panel.h"
 #include "solver/stretches/crossing.h"
@@ -37,10 +38,16 @@ static bool cross_in_one(FcCrossed* crossed, FcPhase phase, double delta_0, FcMa
         .delta_0 = delta_0,
         .scale = scope == FC_MAP_ANY_START ? fmax(fabs(delta_0), saturation) : 0.0,
         .speed = interval->speed,
+        .keep = crossed->watch ? &crossed->watch->nodes : NULL,
     };
     FcPanel panel;
     if (!fc_bounded_panel(interval, scene, 0.0, h, X, fabs(X) / saturation, &from, &panel,
                           &crossed->evaluations)) {
+        return false;
+    }
+    const FcPanelAt at = {scene, 0.0, h, panel.nodes, 0.0};
+    double taken;
+    if (!fc_may_keep_panel(crossed, &at, &from, &panel, &taken) || (taken < h && !fc_has_met(crossed))) {
         return false;
     }
     *crossed->map = panel.map;
@@ -61,7 +68,7 @@ static void cross_stretches(FcCrossed* crossed, FcPhase start_phase, double delt
     FcStretches stretches;
     FcStretch stretch = {0};
     fc_stretches_start(&stretches, interval, start, start_phase, &stretch);
-    while (crossed->evaluations <= FC_MOST_EVALUATIONS) {
+    while (crossed->evaluations <= FC_MOST_EVALUATIONS && !fc_has_met(crossed)) {
         const FcTrajectories from = fc_crossed_trajectories(crossed);
         if (!fc_stretches_next(&stretches, fmax(fabs(from.delta_0), fabs(from.scale)), &stretch)) {
             break;
@@ -78,8 +85,8 @@ static void take_work_from_heat(FcMap* map, double sigma, double start) {
     map->work_offset = map->heat_offset + 0.5 * sigma * (map->offset - start) * (map->offset + start);
 }
 
-FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
-                              double delta_0, FcMapScope scope, double* evaluations) {
+static FcMap cross_interval(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
+                            FcMapScope scope, FcWatch* watch, double* evaluations) {
     const bool has_peaks = fc_has_stribeck_curve(scene->friction);
     FcFriction coulomb_limit = *scene->friction;
     coulomb_limit.staticRatio = 1.0;
@@ -89,12 +96,12 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
         beyond_peaks.friction = &coulomb_limit;
     }
     const FcInterval interval =
-        fc_interval_make(scene, has_peaks ? &beyond_peaks : scene, duration, options->tolerance);
+        fc_interval_make(scene, has_peaks ? &beyond_peaks : scene, duration, options);
     if (!isfinite(interval.force / interval.stiffness)) {
         return slack_map(scene, duration);
     }
     FcMap map = fc_map_identity();
-    FcCrossed crossed = {.interval = &interval, .map = &map, .evaluations = *evaluations};
+    FcCrossed crossed = {.interval = &interval, .map = &map, .evaluations = *evaluations, .watch = watch};
     const FcPhase start_phase = fc_drive_phase(&scene->drive, 0.0);
     const bool in_one = cross_in_one(&crossed, start_phase, delta_0, scope);
     if (!in_one) {
@@ -105,6 +112,16 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
     }
     *evaluations = crossed.evaluations;
     return map;
+}
+
+FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
+                              double delta_0, FcMapScope scope, double* evaluations) {
+    return cross_interval(scene, options, duration, delta_0, scope, NULL, evaluations);
+}
+
+FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
+                             FcWatch* watch, double* evaluations) {
+    return cross_interval(scene, options, duration, delta_0, FC_MAP_THIS_START, watch, evaluations);
 }
 
 void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result) {

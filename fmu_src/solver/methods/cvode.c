@@ -1,10 +1,9 @@
 // SUNDIALS CVODE: variable-order BDF with the exact 1x1 Jacobian.
 //
-//     y = (delta - origin) / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
+//     y = delta / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
 //
-// The origin is 0, or in a short step delta(0), so that the change keeps its digits. L = g / sigma at the stiffest moment of
-// the step, so that an error of y is at least as large as the error of F_t / F_C; less where the surfaces move less than
-// that, or where damping multiplies the error. The step is cut at the reversals of V. CVODE is started anew, in a time that
+// L = g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error of F_t / F_C; less
+// if the surfaces move less than that. The step is cut at the reversals of V. CVODE is started anew, in a time that
 // begins at 0, on every piece: it never steps over a kink and no history outlives a step. The error of y is bounded
 // absolutely: y is large where the contact is soft, and an error made there is multiplied when it stiffens. A Stribeck curve
 // is a bump of g around V = 0: steps shrink with |V| so that none goes over it unseen.
@@ -36,7 +35,6 @@
 
 #define MOST_PERIODS 1e5      // vibration periods in one communication step: minutes of computing
 #define STEPS_PER_PERIOD 8.0  // at least: the vibration can't slip between two steps
-#define SHORTEST_PIECE 1e-150 // s; CVODE multiplies two durations, which gives 0 below 1e-162 s
 #define MOST_FAILED_TRIES 50  // error test or convergence failures of one step of CVODE
 
 // A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that steps
@@ -74,8 +72,6 @@ struct FcCvode {
     // The piece under way, as the callbacks see it.
     const FcScene* scene;
     double start;       // s, local time at which the piece starts; CVODE's time is 0 there
-    double unit;        // s, of CVODE's time: 1 s, or the piece's duration where that is very short
-    double origin;      // m
     double L;           // m
     double evaluations; // of a(t), b(t)
     double last_tau;    // of the last evaluation on this piece; NaN before the first
@@ -90,18 +86,18 @@ static FcCoefficients coefficients_at(FcCvode* solver, double tau) {
     if (tau != solver->last_tau) {
         solver->evaluations += 1.0;
         solver->last_tau = tau;
-        solver->last = fc_scene_coefficients(solver->scene, solver->start + solver->unit * tau);
+        solver->last = fc_scene_coefficients(solver->scene, solver->start + tau);
     }
     return solver->last;
 }
 
-static double deflection(const FcCvode* solver, double y) { return solver->origin + solver->L * y; }
+static double deflection(const FcCvode* solver, double y) { return solver->L * y; }
 
 static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
     FcCvode* solver = user;
     const FcCoefficients at = coefficients_at(solver, tau);
     const double delta = deflection(solver, NV_Ith_S(y, 0));
-    NV_Ith_S(slope, 0) = solver->unit * (at.V - fc_relaxation_rate(&at) * delta) / solver->L;
+    NV_Ith_S(slope, 0) = (at.V - fc_relaxation_rate(&at) * delta) / solver->L;
     return 0;
 }
 
@@ -110,7 +106,7 @@ static int jacobian(realtype tau, N_Vector y, N_Vector slope, SUNMatrix J, void*
     (void)y, (void)slope, (void)t1, (void)t2, (void)t3;
     FcCvode* solver = user;
     const FcCoefficients at = coefficients_at(solver, tau);
-    SM_ELEMENT_D(J, 0, 0) = -solver->unit * fc_relaxation_rate(&at);
+    SM_ELEMENT_D(J, 0, 0) = -fc_relaxation_rate(&at);
     return 0;
 }
 
@@ -186,24 +182,14 @@ void fc_cvode_free(FcCvode* solver) {
 static bool failed(const FcCvode* solver, double tau, double h, const char* reason, FcMessage* message) {
     return fc_message_set(message,
                           "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s",
-                          solver->start + solver->unit * tau, h, reason);
+                          solver->start + tau, h, reason);
 }
 
-// delta(0) where delta keeps at least half of it, 0 elsewhere: a deflection that decays by decades keeps its digits.
-static double origin_of_change(const FcScene* scene, double h, double delta_0) {
-    const double path = fc_drive_largest_speed(&scene->drive, h) * h;
-    const double saturated = fc_scene_smallest_saturation(scene, h);
-    return path < 0.5 * fmin(fabs(delta_0), saturated) ? delta_0 : 0.0;
-}
-
-// The deflection's scale over a step of h [s] from delta_0, see the head of this file. Of the damping the mean force has
-// sigma_1 (delta(h) - delta(0)) / h: over a short step that multiplies an error of the deflection.
+// The deflection's scale over a step of h [s] from delta_0, see the head of this file.
 static double deflection_scale(const FcScene* scene, double h, double delta_0) {
     const double saturated = fc_scene_smallest_saturation(scene, h);
     const double moved = fabs(delta_0) + fc_drive_largest_speed(&scene->drive, h) * h;
-    const double damped = h * fc_scene_force_scale(scene) / scene->friction->sigma_1;
-    double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
-    L = damped > 0.0 ? fmin(L, damped) : L;
+    const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
     return isfinite(L) && L > 0.0 ? L : 1.0;
 }
 
@@ -240,10 +226,10 @@ static double stribeck_step(const FcScene* scene, double t) {
 // The difference that the two rules may have on the piece: the tolerance's part of what a force of the size that the
 // tolerance is relative to would give over the piece. delta' is at most about V in size where it counts.
 static Integrals allowed_difference(const FcScene* scene, double start, double duration, double h,
-                                    double tolerance) {
+                                    const FcSolverOptions* options) {
     const double path = fabs(fc_drive_displacement(&scene->drive, start, start + duration));
-    const double share = QUADRATURE_FRACTION * fmax(tolerance, QUADRATURE_ROUNDING);
-    const double force = share * fc_scene_force_scale(scene);
+    const double share = QUADRATURE_FRACTION * fmax(options->tolerance, QUADRATURE_ROUNDING);
+    const double force = share * options->force;
     return (Integrals){{force * duration, force * path, force * path,
                         share * path * fc_drive_largest_speed(&scene->drive, h)}};
 }
@@ -275,9 +261,9 @@ static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals
     for (int k = 0; k < INTEGRALS; ++k) {
         double difference = 0.0, size = 0.0;
         for (int i = 0; i < KRONROD_NODES; ++i) {
-            sum.of[k] += solver->unit * half * kronrod[i] * at[i].of[k];
-            difference += solver->unit * half * (kronrod[i] - lobatto[i]) * at[i].of[k];
-            size += solver->unit * half * kronrod[i] * fabs(at[i].of[k]);
+            sum.of[k] += half * kronrod[i] * at[i].of[k];
+            difference += half * (kronrod[i] - lobatto[i]) * at[i].of[k];
+            size += half * kronrod[i] * fabs(at[i].of[k]);
         }
         agree = agree && !(fabs(difference) > fmax(solver->allowed.of[k], QUADRATURE_ROUNDING * size));
     }
@@ -300,22 +286,20 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
     const FcDrive* drive = &solver->scene->drive;
     const double longest =
         fc_drive_vibrates(drive) ? 1.0 / (STEPS_PER_PERIOD * drive->vibration.f) : duration;
-    const double unit = duration < SHORTEST_PIECE ? duration : 1.0;
-    const double end = duration / unit;
-    solver->unit = unit;
+    const double end = duration;
     solver->last_tau = NAN;
     solver->reason[0] = '\0';
     if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSStolerances(cvode, SMALLEST_LOCAL_ERROR, local_error) != CV_SUCCESS ||
-        CVodeSetMaxStep(cvode, longest / unit) != CV_SUCCESS ||
-        CVodeSetInitStep(cvode, initial_step(solver, duration, local_error) / unit) != CV_SUCCESS) {
+        CVodeSetMaxStep(cvode, longest) != CV_SUCCESS ||
+        CVodeSetInitStep(cvode, initial_step(solver, duration, local_error)) != CV_SUCCESS) {
         return failed(solver, 0.0, h, solver->reason, message);
     }
     double tau = 0.0;
     Integrals now = integrands(solver, tau, NV_Ith_S(solver->y, 0));
     while (tau < end) {
         double tau_next = tau;
-        const double step = stribeck_step(solver->scene, solver->start + unit * tau) / unit;
+        const double step = stribeck_step(solver->scene, solver->start + tau);
         const double stop = tau + fmax(step, SHORTEST_STRIBECK_STEP * end);
         if (CVodeSetStopTime(cvode, fmin(stop, end)) != CV_SUCCESS ||
             CVode(cvode, end, solver->y, &tau_next, CV_ONE_STEP) < 0) {
@@ -335,7 +319,7 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
 }
 
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
-                   double delta_0, FcStepResult* result, FcMessage* message) {
+                   FcStepResult* result, FcMessage* message) {
     assert(solver && h >= 0.0 && options->tolerance > 0.0);
     const FcDrive* drive = &scene->drive;
     const double periods = fc_drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
@@ -349,11 +333,10 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
         return false;
     }
     solver->scene = scene;
-    solver->origin = origin_of_change(scene, h, delta_0);
-    solver->L = deflection_scale(scene, h, delta_0);
+    solver->L = deflection_scale(scene, h, result->delta);
     const double local_error = local_error_bound(scene, options->tolerance, h, solver->L);
     solver->evaluations = 0.0;
-    N_VConst((delta_0 - solver->origin) / solver->L, solver->y);
+    N_VConst(result->delta / solver->L, solver->y);
 
     solver->sum = (Integrals){{0.0}};
     double t = 0.0;
@@ -363,24 +346,25 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
         if (!(t_next > t)) {
             return failed(solver, 0.0, h, "no next reversal found", message);
         }
-        solver->allowed = allowed_difference(scene, t, t_next - t, h, options->tolerance);
+        solver->allowed = allowed_difference(scene, t, t_next - t, h, options);
         if (!integrate_piece(solver, t_next - t, local_error, h, message)) {
             return false;
         }
         t = t_next;
     }
-    const FcStepResult sum = {.delta = deflection(solver, NV_Ith_S(solver->y, 0)),
-                              .impulse = solver->sum.of[IMPULSE],
-                              .work = solver->sum.of[WORK],
-                              .heat = solver->sum.of[HEAT],
-                              .drag = solver->sum.of[DRAG],
-                              .evaluations = solver->evaluations};
-    if (!isfinite(sum.delta) || !isfinite(sum.impulse) || !isfinite(sum.work) || !isfinite(sum.heat) ||
-        !isfinite(sum.drag)) {
+    const double delta = deflection(solver, NV_Ith_S(solver->y, 0));
+    const Integrals* sum = &solver->sum;
+    if (!isfinite(delta) || !isfinite(sum->of[IMPULSE]) || !isfinite(sum->of[WORK]) ||
+        !isfinite(sum->of[HEAT]) || !isfinite(sum->of[DRAG])) {
         return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
                       message);
     }
-    *result = sum;
+    result->delta = delta;
+    result->impulse += sum->of[IMPULSE];
+    result->work += sum->of[WORK];
+    result->heat += sum->of[HEAT];
+    result->drag += sum->of[DRAG];
+    result->evaluations += solver->evaluations;
     return true;
 }
 
@@ -397,8 +381,8 @@ FcCvode* fc_cvode_new(FcMessage* message) {
 void fc_cvode_free(FcCvode* solver) { (void)solver; }
 
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
-                   double delta_0, FcStepResult* result, FcMessage* message) {
-    (void)solver, (void)scene, (void)options, (void)h, (void)delta_0, (void)result;
+                   FcStepResult* result, FcMessage* message) {
+    (void)solver, (void)scene, (void)options, (void)h, (void)result;
     return fc_message_set(message, "solver.method = cvode is not in this build");
 }
 

@@ -132,7 +132,7 @@ static bool check_stability(const FcScene* scene, const char* method, double lim
 
 // Where the bristle has a bound, a step ends on it at the farthest, and what it loses by that is heat.
 static Integrals within_bound(Integrals y, const FcFriction* friction, const FcCoefficients* at) {
-    const double D = at->limit * fc_bound_over_limit(friction, at->V) / at->sigma;
+    const double D = at->limit * fc_static_over_limit(friction, at->V) / at->sigma;
     if (fabs(y.delta) > D) {
         const double reached = copysign(D, y.delta);
         y.heat += 0.5 * at->sigma * (y.delta - reached) * (y.delta + reached);
@@ -191,10 +191,9 @@ static Integrals integrate(const FcScene* scene, FcMethod method, double step, d
 }
 
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
-                   double delta_0, FcStepResult* result, FcMessage* message) {
+                   FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && options->step_size > 0.0);
     if (h == 0.0) {
-        *result = (FcStepResult){.delta = delta_0};
         return true;
     }
     const double ratio = h / options->step_size;
@@ -220,7 +219,8 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
     }
 
     double evaluations = 0.0;
-    const Integrals y = integrate(scene, method, step, steps, h, (Integrals){.delta = delta_0}, &evaluations);
+    const Integrals y =
+        integrate(scene, method, step, steps, h, (Integrals){.delta = result->delta}, &evaluations);
     if (!isfinite(y.delta) || !isfinite(y.impulse) || !isfinite(y.work) || !isfinite(y.heat) ||
         !isfinite(y.drag)) {
         return fc_message_set(
@@ -229,11 +229,11 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
             "after a communication step of %.5g s",
             options->step_size, h);
     }
-    *result = (FcStepResult){.delta = y.delta,
-                             .impulse = y.impulse,
-                             .work = y.work,
-                             .heat = y.heat,
-                             .drag = y.drag,
-                             .evaluations = evaluations};
+    result->delta = y.delta;
+    result->impulse += y.impulse;
+    result->work += y.work;
+    result->heat += y.heat;
+    result->drag += y.drag;
+    result->evaluations += evaluations;
     return true;
 }

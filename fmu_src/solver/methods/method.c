@@ -2,113 +2,102 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
 
+#include "model/regime.h"
+#include "solver/march/march.h"
 #include "solver/methods/methods.h"
-#include "solver/stick_slip/regime_integrals.h"
-#include "solver/stick_slip/stick_slip.h"
+#include "solver/pieces.h"
 
-// Coulomb friction has no state, F = g sgn(V): the deflection stays; impulse and work are exact where g is constant, and
-// quadratures of a smooth function between the reversals elsewhere, to the tolerance.
-static FcMap coulomb_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
-                              double delta_0, FcMapScope scope, double* evaluations) {
-    (void)scope;
-    (void)delta_0;
-    const FcDrive* drive = &scene->drive;
-    const FcIntegrator integrator =
-        fc_integrator(scene, fc_bound_common_smooth_time(scene, duration), options->tolerance);
-    FcMap map = fc_map_identity();
-    FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration);
-    for (double t = 0.0; t < duration && *evaluations <= FC_MOST_EVALUATIONS;) {
-        const double side = fc_sign(fc_drive_V(drive, 0.5 * (t + event.time)));
-        const FcSlipIntegrals part = fc_limit_integrals(&integrator, t, event.time, evaluations);
-        map.impulse_offset += side * part.limit;
-        map.work_offset += side * part.limit_V;
-        t = event.time;
-        if (t < duration) {
-            event = fc_drive_event_after(drive, &event, duration);
-        }
-    }
-    map.heat_offset = map.work_offset;
-    return map;
+static FcMap coulomb_map(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
+                         double* evaluations) {
+    FcStepResult part = {.delta = delta_0, .evaluations = *evaluations};
+    fc_coulomb_step(scene, options, duration, &part);
+    *evaluations = part.evaluations;
+    return (FcMap){.impulse_offset = part.impulse, .work_offset = part.work, .heat_offset = part.heat};
+}
+
+static void free_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+    const FcMap map = fc_collocation_interval(scene, options, duration, result->delta, FC_MAP_THIS_START,
+                                              &result->evaluations);
+    fc_map_apply(&map, result);
+}
+
+static FcMap free_map(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
+                      double* evaluations) {
+    return scene->friction->model == FC_ELASTIC_PLASTIC
+               ? fc_march_stuck(scene, options, duration, evaluations)
+               : fc_collocation_interval(scene, options, duration, delta_0, FC_MAP_ANY_START, evaluations);
 }
 
 static bool may_touch_bound(const FcScene* scene) {
-    return fc_is_bounded(scene->friction) && fc_stick_slip_may_touch(scene);
+    return fc_is_bounded(scene->friction) && fc_march_may_touch(scene);
 }
 
-// How the default method integrates the law from between its bounds on.
+// How the default method integrates the law.
 static FcIntegration integration(const FcScene* scene) {
     if (scene->friction->model == FC_COULOMB) {
-        return (FcIntegration){coulomb_interval, NULL};
+        return (FcIntegration){fc_coulomb_step, coulomb_map, false};
     }
-    return may_touch_bound(scene) ? (FcIntegration){fc_stick_slip_interval, fc_stick_slip_free_period}
-                                  : (FcIntegration){fc_collocation_interval, NULL};
+    const bool bounded = may_touch_bound(scene);
+    return (FcIntegration){bounded ? fc_march_step : free_step, free_map, bounded};
 }
 
-static bool step_from_within(const FcScene* scene, FcMethod method, FcCvode* cvode,
-                             const FcSolverOptions* options, double h, double delta_0, FcStepResult* result,
-                             FcMessage* message) {
-    const bool is_affine = scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
-    if (is_affine && method == FC_METHOD_CVODE && !may_touch_bound(scene)) {
-        return fc_cvode_step(cvode, scene, options, h, delta_0, result, message);
-    }
-    if (is_affine && method != FC_METHOD_COLLOCATION && method != FC_METHOD_CVODE) {
-        return fc_fixed_step(scene, method, options, h, delta_0, result, message);
-    }
-    if (is_affine && fc_drive_is_constant(&scene->drive)) {
-        fc_collocation_constant(scene, h, delta_0, result);
-        return true;
-    }
-    return fc_periods_step(integration(scene), scene, options, h, delta_0, result, message);
-}
-
-bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
-                    double h, double delta_0, FcStepResult* result, FcMessage* message) {
-    assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
-    const bool is_bounded = fc_is_bounded(scene->friction);
-    const bool relaxes = scene->friction->model != FC_ELASTIC_PLASTIC;
-    double loss = 0.0;
-    const double start = is_bounded && relaxes ? fc_stick_slip_reached(scene, delta_0, &loss) : delta_0;
-    if (!step_from_within(scene, method, cvode, options, h, start, result, message)) {
-        return false;
-    }
-    if (is_bounded) {
-        result->delta = fc_stick_slip_end(scene, h, result->delta);
-        result->heat += loss;
+// By cvode or a fixed step, piece by piece.
+static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
+                       double h, FcStepResult* result, FcMessage* message) {
+    FcPieces pieces = fc_pieces(scene, h);
+    while (fc_next_piece(&pieces)) {
+        if (fc_scene_is_loose(&pieces.scene)) {
+            fc_loose_step(&pieces.scene, result);
+        } else if (method == FC_METHOD_CVODE
+                       ? !fc_cvode_step(cvode, &pieces.scene, options, pieces.h, result, message)
+                       : !fc_fixed_step(&pieces.scene, method, options, pieces.h, result, message)) {
+            return false;
+        }
     }
     return true;
 }
 
-double fc_method_start(const FcScene* scene, double delta) {
-    double loss;
-    return fc_is_bounded(scene->friction) ? fc_stick_slip_reached(scene, delta, &loss) : delta;
+bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
+                    double h, FcBristle from, FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
+    *result = (FcStepResult){.delta = from.delta, .slips = from.slips};
+    const bool is_affine = scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
+    if (is_affine && method != FC_METHOD_COLLOCATION && !(method == FC_METHOD_CVODE && may_touch_bound(scene))) {
+        return other_step(scene, method, cvode, options, h, result, message);
+    }
+    if (is_affine && fc_drive_is_constant(&scene->drive) && !fc_scene_is_loose(scene)) {
+        fc_collocation_constant(scene, h, from.delta, result);
+        return true;
+    }
+    return fc_periods_step(integration(scene), scene, options, h, result, message);
 }
 
-double fc_method_settled(const FcScene* scene, const FcSolverOptions* options, double delta_0,
-                         double* evaluations) {
-    assert(!fc_drive_is_linear(&scene->drive) && scene->friction->model != FC_COULOMB);
-    const double start = fc_method_start(scene, delta_0);
+FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from, double* force,
+                            double* evaluations) {
+    assert(!fc_drive_is_linear(&scene->drive));
+    if (fc_scene_is_loose(scene)) {
+        *force = 0.0;
+        return (FcBristle){0.0, 0};
+    }
     if (fc_drive_vibrates(&scene->drive)) {
-        const double settled = fc_periods_settled(integration(scene), scene, options, start, evaluations);
-        return fc_method_start(
-            scene, settled); // what rounding leaves beyond a bound would be heat of the first step
+        FcStepResult end = {.delta = from.delta, .slips = from.slips, .evaluations = *evaluations};
+        *force = fc_periods_settled(integration(scene), scene, options, &end);
+        *evaluations = end.evaluations;
+        // What rounding leaves beyond a bound would be heat of the first step.
+        return fc_reach(scene, (FcBristle){end.delta, end.slips});
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     const double bound = at.limit / at.sigma;
-    return at.V != 0.0 && isfinite(bound) ? copysign(bound, at.V) : start;
-}
-
-double fc_method_settled_force(const FcScene* scene, const FcSolverOptions* options, double delta_0,
-                               double* evaluations) {
-    assert(!fc_drive_is_linear(&scene->drive));
-    const double start = fc_method_start(scene, delta_0);
-    if (fc_drive_vibrates(&scene->drive)) {
-        return fc_periods_settled_force(integration(scene), scene, options, start, evaluations);
-    }
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const int side = at.V < 0.0 ? -1 : 1;
     if (scene->friction->model == FC_COULOMB) {
-        return fc_sign(at.V) * at.limit;
+        *force = fc_sign(at.V) * at.limit;
+        return from;
     }
-    return at.V != 0.0 && isfinite(at.limit / at.sigma) ? copysign(at.limit, at.V) : at.sigma * start;
+    if (at.V == 0.0 || !isfinite(bound)) {
+        *force = at.sigma * from.delta;
+        return from;
+    }
+    *force = side * at.limit;
+    return (FcBristle){side * bound, fc_has_static_friction(scene->friction) ? side : 0};
 }

@@ -8,12 +8,19 @@
 // vibration, exact for any h [s] >= 0.
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations);
+// The same of a bristle that has a bound, up to where the watch sees it met.
+struct FcWatch;
+FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
+                             struct FcWatch* watch, double* evaluations);
 void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result);
 
-// The others take a step of h [s] >= 0 from delta_0 [m]. They return false, with *message filled and *result as it was, where
-// they refuse: an explicit method that would be unstable, a number that ceases to be finite, too much work, CVODE failing.
+// Coulomb's law, an FcStep.
+void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result);
+
+// The others take *result over a step of h [s] >= 0. They return false, with *message filled and *result as it was, if they refuse: an
+// explicit method that would be unstable, a number that ceases to be finite, too much work, CVODE failing.
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
-                   double delta_0, FcStepResult* result, FcMessage* message);
+                   FcStepResult* result, FcMessage* message);
 
 // SUNDIALS CVODE keeps its memory between steps, never its state. fc_cvode_new gives NULL, with *message filled, without
 // memory or in a build without SUNDIALS; fc_cvode_free takes NULL.
@@ -21,6 +28,6 @@ typedef struct FcCvode FcCvode;
 FcCvode* fc_cvode_new(FcMessage* message);
 void fc_cvode_free(FcCvode* solver);
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
-                   double delta_0, FcStepResult* result, FcMessage* message);
+                   FcStepResult* result, FcMessage* message);
 
 #endif

@@ -2,74 +2,189 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
+
+#include "model/regime.h"
+#include "solver/pieces.h"
 
 // More periods than this with moving inputs are refused. By hand: they would take minutes.
 static const double MOST_CHANGING_PERIODS = 1e6;
 
-// A period that touches a bound ends on one of two deflections, and the deflection goes one way: all that follow the
-// second one end alike. Derived: the third shows it.
-enum { MOST_TOUCHES = 3 };
+// Two ends of periods that differ by less than this, over the bound, are the same. By hand: less costs a period, more takes an end
+// that still changes.
+static const double SAME_END = 1e-10;
 
-// Two ends of periods that differ by less than this, over the first, are the same. By hand: less costs a third period, more
-// takes an end that still changes.
-static const double SAME_END = 1e-9;
-
-static FcFreePeriod free_period(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                                double delta, double* evaluations) {
-    const double period = 1.0 / scene->drive.vibration.f;
-    if (law.free_period != NULL) {
-        return law.free_period(scene, options, delta, evaluations);
-    }
-    return (FcFreePeriod){.map = law.interval(scene, options, period, delta, FC_MAP_ANY_START, evaluations),
-                          .lowest = -INFINITY,
-                          .highest = INFINITY};
-}
-
-// How many periods from a free start delta on touch no bound. The deflection moves by s (1 - P^n) / (1 - P) in n of them,
-// s being how far it moves in the first.
-static double free_periods(const FcFreePeriod* free, double delta, double s, double periods) {
-    const double relaxation = fmin(1.0, free->map.relaxation); // which rounding may exceed
-    const double room = (s > 0.0 ? free->highest - delta : delta - free->lowest) / fabs(s);
-    if (!(room * relaxation < 1.0)) { // also where s is 0: never
-        return periods;
-    }
-    const double n = relaxation > 0.0 ? log1p(-relaxation * room) / log1p(-relaxation) : room;
-    return fmin(periods, floor(n) + 1.0);
-}
+// Periods in a row that meet the bound and never end alike are followed up to this number. By hand: they would have ended alike.
+enum { MOST_MEETINGS = 1000 };
 
 static void take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
                  FcStepResult* total) {
-    const FcMap map =
-        law.interval(scene, options, duration, total->delta, FC_MAP_THIS_START, &total->evaluations);
-    fc_map_apply(&map, total);
+    FcPieces pieces = fc_pieces(scene, duration);
+    while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
+        if (fc_scene_is_loose(&pieces.scene)) {
+            fc_loose_step(&pieces.scene, total);
+        } else {
+            law.step(&pieces.scene, options, pieces.h, total);
+        }
+    }
+}
+
+// Whole periods of a bounded bristle with its inputs held.
+typedef struct {
+    FcIntegration law;
+    const FcScene* scene;
+    const FcSolverOptions* options;
+    double period;      // s
+    bool has_free_map;
+    FcMap free_map;
+    double edge[2];     // m, the highest and the lowest start that meets no bound; infinite before they are asked for
+    FcStepResult total;
+    double done;        // periods
+    // After the last period that met its bound.
+    FcStepResult met;
+    double met_at;      // periods; negative for none
+} Walk;
+
+static FcMap free_map_of(Walk* walk) {
+    if (!walk->has_free_map) {
+        walk->free_map = walk->law.free_map(walk->scene, walk->options, walk->period, walk->total.delta,
+                                            &walk->total.evaluations);
+        walk->has_free_map = true;
+        walk->edge[0] = walk->edge[1] = INFINITY;
+    }
+    return walk->free_map;
+}
+
+// The farthest start to that side (1 or -1) that meets no bound, from where the farthest of all ends.
+static double edge_of(Walk* walk, int side) {
+    double* edge = &walk->edge[side < 0];
+    if (isfinite(*edge)) {
+        return *edge;
+    }
+    const FcMap* map = &walk->free_map;
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
+    const double farthest = side * fc_bound(&bound, 0.0);
+    FcStepResult end = {.delta = farthest, .evaluations = walk->total.evaluations};
+    // With static friction the bound that is met is the one without the drop.
+    const bool drops = fc_has_static_friction(walk->scene->friction);
+    walk->law.step(drops ? &bound : walk->scene, walk->options, walk->period, &end);
+    walk->total.evaluations = end.evaluations;
+    const double kept = 1.0 - map->relaxation;
+    const double room = side * (end.delta - map->offset);
+    *edge = kept > 0.0 ? fmin(side * farthest, room / kept) * side : room < 0.0 ? -side * HUGE_VAL : farthest;
+    return *edge;
+}
+
+// How many periods from the free start delta on meet no bound. The deflection moves by s (1 - P^n) / (1 - P) in n of them,
+// s being how far it moves in the first.
+static double free_periods(Walk* walk, double left) {
+    const FcMap map = free_map_of(walk);
+    const double delta = walk->total.delta;
+    const double s = map.offset - map.relaxation * delta;
+    if (s == 0.0) {
+        return left;
+    }
+    const int side = s > 0.0 ? 1 : -1;
+    const double relaxation = fmin(1.0, map.relaxation); // which rounding may exceed
+    const double room = side * (edge_of(walk, side) - delta) / fabs(s);
+    if (!(room * relaxation < 1.0)) { // never
+        return left;
+    }
+    if (!(room >= 0.0)) {
+        return 0.0;
+    }
+    const double n = relaxation > 0.0 ? log1p(-relaxation * room) / log1p(-relaxation) : room;
+    return fmin(left, floor(n) + 1.0);
+}
+
+static void repeat(Walk* walk, double times) {
+    FcStepResult* total = &walk->total;
+    const FcStepResult* met = &walk->met;
+    total->impulse += times * (total->impulse - met->impulse);
+    total->work += times * (total->work - met->work);
+    total->heat += times * (total->heat - met->heat);
+    total->drag += times * (total->drag - met->drag);
+    walk->done += times * (walk->done - walk->met_at);
+}
+
+// Whether the bristle is where it was after the last period that met its bound.
+static bool repeats(const Walk* walk) {
+    const double delta = walk->total.delta;
+    return walk->met_at >= 0.0 && walk->total.slips == walk->met.slips &&
+           fabs(delta - walk->met.delta) <= SAME_END * fabs(delta);
+}
+
+// Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
+// single free one repeats.
+static void walk_to_repetition(Walk* walk, double periods) {
+    FcStepResult* total = &walk->total;
+    walk->met_at = -1.0;
+    int meetings = 0;
+    while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
+        const double delta = total->delta;
+        total->meetings = 0;
+        walk->law.step(walk->scene, walk->options, walk->period, total);
+        walk->done += 1.0;
+        const bool was_free = total->meetings == 0 && total->slips == 0;
+        if (was_free && total->delta == delta) {
+            walk->met_at = -1.0;
+            return;
+        }
+        const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
+        if (n == 0.0) { // it has met its bound, or is at the edge of doing so
+            meetings++;
+            if (repeats(walk)) {
+                return;
+            }
+            walk->met = *total;
+            walk->met_at = walk->done;
+            continue;
+        }
+        if (isinf(n)) {
+            const FcMap* map = &walk->free_map;
+            const double target = map->relaxation > 0.0 ? map->offset / map->relaxation : total->delta;
+            total->delta = isfinite(target) ? target : total->delta;
+            walk->met_at = -1.0;
+            return;
+        }
+        const FcMap map = fc_map_power(&walk->free_map, n);
+        fc_map_apply(&map, total);
+        walk->done += n;
+    }
+}
+
+static Walk walk_from(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                      const FcStepResult* start) {
+    return (Walk){.law = law,
+                  .scene = scene,
+                  .options = options,
+                  .period = 1.0 / scene->drive.vibration.f,
+                  .total = *start};
 }
 
 static void step_over_equal_periods(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
                                     double periods, FcStepResult* total) {
-    const double period = 1.0 / scene->drive.vibration.f;
-    const FcFreePeriod free = free_period(law, scene, options, total->delta, &total->evaluations);
-    int touches = 0;
-    for (double left = periods; left > 0.0 && total->evaluations <= FC_MOST_EVALUATIONS;) {
-        const double delta = total->delta;
-        const double nearest = fmax(free.lowest, fmin(free.highest, delta));
-        const double s = free.map.offset - free.map.relaxation * nearest;
-        // A period that touches where the bristle does not stay ends on a free start, but for rounding.
-        const bool is_free = delta == nearest || (touches > 0 && (delta - nearest) * s <= 0.0);
-        FcMap map = free.map;
-        double n;
-        if (is_free && free.lowest <= free.highest) {
-            n = free_periods(&free, nearest, s, left);
-        } else {
-            map = law.interval(scene, options, period, delta, FC_MAP_THIS_START, &total->evaluations);
-            touches++;
-            const bool repeats = touches > 1 && fabs(map.offset - delta) <= SAME_END * fabs(delta);
-            n = repeats || touches == MOST_TOUCHES ? left : 1.0;
-        }
-        map = fc_map_power(&map, n);
-        fc_map_apply(&map, total);
-        left -= n;
+    if (!law.is_bounded) {
+        const FcMap one =
+            law.free_map(scene, options, 1.0 / scene->drive.vibration.f, total->delta, &total->evaluations);
+        const FcMap all = fc_map_power(&one, periods);
+        fc_map_apply(&all, total);
+        return;
     }
+    Walk walk = walk_from(law, scene, options, total);
+    while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
+        walk_to_repetition(&walk, periods);
+        const double cycle = walk.done - walk.met_at;
+        if (walk.done < periods && walk.met_at >= 0.0 && cycle > 0.0) {
+            repeat(&walk, floor((periods - walk.done) / cycle));
+        } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
+            const FcMap map = free_map_of(&walk);
+            const FcMap all = fc_map_power(&map, periods - walk.done);
+            fc_map_apply(&all, &walk.total);
+            walk.done = periods;
+        }
+    }
+    *total = walk.total;
 }
 
 static void step_over_changing_periods(FcIntegration law, const FcScene* scene,
@@ -110,64 +225,48 @@ bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMess
 }
 
 bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
-                     double delta_0, FcStepResult* result, FcMessage* message) {
+                     FcStepResult* result, FcMessage* message) {
     if (!fc_periods_check(scene, h, 0.0, message)) {
         return false;
     }
-    FcStepResult total = {.delta = delta_0};
     const FcPeriods periods = fc_periods_in(scene, h);
     if (periods.count < 2.0) {
-        take(law, scene, options, h, &total);
+        take(law, scene, options, h, result);
     } else if (fc_drive_is_linear(&scene->drive)) {
-        step_over_changing_periods(law, scene, options, periods.count, periods.rest, &total);
+        step_over_changing_periods(law, scene, options, periods.count, periods.rest, result);
+    } else if (fc_scene_is_loose(scene)) {
+        fc_loose_step(scene, result);
     } else {
-        step_over_equal_periods(law, scene, options, periods.count, &total);
-        take(law, scene, options, periods.rest, &total);
+        step_over_equal_periods(law, scene, options, periods.count, result);
+        take(law, scene, options, periods.rest, result);
     }
-    if (!fc_periods_check(scene, h, total.evaluations, message)) {
-        return false;
-    }
-    *result = total;
-    return true;
+    return fc_periods_check(scene, h, result->evaluations, message);
 }
 
-// The fixed point of the period's map. Where no start is free, periods end alike after MOST_TOUCHES. Where the affine map's fixed
-// point is a free start, it is that. Where it is beyond them, what the nearest free start leads to: that one only just touches,
-// so all starts beyond it end there too, and it is beyond it itself.
-static double settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                      const FcFreePeriod* free, double delta_0, double* evaluations) {
-    if (free->lowest > free->highest) {
-        const double period = 1.0 / scene->drive.vibration.f;
-        FcStepResult end = {.delta = delta_0, .evaluations = *evaluations};
-        for (int touches = 0; touches < MOST_TOUCHES; touches++) {
-            take(law, scene, options, period, &end);
-        }
-        *evaluations = end.evaluations;
-        return end.delta;
-    }
-    const FcMap* map = &free->map;
-    const double target =
-        map->offset != 0.0 || map->relaxation != 0.0 ? map->offset / map->relaxation : delta_0;
-    const double start = fmax(free->lowest, fmin(free->highest, target));
-    const double end = start == target ? target : start - map->relaxation * start + map->offset;
-    return isfinite(end) ? end : delta_0;
-}
-
-double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                          double delta_0, double* evaluations) {
-    const FcFreePeriod free = free_period(law, scene, options, delta_0, evaluations);
-    return settled(law, scene, options, &free, delta_0, evaluations);
-}
-
-double fc_periods_settled_force(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                                double delta_0, double* evaluations) {
+double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, FcStepResult* end) {
     const double f = scene->drive.vibration.f;
-    const FcFreePeriod free = free_period(law, scene, options, delta_0, evaluations);
-    FcStepResult period = {.delta = settled(law, scene, options, &free, delta_0, evaluations)};
-    const bool is_free = free.lowest <= period.delta && period.delta <= free.highest;
-    const FcMap map =
-        is_free ? free.map
-                : law.interval(scene, options, 1.0 / f, period.delta, FC_MAP_THIS_START, evaluations);
+    if (fc_scene_is_loose(scene)) {
+        fc_loose_step(scene, end);
+        return 0.0;
+    }
+    Walk walk = walk_from(law, scene, options, end);
+    FcMap map;
+    if (law.is_bounded) {
+        walk_to_repetition(&walk, HUGE_VAL);
+        const double cycle = walk.done - walk.met_at;
+        *end = walk.total;
+        if (walk.met_at >= 0.0 && cycle > 0.0) {
+            return (walk.total.impulse - walk.met.impulse) / cycle * f;
+        }
+        map = free_map_of(&walk);
+        end->evaluations = walk.total.evaluations;
+    } else {
+        map = law.free_map(scene, options, 1.0 / f, end->delta, &end->evaluations);
+        const double target =
+            map.offset != 0.0 || map.relaxation != 0.0 ? map.offset / map.relaxation : end->delta;
+        end->delta = isfinite(target) ? target : end->delta;
+    }
+    FcStepResult period = {.delta = end->delta};
     fc_map_apply(&map, &period);
     return period.impulse * f;
 }

@@ -37,6 +37,7 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
         Q[i] *= P[i];
         u[i] = P[i] * from->delta_0 + Q[i];
     }
+    fc_keep_nodes(from->keep, n, &at, P, Q);
     const double relaxation = -expm1(-whole);
     panel->map =
         (FcMap){.relaxation = relaxation, .offset = (1.0 - relaxation) * fc_dot(n, rule->weight, source)};
@@ -129,7 +130,7 @@ static double allowed_bound(const FcInterval* interval, double X, double z, cons
 
 bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t, double h, double X,
                       double z, const FcTrajectories* from, FcPanel* panel, double* evaluations) {
-    if (interval->pace.is_local || scene->drive.E.rate != 0.0 || z > FC_MOST_BOUNDED) {
+    if (z > FC_MOST_BOUNDED) {
         return false;
     }
     const double allowed = allowed_bound(interval, X, z, from);
@@ -140,6 +141,7 @@ bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t
         }
     }
     panel_of_nodes(BOUND[rule].n, scene, t, h, from, false, panel);
+    panel->nodes = BOUND[rule].n;
     *evaluations += BOUND[rule].n;
     // The displacement is known; a bristle that forgets little would sum up what its quadrature misses.
     panel->map.offset += (1.0 - panel->map.relaxation) * (X - panel->displacement);

@@ -10,6 +10,9 @@
 #include "solver/affine_map.h"
 #include "solver/panels/nodes.h"
 
+// The loops of a panel run over constants once these are inlined with a constant n.
+#define FC_INLINE static inline __attribute__((always_inline))
+
 typedef struct {
     FcMap map;
     double z;                  // integral of r = sigma |V| / g over the panel
@@ -18,7 +21,28 @@ typedef struct {
     double displacement;       // m, of V by the panel's quadrature
     double end_error;          // N, estimated, of the force at the end
     double mean_error; // N, estimated, of the mean force over the panel, and of its work over the path
+    int nodes;         // of a bounded Gauss panel
 } FcPanel;
+
+// What a panel knows at its nodes; a Radau panel's start comes last.
+typedef struct {
+    double V[FC_MOST_NODES];     // m/s
+    double sigma[FC_MOST_NODES]; // N/m
+    double limit[FC_MOST_NODES]; // N
+    double P[FC_MOST_NODES];     // 1, delta = P delta_0 + Q
+    double Q[FC_MOST_NODES];     // m
+} FcPanelNodes;
+
+FC_INLINE void fc_keep_nodes(FcPanelNodes* keep, int n, const FcNodeCoefficients* at, const double* P,
+                             const double* Q) {
+    for (int i = 0; keep && i < n; i++) {
+        keep->V[i] = at->V[i];
+        keep->sigma[i] = at->sigma[i];
+        keep->limit[i] = at->limit[i];
+        keep->P[i] = P[i];
+        keep->Q[i] = Q[i];
+    }
+}
 
 // The trajectories whose errors count: the one that starts at delta_0 [m], and the homogeneous one that starts at
 // scale [m] where the map must hold for any start, else 0. speed [m/s] is what the work is relative to, held [N] the
@@ -28,10 +52,8 @@ typedef struct {
     double scale;
     double speed;
     double held;
+    FcPanelNodes* keep; // where the panel leaves what it knows at its nodes, or NULL
 } FcTrajectories;
-
-// The loops of a panel run over constants once these are inlined with a constant n.
-#define FC_INLINE static inline __attribute__((always_inline))
 
 FC_INLINE double fc_least(double a, double b) { return a < b ? a : b; }
 FC_INLINE double fc_most(double a, double b) { return a > b ? a : b; }

@@ -114,6 +114,7 @@ void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const
     for (int i = 0; i < count; i++) {
         slope[i] = h * at.V[i] - z[i] * u[i];
     }
+    fc_keep_nodes(from->keep, count, &at, P, Q);
     panel->map = (FcMap){.relaxation = -row[last][n + 1], .offset = Q[last]};
     fc_panel_integrals(count, rule->weight, P, Q, z, at.V, at.sigma, h, &panel->map);
     panel->z = fc_dot(count, rule->weight, z);

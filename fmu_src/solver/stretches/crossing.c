@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 
 #include "solver/budget.h"
 #include "solver/panels/gauss_panel.h"
@@ -50,12 +51,14 @@ FcTrajectories fc_crossed_trajectories(const FcCrossed* crossed) {
     return (FcTrajectories){.delta_0 = crossed->map->offset,
                             .scale = (1.0 - crossed->map->relaxation) * crossed->scale,
                             .speed = crossed->interval->speed + DBL_MIN,
-                            .held = crossed->held};
+                            .held = crossed->held,
+                            .keep = crossed->watch ? &crossed->watch->nodes : NULL};
 }
 
-// What panels are judged by [N].
-static double allowed_estimate(const FcInterval* interval) {
-    return fc_allowed_force(interval) * (interval->pace.is_local ? FC_TRUST_IN_LOCAL_ESTIMATES : 1.0);
+bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel, double* h) {
+    *h = at->h;
+    return !crossed->watch || fc_watch_panel(crossed->watch, crossed->interval, at, from, panel, h,
+                                             &crossed->evaluations) != FC_UNRESOLVED;
 }
 
 // The kinds that are not refused yet, in their order. Gauss panels serve soft sections alone.
@@ -80,8 +83,14 @@ static bool take_bounded_gauss(Crossing* crossing) {
                           section->z.whole, &from, &crossing->panel, &crossed->evaluations)) {
         return false;
     }
+    const double length = section->end - section->start;
+    const FcPanelAt at = {section->scene, section->start, length, crossing->panel.nodes, 0.0};
+    double h;
+    if (!fc_may_keep_panel(crossed, &at, &from, &crossing->panel, &h)) {
+        return false;
+    }
     fc_map_append(crossed->map, &crossing->panel.map);
-    crossing->t = section->end;
+    crossing->t = h < length ? section->start + h : section->end;
     return true;
 }
 
@@ -108,10 +117,13 @@ static bool take_judged_gauss(Crossing* crossing) {
         FcPanel* panel = &crossing->panel;
         fc_gauss_panel(section->scene, t, h, crossing->nodes, &from, panel);
         crossed->evaluations += crossing->nodes;
+        const FcPanelAt at = {section->scene, t, h, crossing->nodes, 0.0};
+        double taken;
         if (fc_gauss_panel_is_accurate(panel, crossing->nodes, share, section->in_peak, section->forgets,
-                                       allowed_estimate(crossed->interval))) {
+                                       fc_allowed_force(crossed->interval)) &&
+            fc_may_keep_panel(crossed, &at, &from, panel, &taken)) {
             fc_map_append(crossed->map, &panel->map);
-            crossing->t = h < left ? t + h : section->end;
+            crossing->t = taken < left ? t + taken : section->end;
             crossing->h = panel->z < EASY_Z_PER_NODE * crossing->nodes ? fc_least(planned, 2.0 * h) : h;
             return true;
         }
@@ -201,7 +213,7 @@ static double excess_of(const Crossing* crossing, const FcPlan* plan) {
         .in_peak = plan->in_peak,
         .crosses_peak = plan->crosses_peak,
     };
-    const FcExcess over = fc_radau_panel_excess(panel, &life, allowed_estimate(interval));
+    const FcExcess over = fc_radau_panel_excess(panel, &life, fc_allowed_force(interval));
     if (!(over.end > over.mean)) {
         return over.mean;
     }
@@ -224,18 +236,23 @@ static bool take_radau(Crossing* crossing) {
         plan.h = fc_least(left, fmax(4e-16 * stretch->end, DBL_MIN));
     }
     double excess;
+    double taken;
     for (int tries = 0;; tries++) {
-        fc_radau_panel(scene, t, plan.h, fc_sign(stretch->displacement), &from, &crossing->panel);
+        const double sign = fc_sign(stretch->displacement);
+        fc_radau_panel(scene, t, plan.h, sign, &from, &crossing->panel);
         crossed->evaluations += FC_RADAU_STAGES;
         excess = excess_of(crossing, &plan);
-        if (excess <= 1.0 || tries == MOST_TRIES) {
+        const FcPanelAt at = {scene, t, plan.h, 0, sign};
+        const bool accurate = excess <= 1.0 || tries >= MOST_TRIES;
+        taken = plan.h;
+        if ((accurate && fc_may_keep_panel(crossed, &at, &from, &crossing->panel, &taken)) || tries >= 3 * MOST_TRIES) {
             crossing->caution -= tries == 0 && crossing->caution > 0;
             break;
         }
-        plan.h *= fmax(0.4, 0.85 * pow(excess, -1.0 / 12.0)); // 0.4 where the error is no number
-        crossing->caution += crossing->caution < MOST_CAUTION;
+        plan.h *= accurate ? 0.5 : fmax(0.4, 0.85 * pow(excess, -1.0 / 12.0)); // 0.4 if the error is not a number
+        crossing->caution += !accurate && crossing->caution < MOST_CAUTION;
     }
-    append(crossing, plan.h < left ? t + plan.h : crossing->end);
+    append(crossing, taken < left ? t + taken : crossing->end);
     if (!isfinite(excess)) {
         crossed->map->offset = NAN; // beyond the largest number, which the step is refused for
     }
@@ -258,7 +275,7 @@ static void cross_part(Crossing* crossing) {
     const FcCrossed* crossed = crossing->crossed;
     bool has_begun = false; // with Radau or settled panels
     while (crossing->t < crossing->end && crossed->evaluations <= FC_MOST_EVALUATIONS &&
-           !isnan(crossed->map->offset)) {
+           !isnan(crossed->map->offset) && !fc_has_met(crossed)) {
         const PanelKind kind = kind_of_panel(crossing);
         if (kind >= SETTLED && !has_begun) {
             begin_radau(crossing);
@@ -280,7 +297,7 @@ void fc_cross(FcCrossed* crossed, FcStretch* stretch) {
     const int count = fc_sections(stretch, sections, &crossed->evaluations);
     assert(count > 0);
     double t = stretch->start;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count && !fc_has_met(crossed); i++) {
         if (!(t < sections[i].end)) {
             continue; // Radau panels have gone on through it
         }

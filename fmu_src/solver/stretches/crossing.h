@@ -9,6 +9,7 @@
 
 #include "solver/panels/panel.h"
 #include "solver/stretches/stretch.h"
+#include "solver/stretches/watch.h"
 
 // The map of what has been crossed of an interval, and what it has cost.
 typedef struct {
@@ -17,7 +18,15 @@ typedef struct {
     double scale;       // m, size of the deflection at the start where the map must hold for any, else 0
     double held;        // N, the force whose work is put right by the displacement, or 0
     double evaluations; // in the communication step so far
+    FcWatch* watch;     // of a bounded bristle, which is crossed up to where it meets its bound; else NULL
 } FcCrossed;
+
+// Whether the bristle has met its bound.
+static inline bool fc_has_met(const FcCrossed* crossed) { return crossed->watch && crossed->watch->met.side != 0; }
+
+// Whether the panel that has been taken may stay. *h [s] is its length, less if the bristle meets its bound in it: then the panel
+// is cut there.
+bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel, double* h);
 
 // The trajectories that the map has come to.
 FcTrajectories fc_crossed_trajectories(const FcCrossed* crossed);

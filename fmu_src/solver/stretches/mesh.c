@@ -34,9 +34,6 @@ static const double DISTANCES[FINEST + 1] = {40,  30,  20,  14,  10,  6.5, 4.2, 
 static const double SMOOTH[FINEST + 1] = {8,   8,   8,    3.2,  3.2,  3.2,  3.2,  3.2,
                                           3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66};
 static const double PEAK[FINEST + 1] = {4, 3, 1.7, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-// Accuracy, by hand: where the contact moves by decades no panel is longer, whatever is allowed: it would step over what is to
-// be seen.
-static const double MOST_SMOOTH = 1.6;
 // Derived: a panel that ends on a reversal and steps over its layer leaves an error of LAST lags, (9^2 + 1) / 2, the last
 // diagonal entry of the inverse of the method's matrix, at its last node, whose weight is 1 / stages^2.
 static const double LAST = 41.0;
@@ -51,7 +48,6 @@ typedef struct {
     double left;         // s, to the stretch's end
     double after, ahead; // s, distances from the events, widened by their layers
     double smooth;       // s
-    bool is_local;       // the pace
     double peak;         // s, that the Stribeck curve allows
     double layer, layer_ahead;
     int finer; // decades, by which a transient is planned finer
@@ -69,9 +65,7 @@ static int finest(const Limits* limits) {
 
 static double length(const Limits* limits) {
     const double distances = DISTANCES[limits->for_lag];
-    const double smooth =
-        limits->is_local ? fc_least(MOST_SMOOTH, SMOOTH[finest(limits)]) : SMOOTH[finest(limits)];
-    double h = fc_least(smooth * limits->smooth, distances * limits->after);
+    double h = fc_least(SMOOTH[finest(limits)] * limits->smooth, distances * limits->after);
     h = fc_least(h, limits->peak);
     if (limits->for_transient > 0 || limits->starts) {
         h = fc_least(h, LAYERS[limits->for_transient] * limits->layer);
@@ -199,7 +193,7 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     const double for_mean = FC_PLAN_FOR_MEAN * tolerance * interval->duration; // s
     const double after = at->t - stretch->start + stretch->back;
     const bool known = isfinite(stretch->event);
-    const double smooth = fc_smooth_time(interval, at->t);
+    const double smooth = fc_smooth_time(&interval->pace);
     const bool in_peak = fc_in_peak(&stretch->peaks, at->t);
     const Peak peak = in_peak ? peak_at(stretch, at->t) : (Peak){.lasts = INFINITY};
     // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
@@ -215,7 +209,6 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
         .after = after,
         .ahead = known ? stretch->event - at->t + stretch->w_b : INFINITY,
         .smooth = smooth,
-        .is_local = interval->pace.is_local,
         .peak = in_peak ? length_in_peak(stretch, at, &peak, life.lives) : INFINITY,
         .layer = at->layer,
         .layer_ahead = stretch->w_b,

@@ -86,7 +86,7 @@ static void find_relaxation(const FcStretch* stretch, FcSection* section, double
 }
 
 static bool is_soft(const FcPace* pace, const FcSection* section) {
-    return !pace->is_local && section->z.whole < (section->in_peak ? SOFT_IN_PEAK : SOFT) &&
+    return section->z.whole < (section->in_peak ? SOFT_IN_PEAK : SOFT) &&
            (section->end - section->start) * (pace->phase + pace->log_sigma) < SLOW;
 }
 

@@ -1,0 +1,605 @@
+#include "solver/march/march.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "model/regime.h"
+#include "model/root.h"
+#include "solver/budget.h"
+#include "solver/interval.h"
+#include "solver/march/meeting.h"
+#include "solver/methods/methods.h"
+#include "solver/stretches/watch.h"
+
+// Beyond this velocity, over V_S, Stribeck's curve is seen by no panel: e^-25 of it is left. By hand.
+static const double END_OF_PEAK = 5.0;
+
+// The change of V over V_S in which the curve is taken to move by 1. By hand: more makes panels that are refused.
+static const double CURVE_MOVES = 0.5;
+
+// What a bristle that is beyond its bound by rounding may be beyond, over the bound: 450 eps.
+static const double ROUNDING_OF_BOUND = 1e-13;
+
+// Regimes in a row that take no time before the next panel is taken whatever its push. By hand: a bristle that rounding
+// sends to and fro.
+enum { MOST_IDLE = 4 };
+
+typedef struct {
+    const FcScene* scene;
+    FcScene bound; // of a bristle that is free, or slips in Dahl and LuGre
+    FcFriction bound_law;
+    FcSolverOptions options;
+    FcPlanner planner;
+    double smooth_time; // s, but for Stribeck's curve
+    double duration;    // s
+    double speed;       // m/s, at the most
+    double t;           // s, reached
+    double cut;         // s, that no panel steps over
+    int side;           // of the bound along which it slips, else 0
+    int left;           // of the bound that it has left at left_at, else 0
+    double left_at;     // s
+    FcStepResult* result;
+} March;
+
+static bool relaxes(const FcScene* scene) { return scene->friction->model != FC_ELASTIC_PLASTIC; }
+
+// The bound along which the bristle slips.
+static const FcScene* bound_of_slip(const March* m) {
+    return fc_has_static_friction(m->scene->friction) ? m->scene : &m->bound;
+}
+
+static double allowed(const March* m) { return m->options.tolerance * m->options.force; }
+
+// Points into itself.
+static void begin(March* m, const FcScene* scene, const FcSolverOptions* options, double duration,
+                  FcStepResult* result) {
+    *m = (March){.scene = scene, .options = *options, .duration = duration, .result = result};
+    m->bound = fc_scene_of_bound(scene, 0, &m->bound_law);
+    const FcPace pace = fc_pace(&m->bound, duration);
+    m->planner = fc_planner(options->tolerance);
+    m->smooth_time = fc_smooth_time(&pace);
+    m->speed = fc_drive_largest_speed(&scene->drive, duration);
+}
+
+// ---- slipping ----
+
+// |V| has a kink at a reversal, which Dahl and LuGre see; Stribeck's curve begins and ends.
+static void find_cut(March* m) {
+    const FcDrive* drive = &m->scene->drive;
+    if (m->cut > m->t) {
+        return;
+    }
+    m->cut = relaxes(m->scene) ? fc_drive_next_event(drive, m->t, m->duration).time : m->duration;
+    if (fc_has_stribeck_curve(m->scene->friction)) {
+        for (int side = -1; side <= 1; side += 2) {
+            FcDrive shifted = *drive;
+            shifted.V.value -= side * END_OF_PEAK * m->scene->friction->V_S;
+            m->cut = fmin(m->cut, fc_drive_next_event(&shifted, m->t, m->cut).time);
+        }
+    }
+}
+
+static double smooth_time_of_slip(const March* m) {
+    const FcFriction* friction = m->scene->friction;
+    if (!fc_has_stribeck_curve(friction) || fc_drive_V_is_constant(&m->scene->drive)) {
+        return m->smooth_time;
+    }
+    const FcVelocity at = fc_drive_velocity(&m->scene->drive, m->t);
+    const double time = fc_velocity_time_of_change(&at, CURVE_MOVES * friction->V_S);
+    const double ahead = fc_drive_V(&m->scene->drive, 0.5 * (m->t + fmin(m->cut, m->t + m->smooth_time)));
+    return fabs(ahead) < END_OF_PEAK * friction->V_S ? 1.0 / (1.0 / m->smooth_time + 1.0 / time)
+                                                     : m->smooth_time;
+}
+
+static void advance(March* m, double h) {
+    const double t = m->t + h;
+    m->t = m->cut - t < 1e-3 * h || !(t > m->t) ? m->cut : t;
+}
+
+// Moves the bristle at once to delta: what it stores less is heat.
+static void move_to(March* m, double delta, double sigma) {
+    FcStepResult* result = m->result;
+    const double moved = delta - result->delta;
+    result->heat -= 0.5 * sigma * moved * (delta + result->delta);
+    result->drag += moved * fc_drive_V(&m->scene->drive, m->t);
+    result->delta = delta;
+}
+
+static void begin_slip(March* m, int side) {
+    const FcCoefficients at = fc_scene_coefficients(bound_of_slip(m), m->t);
+    move_to(m, side * at.limit / at.sigma, at.sigma);
+    m->result->evaluations += 1.0;
+    m->result->meetings++;
+    m->side = side;
+    m->cut = 0.0;
+    if (fc_has_static_friction(m->scene->friction)) {
+        m->result->slips = side;
+    }
+}
+
+static void end_slip(March* m) {
+    m->left = m->side;
+    m->left_at = m->t;
+    m->side = 0;
+    m->result->slips = 0;
+    m->cut = 0.0;
+}
+
+// The push at a time.
+typedef struct {
+    const March* m;
+    int side;
+} Pushed;
+
+static double push(void* context, double t) {
+    const Pushed* of = context;
+    return fc_push(of->m->scene, bound_of_slip(of->m), t, of->side);
+}
+
+typedef struct {
+    FcPoints at;
+    double D[FC_MOST_POINTS];    // m
+    double rate[FC_MOST_POINTS]; // m/s, D'
+    double push[FC_MOST_POINTS]; // m/s
+} Slip;
+
+static void slip_points(March* m, double h, int rule, int side, Slip* slip) {
+    const FcScene* bound = bound_of_slip(m);
+    const bool relaxing = relaxes(m->scene);
+    fc_points(bound, m->t, h, rule, &slip->at, &m->result->evaluations);
+    for (int i = 0; i < slip->at.count; i++) {
+        const double V = slip->at.V[i];
+        slip->D[i] = slip->at.limit[i] / slip->at.sigma[i];
+        slip->rate[i] = slip->D[i] * fc_scene_log_rates(bound, slip->at.t[i]).ratio;
+        const double back = relaxing ? fabs(V) * fc_static_over_limit(m->scene->friction, V) : 0.0;
+        slip->push[i] = side * V - back - slip->rate[i];
+    }
+}
+
+// The least value of the parabola through three points of the push, the middle one the lowest, and where it is.
+static double dip(const Slip* slip, int i, double* t) {
+    const double a = slip->at.t[i - 1] - slip->at.t[i];
+    const double b = slip->at.t[i + 1] - slip->at.t[i];
+    const double f_a = slip->push[i - 1] - slip->push[i];
+    const double f_b = slip->push[i + 1] - slip->push[i];
+    const double bend = (f_b / b - f_a / a) / (b - a);
+    const double slope = f_a / a - bend * a;
+    const double x = bend > 0.0 ? fmax(a, fmin(b, -0.5 * slope / bend)) : 0.0;
+    *t = slip->at.t[i] + x;
+    return slip->push[i] + x * (slope + x * bend);
+}
+
+// Where in the panel the push comes to 0; infinite if nowhere. At the start it is known to be above.
+static double end_of_push(March* m, int side, const Slip* slip) {
+    Pushed of = {m, side};
+    double* evaluations = &m->result->evaluations;
+    for (int i = 0; i + 1 < slip->at.count; i++) {
+        if (slip->push[i + 1] <= 0.0) {
+            return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1], slip->push[i + 1],
+                                   evaluations);
+        }
+        double t;
+        const bool lowest = i > 0 && slip->push[i] < slip->push[i - 1] && slip->push[i] <= slip->push[i + 1];
+        if (lowest && dip(slip, i, &t) <= 0.5 * slip->push[i]) { // it may dip below 0 unseen
+            const double at_dip = push(&of, t);
+            *evaluations += 1.0;
+            if (at_dip <= 0.0) {
+                return fc_root_between(push, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, evaluations);
+            }
+        }
+    }
+    return INFINITY;
+}
+
+static void add_slip(March* m, const Slip* slip) {
+    FcStepResult* result = m->result;
+    const FcPoints* at = &slip->at;
+    double limit = 0.0, limit_V = 0.0, recedes = 0.0, V_recedes = 0.0;
+    for (int i = 1; i <= at->n; i++) {
+        const double w = at->rule->weight[i - 1] * at->h;
+        limit += w * at->limit[i];
+        limit_V += w * at->limit[i] * at->V[i];
+        recedes += w * at->limit[i] * slip->rate[i];
+        V_recedes += w * at->V[i] * slip->rate[i];
+    }
+    result->impulse += m->side * limit;
+    result->work += m->side * limit_V;
+    result->heat += m->side * limit_V - recedes;
+    result->drag += m->side * V_recedes;
+    result->delta = m->side * slip->D[at->count - 1];
+}
+
+static bool is_slip_accurate(const March* m, const Slip* slip) {
+    double f[FC_MOST_POINTS];
+    double fastest = m->speed;
+    for (int i = 0; i < slip->at.count; i++) {
+        fastest = fmax(fastest, fabs(slip->rate[i]));
+    }
+    for (int i = 0; i < slip->at.count; i++) {
+        const double part = fastest > 0.0 ? (slip->at.V[i] - m->side * slip->rate[i]) / fastest : 0.0;
+        f[i] = slip->at.limit[i] * (1.0 + part);
+    }
+    return fc_error_at_points(&slip->at, f) * slip->at.h <= FC_SHARE_OF_FORMULA * allowed(m) * m->duration;
+}
+
+// Along the bound for a panel, or to where the bristle leaves it.
+static void slip(March* m, bool forced) {
+    m->result->evaluations += 1.0;
+    if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) > 0.0)) {
+        end_slip(m);
+        return;
+    }
+    find_cut(m);
+    int rule;
+    double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
+    for (int tries = 0;; tries++) {
+        Slip panel;
+        slip_points(m, h, rule, m->side, &panel);
+        const bool accurate = is_slip_accurate(m, &panel);
+        if (!accurate && fc_refine_panel(&h, &rule, tries)) {
+            continue;
+        }
+        const double end = forced ? INFINITY : end_of_push(m, m->side, &panel);
+        if (end > m->t + h) {
+            add_slip(m, &panel);
+            advance(m, h);
+            return;
+        }
+        if (end > m->t) {
+            slip_points(m, end - m->t, rule, m->side, &panel);
+            add_slip(m, &panel);
+            m->t = end;
+        }
+        end_slip(m);
+        return;
+    }
+}
+
+// ---- free, Dahl and LuGre ----
+
+static void relax(March* m) {
+    FcScene rest = *m->scene;
+    FcScene bound = m->bound;
+    if (m->t > 0.0) {
+        rest = fc_scene_from(m->scene, m->t);
+        bound = fc_scene_from(&m->bound, m->t);
+    }
+    FcSolverOptions options = m->options;
+    options.tolerance *= FC_SHARE_OF_FREE;
+    FcWatch watch = {
+        .bound = &bound, .reach = m->speed * m->duration, .left = m->t == m->left_at ? m->left : 0};
+    const FcMap map = fc_collocation_watched(&rest, &options, m->duration - m->t, m->result->delta, &watch,
+                                             &m->result->evaluations);
+    fc_map_apply(&map, m->result);
+    if (watch.met.side == 0) {
+        m->t = m->duration;
+        return;
+    }
+    m->t = fmin(m->duration, m->t + watch.met.t);
+    begin_slip(m, watch.met.side);
+}
+
+// ---- free, ElasticPlastic ----
+
+// Displacements [m] from the panel's start to its points.
+static void displacements(const March* m, const FcPoints* at, double* x) {
+    double V[FC_GAUSS_MOST_NODES];
+    double of_nodes[FC_GAUSS_MOST_NODES];
+    for (int i = 0; i < at->n; i++) {
+        V[i] = at->h * at->V[i + 1];
+    }
+    fc_gauss_integrate(at->rule, at->n, V, of_nodes);
+    x[0] = 0.0;
+    for (int i = 0; i < at->n; i++) {
+        x[i + 1] = of_nodes[i];
+    }
+    x[at->count - 1] = fc_drive_displacement(&m->scene->drive, m->t, m->t + at->h);
+}
+
+// The map of a bristle that sticks over the panel.
+static FcMap stuck_map(const March* m, const FcPoints* at, const double* x) {
+    FcMap map = {.offset = x[at->count - 1]};
+    for (int i = 1; i <= at->n; i++) {
+        const double slope = at->rule->weight[i - 1] * at->h * at->sigma[i];
+        map.impulse_slope += slope;
+        map.impulse_offset += slope * x[i];
+        map.work_slope += slope * at->V[i];
+        map.work_offset += slope * x[i] * at->V[i];
+    }
+    if (m->scene->friction->sigma_1 != 0.0) {
+        map.drag_offset = fc_drive_square(&m->scene->drive, m->t, m->t + at->h);
+    }
+    return map;
+}
+
+static bool is_stick_accurate(const March* m, const FcPoints* at, const double* x, double delta) {
+    double f[FC_MOST_POINTS];
+    for (int i = 0; i < at->count; i++) {
+        const double part = m->speed > 0.0 ? at->V[i] / m->speed : 0.0;
+        f[i] = at->sigma[i] * (delta + x[i]) * (1.0 + part);
+    }
+    return fc_error_at_points(at, f) * at->h <= FC_SHARE_OF_FORMULA * allowed(m) * m->duration;
+}
+
+static FcCourse course_of(const March* m, const FcScene* bound, const FcPoints* at, const double* x) {
+    FcCourse course = {.scene = m->scene, .bound = bound, .count = at->count, .from = m->t, .exact = true,
+                       .left = m->t == m->left_at ? m->left : 0};
+    for (int i = 0; i < at->count; i++) {
+        course.t[i] = at->t[i];
+        course.V[i] = at->V[i];
+        course.delta[i] = m->result->delta + x[i];
+        course.D[i] = at->limit[i] / at->sigma[i];
+    }
+    return course;
+}
+
+// Sticks to the time `end` in the panel from here on.
+static void stick_until(March* m, const FcScene* bound, int rule, double end) {
+    if (end > m->t) {
+        FcPoints at;
+        double x[FC_MOST_POINTS];
+        fc_points(bound, m->t, end - m->t, rule, &at, &m->result->evaluations);
+        displacements(m, &at, x);
+        const FcMap map = stuck_map(m, &at, x);
+        fc_map_apply(&map, m->result);
+        m->t = end;
+    }
+}
+
+// Sticks for a panel, or to where it meets the bound; clear if it can't. One that slips but lies inside its bound goes with
+// V while it comes nearer to it.
+static void stick(March* m, bool clear) {
+    const int slips = m->result->slips;
+    const FcScene* bound = slips != 0 ? m->scene : &m->bound;
+    if (slips != 0) {
+        find_cut(m);
+    } else {
+        m->cut = m->duration;
+    }
+    const double smooth_time = slips != 0 ? smooth_time_of_slip(m) : m->smooth_time;
+    int rule;
+    double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time, &rule);
+    for (int tries = 0;; tries++) {
+        FcPoints at;
+        double x[FC_MOST_POINTS];
+        fc_points(bound, m->t, h, rule, &at, &m->result->evaluations);
+        displacements(m, &at, x);
+        if (!is_stick_accurate(m, &at, x, m->result->delta) && fc_refine_panel(&h, &rule, tries)) {
+            continue;
+        }
+        const FcCourse course = course_of(m, bound, &at, x);
+        FcMeeting met = {0, INFINITY};
+        if (!clear) {
+            met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0], &m->result->evaluations);
+        }
+        if (slips != 0) {
+            met.side = met.side == slips ? slips : 0;
+            Slip panel;
+            slip_points(m, h, rule, slips, &panel);
+            const double end = panel.push[0] > 0.0 ? end_of_push(m, slips, &panel) : m->t;
+            if (end <= m->t + h && !(met.side != 0 && met.t <= end)) {
+                stick_until(m, bound, rule, end);
+                end_slip(m);
+                return;
+            }
+        }
+        if (met.side == 0) {
+            const FcMap map = stuck_map(m, &at, x);
+            fc_map_apply(&map, m->result);
+            advance(m, h);
+        } else {
+            stick_until(m, bound, rule, met.t);
+            begin_slip(m, met.side);
+        }
+        return;
+    }
+}
+
+// ---- ElasticPlastic with a constant stiffness and limit ----
+
+// What is known of such a contact.
+typedef struct {
+    double sigma; // N/m
+    double D;     // m, the static bound
+} Still;
+
+static FcMap still_map(const FcScene* scene, double sigma, double t, double end, double displacement) {
+    const FcDrive* drive = &scene->drive;
+    const double x = displacement;
+    return (FcMap){
+        .offset = x,
+        .impulse_slope = sigma * (end - t),
+        .impulse_offset = sigma * fc_drive_displacement_integral(drive, t, end),
+        .work_slope = sigma * x,
+        .work_offset = 0.5 * sigma * x * x,
+        .drag_offset = scene->friction->sigma_1 != 0.0 ? fc_drive_square(drive, t, end) : 0.0,
+    };
+}
+
+static void stick_still(March* m, const Still* still, double end) {
+    const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
+    const FcMap map = still_map(m->scene, still->sigma, m->t, end, x);
+    fc_map_apply(&map, m->result);
+    m->t = end;
+}
+
+typedef struct {
+    const FcDrive* drive;
+    double from; // s
+    double way;  // m, to the bound
+    int side;
+} WayToBound;
+
+static FcRootFunction way_to_bound(void* context, double t) {
+    const WayToBound* of = context;
+    const FcVelocity at = fc_drive_velocity(of->drive, t);
+    return (FcRootFunction){.value = of->side * fc_drive_displacement(of->drive, of->from, t) - of->way,
+                            .rate = of->side * at.V,
+                            .curvature = of->side * at.rate};
+}
+
+// The part of its bracket that the last step to a meeting may have: the error is some cube of it.
+static const double LAST_STEP = 1e-5;
+
+// Sticks to the next reversal of V, or to where it meets the bound: then true.
+static bool stick_to_reversal(March* m, const Still* still, double end, int side) {
+    const FcDrive* drive = &m->scene->drive;
+    const double way = still->D - side * m->result->delta;
+    const double x = side * fc_drive_displacement(drive, m->t, end);
+    m->result->evaluations += 1.0;
+    if (!(x > way)) {
+        stick_still(m, still, end);
+        return false;
+    }
+    if (way > 0.0) {
+        WayToBound of = {drive, m->t, way, side};
+        const double meets = fc_root(way_to_bound, &of, m->t, way_to_bound(&of, m->t), end, way_to_bound(&of, end),
+                                     LAST_STEP, INFINITY, &m->result->evaluations);
+        stick_still(m, still, meets);
+    }
+    begin_slip(m, side);
+    return true;
+}
+
+static void slip_still(March* m, double end) {
+    const FcDrive* drive = &m->scene->drive;
+    const double limit = fc_scene_coefficients(bound_of_slip(m), m->t).limit;
+    const double x = fc_drive_displacement(drive, m->t, end);
+    m->result->impulse += m->side * limit * (end - m->t);
+    m->result->work += m->side * limit * x;
+    m->result->heat += m->side * limit * x;
+    m->result->evaluations += 1.0;
+    m->t = end;
+}
+
+// Without a Stribeck curve, or at a constant V, a slip ends at the next reversal.
+static void march_still(March* m, const Still* still) {
+    const FcScene* scene = m->scene;
+    const bool has_peak = fc_has_stribeck_curve(scene->friction) && !fc_drive_V_is_constant(&scene->drive);
+    while (m->t < m->duration && m->result->evaluations <= FC_MOST_EVALUATIONS) {
+        if (m->side != 0 && has_peak) {
+            slip(m, false);
+            continue;
+        }
+        if (m->result->slips != 0 && m->side == 0) {
+            stick(m, false);
+            continue;
+        }
+        const double end = fc_drive_next_event(&scene->drive, m->t, m->duration).time;
+        const double V = fc_drive_V(&scene->drive, 0.5 * (m->t + end));
+        const int side = V < 0.0 ? -1 : 1;
+        if (m->side != 0 && m->side * V > 0.0) {
+            slip_still(m, end);
+            continue;
+        }
+        if (m->side != 0) {
+            end_slip(m);
+        }
+        stick_to_reversal(m, still, end, side);
+    }
+}
+
+// ---- the march ----
+
+static bool stands_still(const FcScene* scene) {
+    return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
+}
+
+// Whether a bristle deflected by delta [m] comes near no bound over the interval.
+static bool stays_clear(const March* m) {
+    const FcDrive* drive = &m->scene->drive;
+    double reach = fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * m->duration)) * m->duration;
+    if (drive->vibration.V_1 != 0.0) {
+        reach += drive->vibration.V_1 * fmin(m->duration, 2.0 / drive->omega);
+    }
+    return fabs(m->result->delta) + reach < 0.999 * fc_scene_smallest_saturation(&m->bound, m->duration);
+}
+
+void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+    assert(duration >= 0.0 && fc_is_bounded(scene->friction));
+    March m;
+    begin(&m, scene, options, duration, result);
+    const bool has_memory = fc_has_static_friction(scene->friction);
+    const double D = fc_bound(has_memory && result->slips != 0 ? scene : &m.bound, 0.0);
+    const double sigma = fc_scene_stiffness(scene, 0.0);
+    result->evaluations += 1.0;
+    const bool on_bound = fabs(result->delta) >= D * (1.0 - ROUNDING_OF_BOUND);
+    if (on_bound && (!has_memory || result->slips == (result->delta < 0.0 ? -1 : 1))) {
+        m.side = result->delta < 0.0 ? -1 : 1; // it leaves at once if it is not pushed
+        result->meetings++;
+    }
+    if (!relaxes(scene) && stands_still(scene)) {
+        const Still still = {sigma, fc_bound(&m.bound, 0.0)};
+        march_still(&m, &still);
+        return;
+    }
+    const bool clear = !relaxes(scene) && result->slips == 0 && m.side == 0 && stays_clear(&m);
+    double before = -1.0;
+    for (int idle = 0; m.t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
+        idle = m.t > before ? 0 : idle + 1;
+        before = m.t;
+        if (m.side != 0) {
+            slip(&m, idle > MOST_IDLE);
+        } else if (relaxes(scene)) {
+            relax(&m);
+        } else {
+            stick(&m, clear);
+        }
+    }
+}
+
+FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration, double* evaluations) {
+    FcStepResult unused = {0};
+    March m;
+    begin(&m, scene, options, duration, &unused);
+    const double sigma = fc_scene_stiffness(scene, 0.0);
+    const double D = fc_bound(&m.bound, 0.0);
+    const FcDrive* drive = &scene->drive;
+    FcMap map = fc_map_identity();
+    unused.evaluations = 1.0;
+    if (fc_scene_stiffness_is_constant(scene)) {
+        map = still_map(scene, sigma, 0.0, duration, fc_drive_displacement(drive, 0.0, duration));
+    } else {
+        m.cut = duration;
+    }
+    while (!fc_scene_stiffness_is_constant(scene) && m.t < duration && unused.evaluations <= FC_MOST_EVALUATIONS) {
+        int rule;
+        double h = fc_plan_panel(&m.planner, duration - m.t, m.smooth_time, &rule);
+        for (int tries = 0;; tries++) {
+            FcPoints at;
+            double x[FC_MOST_POINTS];
+            fc_points(&m.bound, m.t, h, rule, &at, &unused.evaluations);
+            displacements(&m, &at, x);
+            if (is_stick_accurate(&m, &at, x, D) || !fc_refine_panel(&h, &rule, tries)) {
+                const FcMap part = stuck_map(&m, &at, x);
+                fc_map_append(&map, &part);
+                advance(&m, h);
+                break;
+            }
+        }
+    }
+    map.offset = drive->V.value * duration; // of whole periods with held inputs, to the last digit
+    *evaluations += unused.evaluations;
+    return map;
+}
+
+// Whether the bound falls in the step, as far as its scene tells.
+static bool may_fall(const FcScene* bound) {
+    const FcDrive* drive = &bound->drive;
+    if (stands_still(bound) || (fc_scene_ratio_is_constant(bound) && drive->E.rate == 0.0)) {
+        return false;
+    }
+    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {
+        return true;
+    }
+    const double apart = bound->floats ? -drive->load.rate : drive->d.rate; // the way that d goes
+    const bool rises_with_d = bound->at_E.model != FC_CONTACT_CONSTANT;     // D = g / sigma
+    return rises_with_d ? apart < 0.0 : apart > 0.0;
+}
+
+bool fc_march_may_touch(const FcScene* scene) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, 0, &friction);
+    return !relaxes(scene) || may_fall(&bound);
+}

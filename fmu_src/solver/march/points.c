@@ -1,0 +1,79 @@
+#include "solver/march/points.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "solver/panels/nodes.h"
+
+static const FcGaussRule* const RULE[FC_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
+static const int NODES[FC_RULES] = {4, 6, 8, 12};
+
+// Panels are planned for at least this many digits. By hand: points that lie farther apart tell too little of what is between
+// them.
+static const double LEAST_DIGITS = 3.0;
+
+// Panels that are refused in a row before one is taken as it is. By hand: 2^-22 of the planned length, where rounding rules.
+enum { MOST_TRIES = 25 };
+
+FcPlanner fc_planner(double tolerance) {
+    FcPlanner planner;
+    const double decades = fmax(LEAST_DIGITS * 2.302585, -log(tolerance));
+    for (int i = 0; i < FC_RULES; i++) {
+        planner.longest[i] = NODES[i] * exp(-0.5 * decades / NODES[i]);
+    }
+    return planner;
+}
+
+double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule) {
+    const double panels = ceil(left / (planner->longest[FC_RULES - 1] * smooth_time));
+    const double h = left / fmax(1.0, panels);
+    *rule = 0;
+    while (*rule < FC_RULES - 1 && h > planner->longest[*rule] * smooth_time) {
+        ++*rule;
+    }
+    return h;
+}
+
+bool fc_refine_panel(double* h, int* rule, int tries) {
+    if (*rule < FC_RULES - 1) {
+        ++*rule;
+    } else {
+        *h *= 0.5;
+    }
+    return tries < MOST_TRIES;
+}
+
+static void set_point(const FcScene* scene, double t, int i, FcPoints* at) {
+    const FcCoefficients now = fc_scene_coefficients(scene, t);
+    at->t[i] = t;
+    at->V[i] = now.V;
+    at->sigma[i] = now.sigma;
+    at->limit[i] = now.limit;
+}
+
+void fc_points(const FcScene* scene, double t, double h, int rule, FcPoints* at, double* evaluations) {
+    const int n = NODES[rule];
+    FcNodeCoefficients nodes;
+    at->rule = RULE[rule];
+    at->n = n;
+    at->count = n + 2;
+    at->h = h;
+    fc_node_coefficients(scene, t, h, at->rule->node, n, &nodes);
+    set_point(scene, t, 0, at);
+    for (int i = 0; i < n; i++) {
+        at->t[i + 1] = t + (0.5 + at->rule->node[i]) * h;
+        at->V[i + 1] = nodes.V[i];
+        at->sigma[i + 1] = nodes.sigma[i];
+        at->limit[i + 1] = nodes.limit[i];
+    }
+    set_point(scene, t + h, n + 1, at);
+    *evaluations += n + 2;
+}
+
+double fc_error_at_points(const FcPoints* at, const double* f) {
+    double FC_PAIRED nodes[FC_GAUSS_MOST_NODES];
+    for (int i = 0; i < at->n; i++) {
+        nodes[i] = f[i + 1];
+    }
+    return fc_gauss_error(at->rule, at->n, nodes);
+}

@@ -1,0 +1,27 @@
+// The pieces of an interval that are crossed one after the other (fc_scene_piece): a load that moves by decades, and a contact that
+// opens and closes.
+#ifndef FC_SOLVER_PIECES_H
+#define FC_SOLVER_PIECES_H
+
+#include <stdbool.h>
+
+#include "model/scene.h"
+#include "solver/solver.h"
+
+typedef struct {
+    const FcScene* of;
+    double whole, t; // s, the interval, and where the next piece begins
+    FcScene scene;   // of the piece
+    double h;        // s, its length
+} FcPieces;
+
+// The interval [0, whole] of the scene. Keeps the pointer.
+FcPieces fc_pieces(const FcScene* scene, double whole);
+
+// Whether there is another piece; then it is there. Even an interval of no length has one.
+bool fc_next_piece(FcPieces* pieces);
+
+// A step of any length without contact: the bristle is lost, and what a constant stiffness stored in it is heat.
+void fc_loose_step(const FcScene* scene, FcStepResult* result);
+
+#endif
