@@ -93,15 +93,18 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     const double E = drive->E.value;
     const double end = fc_drive_E(drive, h);
     if (!(fmin(E, end) > 0.0)) {
-        return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa", E, end);
+        return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa",
+                              E, end);
     }
     if (fmax(E, end) > MOST_CHANGE_OF_E * fmin(E, end)) {
-        return fc_message_set(message,
-                              "E moves from %.9g Pa to %.9g Pa in the step: it may change by at most a factor of %g, "
-                              "up to %.9g Pa or down to %.9g Pa",
-                              E, end, MOST_CHANGE_OF_E, MOST_CHANGE_OF_E * E, E / MOST_CHANGE_OF_E);
+        return fc_message_set(
+            message,
+            "E moves from %.9g Pa to %.9g Pa in the step: it may change by at most a factor of %g, "
+            "up to %.9g Pa or down to %.9g Pa",
+            E, end, MOST_CHANGE_OF_E, MOST_CHANGE_OF_E * E, E / MOST_CHANGE_OF_E);
     }
-    if (!isfinite(scene->at_E.area_0) || !isfinite(scene->at_E.load_0) || !isfinite(scene->at_E.stiffness_0)) {
+    if (!isfinite(scene->at_E.area_0) || !isfinite(scene->at_E.load_0) ||
+        !isfinite(scene->at_E.stiffness_0)) {
         return fail_stiffness(message, drive->d.value, fc_drive_largest_E(drive, h));
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
@@ -116,10 +119,11 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         return fail_stiffness(message, d, fc_drive_largest_E(drive, h));
     }
     if (!isfinite(fc_scene_mean_limit(scene, 0.0)) || !isfinite(fc_scene_mean_limit(scene, h))) {
-        return fc_message_set(message,
-                              "friction.mu = %.9g times the normal force is beyond the largest number in the step; "
-                              "check d, load and contact.*",
-                              scene->friction->mu);
+        return fc_message_set(
+            message,
+            "friction.mu = %.9g times the normal force is beyond the largest number in the step; "
+            "check d, load and contact.*",
+            scene->friction->mu);
     }
     return true;
 }
@@ -144,7 +148,7 @@ static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outpu
             scene->drive.V.value, scene->drive.vibration.V_1);
     }
     const FcContactResponse contact = fc_scene_contact(scene, 0.0);
-    *outputs = (Outputs){fc_motion(scene, fc_regime(scene, bristle), bristle.delta).F_t, contact};
+    *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
     if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
@@ -237,9 +241,13 @@ static const double SMALLEST_TOLERANCE = 1e-12;
 // the forces of damping and viscosity.
 static double force_scale(const FcScene* scene, double h, double delta) {
     const FcFriction* friction = scene->friction;
-    const double limit = fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+    double limit = fc_scene_mean_limit(scene, 0.0);
+    if (fc_scene_has_pieces(scene)) {
+        limit = fmax(limit, fc_scene_mean_limit(scene, h));
+    }
     const double speed = fc_drive_largest_speed(&scene->drive, h);
-    const double viscous = friction->model == FC_COULOMB ? friction->sigma_2 : friction->sigma_1 + friction->sigma_2;
+    const double viscous =
+        friction->model == FC_COULOMB ? friction->sigma_2 : friction->sigma_1 + friction->sigma_2;
     const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);

@@ -99,8 +99,7 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
 static double push(FcFrictionContact* contact, int side) {
     const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
     const FcDrive* drive = &moving.drive;
-    const double speed =
-        fabs(drive->V.value) + drive->vibration.V_1 + fabs(bound_rate_of(contact, &moving));
+    const double speed = fabs(drive->V.value) + drive->vibration.V_1 + fabs(bound_rate_of(contact, &moving));
     return push_of(contact, &moving, side) + HYSTERESIS * speed;
 }
 

@@ -87,7 +87,8 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
     const FcScene scene = fc_friction_contact_scene(&instance->contact);
-    const double rate = fc_force_rate(&scene, fc_reach(&scene, fc_friction_contact_bristle(&instance->contact)));
+    const double rate =
+        fc_force_rate(&scene, fc_reach(&scene, fc_friction_contact_bristle(&instance->contact)));
     if (!isfinite(rate)) {
         return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
     }
@@ -174,18 +175,19 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
                              .E = along->input[FC_INPUT_E],
                              .load = along->input[FC_INPUT_LOAD],
                              .delta = along->state.delta};
-    if (reached.delta != bristle.delta && !fc_scene_is_loose(&scene)) { // an input has pushed it onto its bound
+    if (reached.delta != bristle.delta &&
+        !fc_scene_is_loose(&scene)) { // an input has pushed it onto its bound
         direction.delta = fc_bound_along(&scene, reached, &direction);
     }
-    const FcRegime regime =
-        hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
+    const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
     const FcMotion motion = fc_motion_along(&scene, regime, reached.delta, &direction);
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
     const FcLogSlopes by = fc_log_slopes(&scene);
     return (Tangent){
         .outputs = {.F_t = motion.F_t,
                     .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
-                    .sigma = scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
+                    .sigma =
+                        scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
                     .A_r = scaled(now.A_r, log_along(along, by.by_d.A_r, by.by_E.A_r, by.by_load.A_r))},
         .states = along->state,
         .rates = motion.rates,

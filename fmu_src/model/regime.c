@@ -40,10 +40,9 @@ static double push(const FcScene* scene, int slips, int side) {
     return fc_push(scene, &bound, 0.0, side);
 }
 
-static double bound_now(const FcScene* scene, int slips) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, slips, &friction);
-    return fc_bound(&bound, 0.0);
+static double bound_of(const FcScene* scene, const FcCoefficients* at, int slips) {
+    const bool is_static = slips == 0 || scene->friction->model != FC_ELASTIC_PLASTIC;
+    return at->limit * (is_static ? fc_static_over_limit(scene->friction, at->V) : 1.0) / at->sigma;
 }
 
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
@@ -53,12 +52,13 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     if (!fc_is_bounded(scene->friction)) {
         return bristle;
     }
-    double D = bound_now(scene, bristle.slips);
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    double D = bound_of(scene, &at, bristle.slips);
     const int side = bristle.delta < 0.0 ? -1 : 1;
     if (fabs(bristle.delta) > D) {
         if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
             bristle.slips = side;
-            D = bound_now(scene, side);
+            D = bound_of(scene, &at, side);
         }
         bristle.delta = side * D;
     }
@@ -78,7 +78,8 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
         return FC_FREE;
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;
-    const double D = bound_now(scene, bristle.slips);
+    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const double D = bound_of(scene, &at, bristle.slips);
     const bool on_bound = fabs(bristle.delta) >= (1.0 - INSIDE_BOUND) * D && side * bristle.slips >= 0;
     return on_bound && push(scene, bristle.slips, side) > 0.0 ? (FcRegime)side : FC_FREE;
 }
@@ -90,20 +91,19 @@ typedef struct {
     double delta_rate; // m/s
 } Parts;
 
-static Parts parts(const FcScene* scene, FcRegime regime, double delta) {
+static Parts parts_at(const FcScene* scene, const FcCoefficients* at, FcRegime regime, double delta) {
     if (fc_scene_is_loose(scene)) {
-        return (Parts){.V = fc_drive_V(&scene->drive, 0.0)};
+        return (Parts){.V = at->V};
     }
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     if (scene->friction->model == FC_COULOMB) {
-        return (Parts){.V = at.V, .force = fc_sign(at.V) * at.limit};
+        return (Parts){.V = at->V, .force = fc_sign(at->V) * at->limit};
     }
     if (regime == FC_FREE) {
-        return (Parts){.V = at.V, .force = at.sigma * delta, .delta_rate = fc_free_rate(scene, &at, delta)};
+        return (Parts){.V = at->V, .force = at->sigma * delta, .delta_rate = fc_free_rate(scene, at, delta)};
     }
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
-    return (Parts){.V = at.V,
+    return (Parts){.V = at->V,
                    .force = (double)regime * fc_scene_coefficients(&bound, 0.0).limit,
                    .delta_rate = (double)regime * fc_bound_rate(&bound, 0.0)};
 }
@@ -118,6 +118,19 @@ static double whole_force(const FcFriction* friction, const Parts* of) {
         F_t += friction->sigma_2 * of->V;
     }
     return F_t;
+}
+
+static Parts parts(const FcScene* scene, FcRegime regime, double delta) {
+    const FcContactResponse contact = fc_scene_contact(scene, 0.0);
+    const FcCoefficients at = fc_scene_coefficients_of(scene, &contact);
+    return parts_at(scene, &at, regime, delta);
+}
+
+double fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
+    const FcCoefficients coefficients = fc_scene_coefficients_of(scene, contact);
+    const bool asks_for_rate = scene->friction->sigma_1 != 0.0;
+    const Parts at = parts_at(scene, &coefficients, asks_for_rate ? fc_regime(scene, bristle) : FC_FREE, bristle.delta);
+    return whole_force(scene->friction, &at);
 }
 
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, double delta) {
@@ -283,7 +296,8 @@ double fc_force_rate(const FcScene* scene, FcBristle bristle) {
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
         change = slipping_along(&bound, regime, &contact, &in_time);
-        change.delta_rate = scene->friction->sigma_1 != 0.0 ? (double)regime * bound_acceleration(&bound) : 0.0;
+        change.delta_rate =
+            scene->friction->sigma_1 != 0.0 ? (double)regime * bound_acceleration(&bound) : 0.0;
     }
     return whole_force(scene->friction, &change);
 }

@@ -56,6 +56,9 @@ typedef struct {
 // delta [m]. FC_FREE for a law without a bound; Coulomb's force has no regime.
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, double delta);
 
+// F_t [N] of a bristle that is within its bound, from what fc_scene_contact says at the start.
+double fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle);
+
 // A direction in the space of what the motion depends on.
 typedef struct {
     double V;     // m/s

@@ -72,30 +72,40 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
 }
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
-                       double at_b, double* evaluations) {
+                       double at_b, double close, double* evaluations) {
     const double rounding = DBL_EPSILON * (b - a);
-    int kept = 0; // end that was kept the last time
-    for (int i = 0; i < MOST_ROOT_STEPS && at_b != 0.0 && b - a > rounding; i++) {
-        double t = a + (b - a) * (at_a / (at_a - at_b));
-        if (i % 8 == 7 || !(t > a && t < b)) {
-            t = 0.5 * (a + b);
-        }
-        if (!(t > a && t < b)) {
+    // The root lies between near and far; before is the end that was replaced last.
+    double near = b, far = a, before = a;
+    double at_near = at_b, at_far = at_a, at_before = at_a;
+    const bool ends_negative = at_b < 0.0;
+    double part = at_b / (at_b - at_a);
+    for (int i = 0; i < MOST_ROOT_STEPS; i++) {
+        const bool on_side = (at_near < 0.0) == ends_negative;
+        if (at_near == 0.0 || (on_side && fabs(at_near) <= close) || fabs(near - far) <= rounding) {
             break;
         }
+        const double t = near + fmax(1e-9, fmin(1.0 - 1e-9, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;
-        if ((at_t < 0.0) == (at_a < 0.0)) {
-            a = t;
-            at_a = at_t;
-            at_b *= kept == 1 ? 0.5 : 1.0;
-            kept = 1;
-        } else {
-            b = t;
-            at_b = at_t;
-            at_a *= kept == -1 ? 0.5 : 1.0;
-            kept = -1;
+        before = near;
+        at_before = at_near;
+        if ((at_t < 0.0) != (at_near < 0.0)) {
+            before = far;
+            at_before = at_far;
+            far = near;
+            at_far = at_near;
+        }
+        near = t;
+        at_near = at_t;
+        // Inverse quadratic interpolation through the three, if they rise or fall together enough.
+        const double x = (near - far) / (before - far);
+        const double y = (at_near - at_far) / (at_before - at_far);
+        part = 0.5;
+        if (y * y < x && (1.0 - y) * (1.0 - y) < 1.0 - x) {
+            part = at_near / (at_far - at_near) * (at_before / (at_far - at_before)) +
+                   (before - near) / (far - near) * (at_near / (at_before - at_near)) *
+                       (at_far / (at_before - at_far));
         }
     }
-    return b;
+    return (at_near < 0.0) == ends_negative || at_near == 0.0 ? near : far;
 }

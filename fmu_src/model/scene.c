@@ -13,6 +13,9 @@ static bool follows_load(const FcScene* scene) { return scene->contact->input ==
 // are still numbers.
 static const double NOTHING = 1e-100;
 
+// Up to this decay the contact is closed, whatever its parameters are. By hand: e^-100 of a load and a stiffness.
+static const double NOT_FAR = 50.0;
+
 // The separation [m] from which on F_n or sigma is nothing, if the load is not given.
 static double open_separation(const FcContactAtModulus* at_E) {
     const double without_load = log(at_E->load_0 / NOTHING) / at_E->decay;
@@ -22,7 +25,8 @@ static double open_separation(const FcContactAtModulus* at_E) {
     // Of sigma = stiffness_0 e^(-2 decay d) / d^3 at the d where F_n has gone halfway.
     const double d = 0.5 * without_load;
     const double powers = at_E->model == FC_CONTACT_ASPERITIES ? 2.0 : 1.0;
-    const double front = at_E->model == FC_CONTACT_ASPERITIES ? at_E->stiffness_0 / (d * d * d) : at_E->stiffness_0;
+    const double front =
+        at_E->model == FC_CONTACT_ASPERITIES ? at_E->stiffness_0 / (d * d * d) : at_E->stiffness_0;
     return fmin(without_load, log(front / NOTHING) / (powers * at_E->decay));
 }
 
@@ -34,12 +38,14 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     }
     if (!follows_load(&scene)) {
         scene.drive.load.rate = 0.0;
-        scene.is_open = drive->d.value > open_separation(at_E);
+        scene.is_open =
+            at_E->decay * drive->d.value > NOT_FAR && drive->d.value > open_separation(at_E);
         return scene;
     }
     scene.is_open = !(drive->load.value > NOTHING);
     scene.floats = drive->load.rate != 0.0 || drive->E.rate != 0.0;
-    scene.drive.d = (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
+    scene.drive.d =
+        (FcLinearInput){scene.floats || scene.is_open ? 0.0 : rest_separation(&scene, at_E, 0.0), 0.0};
     return scene;
 }
 
@@ -53,7 +59,7 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     const FcDrive* drive = &scene->drive;
     const bool by_load = follows_load(scene);
     const double rate = by_load ? drive->load.rate : drive->d.rate;
-    if (!fc_scene_depends_on_d(scene) || rate == 0.0) {
+    if (!fc_scene_has_pieces(scene)) {
         return rest;
     }
     // Time to where the contact opens or closes; behind if negative.
@@ -127,7 +133,8 @@ double fc_scene_d_rate(const FcScene* scene, double t) {
 
 FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
     if (scene->is_open) {
-        return (FcContactResponse){.sigma = scene->at_E.model == FC_CONTACT_CONSTANT ? scene->at_E.stiffness_0 : 0.0};
+        return (FcContactResponse){.sigma = scene->at_E.model == FC_CONTACT_CONSTANT ? scene->at_E.stiffness_0
+                                                                                     : 0.0};
     }
     const FcContactAtModulus at_E = contact_at(scene, t);
     return fc_contact_response(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
@@ -148,6 +155,10 @@ FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, Fc
         response = fc_contact_response(&at_E, separation(scene, &at_E, now.d, t));
     }
     return coefficients(scene, &response, now.V);
+}
+
+FcCoefficients fc_scene_coefficients_of(const FcScene* scene, const FcContactResponse* response) {
+    return coefficients(scene, response, fc_drive_V(&scene->drive, 0.0));
 }
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
@@ -245,20 +256,19 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
 }
 
-// g / sigma is largest where E and the load are at one of their ends, and the surfaces farthest apart or, with a constant
-// stiffness, nearest.
+// g / sigma is largest with E and the load at one of their ends, and the surfaces farthest apart or, with a constant stiffness,
+// nearest.
 double fc_scene_largest_saturation(const FcScene* scene, double h) {
     const FcFriction* friction = scene->friction;
+    const bool follows = fc_limit_follows_load(friction);
     const bool moves = scene->floats || scene->drive.E.rate != 0.0;
-    const double d[] = {largest_d(scene, h), fc_scene_smallest_d(scene, h)};
+    const bool is_nearest = scene->at_E.model == FC_CONTACT_CONSTANT && follows;
+    const double d = is_nearest ? fc_scene_smallest_d(scene, h) : largest_d(scene, h);
     double largest = 0.0;
     for (int end = 0; end <= moves; end++) {
         const FcContactAtModulus at_E = contact_at(scene, end == 0 ? 0.0 : h);
-        for (int i = 0; i < 2; i++) {
-            const double g =
-                fc_limit_follows_load(friction) ? friction->mu * fc_contact_response(&at_E, d[i]).F_n : scene->F_C;
-            largest = fmax(largest, g / fc_contact_stiffness(&at_E, d[i]));
-        }
+        const FcContactResponse response = fc_contact_response(&at_E, d);
+        largest = fmax(largest, (follows ? friction->mu * response.F_n : scene->F_C) / response.sigma);
     }
     return largest * fc_static_ratio(friction);
 }

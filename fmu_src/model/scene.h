@@ -22,7 +22,8 @@ typedef struct {
     FcDrive drive;
     FcContactAtModulus at_E; // the contact at the modulus of the start of the step
     double log_swell;        // ln of the mean over a period of F_n over F_n without vibration
-    bool floats;  // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
+    bool
+        floats; // the separation follows a load that moves in the step, or a modulus: d(t) is not the drive's
     bool is_open; // at the start: no load presses the surfaces together, or they are far apart
 } FcScene;
 
@@ -47,6 +48,11 @@ static inline bool fc_scene_is_loose(const FcScene* scene) {
     return scene->is_open && fc_scene_depends_on_d(scene);
 }
 
+// Whether the inputs that move the load, given or made from d, move, as far as the law asks for it.
+static inline bool fc_scene_has_pieces(const FcScene* scene) {
+    return fc_scene_depends_on_d(scene) && (scene->drive.load.rate != 0.0 || scene->drive.d.rate != 0.0);
+}
+
 // How long [s], up to `rest`, the scene may be taken as a whole from its start on, in a step of `whole` [s]: until the contact
 // opens or closes, or the load, given or made from d, has moved by a factor of 4. Sets is_open if the contact opens within
 // 2^-44 of the step.
@@ -63,7 +69,7 @@ double fc_scene_d_rate(const FcScene* scene, double t); // m/s
 double fc_scene_d_at_phase(const FcScene* scene, double t, FcPhase at_t);
 double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t);
 FcContactResponse fc_scene_contact(const FcScene* scene, double t); // also of one that is open
-double fc_scene_stiffness(const FcScene* scene, double t); // N/m
+double fc_scene_stiffness(const FcScene* scene, double t);          // N/m
 
 // What the equation of the bristle needs at one moment.
 typedef struct {
@@ -73,6 +79,8 @@ typedef struct {
 } FcCoefficients;
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
+// At the start, from what fc_scene_contact says there.
+FcCoefficients fc_scene_coefficients_of(const FcScene* scene, const FcContactResponse* response);
 FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
 // r = sigma |V| / g [1/s]: the equation is delta' = V - r delta.

@@ -29,8 +29,8 @@ typedef struct {
     double speed;                // m/s, largest |V|
     double stiffness;            // N/m, largest sigma
     double limit;                // N, smallest g
-    double saturation; // m, largest g / sigma: over this path errors fade by e at least
-    double forgotten;  // m, over this path they fade below the square of the tolerance
+    double saturation;           // m, largest g / sigma: over this path errors fade by e at least
+    double forgotten;            // m, over this path they fade below the square of the tolerance
     FcPace pace;
     bool has_peaks;      // g has a Stribeck curve
     bool moving_limit;   // g is no constant

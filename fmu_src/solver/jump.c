@@ -20,9 +20,9 @@ FcPast fc_past(const FcScene* scene) {
 typedef struct {
     const FcScene* scene;
     FcPast past;
-    double d, V, E;                // by which they change
-    double log_limit, log_sigma;   // by which parameters change them
-    int slips;                     // whose bound is meant
+    double d, V, E;              // by which they change
+    double log_limit, log_sigma; // by which parameters change them
+    int slips;                   // whose bound is meant
 } Ramp;
 
 typedef struct {
@@ -136,7 +136,8 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         return reached;
     }
     const double sigma = fc_scene_contact(scene, 0.0).sigma;
-    if (past->sigma == 0.0 || fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
+    if (past->sigma == 0.0 ||
+        fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
         *heat = 0.5 * sigma * (delta - D) * (delta + D);
         return reached;
     }

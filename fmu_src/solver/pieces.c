@@ -1,17 +1,29 @@
 #include "solver/pieces.h"
 
-FcPieces fc_pieces(const FcScene* scene, double whole) {
-    return (FcPieces){.of = scene, .whole = whole, .h = -1.0};
+#include <stddef.h>
+
+void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
+    pieces->of = scene;
+    pieces->whole = whole;
+    pieces->t = 0.0;
+    pieces->scene = NULL;
 }
 
 bool fc_next_piece(FcPieces* pieces) {
-    const bool first = pieces->h < 0.0;
+    const bool first = pieces->scene == NULL;
     if (!first && !(pieces->t < pieces->whole)) {
         return false;
     }
-    pieces->scene = first ? *pieces->of : fc_scene_from(pieces->of, pieces->t);
+    pieces->scene = pieces->of;
+    pieces->h = pieces->whole;
+    if (first && !fc_scene_has_pieces(pieces->of)) {
+        pieces->t = pieces->whole;
+        return true;
+    }
+    pieces->own = first ? *pieces->of : fc_scene_from(pieces->of, pieces->t);
+    pieces->scene = &pieces->own;
     const double rest = pieces->whole - pieces->t;
-    pieces->h = fc_scene_piece(&pieces->scene, rest, pieces->whole);
+    pieces->h = fc_scene_piece(&pieces->own, rest, pieces->whole);
     const double next = pieces->t + pieces->h;
     const bool is_last = !(pieces->h < rest && next > pieces->t);
     pieces->h = is_last ? rest : pieces->h;

@@ -10,13 +10,14 @@
 
 typedef struct {
     const FcScene* of;
-    double whole, t; // s, the interval, and where the next piece begins
-    FcScene scene;   // of the piece
-    double h;        // s, its length
+    double whole, t;      // s, the interval, and where the next piece begins
+    const FcScene* scene; // of the piece
+    double h;             // s, its length
+    FcScene own;          // the piece's, if it is not the interval's
 } FcPieces;
 
-// The interval [0, whole] of the scene. Keeps the pointer.
-FcPieces fc_pieces(const FcScene* scene, double whole);
+// The interval [0, whole] of the scene. Keeps the pointer, and points into itself.
+void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole);
 
 // Whether there is another piece; then it is there. Even an interval of no length has one.
 bool fc_next_piece(FcPieces* pieces);

@@ -51,26 +51,49 @@ static const FcScene* bound_of_slip(const March* m) {
 
 static double allowed(const March* m) { return m->options.tolerance * m->options.force; }
 
+// Before panels are planned.
+static void plan(March* m) {
+    if (m->smooth_time == 0.0) {
+        const FcPace pace = fc_pace(&m->bound, m->duration);
+        m->planner = fc_planner(m->options.tolerance);
+        m->smooth_time = fc_smooth_time(&pace);
+    }
+}
+
 // Points into itself.
 static void begin(March* m, const FcScene* scene, const FcSolverOptions* options, double duration,
                   FcStepResult* result) {
-    *m = (March){.scene = scene, .options = *options, .duration = duration, .result = result};
+    m->scene = scene;
+    m->options = *options;
+    m->duration = duration;
+    m->result = result;
+    m->t = m->cut = 0.0;
+    m->side = m->left = 0;
+    m->left_at = -1.0;
     m->bound = fc_scene_of_bound(scene, 0, &m->bound_law);
-    const FcPace pace = fc_pace(&m->bound, duration);
-    m->planner = fc_planner(options->tolerance);
-    m->smooth_time = fc_smooth_time(&pace);
+    m->smooth_time = 0.0; // not known
     m->speed = fc_drive_largest_speed(&scene->drive, duration);
+}
+
+static bool stands_still(const FcScene* scene) {
+    return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
+}
+
+// Whether D stands still: also if sigma and g fall alike.
+static bool bound_stands(const FcScene* bound) {
+    return (stands_still(bound) || (fc_scene_ratio_is_constant(bound) && bound->drive.E.rate == 0.0)) &&
+           (!fc_has_stribeck_curve(bound->friction) || fc_drive_V_is_constant(&bound->drive));
 }
 
 // ---- slipping ----
 
 // |V| has a kink at a reversal, which Dahl and LuGre see; Stribeck's curve begins and ends.
-static void find_cut(March* m) {
+static void find_cut(March* m, double end) {
     const FcDrive* drive = &m->scene->drive;
-    if (m->cut > m->t) {
+    if (m->cut > m->t && m->cut <= end) {
         return;
     }
-    m->cut = relaxes(m->scene) ? fc_drive_next_event(drive, m->t, m->duration).time : m->duration;
+    m->cut = relaxes(m->scene) ? fc_drive_next_event(drive, m->t, end).time : end;
     if (fc_has_stribeck_curve(m->scene->friction)) {
         for (int side = -1; side <= 1; side += 2) {
             FcDrive shifted = *drive;
@@ -147,11 +170,12 @@ typedef struct {
 static void slip_points(March* m, double h, int rule, int side, Slip* slip) {
     const FcScene* bound = bound_of_slip(m);
     const bool relaxing = relaxes(m->scene);
+    const bool still = bound_stands(bound);
     fc_points(bound, m->t, h, rule, &slip->at, &m->result->evaluations);
     for (int i = 0; i < slip->at.count; i++) {
         const double V = slip->at.V[i];
         slip->D[i] = slip->at.limit[i] / slip->at.sigma[i];
-        slip->rate[i] = slip->D[i] * fc_scene_log_rates(bound, slip->at.t[i]).ratio;
+        slip->rate[i] = still ? 0.0 : slip->D[i] * fc_scene_log_rates(bound, slip->at.t[i]).ratio;
         const double back = relaxing ? fabs(V) * fc_static_over_limit(m->scene->friction, V) : 0.0;
         slip->push[i] = side * V - back - slip->rate[i];
     }
@@ -170,14 +194,27 @@ static double dip(const Slip* slip, int i, double* t) {
     return slip->push[i] + x * (slope + x * bend);
 }
 
+// A distance [m] that is seen neither by the force nor, over the path, by work and heat.
+static double unseen(const March* m, const FcPoints* at) {
+    const double sigma = fmax(at->sigma[0], at->sigma[at->count - 1]);
+    const double D = at->limit[0] / at->sigma[0];
+    return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
+}
+
 // Where in the panel the push comes to 0; infinite if nowhere. At the start it is known to be above.
 static double end_of_push(March* m, int side, const Slip* slip) {
     Pushed of = {m, side};
     double* evaluations = &m->result->evaluations;
+    double most = 0.0;
+    for (int i = 0; i < slip->at.count; i++) {
+        most = fmax(most, fabs(slip->push[i]));
+    }
+    // What a push that is left over moves the bristle by until it has gone, push^2 / (2 most / h), is not seen.
+    const double near = sqrt(2.0 * unseen(m, &slip->at) * most / slip->at.h);
     for (int i = 0; i + 1 < slip->at.count; i++) {
         if (slip->push[i + 1] <= 0.0) {
-            return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1], slip->push[i + 1],
-                                   evaluations);
+            return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1],
+                                   slip->push[i + 1], near, evaluations);
         }
         double t;
         const bool lowest = i > 0 && slip->push[i] < slip->push[i - 1] && slip->push[i] <= slip->push[i + 1];
@@ -185,7 +222,8 @@ static double end_of_push(March* m, int side, const Slip* slip) {
             const double at_dip = push(&of, t);
             *evaluations += 1.0;
             if (at_dip <= 0.0) {
-                return fc_root_between(push, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, evaluations);
+                return fc_root_between(push, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, near,
+                                       evaluations);
             }
         }
     }
@@ -223,14 +261,15 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
     return fc_error_at_points(&slip->at, f) * slip->at.h <= FC_SHARE_OF_FORMULA * allowed(m) * m->duration;
 }
 
-// Along the bound for a panel, or to where the bristle leaves it.
-static void slip(March* m, bool forced) {
+// Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.
+static void slip(March* m, double end, bool forced) {
     m->result->evaluations += 1.0;
     if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) > 0.0)) {
         end_slip(m);
         return;
     }
-    find_cut(m);
+    plan(m);
+    find_cut(m, end);
     int rule;
     double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
     for (int tries = 0;; tries++) {
@@ -240,16 +279,16 @@ static void slip(March* m, bool forced) {
         if (!accurate && fc_refine_panel(&h, &rule, tries)) {
             continue;
         }
-        const double end = forced ? INFINITY : end_of_push(m, m->side, &panel);
-        if (end > m->t + h) {
+        const double leaves = forced ? INFINITY : end_of_push(m, m->side, &panel);
+        if (leaves > m->t + h) {
             add_slip(m, &panel);
             advance(m, h);
             return;
         }
-        if (end > m->t) {
-            slip_points(m, end - m->t, rule, m->side, &panel);
+        if (leaves > m->t) {
+            slip_points(m, leaves - m->t, rule, m->side, &panel);
             add_slip(m, &panel);
-            m->t = end;
+            m->t = leaves;
         }
         end_slip(m);
         return;
@@ -323,8 +362,12 @@ static bool is_stick_accurate(const March* m, const FcPoints* at, const double* 
 }
 
 static FcCourse course_of(const March* m, const FcScene* bound, const FcPoints* at, const double* x) {
-    FcCourse course = {.scene = m->scene, .bound = bound, .count = at->count, .from = m->t, .exact = true,
-                       .left = m->t == m->left_at ? m->left : 0};
+    FcCourse course = {.scene = m->scene,
+                       .bound = bound,
+                       .count = at->count,
+                       .from = m->t,
+                       .exact = true,
+                       .still = bound_stands(bound), .left = m->t == m->left_at ? m->left : 0};
     for (int i = 0; i < at->count; i++) {
         course.t[i] = at->t[i];
         course.V[i] = at->V[i];
@@ -347,15 +390,16 @@ static void stick_until(March* m, const FcScene* bound, int rule, double end) {
     }
 }
 
-// Sticks for a panel, or to where it meets the bound; clear if it can't. One that slips but lies inside its bound goes with
+// Sticks for a panel, up to `end` at the most, or to where it meets the bound; clear if it can't. One that slips but lies inside its bound goes with
 // V while it comes nearer to it.
-static void stick(March* m, bool clear) {
+static void stick(March* m, double end, bool clear) {
+    plan(m);
     const int slips = m->result->slips;
     const FcScene* bound = slips != 0 ? m->scene : &m->bound;
     if (slips != 0) {
-        find_cut(m);
+        find_cut(m, end);
     } else {
-        m->cut = m->duration;
+        m->cut = end;
     }
     const double smooth_time = slips != 0 ? smooth_time_of_slip(m) : m->smooth_time;
     int rule;
@@ -371,15 +415,16 @@ static void stick(March* m, bool clear) {
         const FcCourse course = course_of(m, bound, &at, x);
         FcMeeting met = {0, INFINITY};
         if (!clear) {
-            met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0], &m->result->evaluations);
+            const double close = fc_has_static_friction(m->scene->friction) ? 0.0 : unseen(m, &at);
+            met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0], close, &m->result->evaluations);
         }
         if (slips != 0) {
             met.side = met.side == slips ? slips : 0;
             Slip panel;
             slip_points(m, h, rule, slips, &panel);
-            const double end = panel.push[0] > 0.0 ? end_of_push(m, slips, &panel) : m->t;
-            if (end <= m->t + h && !(met.side != 0 && met.t <= end)) {
-                stick_until(m, bound, rule, end);
+            const double sticks = panel.push[0] > 0.0 ? end_of_push(m, slips, &panel) : m->t;
+            if (sticks <= m->t + h && !(met.side != 0 && met.t <= sticks)) {
+                stick_until(m, bound, rule, sticks);
                 end_slip(m);
                 return;
             }
@@ -396,14 +441,9 @@ static void stick(March* m, bool clear) {
     }
 }
 
-// ---- ElasticPlastic with a constant stiffness and limit ----
+// ---- ElasticPlastic with a bound that stands still ----
 
-// What is known of such a contact.
-typedef struct {
-    double sigma; // N/m
-    double D;     // m, the static bound
-} Still;
-
+// Over [t, end] with a constant stiffness, of that displacement: closed forms.
 static FcMap still_map(const FcScene* scene, double sigma, double t, double end, double displacement) {
     const FcDrive* drive = &scene->drive;
     const double x = displacement;
@@ -417,11 +457,34 @@ static FcMap still_map(const FcScene* scene, double sigma, double t, double end,
     };
 }
 
-static void stick_still(March* m, const Still* still, double end) {
-    const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
-    const FcMap map = still_map(m->scene, still->sigma, m->t, end, x);
-    fc_map_apply(&map, m->result);
-    m->t = end;
+// Sticks to the time `end`, up to which it is known to meet nothing.
+static void stick_to(March* m, double end) {
+    if (fc_scene_stiffness_is_constant(m->scene)) {
+        const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
+        const FcMap map = still_map(m->scene, fc_scene_stiffness(m->scene, m->t), m->t, end, x);
+        fc_map_apply(&map, m->result);
+        m->t = end;
+    }
+    while (m->t < end && m->result->evaluations <= FC_MOST_EVALUATIONS) {
+        stick(m, end, true);
+    }
+}
+
+// The same along the bound.
+static void slip_to(March* m, double end) {
+    const FcScene* bound = bound_of_slip(m);
+    if (fc_scene_limit_is_constant(bound)) {
+        const double limit = fc_scene_coefficients(bound, m->t).limit;
+        const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
+        m->result->impulse += m->side * limit * (end - m->t);
+        m->result->work += m->side * limit * x;
+        m->result->heat += m->side * limit * x;
+        m->result->evaluations += 1.0;
+        m->t = end;
+    }
+    while (m->t < end && m->result->evaluations <= FC_MOST_EVALUATIONS) {
+        slip(m, end, true);
+    }
 }
 
 typedef struct {
@@ -442,96 +505,86 @@ static FcRootFunction way_to_bound(void* context, double t) {
 // The part of its bracket that the last step to a meeting may have: the error is some cube of it.
 static const double LAST_STEP = 1e-5;
 
-// Sticks to the next reversal of V, or to where it meets the bound: then true.
-static bool stick_to_reversal(March* m, const Still* still, double end, int side) {
-    const FcDrive* drive = &m->scene->drive;
-    const double way = still->D - side * m->result->delta;
-    const double x = side * fc_drive_displacement(drive, m->t, end);
-    m->result->evaluations += 1.0;
-    if (!(x > way)) {
-        stick_still(m, still, end);
-        return false;
-    }
-    if (way > 0.0) {
-        WayToBound of = {drive, m->t, way, side};
-        const double meets = fc_root(way_to_bound, &of, m->t, way_to_bound(&of, m->t), end, way_to_bound(&of, end),
-                                     LAST_STEP, INFINITY, &m->result->evaluations);
-        stick_still(m, still, meets);
-    }
-    begin_slip(m, side);
-    return true;
-}
-
-static void slip_still(March* m, double end) {
-    const FcDrive* drive = &m->scene->drive;
-    const double limit = fc_scene_coefficients(bound_of_slip(m), m->t).limit;
-    const double x = fc_drive_displacement(drive, m->t, end);
-    m->result->impulse += m->side * limit * (end - m->t);
-    m->result->work += m->side * limit * x;
-    m->result->heat += m->side * limit * x;
-    m->result->evaluations += 1.0;
-    m->t = end;
-}
-
-// Without a Stribeck curve, or at a constant V, a slip ends at the next reversal.
-static void march_still(March* m, const Still* still) {
+// Between two reversals of V the deflection goes one way, so it meets the bound D if it would be beyond at the second. A slip ends at
+// the next reversal; under a Stribeck curve and a V that moves, the kinetic bound moves.
+static void march_between_reversals(March* m, double D) {
     const FcScene* scene = m->scene;
-    const bool has_peak = fc_has_stribeck_curve(scene->friction) && !fc_drive_V_is_constant(&scene->drive);
+    const FcDrive* drive = &scene->drive;
+    const bool has_peak = fc_has_stribeck_curve(scene->friction) && !fc_drive_V_is_constant(drive);
+    double sticks_to = m->t; // known to meet nothing up to there
+    double delta = m->result->delta;
     while (m->t < m->duration && m->result->evaluations <= FC_MOST_EVALUATIONS) {
-        if (m->side != 0 && has_peak) {
-            slip(m, false);
+        if (m->result->slips != 0 && (m->side == 0 || has_peak)) {
+            m->side != 0 ? slip(m, m->duration, false) : stick(m, m->duration, false);
+            sticks_to = m->t;
+            delta = m->result->delta;
             continue;
         }
-        if (m->result->slips != 0 && m->side == 0) {
-            stick(m, false);
-            continue;
-        }
-        const double end = fc_drive_next_event(&scene->drive, m->t, m->duration).time;
-        const double V = fc_drive_V(&scene->drive, 0.5 * (m->t + end));
+        const double end = fc_drive_next_event(drive, sticks_to, m->duration).time;
+        const double V = fc_drive_V(drive, 0.5 * (sticks_to + end));
         const int side = V < 0.0 ? -1 : 1;
-        if (m->side != 0 && m->side * V > 0.0) {
-            slip_still(m, end);
+        if (m->side != 0) {
+            if (m->side * V > 0.0) {
+                slip_to(m, end);
+            } else {
+                end_slip(m);
+            }
+            sticks_to = m->t;
+            delta = m->result->delta;
             continue;
         }
-        if (m->side != 0) {
-            end_slip(m);
+        const double x = fc_drive_displacement(drive, sticks_to, end);
+        m->result->evaluations += 1.0;
+        const double way = D - side * delta;
+        if (!(side * x > way)) {
+            sticks_to = end;
+            delta += x;
+            if (end >= m->duration) {
+                stick_to(m, end);
+            }
+            continue;
         }
-        stick_to_reversal(m, still, end, side);
+        double meets = sticks_to;
+        if (way > 0.0) {
+            WayToBound of = {drive, sticks_to, way, side};
+            meets = fc_root(way_to_bound, &of, sticks_to, way_to_bound(&of, sticks_to), end, way_to_bound(&of, end),
+                            LAST_STEP, INFINITY, &m->result->evaluations);
+        }
+        stick_to(m, meets);
+        begin_slip(m, side);
+        sticks_to = m->t;
+        delta = m->result->delta;
     }
 }
 
 // ---- the march ----
 
-static bool stands_still(const FcScene* scene) {
-    return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
-}
-
 // Whether a bristle deflected by delta [m] comes near no bound over the interval.
 static bool stays_clear(const March* m) {
     const FcDrive* drive = &m->scene->drive;
-    double reach = fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * m->duration)) * m->duration;
+    double reach =
+        fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * m->duration)) * m->duration;
     if (drive->vibration.V_1 != 0.0) {
         reach += drive->vibration.V_1 * fmin(m->duration, 2.0 / drive->omega);
     }
     return fabs(m->result->delta) + reach < 0.999 * fc_scene_smallest_saturation(&m->bound, m->duration);
 }
 
-void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                   FcStepResult* result) {
     assert(duration >= 0.0 && fc_is_bounded(scene->friction));
     March m;
     begin(&m, scene, options, duration, result);
     const bool has_memory = fc_has_static_friction(scene->friction);
     const double D = fc_bound(has_memory && result->slips != 0 ? scene : &m.bound, 0.0);
-    const double sigma = fc_scene_stiffness(scene, 0.0);
     result->evaluations += 1.0;
     const bool on_bound = fabs(result->delta) >= D * (1.0 - ROUNDING_OF_BOUND);
     if (on_bound && (!has_memory || result->slips == (result->delta < 0.0 ? -1 : 1))) {
         m.side = result->delta < 0.0 ? -1 : 1; // it leaves at once if it is not pushed
         result->meetings++;
     }
-    if (!relaxes(scene) && stands_still(scene)) {
-        const Still still = {sigma, fc_bound(&m.bound, 0.0)};
-        march_still(&m, &still);
+    if (!relaxes(scene) && bound_stands(&m.bound)) {
+        march_between_reversals(&m, fc_bound(&m.bound, 0.0));
         return;
     }
     const bool clear = !relaxes(scene) && result->slips == 0 && m.side == 0 && stays_clear(&m);
@@ -540,16 +593,17 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
         idle = m.t > before ? 0 : idle + 1;
         before = m.t;
         if (m.side != 0) {
-            slip(&m, idle > MOST_IDLE);
+            slip(&m, duration, idle > MOST_IDLE);
         } else if (relaxes(scene)) {
             relax(&m);
         } else {
-            stick(&m, clear);
+            stick(&m, duration, clear);
         }
     }
 }
 
-FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration, double* evaluations) {
+FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration,
+                     double* evaluations) {
     FcStepResult unused = {0};
     March m;
     begin(&m, scene, options, duration, &unused);
@@ -563,7 +617,9 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
     } else {
         m.cut = duration;
     }
-    while (!fc_scene_stiffness_is_constant(scene) && m.t < duration && unused.evaluations <= FC_MOST_EVALUATIONS) {
+    plan(&m);
+    while (!fc_scene_stiffness_is_constant(scene) && m.t < duration &&
+           unused.evaluations <= FC_MOST_EVALUATIONS) {
         int rule;
         double h = fc_plan_panel(&m.planner, duration - m.t, m.smooth_time, &rule);
         for (int tries = 0;; tries++) {
@@ -587,7 +643,7 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
 // Whether the bound falls in the step, as far as its scene tells.
 static bool may_fall(const FcScene* bound) {
     const FcDrive* drive = &bound->drive;
-    if (stands_still(bound) || (fc_scene_ratio_is_constant(bound) && drive->E.rate == 0.0)) {
+    if (bound_stands(bound)) {
         return false;
     }
     if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {

@@ -15,10 +15,12 @@
 #include "solver/methods/periods.h"
 
 // An FcStep: the scene over [0, duration] from a bristle that is within its bound (fc_reach).
-void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result);
+void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                   FcStepResult* result);
 
 // The map of a bristle of ElasticPlastic that sticks throughout.
-FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration, double* evaluations);
+FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration,
+                     double* evaluations);
 
 // Whether a bristle within its bound may touch it in the step: one that relaxes does not while the bound stands still or recedes.
 bool fc_march_may_touch(const FcScene* scene);

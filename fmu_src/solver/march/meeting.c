@@ -9,10 +9,13 @@
 // whose points are a radian apart an eighth would do.
 static const double HIDDEN = 0.5;
 
-static double beyond_at(const FcCourse* course, int side, int i) { return side * course->delta[i] - course->D[i]; }
+static double beyond_at(const FcCourse* course, int side, int i) {
+    return side * course->delta[i] - course->D[i];
+}
 
 double fc_approach(const FcCourse* course, int side, int i) {
-    return side * (course->V[i] - course->r[i] * course->delta[i]) - fc_bound_rate(course->bound, course->t[i]);
+    const double rate = course->still ? 0.0 : fc_bound_rate(course->bound, course->t[i]);
+    return side * (course->V[i] - course->r[i] * course->delta[i]) - rate;
 }
 
 typedef struct {
@@ -25,12 +28,13 @@ static double beyond(void* context, double t) {
     const Of* of = context;
     const FcCourse* course = of->course;
     const double x = fc_drive_displacement(&course->scene->drive, course->from, t);
-    return of->side * (course->delta[0] + x) - fc_bound(course->bound, t);
+    return of->side * (course->delta[0] + x) - (course->still ? course->D[0] : fc_bound(course->bound, t));
 }
 
 static double approach(void* context, double t) {
     const Of* of = context;
-    return of->side * fc_drive_V(&of->course->scene->drive, t) - fc_bound_rate(of->course->bound, t);
+    const double rate = of->course->still ? 0.0 : fc_bound_rate(of->course->bound, t);
+    return of->side * fc_drive_V(&of->course->scene->drive, t) - rate;
 }
 
 // The cubic on a cell, over it: values and slopes at both ends.
@@ -59,18 +63,18 @@ static Cubic cubic_of(const FcCourse* course, int side, int i) {
 }
 
 // The crossing in the cell from point i on, at the end of which p is above 0.
-static double crossing(const FcCourse* course, int side, int i, double over, double* evaluations) {
+static double crossing(const FcCourse* course, int side, int i, double over, double close, double* evaluations) {
     const double a = course->t[i];
     const double b = course->t[i + 1];
     const double p_a = fmin(beyond_at(course, side, i), -over); // below, also if it has just left the bound
     if (course->exact) {
         Of of = {course, side};
-        return fc_root_between(beyond, &of, a, p_a, b, beyond_at(course, side, i + 1), evaluations);
+        return fc_root_between(beyond, &of, a, p_a, b, beyond_at(course, side, i + 1), close, evaluations);
     }
     Cubic cubic = cubic_of(course, side, i);
     *evaluations += 2.0;
     double none = 0.0;
-    return a + (b - a) * fc_root_between(of_cubic, &cubic, 0.0, p_a, 1.0, cubic.p_b, &none);
+    return a + (b - a) * fc_root_between(of_cubic, &cubic, 0.0, p_a, 1.0, cubic.p_b, 0.0, &none);
 }
 
 // How much p moves from point to point near the cell.
@@ -83,7 +87,8 @@ static double moves(const FcCourse* course, int side, int i) {
 }
 
 // Whether p goes above `over` inside the cell, being below at both ends; *t is where it crosses 0.
-static bool crosses_unseen(const FcCourse* course, int side, int i, double over, double* t, double* evaluations) {
+static bool crosses_unseen(const FcCourse* course, int side, int i, double over, double close, double* t,
+                           double* evaluations) {
     const double p_a = beyond_at(course, side, i);
     const double p_b = beyond_at(course, side, i + 1);
     if (!(fmax(p_a, p_b) + HIDDEN * moves(course, side, i) > over)) {
@@ -98,26 +103,26 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     const double b = course->t[i + 1];
     if (course->exact) {
         Of of = {course, side};
-        const double top = fc_root_between(approach, &of, a, cubic.slope_a, b, cubic.slope_b, evaluations);
+        const double top = fc_root_between(approach, &of, a, cubic.slope_a, b, cubic.slope_b, 0.0, evaluations);
         const double p = beyond(&of, top);
         *evaluations += 1.0;
         if (!(p > over)) {
             return false;
         }
-        *t = p_a < 0.0 ? fc_root_between(beyond, &of, a, p_a, top, p, evaluations) : a;
+        *t = p_a < 0.0 ? fc_root_between(beyond, &of, a, p_a, top, p, close, evaluations) : a;
         return true;
     }
     double none = 0.0;
-    const double top = fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, &none);
+    const double top = fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, &none);
     const double p = of_cubic(&cubic, top);
     if (!(p > over)) {
         return false;
     }
-    *t = a + (b - a) * (p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, &none) : 0.0);
+    *t = a + (b - a) * (p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, &none) : 0.0);
     return true;
 }
 
-static double first_of_side(const FcCourse* course, int side, double over, double* evaluations) {
+static double first_of_side(const FcCourse* course, int side, double over, double close, double* evaluations) {
     if (course->left != side && beyond_at(course, side, 0) >= -over) {
         *evaluations += 1.0;
         if (fc_approach(course, side, 0) > 0.0) {
@@ -128,19 +133,19 @@ static double first_of_side(const FcCourse* course, int side, double over, doubl
         double t;
         if (beyond_at(course, side, i + 1) > over) {
             return beyond_at(course, side, i) < 0.0 || course->left == side
-                       ? crossing(course, side, i, over, evaluations)
+                       ? crossing(course, side, i, over, close, evaluations)
                        : course->t[i];
         }
-        if (crosses_unseen(course, side, i, over, &t, evaluations)) {
+        if (crosses_unseen(course, side, i, over, close, &t, evaluations)) {
             return t;
         }
     }
     return INFINITY;
 }
 
-FcMeeting fc_first_meeting(const FcCourse* course, double over, double* evaluations) {
-    const double forward = first_of_side(course, 1, over, evaluations);
-    const double back = first_of_side(course, -1, over, evaluations);
+FcMeeting fc_first_meeting(const FcCourse* course, double over, double close, double* evaluations) {
+    const double forward = first_of_side(course, 1, over, close, evaluations);
+    const double back = first_of_side(course, -1, over, close, evaluations);
     if (!isfinite(forward) && !isfinite(back)) {
         return (FcMeeting){0, 0.0};
     }

@@ -24,17 +24,19 @@ typedef struct {
     double D[FC_MOST_POINTS];     // m
     double from; // s, the bristle's motion is delta[0] + the displacement since then if it is exact
     bool exact;  // delta' = V
+    bool still;  // the bound does not move
     int left;    // the side of a bound that the bristle has just left, as it is not pushed any more; else 0
 } FcCourse;
 
 typedef struct {
-    int side;       // 1 or -1; 0 for no meeting
-    double t;       // s; by the cubic where the course is not exact
+    int side; // 1 or -1; 0 for no meeting
+    double t; // s; by the cubic where the course is not exact
 } FcMeeting;
 
-// The first meeting of the course with its bound, of which it goes beyond by more than `over` [m]. At the start it counts if the
+// The first meeting of the course with its bound, of which it goes beyond by more than `over` [m]; told to within `close` [m] of the
+// bound. At the start it counts if the
 // bristle is within `over` of the bound and pushed, and has not just left it. Adds to *evaluations what it takes.
-FcMeeting fc_first_meeting(const FcCourse* course, double over, double* evaluations);
+FcMeeting fc_first_meeting(const FcCourse* course, double over, double close, double* evaluations);
 
 // p' [m/s] at a point.
 double fc_approach(const FcCourse* course, int side, int point);

@@ -8,20 +8,21 @@
 static const FcGaussRule* const RULE[FC_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
 static const int NODES[FC_RULES] = {4, 6, 8, 12};
 
-// Panels are planned for at least this many digits. By hand: points that lie farther apart tell too little of what is between
-// them.
-static const double LEAST_DIGITS = 3.0;
+// No panel of 12 nodes is longer, in times over which the scene moves by 1 over 12: planned for three digits, 10^(-3 / 24). By hand:
+// points that lie farther apart tell too little of what is between them.
+static const double LONGEST_OF_12 = 0.75;
 
 // Panels that are refused in a row before one is taken as it is. By hand: 2^-22 of the planned length, where rounding rules.
 enum { MOST_TRIES = 25 };
 
+const FcGaussRule* fc_rule(int rule) { return RULE[rule]; }
+
+int fc_rule_nodes(int rule) { return NODES[rule]; }
+
 FcPlanner fc_planner(double tolerance) {
-    FcPlanner planner;
-    const double decades = fmax(LEAST_DIGITS * 2.302585, -log(tolerance));
-    for (int i = 0; i < FC_RULES; i++) {
-        planner.longest[i] = NODES[i] * exp(-0.5 * decades / NODES[i]);
-    }
-    return planner;
+    const double of_12 = fmin(LONGEST_OF_12, pow(tolerance, 1.0 / 24.0)); // 10^(-digits / 2 n)
+    return (FcPlanner){.longest = {4.0 * of_12 * of_12 * of_12, 6.0 * of_12 * of_12, 8.0 * of_12 * sqrt(of_12),
+                                   12.0 * of_12}};
 }
 
 double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule) {

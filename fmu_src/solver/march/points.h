@@ -21,14 +21,17 @@ FcPlanner fc_planner(double tolerance);
 // The length [s] of the next panel of equal ones over `left` [s], of a scene that moves by 1 in smooth_time [s], and its rule.
 double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule);
 
+const FcGaussRule* fc_rule(int rule);
+int fc_rule_nodes(int rule);
+
 // A panel that is not accurate is taken again, with more nodes or half as long; false if it has been so too often.
 bool fc_refine_panel(double* h, int* rule, int tries);
 
 // The panel [t, t + h]: its start, its nodes, its end.
 typedef struct {
     const FcGaussRule* rule;
-    int n, count; // nodes, points
-    double h;     // s
+    int n, count;                 // nodes, points
+    double h;                     // s
     double t[FC_MOST_POINTS];     // s
     double V[FC_MOST_POINTS];     // m/s
     double sigma[FC_MOST_POINTS]; // N/m

@@ -85,8 +85,8 @@ static void take_work_from_heat(FcMap* map, double sigma, double start) {
     map->work_offset = map->heat_offset + 0.5 * sigma * (map->offset - start) * (map->offset + start);
 }
 
-static FcMap cross_interval(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                            FcMapScope scope, FcWatch* watch, double* evaluations) {
+static FcMap cross_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
+                            double delta_0, FcMapScope scope, FcWatch* watch, double* evaluations) {
     const bool has_peaks = fc_has_stribeck_curve(scene->friction);
     FcFriction coulomb_limit = *scene->friction;
     coulomb_limit.staticRatio = 1.0;
@@ -95,8 +95,7 @@ static FcMap cross_interval(const FcScene* scene, const FcSolverOptions* options
         beyond_peaks = *scene;
         beyond_peaks.friction = &coulomb_limit;
     }
-    const FcInterval interval =
-        fc_interval_make(scene, has_peaks ? &beyond_peaks : scene, duration, options);
+    const FcInterval interval = fc_interval_make(scene, has_peaks ? &beyond_peaks : scene, duration, options);
     if (!isfinite(interval.force / interval.stiffness)) {
         return slack_map(scene, duration);
     }
@@ -119,8 +118,8 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
     return cross_interval(scene, options, duration, delta_0, scope, NULL, evaluations);
 }
 
-FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                             FcWatch* watch, double* evaluations) {
+FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration,
+                             double delta_0, FcWatch* watch, double* evaluations) {
     return cross_interval(scene, options, duration, delta_0, FC_MAP_THIS_START, watch, evaluations);
 }
 

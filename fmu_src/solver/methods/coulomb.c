@@ -9,8 +9,8 @@
 #include "solver/methods/methods.h"
 
 // Adds side times the integrals over [t, end] of g and g V.
-static void add_limit(const FcScene* scene, const FcSolverOptions* options, double duration, double t, double end,
-                      FcStepResult* result) {
+static void add_limit(const FcScene* scene, const FcSolverOptions* options, double duration, double t,
+                      double end, FcStepResult* result) {
     const double side = fc_sign(fc_drive_V(&scene->drive, 0.5 * (t + end)));
     if (fc_scene_limit_is_constant(scene)) {
         const double force = side * fc_scene_coefficients(scene, t).limit;
@@ -26,19 +26,23 @@ static void add_limit(const FcScene* scene, const FcSolverOptions* options, doub
     while (t < end && result->evaluations <= FC_MOST_EVALUATIONS) {
         int rule;
         double h = fc_plan_panel(&planner, end - t, fc_smooth_time(&pace), &rule);
-        FcPoints at;
+        FcNodeCoefficients at;
+        const FcGaussRule* gauss;
         for (int tries = 0;; tries++) {
-            double f[FC_MOST_POINTS];
-            fc_points(scene, t, h, rule, &at, &result->evaluations);
-            for (int i = 0; i < at.count; i++) {
+            double FC_PAIRED f[FC_GAUSS_MOST_NODES];
+            gauss = fc_rule(rule);
+            const int n = fc_rule_nodes(rule);
+            fc_node_coefficients(scene, t, h, gauss->node, n, &at);
+            result->evaluations += n;
+            for (int i = 0; i < n; i++) {
                 f[i] = at.limit[i] * (1.0 + side * at.V[i] / speed);
             }
-            if (fc_error_at_points(&at, f) * h <= allowed || !fc_refine_panel(&h, &rule, tries)) {
+            if (fc_gauss_error(gauss, n, f) * h <= allowed || !fc_refine_panel(&h, &rule, tries)) {
                 break;
             }
         }
-        for (int i = 1; i <= at.n; i++) {
-            const double force = side * at.rule->weight[i - 1] * h * at.limit[i];
+        for (int i = 0; i < fc_rule_nodes(rule); i++) {
+            const double force = side * gauss->weight[i] * h * at.limit[i];
             result->impulse += force;
             result->work += force * at.V[i];
         }
@@ -47,7 +51,8 @@ static void add_limit(const FcScene* scene, const FcSolverOptions* options, doub
     }
 }
 
-void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* result) {
     const FcDrive* drive = &scene->drive;
     const double before = result->work;
     FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration);

@@ -33,9 +33,9 @@
 #define SMALLEST_LOCAL_ERROR 1e-14
 #define LARGEST_LOCAL_ERROR 1e-3
 
-#define MOST_PERIODS 1e5      // vibration periods in one communication step: minutes of computing
-#define STEPS_PER_PERIOD 8.0  // at least: the vibration can't slip between two steps
-#define MOST_FAILED_TRIES 50  // error test or convergence failures of one step of CVODE
+#define MOST_PERIODS 1e5     // vibration periods in one communication step: minutes of computing
+#define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
+#define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
 
 // A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that steps
 // approach the peak geometrically, and on the peak by this fraction of V_S.

@@ -8,15 +8,16 @@
 #include "solver/methods/methods.h"
 #include "solver/pieces.h"
 
-static FcMap coulomb_map(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                         double* evaluations) {
+static FcMap coulomb_map(const FcScene* scene, const FcSolverOptions* options, double duration,
+                         double delta_0, double* evaluations) {
     FcStepResult part = {.delta = delta_0, .evaluations = *evaluations};
     fc_coulomb_step(scene, options, duration, &part);
     *evaluations = part.evaluations;
     return (FcMap){.impulse_offset = part.impulse, .work_offset = part.work, .heat_offset = part.heat};
 }
 
-static void free_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result) {
+static void free_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                      FcStepResult* result) {
     const FcMap map = fc_collocation_interval(scene, options, duration, result->delta, FC_MAP_THIS_START,
                                               &result->evaluations);
     fc_map_apply(&map, result);
@@ -45,13 +46,14 @@ static FcIntegration integration(const FcScene* scene) {
 // By cvode or a fixed step, piece by piece.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                        double h, FcStepResult* result, FcMessage* message) {
-    FcPieces pieces = fc_pieces(scene, h);
+    FcPieces pieces;
+    fc_pieces_start(&pieces, scene, h);
     while (fc_next_piece(&pieces)) {
-        if (fc_scene_is_loose(&pieces.scene)) {
-            fc_loose_step(&pieces.scene, result);
+        if (fc_scene_is_loose(pieces.scene)) {
+            fc_loose_step(pieces.scene, result);
         } else if (method == FC_METHOD_CVODE
-                       ? !fc_cvode_step(cvode, &pieces.scene, options, pieces.h, result, message)
-                       : !fc_fixed_step(&pieces.scene, method, options, pieces.h, result, message)) {
+                       ? !fc_cvode_step(cvode, pieces.scene, options, pieces.h, result, message)
+                       : !fc_fixed_step(pieces.scene, method, options, pieces.h, result, message)) {
             return false;
         }
     }
@@ -63,7 +65,8 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
     assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
     *result = (FcStepResult){.delta = from.delta, .slips = from.slips};
     const bool is_affine = scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
-    if (is_affine && method != FC_METHOD_COLLOCATION && !(method == FC_METHOD_CVODE && may_touch_bound(scene))) {
+    if (is_affine && method != FC_METHOD_COLLOCATION &&
+        !(method == FC_METHOD_CVODE && may_touch_bound(scene))) {
         return other_step(scene, method, cvode, options, h, result, message);
     }
     if (is_affine && fc_drive_is_constant(&scene->drive) && !fc_scene_is_loose(scene)) {
@@ -73,8 +76,8 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
     return fc_periods_step(integration(scene), scene, options, h, result, message);
 }
 
-FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from, double* force,
-                            double* evaluations) {
+FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
+                            double* force, double* evaluations) {
     assert(!fc_drive_is_linear(&scene->drive));
     if (fc_scene_is_loose(scene)) {
         *force = 0.0;

@@ -17,7 +17,7 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
 // phase of its start, or after sliding for ever. Itself if nothing moves. *force [N] becomes the mean of F (solver.h) over
 // a period of the vibration, or over those that repeat; without vibration the force of sliding for ever. Adds what it spends
 // to *evaluations.
-FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from, double* force,
-                            double* evaluations);
+FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
+                            double* force, double* evaluations);
 
 #endif

@@ -10,12 +10,13 @@ FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* optio
                               double delta_0, FcMapScope scope, double* evaluations);
 // The same of a bristle that has a bound, up to where the watch sees it met.
 struct FcWatch;
-FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                             struct FcWatch* watch, double* evaluations);
+FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration,
+                             double delta_0, struct FcWatch* watch, double* evaluations);
 void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result);
 
 // Coulomb's law, an FcStep.
-void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result);
+void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* result);
 
 // The others take *result over a step of h [s] >= 0. They return false, with *message filled and *result as it was, if they refuse: an
 // explicit method that would be unstable, a number that ceases to be finite, too much work, CVODE failing.

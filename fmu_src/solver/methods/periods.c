@@ -18,12 +18,13 @@ enum { MOST_MEETINGS = 1000 };
 
 static void take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
                  FcStepResult* total) {
-    FcPieces pieces = fc_pieces(scene, duration);
+    FcPieces pieces;
+    fc_pieces_start(&pieces, scene, duration);
     while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
-        if (fc_scene_is_loose(&pieces.scene)) {
-            fc_loose_step(&pieces.scene, total);
+        if (fc_scene_is_loose(pieces.scene)) {
+            fc_loose_step(pieces.scene, total);
         } else {
-            law.step(&pieces.scene, options, pieces.h, total);
+            law.step(pieces.scene, options, pieces.h, total);
         }
     }
 }
@@ -33,15 +34,16 @@ typedef struct {
     FcIntegration law;
     const FcScene* scene;
     const FcSolverOptions* options;
-    double period;      // s
+    double period; // s
     bool has_free_map;
     FcMap free_map;
-    double edge[2];     // m, the highest and the lowest start that meets no bound; infinite before they are asked for
+    double edge
+        [2]; // m, the highest and the lowest start that meets no bound; infinite before they are asked for
     FcStepResult total;
-    double done;        // periods
+    double done; // periods
     // After the last period that met its bound.
     FcStepResult met;
-    double met_at;      // periods; negative for none
+    double met_at; // periods; negative for none
 } Walk;
 
 static FcMap free_map_of(Walk* walk) {
@@ -243,7 +245,8 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     return fc_periods_check(scene, h, result->evaluations, message);
 }
 
-double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, FcStepResult* end) {
+double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                          FcStepResult* end) {
     const double f = scene->drive.vibration.f;
     if (fc_scene_is_loose(scene)) {
         fc_loose_step(scene, end);

@@ -22,12 +22,13 @@
 typedef enum { FC_MAP_THIS_START, FC_MAP_ANY_START } FcMapScope;
 
 // Takes *result over [0, duration] of the scene and adds what the interval gives.
-typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration, FcStepResult* result);
+typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
+                       FcStepResult* result);
 
 // The map of [0, duration] that holds for any start of the size of delta_0 [m] from which no bound is met. Adds what it spends to
 // *evaluations.
-typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                           double* evaluations);
+typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
+                           double delta_0, double* evaluations);
 
 // How a law is integrated.
 typedef struct {
@@ -54,6 +55,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
 
 // What the bristle in *end tends to after infinitely many periods of a scene that vibrates with its inputs held, and the mean of F
 // (solver.h) [N] over a period from there on, or over those that repeat. Adds what it spends to end->evaluations.
-double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, FcStepResult* end);
+double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                          FcStepResult* end);
 
 #endif

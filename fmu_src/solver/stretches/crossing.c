@@ -55,7 +55,8 @@ FcTrajectories fc_crossed_trajectories(const FcCrossed* crossed) {
                             .keep = crossed->watch ? &crossed->watch->nodes : NULL};
 }
 
-bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel, double* h) {
+bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel,
+                       double* h) {
     *h = at->h;
     return !crossed->watch || fc_watch_panel(crossed->watch, crossed->interval, at, from, panel, h,
                                              &crossed->evaluations) != FC_UNRESOLVED;
@@ -245,11 +246,13 @@ static bool take_radau(Crossing* crossing) {
         const FcPanelAt at = {scene, t, plan.h, 0, sign};
         const bool accurate = excess <= 1.0 || tries >= MOST_TRIES;
         taken = plan.h;
-        if ((accurate && fc_may_keep_panel(crossed, &at, &from, &crossing->panel, &taken)) || tries >= 3 * MOST_TRIES) {
+        if ((accurate && fc_may_keep_panel(crossed, &at, &from, &crossing->panel, &taken)) ||
+            tries >= 3 * MOST_TRIES) {
             crossing->caution -= tries == 0 && crossing->caution > 0;
             break;
         }
-        plan.h *= accurate ? 0.5 : fmax(0.4, 0.85 * pow(excess, -1.0 / 12.0)); // 0.4 if the error is not a number
+        plan.h *=
+            accurate ? 0.5 : fmax(0.4, 0.85 * pow(excess, -1.0 / 12.0)); // 0.4 if the error is not a number
         crossing->caution += !accurate && crossing->caution < MOST_CAUTION;
     }
     append(crossing, taken < left ? t + taken : crossing->end);

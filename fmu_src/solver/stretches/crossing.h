@@ -22,11 +22,14 @@ typedef struct {
 } FcCrossed;
 
 // Whether the bristle has met its bound.
-static inline bool fc_has_met(const FcCrossed* crossed) { return crossed->watch && crossed->watch->met.side != 0; }
+static inline bool fc_has_met(const FcCrossed* crossed) {
+    return crossed->watch && crossed->watch->met.side != 0;
+}
 
 // Whether the panel that has been taken may stay. *h [s] is its length, less if the bristle meets its bound in it: then the panel
 // is cut there.
-bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel, double* h);
+bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel,
+                       double* h);
 
 // The trajectories that the map has come to.
 FcTrajectories fc_crossed_trajectories(const FcCrossed* crossed);

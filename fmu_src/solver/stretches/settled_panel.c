@@ -79,8 +79,7 @@ static double seen_at_end(const Span* span, const FcVelocity* end) {
 static bool is_possible(const Span* span) {
     const FcInterval* interval = span->interval;
     return span->at->rate > 0.0 && !fc_limit_follows_load(interval->scene->friction) &&
-           isfinite(interval->saturation) &&
-           (!span->ends_at_event || span->stretch->reversal);
+           isfinite(interval->saturation) && (!span->ends_at_event || span->stretch->reversal);
 }
 
 // Whether it is not worth while to integrate the lag: at half of its largest the second order is too large.

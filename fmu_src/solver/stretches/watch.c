@@ -24,7 +24,8 @@ static double bound_over_limit(const FcWatch* watch, const FcScene* scene, doubl
 }
 
 // The point number i of the course from what the panel kept of its node k.
-static void set_node(const FcWatch* watch, const FcScene* scene, double delta_0, int k, int i, double t, FcCourse* course) {
+static void set_node(const FcWatch* watch, const FcScene* scene, double delta_0, int k, int i, double t,
+                     FcCourse* course) {
     const FcPanelNodes* nodes = &watch->nodes;
     const double V = nodes->V[k];
     course->t[i] = t;
@@ -34,7 +35,8 @@ static void set_node(const FcWatch* watch, const FcScene* scene, double delta_0,
     course->D[i] = nodes->limit[k] * bound_over_limit(watch, scene, V) / nodes->sigma[k];
 }
 
-static void set_end(const FcWatch* watch, const FcScene* scene, double t, double delta, int i, FcCourse* course) {
+static void set_end(const FcWatch* watch, const FcScene* scene, double t, double delta, int i,
+                    FcCourse* course) {
     const FcCoefficients at = fc_scene_coefficients(scene, t);
     course->t[i] = t;
     course->V[i] = at.V;
@@ -55,7 +57,8 @@ static FcCourse course_of(const FcWatch* watch, const FcPanelAt* at, double delt
         course.count = FC_RADAU_STAGES + 1;
         set_node(watch, at->scene, delta_0, FC_RADAU_STAGES, 0, at->t, &course);
         for (int i = 0; i < FC_RADAU_STAGES; i++) {
-            const double t = i + 1 < FC_RADAU_STAGES ? at->t + (0.5 + FC_RADAU_9.node[i]) * at->h : at->t + at->h;
+            const double t =
+                i + 1 < FC_RADAU_STAGES ? at->t + (0.5 + FC_RADAU_9.node[i]) * at->h : at->t + at->h;
             set_node(watch, at->scene, delta_0, i, i + 1, t, &course);
         }
         return course;
@@ -96,7 +99,8 @@ static double nearest(const FcCourse* course) {
     return most;
 }
 
-static void take(const FcPanelAt* at, double h, const FcTrajectories* from, FcPanel* panel, double* evaluations) {
+static void take(const FcPanelAt* at, double h, const FcTrajectories* from, FcPanel* panel,
+                 double* evaluations) {
     if (at->nodes == 0) {
         fc_radau_panel(at->scene, at->t, h, at->sign, from, panel);
         *evaluations += FC_RADAU_STAGES;
@@ -121,7 +125,7 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
         return FC_UNRESOLVED;
     }
     const double over = fc_most(1e-13 * course.D[last], FC_SHARE_OF_EVENT * may);
-    const FcMeeting met = fc_first_meeting(&course, over, evaluations);
+    const FcMeeting met = fc_first_meeting(&course, over, 0.0, evaluations);
     if (met.side == 0) {
         return FC_MEETS_NONE;
     }
