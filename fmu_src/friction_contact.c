@@ -142,13 +142,13 @@ typedef struct {
 
 // Of a bristle that is within its bound; false if one of them is beyond the largest number.
 static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outputs, FcMessage* message) {
+    const FcContactResponse contact = fc_scene_contact(scene, 0.0);
+    *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
     if (!isfinite(bristle.delta)) {
         return fc_message_set(
             message, "delta is beyond the largest number: V = %.9g m/s with vibration.V_1 = %.9g m/s",
             scene->drive.V.value, scene->drive.vibration.V_1);
     }
-    const FcContactResponse contact = fc_scene_contact(scene, 0.0);
-    *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
     if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }

@@ -129,7 +129,8 @@ static Parts parts(const FcScene* scene, FcRegime regime, double delta) {
 double fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
     const FcCoefficients coefficients = fc_scene_coefficients_of(scene, contact);
     const bool asks_for_rate = scene->friction->sigma_1 != 0.0;
-    const Parts at = parts_at(scene, &coefficients, asks_for_rate ? fc_regime(scene, bristle) : FC_FREE, bristle.delta);
+    const Parts at =
+        parts_at(scene, &coefficients, asks_for_rate ? fc_regime(scene, bristle) : FC_FREE, bristle.delta);
     return whole_force(scene->friction, &at);
 }
 

@@ -38,8 +38,7 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     }
     if (!follows_load(&scene)) {
         scene.drive.load.rate = 0.0;
-        scene.is_open =
-            at_E->decay * drive->d.value > NOT_FAR && drive->d.value > open_separation(at_E);
+        scene.is_open = at_E->decay * drive->d.value > NOT_FAR && drive->d.value > open_separation(at_E);
         return scene;
     }
     scene.is_open = !(drive->load.value > NOTHING);

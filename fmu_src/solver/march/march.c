@@ -367,7 +367,8 @@ static FcCourse course_of(const March* m, const FcScene* bound, const FcPoints* 
                        .count = at->count,
                        .from = m->t,
                        .exact = true,
-                       .still = bound_stands(bound), .left = m->t == m->left_at ? m->left : 0};
+                       .still = bound_stands(bound),
+                       .left = m->t == m->left_at ? m->left : 0};
     for (int i = 0; i < at->count; i++) {
         course.t[i] = at->t[i];
         course.V[i] = at->V[i];
@@ -547,8 +548,8 @@ static void march_between_reversals(March* m, double D) {
         double meets = sticks_to;
         if (way > 0.0) {
             WayToBound of = {drive, sticks_to, way, side};
-            meets = fc_root(way_to_bound, &of, sticks_to, way_to_bound(&of, sticks_to), end, way_to_bound(&of, end),
-                            LAST_STEP, INFINITY, &m->result->evaluations);
+            meets = fc_root(way_to_bound, &of, sticks_to, way_to_bound(&of, sticks_to), end,
+                            way_to_bound(&of, end), LAST_STEP, INFINITY, &m->result->evaluations);
         }
         stick_to(m, meets);
         begin_slip(m, side);

@@ -63,7 +63,8 @@ static Cubic cubic_of(const FcCourse* course, int side, int i) {
 }
 
 // The crossing in the cell from point i on, at the end of which p is above 0.
-static double crossing(const FcCourse* course, int side, int i, double over, double close, double* evaluations) {
+static double crossing(const FcCourse* course, int side, int i, double over, double close,
+                       double* evaluations) {
     const double a = course->t[i];
     const double b = course->t[i + 1];
     const double p_a = fmin(beyond_at(course, side, i), -over); // below, also if it has just left the bound
@@ -103,7 +104,8 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     const double b = course->t[i + 1];
     if (course->exact) {
         Of of = {course, side};
-        const double top = fc_root_between(approach, &of, a, cubic.slope_a, b, cubic.slope_b, 0.0, evaluations);
+        const double top =
+            fc_root_between(approach, &of, a, cubic.slope_a, b, cubic.slope_b, 0.0, evaluations);
         const double p = beyond(&of, top);
         *evaluations += 1.0;
         if (!(p > over)) {
@@ -113,7 +115,8 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
         return true;
     }
     double none = 0.0;
-    const double top = fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, &none);
+    const double top =
+        fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, &none);
     const double p = of_cubic(&cubic, top);
     if (!(p > over)) {
         return false;
@@ -122,7 +125,8 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     return true;
 }
 
-static double first_of_side(const FcCourse* course, int side, double over, double close, double* evaluations) {
+static double first_of_side(const FcCourse* course, int side, double over, double close,
+                            double* evaluations) {
     if (course->left != side && beyond_at(course, side, 0) >= -over) {
         *evaluations += 1.0;
         if (fc_approach(course, side, 0) > 0.0) {

@@ -21,8 +21,8 @@ int fc_rule_nodes(int rule) { return NODES[rule]; }
 
 FcPlanner fc_planner(double tolerance) {
     const double of_12 = fmin(LONGEST_OF_12, pow(tolerance, 1.0 / 24.0)); // 10^(-digits / 2 n)
-    return (FcPlanner){.longest = {4.0 * of_12 * of_12 * of_12, 6.0 * of_12 * of_12, 8.0 * of_12 * sqrt(of_12),
-                                   12.0 * of_12}};
+    return (FcPlanner){.longest = {4.0 * of_12 * of_12 * of_12, 6.0 * of_12 * of_12,
+                                   8.0 * of_12 * sqrt(of_12), 12.0 * of_12}};
 }
 
 double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule) {
