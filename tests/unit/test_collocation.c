@@ -189,7 +189,7 @@ static void ends_where_V_touches_zero(void) {
             const double stiffness = fc_scene_stiffness(&slider.scene, h);
             const double exact = deflection_after(&slider.scene, h, layer);
             for (double tolerance = 1e-2; tolerance > 5e-8; tolerance *= 0.1) {
-                const FcSolverOptions options = {.tolerance = tolerance, .force = force, .step_size = 1e-8};
+                const FcSolverOptions options = {.tolerance = tolerance, .force = F_C, .step_size = 1e-8};
                 double evaluations = 0.0;
                 const FcMap map =
                     fc_collocation_interval(&slider.scene, &options, h, 0.0, FC_MAP_THIS_START, &evaluations);

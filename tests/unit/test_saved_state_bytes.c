@@ -269,7 +269,7 @@ static void other_bytes_are_refused(fmi2Component c) {
 }
 
 static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
-    const Layout layout = layout_of(saved, 3, layout_of(saved, 3, 0).size);
+    const Layout layout = layout_of(saved, 4, layout_of(saved, 4, 0).size);
     return is_read(c, &layout, layout.size);
 }
 
