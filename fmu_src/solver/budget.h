@@ -58,6 +58,9 @@ static const double FC_SHARE_OF_EVENT = 0.02;
 static const double FC_SHARE_OF_CUT = 0.1;
 static const double FC_SHARE_OF_GRAZE = 0.1;
 
+// What interpolating the maps of moving periods may miss.
+static const double FC_SHARE_OF_LEAP = 0.1;
+
 // What the Stribeck curve may do beyond the edges of its peak.
 static const double FC_SHARE_BEYOND_PEAK = 0.01;
 

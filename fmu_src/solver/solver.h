@@ -27,6 +27,8 @@ typedef struct {
     double delta;       // m     deflection at the end of the step
     int slips;          //       the other part of the bristle's state (FcBristle)
     int meetings;       //       how often the bristle met its bound, slipping along it at the start included
+    double slip_time;   // s     into the interval, a time at which the bristle slipped along a bound, and
+    int slip_side;      //       of which side; of no meaning if it has not
     double lost;        // m     what opening contacts took from the deflection, which is not motion
     double impulse;     // N s   integral of F dt, F being F_t without its parts from sigma_1 and sigma_2
     double work;        // J     integral of F V dt

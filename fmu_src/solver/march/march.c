@@ -39,6 +39,7 @@ typedef struct {
     int side;           // of the bound along which it slips, else 0
     int left;           // of the bound that it has left at left_at, else 0
     double left_at;     // s
+    double longest;     // s, slip so far
     FcStepResult* result;
 } March;
 
@@ -70,6 +71,7 @@ static void begin(March* m, const FcScene* scene, const FcSolverOptions* options
     m->t = m->cut = 0.0;
     m->side = m->left = 0;
     m->left_at = -1.0;
+    m->longest = 0.0;
     m->bound = fc_scene_of_bound(scene, 0, &m->bound_law);
     m->smooth_time = 0.0; // not known
     m->speed = fc_drive_largest_speed(&scene->drive, duration);
@@ -230,7 +232,17 @@ static double end_of_push(March* m, int side, const Slip* slip) {
     return INFINITY;
 }
 
+// Notes the middle of the longest slip.
+static void note_slip(March* m, double duration) {
+    if (duration > m->longest) {
+        m->longest = duration;
+        m->result->slip_time = m->t + 0.5 * duration;
+        m->result->slip_side = m->side;
+    }
+}
+
 static void add_slip(March* m, const Slip* slip) {
+    note_slip(m, slip->at.h);
     FcStepResult* result = m->result;
     const FcPoints* at = &slip->at;
     double limit = 0.0, limit_V = 0.0, recedes = 0.0, V_recedes = 0.0;
@@ -477,6 +489,7 @@ static void slip_to(March* m, double end) {
     if (fc_scene_limit_is_constant(bound)) {
         const double limit = fc_scene_coefficients(bound, m->t).limit;
         const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
+        note_slip(m, end - m->t);
         m->result->impulse += m->side * limit * (end - m->t);
         m->result->work += m->side * limit * x;
         m->result->heat += m->side * limit * x;
@@ -636,7 +649,9 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
             }
         }
     }
-    map.offset = drive->V.value * duration; // of whole periods with held inputs, to the last digit
+    if (!fc_drive_is_linear(drive)) { // whole periods: to the last digit
+        map.offset = drive->V.value * duration;
+    }
     *evaluations += unused.evaluations;
     return map;
 }

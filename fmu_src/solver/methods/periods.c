@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/regime.h"
+#include "solver/methods/leap.h"
 #include "solver/pieces.h"
 
 // More periods than this with moving inputs are refused. By hand: they would take minutes.
@@ -16,8 +17,8 @@ static const double SAME_END = 1e-10;
 // Periods in a row that meet the bound and never end alike are followed up to this number. By hand: they would have ended alike.
 enum { MOST_MEETINGS = 1000 };
 
-static void take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
-                 FcStepResult* total) {
+void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* total) {
     FcPieces pieces;
     fc_pieces_start(&pieces, scene, duration);
     while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
@@ -189,16 +190,6 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
     *total = walk.total;
 }
 
-static void step_over_changing_periods(FcIntegration law, const FcScene* scene,
-                                       const FcSolverOptions* options, double periods, double rest,
-                                       FcStepResult* total) {
-    const double f = scene->drive.vibration.f;
-    for (double k = 0.0; k <= periods && total->evaluations <= FC_MOST_EVALUATIONS; k += 1.0) {
-        const FcScene part = fc_scene_later(scene, k / f);
-        take(law, &part, options, k < periods ? 1.0 / f : rest, total);
-    }
-}
-
 FcPeriods fc_periods_in(const FcScene* scene, double h) {
     assert(h >= 0.0);
     const double f = scene->drive.vibration.f;
@@ -233,14 +224,16 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     }
     const FcPeriods periods = fc_periods_in(scene, h);
     if (periods.count < 2.0) {
-        take(law, scene, options, h, result);
+        fc_periods_take(law, scene, options, h, result);
     } else if (fc_drive_is_linear(&scene->drive)) {
-        step_over_changing_periods(law, scene, options, periods.count, periods.rest, result);
+        fc_leap(law, scene, options, periods.count, result);
+        const FcScene rest = fc_scene_later(scene, periods.count / scene->drive.vibration.f);
+        fc_periods_take(law, &rest, options, periods.rest, result);
     } else if (fc_scene_is_loose(scene)) {
         fc_loose_step(scene, result);
     } else {
         step_over_equal_periods(law, scene, options, periods.count, result);
-        take(law, scene, options, periods.rest, result);
+        fc_periods_take(law, scene, options, periods.rest, result);
     }
     return fc_periods_check(scene, h, result->evaluations, message);
 }

@@ -9,7 +9,7 @@
 // n-th power of the affine map, and n is known in closed form: the highest start that meets none is the one that ends
 // where the highest start of all ends. A period that meets the bound forgets its start, so that periods soon repeat. With
 // static friction, break-away is a drop, and what repeats may be several periods: some that stick, and one that slips.
-// With moving inputs the periods differ and are gone through one by one.
+// With moving inputs the periods differ (leap.h).
 #ifndef FC_SOLVER_PERIODS_H
 #define FC_SOLVER_PERIODS_H
 
@@ -36,6 +36,10 @@ typedef struct {
     FcFreeMap free_map;
     bool is_bounded; // the bristle may meet a bound
 } FcIntegration;
+
+// Takes *total over an interval of at most a period, piece by piece (solver/pieces.h).
+void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* total);
 
 // How a step of h [s] >= 0 divides: whole periods of the vibration, and what is left [s]. None without vibration.
 typedef struct {
