@@ -373,4 +373,6 @@ class TestNothingHalfWritten:
             assert done.returncode == 1
             assert done.stderr.endswith(": can't be written: File too large\n")
             assert what in done.stderr and len(done.stderr.splitlines()) == 1
-            assert not list((tmp_path / "sweep").glob("*/*"))
+            # the group of one scenario may have been the first
+            left = [len(pd.read_parquet(part)) for part in (tmp_path / "sweep").glob("*/*")]
+            assert left in ([], [1])

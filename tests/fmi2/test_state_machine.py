@@ -226,4 +226,4 @@ def test_calls_in_any_order(library: Library) -> None:
 
 @pytest.mark.slow
 def test_many_more_calls_in_any_order(library: Library) -> None:
-    run(library, examples=600, length=60)
+    run(library, examples=200, length=60)
