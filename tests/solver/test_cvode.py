@@ -109,7 +109,7 @@ def test_no_step_goes_over_a_stribeck_peak(fmu: FrictionFmu, V: float, V_S: floa
 
 
 @pytest.mark.parametrize("reversal", [1e-16, 1e-8, 0.4])
-@pytest.mark.parametrize("exponent", [-100, -30, -12])
+@pytest.mark.parametrize("exponent", [-100, -50, -30])
 def test_no_step_is_too_short(fmu: FrictionFmu, exponent: int, reversal: float) -> None:
     """V reverses at a fraction of the step; sigma |V| h / F_C is under 1e-7, so the bristle goes with V."""
     h, V = 10.0**exponent, 1e-5
