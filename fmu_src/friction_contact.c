@@ -171,6 +171,11 @@ FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
     return (FcBristle){contact->state.variables.delta, contact->state.slips};
 }
 
+FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
+    double heat;
+    return fc_jump(scene, &contact->state.past, fc_friction_contact_bristle(contact), &heat);
+}
+
 static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still
 
 // The time t [s] must tell the phase of the vibration.
@@ -201,7 +206,7 @@ static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
     Outputs now;
-    if (!find_outputs(&scene, fc_reach(&scene, fc_friction_contact_bristle(contact)), &now, message)) {
+    if (!find_outputs(&scene, fc_friction_contact_reached(contact, &scene), &now, message)) {
         return false;
     }
     set_outputs(v, &now);
@@ -215,7 +220,7 @@ bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message)
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
-    const FcBristle bristle = fc_reach(&scene, fc_friction_contact_bristle(contact));
+    const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
     const FcStateRates rates = fc_motion(&scene, fc_regime(&scene, bristle), bristle.delta).rates;
     if (!isfinite(rates.delta) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
         return fc_message_set(message,

@@ -103,8 +103,9 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
 // before an output is read.
 bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message);
 
-// The bristle as the last step left it, and what the present inputs and parameters make of it.
+// The bristle as the last step left it, and what the scene that begins now makes of it.
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact);
+FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene);
 
 // The scene that begins at the present time, with the inputs moving at the rates of the last step or, where new ones
 // have been set, of the next. It points into the contact.

@@ -3,17 +3,13 @@
 #include <stdlib.h>
 
 #include "friction_contact.h"
-#include "model/derivatives.h"
 #include "settled_force.h"
 
 struct FmuRun {
     FcFrictionContact contact;
     FcMessage message;
     bool started;
-};
-
-struct FmuState {
-    FcFrictionState state;
+    int steps; // taken
 };
 
 static void* memory(size_t size) {
@@ -83,47 +79,37 @@ static void set_rates(FcFrictionState* state, const ReferenceScene* s) {
     state->next_rate_set = 1;
 }
 
-// What fmi2GetRealOutputDerivatives and fmi2GetDirectionalDerivative return of F_t.
-static double rate_now(FmuRun* run) {
-    const FcScene scene = fc_friction_contact_scene(&run->contact);
-    return fc_force_rate(&scene, run->contact.state.variables.delta);
-}
-
-static void slopes_now(FmuRun* run, double slopes[4]) {
-    const FcScene scene = fc_friction_contact_scene(&run->contact);
-    const FcGradient gradient = fc_gradient(&scene, run->contact.state.variables.delta);
-    slopes[0] = gradient.by_V.F_t;
-    slopes[1] = gradient.by_d.F_t;
-    slopes[2] = gradient.by_E.F_t;
-    slopes[3] = gradient.by_load.F_t;
-}
-
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     FcFrictionState* state = &run->contact.state;
     FcVariables* v = &state->variables;
     if (!run->started) {
         return false;
     }
+    const FcFrictionState before = *state;
+    const bool first = run->steps++ == 0;
+    step->delta_start = v->delta;
+    step->slips_start = state->slips;
     const ReferenceScene still = {0};
     set_tunable(v, scene);
     set_rates(state, &still);
     if (!fc_friction_contact_refresh(&run->contact, &run->message)) {
         return false;
     }
-    step->delta_start = v->delta;
     step->F_t_start = v->F_t;
-    slopes_now(run, step->slopes);
     set_rates(state, scene);
-    step->rate = rate_now(run);
-    const FcFrictionState before = *state;
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
     step->delta = v->delta;
+    step->slips = state->slips;
     step->F_t = v->F_t;
     step->F_t_mean = v->F_t_mean;
-    step->work = (v->W_f - before.variables.W_f) + (state->W_f_rest - before.W_f_rest);
-    step->heat = (v->Q_f - before.variables.Q_f) + (state->Q_f_rest - before.Q_f_rest);
+    step->work = v->W_f + state->W_f_rest;
+    step->heat = v->Q_f + state->Q_f_rest;
+    if (!first) {
+        step->work = (v->W_f - before.variables.W_f) + (state->W_f_rest - before.W_f_rest);
+        step->heat = (v->Q_f - before.variables.Q_f) + (state->Q_f_rest - before.Q_f_rest);
+    }
     step->evaluations = v->solver.evaluations;
     return true;
 }
@@ -133,13 +119,3 @@ bool fmu_settled_force(FmuRun* run, double* force) {
 }
 
 const char* fmu_message(const FmuRun* run) { return run->message.text; }
-
-FmuState* fmu_save(const FmuRun* run) {
-    FmuState* saved = memory(sizeof *saved);
-    saved->state = run->contact.state;
-    return saved;
-}
-
-void fmu_restore(FmuRun* run, const FmuState* saved) { run->contact.state = saved->state; }
-
-void fmu_forget(FmuState* saved) { free(saved); }

@@ -11,15 +11,13 @@ typedef struct {
     double F_t;         // N
     double F_t_mean;    // N
     double work;        // J, of this step
-    double heat;        // J, of this step
-    double delta_start; // m, before the step
-    double F_t_start;   // N, before the step, with held inputs
+    double heat;        // J, of this step; of the first step with that of the start
+    double slips;       // side along which a bristle with static friction slips at the end, or 0
+    double delta_start; // m, before the step and its inputs
+    int slips_start;
+    double F_t_start;   // N, before the step, with its inputs held
     double evaluations; // 1, since the start
-    double rate;        // N/s, of F_t at the start, the inputs moving as they do in the step
-    double slopes[4];   // N per unit of V, d, E, load, of F_t_start
 } FmuStep;
-
-enum { FMU_COLLOCATION = 1, FMU_CVODE = 2 }; // numbers of solver.method
 
 typedef struct FmuRun FmuRun;
 
@@ -36,11 +34,5 @@ bool fmu_settled_force(FmuRun* run, double* force);
 
 // Why the core refused.
 const char* fmu_message(const FmuRun* run);
-
-// A copy of the state, as a saved FMU state is one, and the way back to it.
-typedef struct FmuState FmuState;
-FmuState* fmu_save(const FmuRun* run);
-void fmu_restore(FmuRun* run, const FmuState* state);
-void fmu_forget(FmuState* state);
 
 #endif

@@ -9,37 +9,12 @@ _Static_assert(sizeof(ReferenceScene) >= REFERENCE_DOUBLES * sizeof(double) + 6 
                    offsetof(ReferenceScene, law) == REFERENCE_DOUBLES * sizeof(double),
                "SCENE_NAMES names every double of ReferenceScene in its order");
 
-const char* const SCENE_NAMES[REFERENCE_DOUBLES] = {"start",
-                                                    "h",
-                                                    "V",
-                                                    "d",
-                                                    "E",
-                                                    "load",
-                                                    "V_rate",
-                                                    "d_rate",
-                                                    "E_rate",
-                                                    "load_rate",
-                                                    "f",
-                                                    "V_1",
-                                                    "a_d",
-                                                    "phase_d",
-                                                    "F_C",
-                                                    "mu",
-                                                    "staticRatio",
-                                                    "V_S",
-                                                    "sigma_1",
-                                                    "sigma_2",
-                                                    "delta_0",
-                                                    "contact_sigma",
-                                                    "stiffnessScale",
-                                                    "R_q",
-                                                    "R",
-                                                    "eta",
-                                                    "A_n",
-                                                    "nu",
-                                                    "Y",
-                                                    "c",
-                                                    "lambda"};
+// clang-format off
+const char* const SCENE_NAMES[REFERENCE_DOUBLES] = {
+    "start", "h", "V", "d", "E", "load", "V_rate", "d_rate", "E_rate", "load_rate", "f", "V_1", "a_d", "phase_d",
+    "F_C", "mu", "staticRatio", "V_S", "sigma_1", "sigma_2", "delta_0", "contact_sigma", "stiffnessScale",
+    "R_q", "R", "eta", "A_n", "nu", "Y", "c", "lambda"};
+// clang-format on
 
 typedef struct {
     const char* name;

@@ -178,23 +178,25 @@ typedef struct {
     ReferenceScene scene;
     Real V_start; // m/s
     Real h, omega, theta_0, decay, swell, excess;
+    Real no_load;   // s, when a load that moves is 0
     AtModulus held; // at the modulus of the start
-    bool bounded;   // sigma |delta| has a bound B
-    bool moves;     // sigma or the limit move, but for Stribeck's curve
+    bool bounded;   // sigma |delta| of Dahl or LuGre has a bound B
+    bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
+    Real S;         // N
     Real path;      // m, integral of |V| over the step
     const Rule* rule;
     int fineness;
-    Real panels, unresolved;
+    Real panels;
 } World;
 
-// At a local time; rates are time derivatives of logarithms, found where they are asked for.
+// At a local time; rates are time derivatives of logarithms, found only when they are asked for.
 typedef struct {
-    Real V, V_rate;
+    Real V;
     Real sigma;
-    Real coulomb;    // N, F_C or mu F_n
-    Real g;          // N, where the bristle's force tends
-    Real B;          // N, the bound of a bounded bristle
-    Real bound_rate; // of ln(B / sigma)
+    Real coulomb;                  // N, F_C or mu F_n
+    Real g;                        // N, where the bristle's force tends
+    Real B;                        // N, the bound of what does not slip
+    Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
 } At;
 
 // Sine of x + shift pi / 2. The library's own reduction to a quarter turn would take half of all time; pi / 2 in two parts,
@@ -215,7 +217,15 @@ static Real sine(Real x, int shift) {
     }
 }
 
+static int sign_of(Real x) { return (x > 0.0L) - (x < 0.0L); }
+
 static Real phase_at(const World* w, Real t) { return w->theta_0 + w->omega * t; }
+
+static bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->a_d != 0.0; }
+
+static bool is_held(const ReferenceScene* s) {
+    return s->V_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 && s->load_rate == 0.0;
+}
 
 static Real velocity(const World* w, Real t) {
     const Real V_1 = w->scene.V_1, change = w->scene.V_rate * t;
@@ -242,7 +252,24 @@ static Real travel(const World* w, Real a, Real b) {
         return smooth;
     }
     const Real half = 0.5L * w->omega * span;
-    return smooth + 2.0L * w->scene.V_1 / w->omega * cosl(phase_at(w, a) + half) * sinl(half);
+    return smooth + 2.0L * w->scene.V_1 / w->omega * sine(phase_at(w, a) + half, 1) * sinl(half);
+}
+
+static Real load_at(const World* w, Real t) {
+    return w->no_load > -INFINITY ? w->scene.load_rate * (t - w->no_load)
+                                  : (Real)w->scene.load + w->scene.load_rate * t;
+}
+
+static AtModulus modulus_at(const World* w, Real t) {
+    return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
+}
+
+// sigma [N/m] where F_n and d are those.
+static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
+    const Real share = force / at->force;
+    return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
+           : s->contact == CONTACT_MINDLIN ? at->stiffness * share
+                                           : at->stiffness * share * share / (d * d * d);
 }
 
 // F_n [N] and sigma [N/m]; the rate of ln(limit / sigma), but for Stribeck's curve, without what cancels in it.
@@ -253,12 +280,12 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
     if (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT) {
         return;
     }
-    const AtModulus at = s->E_rate == 0.0 ? w->held : at_modulus(s, (Real)s->E + s->E_rate * t);
+    const AtModulus at = modulus_at(w, t);
     const Real theta = phase_at(w, t) + s->phase_d;
     const Real swing = s->a_d == 0.0 ? 0.0L : s->a_d * sine(theta, 1);
     Real d, rest_rate;
     if (s->input == INPUT_LOAD) {
-        const Real load = (Real)s->load + s->load_rate * t;
+        const Real load = load_at(w, t);
         *force = load / w->swell * expl(-w->decay * swing);
         d = logl(at.force * w->swell / load) / w->decay + swing;
         rest_rate = (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
@@ -267,12 +294,7 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
         *force = at.force * expl(-w->decay * d);
         rest_rate = s->d_rate;
     }
-    const Real over_force = *force / at.force;
-    if (s->contact == CONTACT_ASPERITIES) {
-        *sigma = at.stiffness * over_force * over_force / (d * d * d);
-    } else if (s->contact == CONTACT_MINDLIN) {
-        *sigma = at.stiffness * over_force;
-    }
+    *sigma = stiffness_at(s, &at, *force, d);
     if (with_rates) {
         const Real d_rate = rest_rate - (s->a_d == 0.0 ? 0.0L : s->a_d * w->omega * sine(theta, 0));
         Real of_E = s->limit == LIMIT_LOAD ? at.by_force : 0.0L;
@@ -293,24 +315,18 @@ static At scene_at(const World* w, Real t, bool with_rates) {
     At at = {.V = velocity(w, t)};
     Real force;
     contact_at(w, t, with_rates, &force, &at.sigma, &at.bound_rate);
+    at.kinetic_rate = at.bound_rate;
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
-    Real curve = 1.0L, curve_rate = 0.0L;
+    Real curve = 1.0L;
     if (w->excess != 0.0L) {
-        const Real slow = at.V / s->V_S;
-        const Real peak = w->excess * expl(-slow * slow);
+        const Real slow = at.V / s->V_S, peak = w->excess * expl(-slow * slow);
         curve = 1.0L + peak;
         if (with_rates) {
-            at.V_rate = velocity_rate(w, t);
-            curve_rate = -2.0L * peak * slow * at.V_rate / (s->V_S * curve);
+            at.kinetic_rate -= 2.0L * peak * slow * velocity_rate(w, t) / (s->V_S * curve);
         }
     }
     at.g = at.coulomb * curve;
-    if (s->law == LAW_ELASTIC_PLASTIC) {
-        at.B = at.g;
-        at.bound_rate += curve_rate;
-    } else {
-        at.B = at.coulomb * (1.0L + w->excess);
-    }
+    at.B = at.coulomb * (1.0L + w->excess);
     return at;
 }
 
@@ -319,18 +335,85 @@ static Real relaxation(const World* w, const At* at, int side) {
     return w->scene.law == LAW_ELASTIC_PLASTIC ? 0.0L : at->sigma * (Real)side * at->V / at->g;
 }
 
-static Real bound_rate(const At* at) { return at->B / at->sigma * at->bound_rate; }
+// Where a slipping bristle lies [m], and how fast that moves [m/s].
+static Real slip_bound(const World* w, const At* at) {
+    return (w->scene.law == LAW_ELASTIC_PLASTIC ? at->g : at->B) / at->sigma;
+}
+static Real slip_rate(const World* w, const At* at) {
+    return slip_bound(w, at) * (w->scene.law == LAW_ELASTIC_PLASTIC ? at->kinetic_rate : at->bound_rate);
+}
 
 // How fast [m/s] the law alone would carry a bristle that lies on the bound of this side beyond it.
 static Real outward(const World* w, Real t, int side) {
     const At at = scene_at(w, t, true);
     const Real forward = (Real)side * at.V;
     if (w->scene.law == LAW_ELASTIC_PLASTIC) {
-        return forward - bound_rate(&at);
+        return forward - slip_rate(w, &at);
     }
     const Real over = at.B / at.g; // at least 1
     const Real own = forward > 0.0L ? forward * (1.0L - over) : forward * (1.0L + over);
-    return own - bound_rate(&at);
+    return own - slip_rate(w, &at);
+}
+
+// The same on the bound of what sticks.
+static Real static_outward(const World* w, Real t, int side) {
+    const At at = scene_at(w, t, true);
+    return (Real)side * at.V - at.B / at.sigma * at.bound_rate;
+}
+
+// How far [m] the bristle is inside the bound of what does not slip, and of what slips.
+static Real gap(const World* w, Real t, Real delta, int side) {
+    const At at = scene_at(w, t, false);
+    return at.B / at.sigma - (Real)side * delta;
+}
+static Real kinetic_gap(const World* w, Real t, Real delta, int side) {
+    const At at = scene_at(w, t, false);
+    return at.g / at.sigma - (Real)side * delta;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Open or closed
+// ---------------------------------------------------------------------------------------------------------------------
+
+static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration, if d is given
+
+// The bristle, or Coulomb's limit, depends on the separation.
+static bool knows_contact(const ReferenceScene* s) {
+    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
+}
+
+static bool is_open(const World* w, Real t) {
+    const ReferenceScene* s = &w->scene;
+    if (!knows_contact(s)) {
+        return false;
+    }
+    if (s->input == INPUT_LOAD) {
+        return !(load_at(w, t) > 0.0L);
+    }
+    const AtModulus at = modulus_at(w, t);
+    const Real d = (Real)s->d + s->d_rate * t, force = at.force * expl(-w->decay * d);
+    return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
+}
+
+// The part of [0, h] in which the contact is closed; empty: from = to = h.
+typedef struct {
+    Real from, to;
+} Closed;
+
+static Closed closed_part(const World* w) {
+    const bool at_start = is_open(w, 0.0L), at_end = is_open(w, w->h);
+    if (at_start == at_end) {
+        return (Closed){at_start ? w->h : 0.0L, w->h};
+    }
+    Real low = 0.0L, high = w->h;
+    for (int k = 0; k < 200; k++) {
+        const Real middle = 0.5L * (low + high);
+        if (!(middle > low && middle < high)) {
+            break;
+        }
+        *(is_open(w, middle) == at_start ? &low : &high) = middle;
+    }
+    return at_start ? (Closed){high, w->h} : (Closed){0.0L, low};
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -343,8 +426,6 @@ typedef struct {
     Real impulse; // N s
     Real work;    // J
     Real heat;    // J
-    Real limit;   // N s, integral of F_C or mu F_n
-    Real peak;    // N, largest |sigma delta|
     // What errors of these are measured by: the length is that at the end, or what is kept of a longer one.
     Real length, force, power;
     Real blur; // m, of delta at the end by the rounding of time
@@ -356,10 +437,8 @@ static void add(Sums* sums, const Sums* part) {
     sums->impulse += part->impulse;
     sums->work += part->work;
     sums->heat += part->heat;
-    sums->limit += part->limit;
     sums->length = part->length;
     sums->blur = part->blur;
-    sums->peak = fmaxl(sums->peak, part->peak);
     sums->force += part->force;
     sums->power += part->power;
 }
@@ -410,18 +489,40 @@ static void account(const World* w, Sums* sums, const At* at, Real delta, Real r
     sums->impulse += time * (spring + viscous);
     sums->work += time * force * at->V;
     sums->heat += time * (spring * (at->V - rate) + (damping + viscous) * at->V);
-    sums->limit += time * at->coulomb;
-    sums->force += time * (fabsl(spring) + fabsl(viscous) + at->coulomb);
-    sums->power += time * (fabsl(spring) + fabsl(damping) + fabsl(viscous) + at->coulomb) *
+    sums->force += time * (fabsl(spring) + fabsl(viscous) + w->S);
+    sums->power += time * (fabsl(spring) + fabsl(damping) + fabsl(viscous) + w->S) *
                    (fabsl(at->V) + (spring == 0.0L ? 0.0L : fabsl(rate)));
-    sums->peak = fmaxl(sums->peak, fabsl(spring));
 }
 
-// What moves on a stretch between cuts: V has one sign; the bristle is free, or slips along the bound of a side.
+// What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound of a side.
 typedef struct {
     int sign; // of V
     int slip; // 0, +1, -1
 } Motion;
+
+// The deflections at the nodes of a panel by the bristle's own law.
+static void collocate(const World* w, const At* at, const Real* r, Real size, Real delta, Real* at_delta,
+                      Real* change) {
+    // Both the change Y of delta, Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j), and delta itself,
+    // delta_i = delta + size sum_j to_ij (V_j - r_j delta_j): what is the smaller has the more digits.
+    const int n = w->rule->stages;
+    Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES][2];
+    for (int i = 0; i < n; i++) {
+        Y[i][0] = 0.0L;
+        Y[i][1] = delta;
+        for (int j = 0; j < n; j++) {
+            const Real weight = size * w->rule->to[i][j];
+            Y[i][0] += weight * (at[j].V - r[j] * delta);
+            Y[i][1] += weight * at[j].V;
+            A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r[j];
+        }
+    }
+    solve(n, A, Y);
+    for (int i = 0; i < n; i++) {
+        at_delta[i] = fabsl(Y[i][0]) < fabsl(Y[i][1]) ? delta + Y[i][0] : Y[i][1];
+    }
+    *change = Y[n - 1][0];
+}
 
 static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
     const Rule* rule = w->rule;
@@ -429,41 +530,30 @@ static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
     const Real size = b - a;
     Sums sums = {0};
     At at[MOST_STAGES];
-    Real r[MOST_STAGES], rate[MOST_STAGES] = {0}, at_delta[MOST_STAGES] = {0};
-    bool relaxes = false;
+    Real r[MOST_STAGES] = {0}, rate[MOST_STAGES] = {0}, at_delta[MOST_STAGES] = {0};
     for (int i = 0; i < n; i++) {
         at[i] = scene_at(w, a + size * rule->node[i], motion->slip != 0);
-        r[i] = motion->slip ? 0.0L : relaxation(w, &at[i], motion->sign);
-        relaxes = relaxes || r[i] != 0.0L;
     }
     if (motion->slip) {
         for (int i = 0; i < n; i++) {
-            at_delta[i] = (Real)motion->slip * at[i].B / at[i].sigma;
-            rate[i] = (Real)motion->slip * bound_rate(&at[i]);
+            at_delta[i] = (Real)motion->slip * slip_bound(w, &at[i]);
+            rate[i] = (Real)motion->slip * slip_rate(w, &at[i]);
         }
         sums.change = at_delta[n - 1] - delta;
+    } else if (w->scene.law == LAW_ELASTIC_PLASTIC) {
+        for (int i = 0; i < n; i++) {
+            at_delta[i] = delta + travel(w, a, a + size * rule->node[i]);
+            rate[i] = at[i].V;
+        }
+        sums.change = travel(w, a, b);
     } else {
-        // Both the change Y of delta, Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j), and delta itself,
-        // delta_i = delta + size sum_j to_ij (V_j - r_j delta_j): what is the smaller has the more digits.
-        Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES][2];
         for (int i = 0; i < n; i++) {
-            Y[i][0] = 0.0L;
-            Y[i][1] = delta;
-            for (int j = 0; j < n; j++) {
-                const Real weight = size * rule->to[i][j];
-                Y[i][0] += weight * (at[j].V - r[j] * delta);
-                Y[i][1] += weight * at[j].V;
-                A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r[j];
-            }
+            r[i] = relaxation(w, &at[i], motion->sign);
         }
-        if (relaxes) {
-            solve(n, A, Y);
-        }
+        collocate(w, at, r, size, delta, at_delta, &sums.change);
         for (int i = 0; i < n; i++) {
-            at_delta[i] = fabsl(Y[i][0]) < fabsl(Y[i][1]) ? delta + Y[i][0] : Y[i][1];
             rate[i] = at[i].V - r[i] * at_delta[i];
         }
-        sums.change = Y[n - 1][0];
     }
     sums.end = at_delta[n - 1];
     Real relaxed = 0.0L, longest = fabsl(delta), fastest = 0.0L;
@@ -472,8 +562,9 @@ static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
         longest = fmaxl(longest, fabsl(at_delta[i]));
         fastest = fmaxl(fastest, fabsl(rate[i]));
     }
-    sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
-    sums.length = fmaxl(longest * expl(-relaxed), fmaxl(fabsl(sums.end), at[n - 1].g / at[n - 1].sigma));
+    const Real kept = expl(-relaxed);
+    sums.blur = fastest * kept * 2.0L * LDBL_EPSILON * b;
+    sums.length = fmaxl(longest * kept, fmaxl(fabsl(sums.end), at[n - 1].g / at[n - 1].sigma));
     for (int i = 0; i < n; i++) {
         account(w, &sums, &at[i], at_delta[i], rate[i], size * rule->weight[i]);
     }
@@ -483,20 +574,23 @@ static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
     return sums;
 }
 
-static const Real AGREE = 1e-15L; // the halves are then right to some 1e-18
+static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
 static const int DEEPEST = 110;
-static const Real MOST_PANELS = 2e5L; // from there on panels are taken as they come, which `unresolved` tells
+static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not known
 
-// Below this share of what the panel's mean force would do over the whole step lies the rounding of time.
-static const Real LEAST = 1e-17L;
+// An error in a panel is left alone when it is less than this share of the panel's mean force acting over the whole step.
+static const Real LEAST = 1e-16L;
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
-    const Real force = LEAST * two->force / size;
-    const Real impulse = AGREE * two->force + force * w->h, energy = AGREE * two->power + force * w->path;
-    return fabsl(one->end - two->end) <= AGREE * two->length + two->blur &&
-           fabsl(one->impulse - two->impulse) <= impulse && fabsl(one->limit - two->limit) <= impulse &&
-           fabsl(one->work - two->work) <= energy && fabsl(one->heat - two->heat) <= energy;
+    const Real least = w->fineness == 1 ? LEAST : 0.01L * LEAST,
+               same = w->fineness == 1 ? AGREE : 0.01L * AGREE;
+    const Real force = least * two->force / size;
+    const Real impulse = same * two->force + force * w->h,
+               energy = same * two->power + force * (w->path + two->length);
+    return fabsl(one->end - two->end) <= same * two->length + two->blur &&
+           fabsl(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
+           fabsl(one->heat - two->heat) <= energy;
 }
 
 static bool is_smallest(const World* w, Real a, Real b, int depth) {
@@ -509,16 +603,12 @@ typedef struct {
     World* w;
     Sums sums;
     Real delta;
-    bool watch[2]; // whether the bound of the side +1, -1 may be met
+    int slip;      // side along whose bound the bristle slips, or 0
+    bool slipped;  // at any time
+    bool watch[2]; // whether the bound of the side +1, -1 may be met, by a bristle of Dahl or LuGre
     int met;       // the side that was met, or 0
     Real met_at;   // when
-    Real changed;  // when the motion last changed between free and slip
 } March;
-
-static Real gap(const World* w, Real t, Real delta, int side) {
-    const At at = scene_at(w, t, false);
-    return at.B / at.sigma - (Real)side * delta;
-}
 
 static int side_met(const March* march, Real t, Real delta) {
     for (int k = 0; k < 2; k++) {
@@ -537,12 +627,17 @@ static void commit(March* march, const Sums* part) {
 
 static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth);
 
+static void go_over(March* march, const Motion* motion, Real a, Real b) {
+    const Sums one = panel(march->w, motion, a, b, march->delta);
+    go_on(march, motion, a, b, &one, 0);
+}
+
 // The bristle is inside its bound at a and beyond it at b: goes on to where it meets it.
 static void go_to_bound(March* march, const Motion* motion, Real a, Real b, int side) {
     World* w = march->w;
     Real low = a, high = b;
-    Real gap_low = gap(march->w, a, march->delta, side);
-    Real gap_high = gap(march->w, b, panel(w, motion, a, b, march->delta).end, side);
+    Real gap_low = gap(w, a, march->delta, side);
+    Real gap_high = gap(w, b, panel(w, motion, a, b, march->delta).end, side);
     if (gap_low <= 0.0L) {
         high = a;
     }
@@ -554,7 +649,7 @@ static void go_to_bound(March* march, const Motion* motion, Real a, Real b, int 
         if (!(t > low && t < high)) {
             break;
         }
-        const Real found = gap(march->w, t, panel(w, motion, a, t, march->delta).end, side);
+        const Real found = gap(w, t, panel(w, motion, a, t, march->delta).end, side);
         if (found == 0.0L) {
             low = high = t;
         } else if (found < 0.0L) {
@@ -567,18 +662,16 @@ static void go_to_bound(March* march, const Motion* motion, Real a, Real b, int 
             gap_high *= 0.5L;
         }
     }
-    march->met = side;
-    march->met_at = high;
-    if (march->met_at > a) {
+    const Real met_at = high;
+    if (met_at > a) {
         const bool kept[2] = {march->watch[0], march->watch[1]};
         march->watch[0] = march->watch[1] = false;
-        const Sums last = panel(w, motion, a, march->met_at, march->delta);
-        march->met = 0;
-        go_on(march, motion, a, march->met_at, &last, 0);
-        march->met = side;
+        go_over(march, motion, a, met_at);
         march->watch[0] = kept[0];
         march->watch[1] = kept[1];
     }
+    march->met = side;
+    march->met_at = met_at;
 }
 
 // Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a bristle that is free
@@ -590,17 +683,13 @@ static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums
     const Sums right = panel(w, motion, middle, b, left.end);
     Sums two = left;
     add(&two, &right);
-    const bool smallest = is_smallest(w, a, b, depth);
-    if (!agree(w, one, &two, b - a) && !smallest) {
+    if (!agree(w, one, &two, b - a) && !is_smallest(w, a, b, depth)) {
         go_on(march, motion, a, middle, &left, depth + 1);
         if (!march->met) {
             const Sums again = motion->slip ? right : panel(w, motion, middle, b, march->delta);
             go_on(march, motion, middle, b, &again, depth + 1);
         }
         return;
-    }
-    if (smallest) {
-        w->unresolved += 1.0L;
     }
     const int side_left = motion->slip ? 0 : side_met(march, middle, left.end);
     if (side_left) {
@@ -642,13 +731,13 @@ static int by_time(const void* a, const void* b) {
     return (x > y) - (x < y);
 }
 
-// Sorted, without repetition, inside [0, h].
-static void tidy(Cuts* cuts, Real h) {
+// Sorted, without repetition, inside the part.
+static void tidy(Cuts* cuts, Closed part) {
     qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
     size_t kept = 0;
     for (size_t k = 0; k < cuts->count; k++) {
         const Real t = cuts->time[k];
-        if (t >= 0.0L && t <= h && (kept == 0 || t > cuts->time[kept - 1])) {
+        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
             cuts->time[kept++] = t;
         }
     }
@@ -680,16 +769,15 @@ static Real velocity_less(const World* w, Real t, Real shift, int side) {
 
 static Real outward_less(const World* w, Real t, Real shift, int side) { return outward(w, t, side) - shift; }
 
+static Real static_outward_less(const World* w, Real t, Real shift, int side) {
+    return static_outward(w, t, side) - shift;
+}
+
 // Where dV/dt = 0, where the vibration turns, and equal pieces in between.
 static void cut_at_bends(const World* w, Cuts* cuts) {
     const ReferenceScene* s = &w->scene;
-    const int pieces = 8 * w->fineness;
-    cut(cuts, 0.0L);
-    cut(cuts, w->h);
-    for (int k = 1; k < pieces; k++) {
-        cut(cuts, w->h * (Real)k / (Real)pieces);
-    }
-    if (s->V_1 == 0.0 && s->a_d == 0.0) {
+    const int pieces = 4 * w->fineness;
+    if (!vibrates(s)) {
         return;
     }
     const long first = (long)floorl(w->theta_0 / (2.0L * PI)) - 1;
@@ -709,8 +797,7 @@ static void cut_at_bends(const World* w, Cuts* cuts) {
 
 // Where V is a multiple of V_S, and 0; V is monotone between the cuts so far.
 static void cut_at_velocities(const World* w, Cuts* cuts) {
-    static const Real MULTIPLES[] = {0.125L, 0.25L, 0.5L, 0.75L, 1.0L, 1.5L, 2.0L,
-                                     3.0L,   4.0L,  5.0L, 6.5L,  8.0L, 10.0L};
+    static const Real MULTIPLES[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
     const size_t count = cuts->count;
     for (size_t k = 0; k + 1 < count; k++) {
         const Real a = cuts->time[k], b = cuts->time[k + 1];
@@ -731,25 +818,25 @@ static void cut_at_velocities(const World* w, Cuts* cuts) {
 
 // Cuts at the zeros of a function between a and b that the samples at the ends of cells show, also where it only just
 // passes zero between two of them: the extreme next to a sample is searched.
-static void cut_at_zeros(const World* w, Cuts* cuts, int side, Real a, Real b) {
+static void cut_at_zeros(const World* w, Cuts* cuts, Function* function, int side, Real a, Real b) {
     const int cells = 12 * w->fineness;
-    Real before = 0.0L, t_before = a, here = outward(w, a, side), t_here = a;
+    Real before = 0.0L, t_before = a, here = function(w, a, 0.0L, side), t_here = a;
     for (int k = 1; k <= cells; k++) {
         const Real t = k == cells ? b : 0.5L * (a + b) - 0.5L * (b - a) * cosl(PI * (Real)k / (Real)cells);
-        const Real next = outward(w, t, side);
+        const Real next = function(w, t, 0.0L, side);
         if (here * next < 0.0L) {
-            cut(cuts, root(w, outward_less, 0.0L, side, t_here, t));
+            cut(cuts, root(w, function, 0.0L, side, t_here, t));
         } else if (k >= 2 && here * before > 0.0L && fabsl(here) <= fabsl(before) &&
                    fabsl(here) <= fabsl(next)) {
-            // a local least of |outward| next to the middle sample: golden section
+            // a local least of |function| next to the middle sample: golden section
             Real low = t_before, high = t;
             for (int i = 0; i < 60; i++) {
                 const Real x = low + 0.381966L * (high - low), y = high - 0.381966L * (high - low);
-                const Real at_x = outward(w, x, side), at_y = outward(w, y, side);
+                const Real at_x = function(w, x, 0.0L, side), at_y = function(w, y, 0.0L, side);
                 if (at_x * here < 0.0L || at_y * here < 0.0L) {
                     const Real inside = at_x * here < 0.0L ? x : y;
-                    cut(cuts, root(w, outward_less, 0.0L, side, low, inside));
-                    cut(cuts, root(w, outward_less, 0.0L, side, inside, high));
+                    cut(cuts, root(w, function, 0.0L, side, low, inside));
+                    cut(cuts, root(w, function, 0.0L, side, inside, high));
                     break;
                 }
                 if (fabsl(at_x) < fabsl(at_y)) {
@@ -766,29 +853,443 @@ static void cut_at_zeros(const World* w, Cuts* cuts, int side, Real a, Real b) {
     }
 }
 
-static Cuts all_cuts(const World* w) {
+// Of [0, h], or of the part in which the contact is closed.
+static Cuts all_cuts(const World* w, Closed part) {
     Cuts cuts = {0};
     const ReferenceScene* s = &w->scene;
+    const Real span = part.to - part.from;
+    cut(&cuts, part.from);
+    cut(&cuts, part.to);
     cut_at_bends(w, &cuts);
-    tidy(&cuts, w->h);
-    cut_at_velocities(w, &cuts);
     if (s->load_rate != 0.0 || s->E_rate != 0.0 || s->d_rate != 0.0) {
-        // a load or a modulus may fall by decades toward the end, or rise by as much from the start
-        for (int k = 1; k <= 30; k++) {
-            cut(&cuts, ldexpl(w->h, -k));
-            cut(&cuts, w->h - ldexpl(w->h, -k));
+        // a load may fall by decades toward the end, or rise by as much from the start
+        for (int k = 1; k <= 60; k += 2) {
+            cut(&cuts, part.from + ldexpl(span, -k));
+            cut(&cuts, part.to - ldexpl(span, -k));
         }
     }
-    tidy(&cuts, w->h);
-    if (w->bounded) {
-        const size_t count = cuts.count;
-        for (size_t k = 0; k + 1 < count; k++) {
-            cut_at_zeros(w, &cuts, 1, cuts.time[k], cuts.time[k + 1]);
-            cut_at_zeros(w, &cuts, -1, cuts.time[k], cuts.time[k + 1]);
+    tidy(&cuts, part);
+    cut_at_velocities(w, &cuts);
+    tidy(&cuts, part);
+    const bool elastic = s->law == LAW_ELASTIC_PLASTIC;
+    const size_t count = cuts.count;
+    for (size_t k = 0; (elastic || w->bounded) && k + 1 < count; k++) {
+        for (int side = -1; side <= 1; side += 2) {
+            cut_at_zeros(w, &cuts, outward_less, side, cuts.time[k], cuts.time[k + 1]);
+            if (elastic && w->excess != 0.0L) {
+                cut_at_zeros(w, &cuts, static_outward_less, side, cuts.time[k], cuts.time[k + 1]);
+            }
         }
-        tidy(&cuts, w->h);
     }
+    tidy(&cuts, part);
     return cuts;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The march over the part of a step in which the contact is closed
+// ---------------------------------------------------------------------------------------------------------------------
+
+static void stretch_of_bounded(March* march, Real a, Real b) {
+    World* w = march->w;
+    const Real middle = 0.5L * (a + b);
+    Motion motion = {.sign = sign_of(velocity(w, middle))};
+    march->watch[0] = w->bounded && !w->open_ends && outward(w, middle, 1) > 0.0L;
+    march->watch[1] = w->bounded && !w->open_ends && outward(w, middle, -1) > 0.0L;
+    march->met = 0;
+    if (march->slip && !march->watch[march->slip == 1 ? 0 : 1]) {
+        march->slip = 0;
+    }
+    if (!march->slip) {
+        go_over(march, &motion, a, b);
+        march->slip = march->met;
+        a = march->met ? march->met_at : b;
+        march->met = 0;
+    }
+    if (march->slip) {
+        march->slipped = true;
+        if (a < b) {
+            motion.slip = march->slip;
+            go_over(march, &motion, a, b);
+        }
+    }
+}
+
+typedef Real Gap(const World* w, Real t, Real delta, int side);
+
+// When a bristle that moves with V, and is inside at a, comes to its bound; b if it does not. The gap is monotone.
+static Real arrival(const March* march, Gap* gap_of, int side, Real a, Real b) {
+    const World* w = march->w;
+    if (!(gap_of(w, b, march->delta + travel(w, a, b), side) < 0.0L)) {
+        return b;
+    }
+    Real low = a, high = b;
+    for (int k = 0; k < 120; k++) {
+        const Real middle = 0.5L * (low + high);
+        if (!(middle > low && middle < high)) {
+            break;
+        }
+        *(gap_of(w, middle, march->delta + travel(w, a, middle), side) < 0.0L ? &high : &low) = middle;
+    }
+    return high;
+}
+
+// The bristle drops to the bound of what slips, at a time: the limit of a fast motion, which the damping feels.
+static void break_away(March* march, Real t, int side) {
+    const At at = scene_at(march->w, t, false);
+    const Real from = march->delta, to = (Real)side * at.g / at.sigma;
+    march->delta = to;
+    march->slip = side;
+    march->slipped = true;
+    if (march->w->excess != 0.0L) {
+        const Real damping = march->w->scene.sigma_1 * (to - from);
+        march->sums.impulse += damping;
+        march->sums.work += damping * at.V;
+        march->sums.heat += damping * at.V + 0.5L * at.sigma * (from - to) * (from + to);
+    }
+}
+
+static void stretch_of_elastic(March* march, Real a, Real b) {
+    World* w = march->w;
+    const Real middle = 0.5L * (a + b);
+    const bool leaves[2] = {outward(w, middle, 1) > 0.0L, outward(w, middle, -1) > 0.0L};
+    const Motion stuck = {.sign = sign_of(velocity(w, middle))};
+    while (a < b) {
+        const int side = march->slip;
+        if (side != 0 && !leaves[side == 1 ? 0 : 1]) {
+            march->slip = 0;
+        } else if (side != 0) {
+            march->slipped = true;
+            // on the bound, or catching up
+            const Real missing = kinetic_gap(w, a, march->delta, side);
+            Real until = missing > 1e-18L * fabsl(march->delta) ? arrival(march, kinetic_gap, side, a, b) : a;
+            if (until > a) {
+                go_over(march, &stuck, a, until);
+                a = until;
+            }
+            if (a < b) {
+                const Motion slip = {.sign = stuck.sign, .slip = side};
+                go_over(march, &slip, a, b);
+                a = b;
+            }
+        } else {
+            Real until = b;
+            int breaks = 0;
+            for (int k = -1; k <= 1 && !w->open_ends; k += 2) {
+                const Real when = arrival(march, gap, k, a, b);
+                if (when < until || (gap(w, b, march->delta + travel(w, a, b), k) < 0.0L && when <= until)) {
+                    until = when;
+                    breaks = k;
+                }
+            }
+            if (until > a) {
+                go_over(march, &stuck, a, until);
+            }
+            if (breaks) {
+                break_away(march, until, breaks);
+            }
+            a = until;
+        }
+    }
+}
+
+// From a march's delta and slip through the closed part.
+static void march_over(March* march, Closed part) {
+    World* w = march->w;
+    Cuts cuts = all_cuts(w, part);
+    for (size_t k = 0; k + 1 < cuts.count; k++) {
+        if (w->scene.law == LAW_ELASTIC_PLASTIC) {
+            stretch_of_elastic(march, cuts.time[k], cuts.time[k + 1]);
+        } else {
+            stretch_of_bounded(march, cuts.time[k], cuts.time[k + 1]);
+        }
+    }
+    free(cuts.time);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Many equal periods
+// ---------------------------------------------------------------------------------------------------------------------
+
+// A period maps delta in a monotone way, and as long as it touches no bound in an affine one: delta - fixed to kept (delta -
+// fixed), or delta to delta + shift. Its sums are then polynomials of degree 2 in delta, of degree 1 without relaxation.
+typedef struct {
+    World world;
+    bool drifts;                // kept is 1
+    Real shift, fixed, relaxed; // relaxed: 1 - kept
+} Period;
+
+static March one_period(Period* p, Real delta, int slip, bool open_ends) {
+    March march = {.w = &p->world, .delta = delta, .slip = slip};
+    p->world.open_ends = open_ends;
+    march_over(&march, (Closed){0.0L, p->world.h});
+    p->world.open_ends = false;
+    return march;
+}
+
+static void find_map(Period* p, Real delta) {
+    const ReferenceScene* s = &p->world.scene;
+    const At at = scene_at(&p->world, 0.0L, false);
+    p->drifts = s->law == LAW_ELASTIC_PLASTIC || (s->V == 0.0 && s->V_1 == 0.0);
+    p->shift = p->drifts ? travel(&p->world, 0.0L, p->world.h) : 0.0L;
+    if (s->V_1 != 0.0 && s->V == 0.0) {
+        p->shift = 0.0L;
+    }
+    Real x = delta;
+    for (int k = 0; k < 3 && !p->drifts; k++) { // once would do but for rounding
+        const Real y = x + at.g / at.sigma;
+        const Real change_x = one_period(p, x, 0, true).sums.change;
+        p->relaxed = (change_x - one_period(p, y, 0, true).sums.change) / (y - x);
+        p->fixed = x = x + change_x / p->relaxed;
+    }
+}
+
+static Real after_periods(const Period* p, Real delta, Real n) {
+    if (p->drifts) {
+        return delta + n * p->shift;
+    }
+    return p->fixed + (delta - p->fixed) * (p->relaxed < 1.0L ? expl(n * log1pl(-p->relaxed)) : 0.0L);
+}
+
+static bool touches(Period* p, Real delta) { return one_period(p, delta, 0, false).slipped; }
+
+// 1 + x + .. + x^(n - 1), x = 1 - relaxed.
+static Real geometric(Real relaxed, Real n) {
+    return relaxed >= 1.0L ? 1.0L : relaxed == 0.0L ? n : -expm1l(n * log1pl(-relaxed)) / relaxed;
+}
+
+static void add_times(Sums* sums, const Sums* one, Real factor) {
+    sums->impulse += factor * one->impulse;
+    sums->work += factor * one->work;
+    sums->heat += factor * one->heat;
+}
+
+// The sums of n periods from delta, none of which touches a bound.
+static void add_untouched(Period* p, Real delta, Real n, Sums* sums) {
+    if (p->drifts) {
+        const Real far =
+            n > 1.0L ? (n - 1.0L) * p->shift : 0.0L; // linear in delta: the mean of the first and the last
+        const March first = one_period(p, delta, 0, true), last = one_period(p, delta + far, 0, true);
+        add_times(sums, &first.sums, 0.5L * n);
+        add_times(sums, &last.sums, 0.5L * n);
+        return;
+    }
+    const Real off = delta - p->fixed, first = geometric(p->relaxed, n);
+    const Real second = geometric(p->relaxed * (2.0L - p->relaxed), n);
+    const March at = one_period(p, p->fixed, 0, true), above = one_period(p, p->fixed + off, 0, true);
+    const March below = one_period(p, p->fixed - off, 0, true);
+    add_times(sums, &at.sums, n - second);
+    add_times(sums, &above.sums, 0.5L * (second + first));
+    add_times(sums, &below.sums, 0.5L * (second - first));
+}
+
+enum { MOST_CYCLE = 4096 };
+
+typedef struct {
+    Real delta;
+    int slip;
+    Real count; // periods before it
+    Sums sums;  // up to it
+} Mark;
+
+// How many periods from delta touch no bound, at the most n, at least 1: the first one touches none.
+static Real untouched(Period* p, Real delta, Real n) {
+    Real low = 1.0L, high = 2.0L;
+    if (p->drifts ? p->shift == 0.0L : !touches(p, p->fixed)) {
+        return n;
+    }
+    while (high < n &&
+           !touches(p, after_periods(p, delta, high - 1.0L))) { // the period number high touches none
+        low = high;
+        high *= 2.0L;
+        if (high > 1e30L) {
+            return n;
+        }
+    }
+    high = fminl(high, n + 1.0L); // number n + 1 is not asked of
+    while (high - low > 1.0L) {
+        const Real middle = floorl(0.5L * (low + high));
+        *(touches(p, after_periods(p, delta, middle - 1.0L)) ? &high : &low) = middle;
+    }
+    return low;
+}
+
+// Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
+// the state that at the end of the first of them. False where none repeat.
+static bool go_periods(Period* p, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle, Real* length) {
+    Mark* marks = malloc(MOST_CYCLE * sizeof *marks);
+    Real done = 0.0L;
+    int count = 0;
+    if (marks == NULL) {
+        abort();
+    }
+    find_map(p, *delta);
+    bool known = true;
+    while (done < n) {
+        const March march = one_period(p, *delta, *slip, false);
+        if (!march.slipped) {
+            const Real many = untouched(p, *delta, n - done);
+            if (isinf(many)) {
+                const Real settles = p->drifts ? *delta : p->fixed;
+                *cycle = one_period(p, settles, 0, true).sums;
+                *length = 1.0L;
+                *delta = settles;
+                break;
+            }
+            add_untouched(p, *delta, many, sums);
+            *delta = after_periods(p, *delta, many);
+            done += many;
+            continue;
+        }
+        add_times(sums, &march.sums, 1.0L);
+        *delta = march.delta;
+        *slip = march.slip;
+        done += 1.0L;
+        const Real size = scene_at(&p->world, 0.0L, false).B / scene_at(&p->world, 0.0L, false).sigma;
+        int k = count - 1;
+        while (k >= 0 && !(marks[k].slip == *slip &&
+                           fabsl(marks[k].delta - *delta) <= 1e-16L * (size + fabsl(*delta)))) {
+            k--;
+        }
+        if (k >= 0) {
+            Sums between = *sums;
+            add_times(&between, &marks[k].sums, -1.0L);
+            const Real periods = done - marks[k].count;
+            *cycle = between;
+            *length = periods;
+            if (isinf(n)) {
+                break;
+            }
+            const Real times = floorl((n - done) / periods);
+            add_times(sums, &between, times);
+            done += times * periods;
+            count = 0;
+        } else if (count == MOST_CYCLE || p->world.panels > MOST_PANELS) {
+            known = false;
+            break;
+        } else {
+            marks[count++] = (Mark){*delta, *slip, done, *sums};
+        }
+    }
+    free(marks);
+    return known;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// An input that jumps: the limit of a fast ramp
+// ---------------------------------------------------------------------------------------------------------------------
+
+// The ends of the ramp: what is linear, and what is so in its logarithm.
+typedef struct {
+    Real V, d, E;
+    Real ln_limit, ln_scale, ln_ratio, ln_V_S; // of F_C or mu, of the stiffness's factor, of R and V_S
+} Corner;
+
+static Corner corner_of(const World* w) {
+    const ReferenceScene* s = &w->scene;
+    const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
+    const Real rest =
+        s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
+    Corner corner = {.V = velocity(w, 0.0L), .d = rest + swing, .E = s->E};
+    corner.ln_limit = logl(s->limit == LIMIT_LOAD ? s->mu : s->F_C);
+    corner.ln_scale = logl(s->contact == CONTACT_CONSTANT ? s->contact_sigma : s->stiffnessScale);
+    corner.ln_ratio = logl(1.0L + w->excess);
+    corner.ln_V_S = logl(s->V_S);
+    return corner;
+}
+
+typedef struct {
+    const World* w;
+    Corner from, to;
+} Ramp;
+
+typedef struct {
+    Real g, sigma, B;
+} OnRamp;
+
+static OnRamp ramp_at(const Ramp* ramp, Real x) {
+#define LINEAR(name) (ramp->from.name + x * (ramp->to.name - ramp->from.name))
+    ReferenceScene s = ramp->w->scene;
+    s.stiffnessScale = 1.0;
+    s.contact_sigma = 1.0;
+    const AtModulus at = at_modulus(&s, LINEAR(E));
+    const Real d = LINEAR(d), force = at.force * expl(-ramp->w->decay * d);
+    const Real ratio = expl(LINEAR(ln_ratio)), slow = LINEAR(V) / expl(LINEAR(ln_V_S));
+    const Real coulomb = expl(LINEAR(ln_limit)) * (s.limit == LIMIT_LOAD ? force : 1.0L);
+    OnRamp on = {.sigma = expl(LINEAR(ln_scale)) * stiffness_at(&s, &at, force, d), .B = ratio * coulomb};
+    on.g = s.law == LAW_ELASTIC_PLASTIC ? coulomb * (1.0L + (ratio - 1.0L) * expl(-slow * slow)) : on.B;
+    return on;
+#undef LINEAR
+}
+
+// Integral of g |dD| over [a, b], D = g / sigma: the trapezoidal rule, extrapolated.
+static Real heat_along(const Ramp* ramp, Real a, Real b) {
+    enum { LEVELS = 9 };
+    Real table[LEVELS];
+    for (int level = 0; level < LEVELS; level++) {
+        const int cells = 1 << level;
+        Real sum = 0.0L;
+        OnRamp left = ramp_at(ramp, a);
+        for (int k = 1; k <= cells; k++) {
+            const OnRamp right = ramp_at(ramp, a + (b - a) * (Real)k / (Real)cells);
+            sum += 0.5L * (left.g + right.g) * (left.g / left.sigma - right.g / right.sigma);
+            left = right;
+        }
+        Real last = level > 0 ? table[level - 1] : 0.0L, power = 1.0L;
+        for (int k = 0; k < level; k++) { // Romberg's row, in place from the coarsest on
+            power *= 4.0L;
+            const Real kept = table[k];
+            table[k] = sum;
+            sum += (sum - kept) / (power - 1.0L);
+        }
+        table[level] = sum;
+        if (level > 2 && fabsl(sum - last) <= 1e-16L * fabsl(sum)) {
+            return sum;
+        }
+    }
+    return table[LEVELS - 1];
+}
+
+static bool is_beyond(const Ramp* ramp, Real x, Real length, bool sticks) {
+    const OnRamp on = ramp_at(ramp, x);
+    return (sticks ? on.B : on.g) / on.sigma < length;
+}
+
+// Moves the bristle along the ramp from before to the start of w; returns the heat.
+static Real ride(const World* before, const World* w, Real* delta, int* slip) {
+    enum { CELLS = 64 };
+    const Ramp ramp = {w, corner_of(before), corner_of(w)};
+    Real heat = 0.0L, length = fabsl(*delta);
+    const int side = sign_of(*delta);
+    bool sticks = w->scene.law == LAW_ELASTIC_PLASTIC && w->excess + before->excess > 0.0L && *slip == 0;
+    for (int k = 0; k < CELLS; k++) {
+        Real from = (Real)k / CELLS;
+        const Real to = (Real)(k + 1) / CELLS;
+        while (is_beyond(&ramp, to, length, sticks)) {
+            Real low = from, high = to;
+            for (int i = 0; i < 100 && is_beyond(&ramp, from, length, sticks) == false; i++) {
+                const Real middle = 0.5L * (low + high);
+                if (!(middle > low && middle < high)) {
+                    break;
+                }
+                *(is_beyond(&ramp, middle, length, sticks) ? &high : &low) = middle;
+            }
+            from = is_beyond(&ramp, from, length, sticks) ? from : high;
+            const OnRamp there = ramp_at(&ramp, from);
+            const Real bound = there.g / there.sigma;
+            if (sticks) {
+                heat += 0.5L * there.sigma * (length - bound) * (length + bound);
+                length = bound;
+                sticks = false;
+                *slip = side;
+                continue;
+            }
+            heat += heat_along(&ramp, from, to);
+            const OnRamp end = ramp_at(&ramp, to);
+            length = end.g / end.sigma;
+        }
+    }
+    *delta = (Real)side * length;
+    return heat;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -799,7 +1300,12 @@ static Real whole_path(const World* w) {
     World still = *w; // Stribeck's curve and the bound ask for cuts that the path needs not
     still.excess = 0.0L;
     still.bounded = false;
-    Cuts cuts = all_cuts(&still);
+    still.scene.law = LAW_COULOMB;
+    still.scene.d_rate = still.scene.E_rate = still.scene.load_rate = 0.0;
+    if (still.scene.V_1 == 0.0) {
+        still.scene.a_d = 0.0;
+    }
+    Cuts cuts = all_cuts(&still, (Closed){0.0L, w->h});
     Real path = 0.0L;
     for (size_t k = 0; k + 1 < cuts.count; k++) {
         path += fabsl(travel(w, cuts.time[k], cuts.time[k + 1]));
@@ -808,10 +1314,50 @@ static Real whole_path(const World* w) {
     return path;
 }
 
-static World make_world(const ReferenceScene* scene, int fineness) {
-    World w = {.scene = *scene, .h = scene->h, .fineness = fineness};
+// Mean of the limit over a period of the vibration with the inputs of a time [N].
+static Real mean_limit(const World* w, Real t) {
+    const ReferenceScene* s = &w->scene;
+    if (s->limit == LIMIT_CONSTANT) {
+        return s->F_C;
+    }
+    if (is_open(w, t)) {
+        return 0.0L;
+    }
+    if (s->input == INPUT_LOAD) {
+        return s->mu * load_at(w, t);
+    }
+    const AtModulus at = modulus_at(w, t);
+    return s->mu * at.force * w->swell * expl(-w->decay * ((Real)s->d + s->d_rate * t));
+}
+
+static Real largest_force(const World* w, Real delta) {
+    const ReferenceScene* s = &w->scene;
+    const Real V_end = (Real)s->V + s->V_rate * w->h;
+    const Real top = fmaxl(fabsl((Real)s->V), fabsl(V_end)) + fabsl((Real)s->V_1);
+    Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
+    if (s->law != LAW_COULOMB && !is_open(w, 0.0L)) {
+        S = fmaxl(S, scene_at(w, 0.0L, false).sigma * fabsl(delta));
+    }
+    return fmaxl(S, ((s->law == LAW_COULOMB ? 0.0L : (Real)s->sigma_1) + s->sigma_2) * top);
+}
+
+// The same with its inputs held.
+static World held_world(const World* w, Real h) {
+    World held = *w;
+    held.scene.V_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate = 0.0;
+    held.no_load = -INFINITY;
+    held.h = h;
+    return held;
+}
+
+static bool has_many_periods(const World* w) {
+    return is_held(&w->scene) && vibrates(&w->scene) && w->h * w->scene.f > 4.0L;
+}
+
+static World make_world(const ReferenceScene* scene, Real h, int fineness) {
+    World w = {.scene = *scene, .h = h, .fineness = fineness};
     const bool bristle = scene->law == LAW_DAHL || scene->law == LAW_LUGRE;
-    w.bounded = scene->law == LAW_ELASTIC_PLASTIC || (bristle && scene->binds && scene->limit == LIMIT_LOAD);
+    w.bounded = bristle && scene->limit == LIMIT_LOAD;
     w.excess =
         scene->law == LAW_LUGRE || scene->law == LAW_ELASTIC_PLASTIC ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
@@ -824,178 +1370,198 @@ static World make_world(const ReferenceScene* scene, int fineness) {
     w.swell = bessel_I0(w.decay * scene->a_d);
     w.held = at_modulus(scene, scene->E);
     w.rule = rule_of(fineness == 1 ? 10 : 12);
-    w.path = whole_path(&w);
+    const Real load_end = (Real)scene->load + scene->load_rate * h;
+    w.no_load = (scene->load > 0.0) != (load_end > 0.0L) && scene->load_rate != 0.0
+                    ? -(Real)scene->load / scene->load_rate
+                    : -INFINITY;
     return w;
 }
 
-static Real inside_bound(const World* w, Real delta) {
-    if (!w->bounded) {
-        return delta;
+static void find_path(World* w) {
+    if (!has_many_periods(w)) {
+        w->path = whole_path(w);
+        return;
     }
-    const At at = scene_at(w, 0.0L, false);
-    const Real bound = at.B / at.sigma;
-    return fminl(fmaxl(delta, -bound), bound);
+    World part = *w;
+    const Real n = floorl(w->h * w->scene.f);
+    part.h = 1.0L / w->scene.f;
+    w->path = n * whole_path(&part);
+    part.h = w->h - n * part.h;
+    w->path += part.h > 0.0L ? whole_path(&part) : 0.0L;
 }
 
-static int sign_of(Real x) { return (x > 0.0L) - (x < 0.0L); }
-
-// Marches over the step from delta; returns the side along which the bristle slips at the end.
-static int march_over(World* w, Real delta, March* march) {
-    *march = (March){.w = w, .delta = inside_bound(w, delta), .changed = -1.0L};
-    Cuts cuts = all_cuts(w);
-    int slip = 0;
-    if (w->bounded) {
-        const At at = scene_at(w, 0.0L, false);
-        march->sums.heat = 0.5L * at.sigma * (delta - march->delta) * (delta + march->delta);
-        slip = fabsl(delta) >= at.B / at.sigma ? sign_of(delta) : 0;
+// Over [a, b], open: viscous friction, and Coulomb's if its limit is constant; Coulomb's law also while closed.
+static void without_bristle(const World* w, Real a, Real b, Sums* sums) {
+    if (!(b > a)) {
+        return;
     }
+    World still = *w;
+    still.excess = 0.0L;
+    still.bounded = false;
+    still.scene.law = LAW_COULOMB;
+    const bool open = is_open(w, 0.5L * (a + b));
+    Cuts cuts = all_cuts(&still, (Closed){a, b});
     for (size_t k = 0; k + 1 < cuts.count; k++) {
-        Real a = cuts.time[k];
-        const Real b = cuts.time[k + 1], middle = 0.5L * (a + b);
-        Motion motion = {.sign = sign_of(velocity(w, middle))};
-        march->watch[0] = w->bounded && outward(w, middle, 1) > 0.0L;
-        march->watch[1] = w->bounded && outward(w, middle, -1) > 0.0L;
-        march->met = 0;
-        if (slip && !march->watch[slip == 1 ? 0 : 1]) {
-            slip = 0;
-            march->changed = a;
-        }
-        if (!slip) {
-            const Sums one = panel(w, &motion, a, b, march->delta);
-            go_on(march, &motion, a, b, &one, 0);
-            slip = march->met;
-            march->met = 0;
-            if (slip) {
-                march->changed = a = march->met_at;
+        const int pieces = 4 * w->fineness;
+        const Real sign = (Real)sign_of(velocity(w, 0.5L * (cuts.time[k] + cuts.time[k + 1])));
+        const Real size = (cuts.time[k + 1] - cuts.time[k]) / (Real)pieces;
+        for (int i = 0; i < pieces * w->rule->stages; i++) {
+            const Real at_piece = (Real)(i / w->rule->stages);
+            const Real t = cuts.time[k] + size * (at_piece + w->rule->node[i % w->rule->stages]);
+            const Real time = size * w->rule->weight[i % w->rule->stages], V = velocity(w, t);
+            Real limit = 0.0L;
+            if (w->scene.law == LAW_COULOMB) {
+                limit = w->scene.limit == LIMIT_CONSTANT ? w->scene.F_C
+                        : open                           ? 0.0L
+                                                         : scene_at(w, t, false).coulomb;
             }
-        }
-        if (slip && a < b) {
-            motion.slip = slip;
-            const Sums one = panel(w, &motion, a, b, march->delta);
-            go_on(march, &motion, a, b, &one, 0);
+            const Real force = sign * limit + w->scene.sigma_2 * V;
+            sums->impulse += time * force;
+            sums->work += time * force * V;
+            sums->heat += time * force * V;
         }
     }
     free(cuts.time);
-    return slip;
 }
 
-static Real force_at(const World* w, Real t, Real delta, int slip) {
+// Open and closed parts alike; for many equal periods of all that has no bristle.
+static void coulomb_over(const World* w, Sums* sums) {
+    if (has_many_periods(w)) {
+        Sums one = {0};
+        const Real n = floorl(w->h * w->scene.f), T = 1.0L / w->scene.f;
+        without_bristle(w, 0.0L, T, &one);
+        add_times(sums, &one, n);
+        without_bristle(w, 0.0L, w->h - n * T, sums);
+        return;
+    }
+    const Closed part = closed_part(w);
+    without_bristle(w, 0.0L, part.from, sums);
+    without_bristle(w, part.from, part.to, sums);
+    without_bristle(w, part.to, w->h, sums);
+}
+
+// F_t [N] at a time.
+static Real force_at(const World* w, Real t, Real delta, int slip, bool open) {
     const ReferenceScene* s = &w->scene;
+    const Real V = velocity(w, t);
+    if (s->law == LAW_COULOMB) {
+        const Real limit = s->limit == LIMIT_CONSTANT ? s->F_C : open ? 0.0L : scene_at(w, t, false).coulomb;
+        return (Real)sign_of(V) * limit + s->sigma_2 * V;
+    }
+    if (open) {
+        return s->sigma_2 * V;
+    }
     const At at = scene_at(w, t, true);
     Real rate = at.V - relaxation(w, &at, sign_of(at.V)) * delta;
-    if (slip) {
-        rate = (Real)slip * bound_rate(&at);
+    const bool on_bound = slip &&
+                          fabsl((Real)slip * slip_bound(w, &at) - delta) <= 1e-11L * slip_bound(w, &at) &&
+                          outward(w, t, slip) > 0.0L;
+    if (on_bound) {
+        rate = (Real)slip * slip_rate(w, &at);
     }
     return at.sigma * delta + s->sigma_1 * rate + s->sigma_2 * at.V;
 }
 
+// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
+static Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
+    const ReferenceScene* s = &w->scene;
+    const bool elastic = s->law == LAW_ELASTIC_PLASTIC;
+    const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
+    if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
+        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
+        const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
+        *delta = 0.0L;
+        *slip = 0;
+        return heat;
+    }
+    if (!elastic && !w->bounded) {
+        return 0.0L;
+    }
+    const At at = scene_at(w, 0.0L, false);
+    const bool sticks = elastic && *slip == 0;
+    const Real length = fabsl(*delta), bound = (elastic ? at.g : at.B) / at.sigma;
+    if (before == NULL) {
+        if (length <= (sticks ? at.B / at.sigma : bound)) {
+            return 0.0L;
+        }
+        const int side = sign_of(*delta);
+        *delta = (Real)side * bound;
+        *slip = elastic ? side : 0;
+        return 0.5L * at.sigma * (length - bound) * (length + bound);
+    }
+    return ride(&past, w, delta, slip);
+}
+
 // The deflection at the start that the periodic state of held inputs has, without vibration the one of sliding for ever.
-typedef struct {
-    Real delta;       // m
-    int slip;         // side along which it slips at the end of a period, or 0
-    Real slips_since; // s
-} Settled;
-
-static Settled settled(const World* w) {
+static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* length) {
     const ReferenceScene* s = &w->scene;
-    const Real delta_0 = inside_bound(w, s->delta_0);
-    if (s->V_1 == 0.0 && s->a_d == 0.0) {
-        const At at = scene_at(w, 0.0L, false);
+    Period period = {.world = held_world(w, 1.0L / s->f)};
+    World* held = &period.world;
+    *length = 1.0L;
+    if (is_open(held, 0.0L)) {
+        *delta = 0.0L;
+        *slip = 0;
+        coulomb_over(held, cycle);
+        return true;
+    }
+    if (!vibrates(s)) {
+        const At at = scene_at(held, 0.0L, false);
         const int side = sign_of(s->V);
-        return side == 0 ? (Settled){.delta = delta_0}
-                         : (Settled){(Real)side * at.g / at.sigma, w->bounded ? side : 0, INFINITY};
-    }
-    World period = *w;
-    period.h = 2.0L * PI / w->omega;
-    period.scene.V_rate = period.scene.d_rate = period.scene.E_rate = period.scene.load_rate = 0.0;
-    period.path = whole_path(&period);
-    const At at = scene_at(&period, 0.0L, false);
-    March march;
-    Real delta = delta_0;
-    if (s->law == LAW_ELASTIC_PLASTIC) {
-        if (s->V != 0.0) {
-            delta = (Real)sign_of(s->V) * at.B / at.sigma;
+        if (side != 0) {
+            *delta = (Real)side * at.g / at.sigma;
         }
-    } else if (s->V != 0.0 || s->V_1 != 0.0) {
-        // without the bound a period maps delta to kept delta + from_rest
-        period.bounded = false;
-        march_over(&period, 0.0L, &march);
-        const Real from_rest = march.delta, change = march.sums.change;
-        delta = at.g / at.sigma;
-        for (int k = 0; k < 3; k++) { // once would do but for rounding
-            march_over(&period, delta, &march);
-            const Real kept = (march.delta - from_rest) / delta;
-            // where little relaxes the changes have the digits, else the ends
-            delta = kept > 0.99L ? delta * change / (change - march.sums.change) : from_rest / (1.0L - kept);
-        }
-        period.bounded = w->bounded;
+        *slip = s->law == LAW_ELASTIC_PLASTIC ? side : 0;
+        cycle->impulse = held->h * (at.sigma * *delta + s->sigma_2 * at.V);
+        return true;
     }
-    if (!w->bounded) {
-        return (Settled){.delta = delta};
-    }
-    // Clamped affine maps have their fixed point where the clamp puts that of the affine map.
-    const int slip = march_over(&period, delta, &march);
-    return (Settled){march.delta, slip, period.h - march.changed};
+    held->path = whole_path(held);
+    Sums sums = {0};
+    return go_periods(&period, delta, slip, INFINITY, &sums, cycle, length);
 }
 
-// F_C, or mu times the mean of F_n over a period of the vibration with the inputs of a time [N].
-static Real mean_limit(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (s->limit == LIMIT_CONSTANT) {
-        return s->F_C;
-    }
-    if (s->input == INPUT_LOAD) {
-        return s->mu * ((Real)s->load + s->load_rate * t);
-    }
-    const AtModulus at = at_modulus(s, (Real)s->E + s->E_rate * t);
-    return s->mu * at.force * w->swell * expl(-w->decay * ((Real)s->d + s->d_rate * t));
-}
-
-// limit is the time mean of the limit over the step [N].
-static double force_scale(const World* w, double limit) {
-    const Real at_start = mean_limit(w, 0.0L);
-    return fmin((double)at_start, fmax(limit, (double)fminl(at_start, mean_limit(w, w->h))));
-}
-
-static void step_of_coulomb(World* w, ReferenceStep* result) {
-    // F = sgn V: an ElasticPlastic bristle that slips for ever, without a force of its own.
-    const ReferenceScene* s = &w->scene;
-    Cuts cuts = all_cuts(w);
-    Real impulse = 0.0L, work = 0.0L, limit = 0.0L;
-    for (size_t k = 0; k + 1 < cuts.count; k++) {
-        const Real a = cuts.time[k], b = cuts.time[k + 1];
-        const int pieces = 4 * w->fineness;
-        const Real sign = (Real)sign_of(velocity(w, 0.5L * (a + b)));
-        for (int p = 0; p < pieces; p++) {
-            const Real size = (b - a) / (Real)pieces, begin = a + size * (Real)p;
-            for (int i = 0; i < w->rule->stages; i++) {
-                const At at = scene_at(w, begin + size * w->rule->node[i], false);
-                const Real time = size * w->rule->weight[i], force = sign * at.coulomb + s->sigma_2 * at.V;
-                impulse += time * force;
-                work += time * force * at.V;
-                limit += time * at.coulomb;
-            }
+static void step_of_bristle(World* w, Real* delta, int* slip, ReferenceStep* result, Sums* sums) {
+    if (has_many_periods(w) && !is_open(w, 0.0L)) {
+        const Real n = floorl(w->h * w->scene.f);
+        Period period = {.world = *w};
+        period.world.h = 1.0L / w->scene.f;
+        period.world.path = whole_path(&period.world);
+        Sums cycle = {0};
+        Real length = 0.0L;
+        result->known = go_periods(&period, delta, slip, n, sums, &cycle, &length);
+        World rest = *w;
+        rest.h = w->h - n / w->scene.f;
+        March march = {.w = &rest, .delta = *delta, .slip = *slip};
+        if (rest.h > 0.0L) {
+            march_over(&march, (Closed){0.0L, rest.h});
         }
+        add_times(sums, &march.sums, 1.0L);
+        *delta = march.delta;
+        *slip = march.slip;
+        return;
     }
-    free(cuts.time);
-    const At end = scene_at(w, w->h, false);
-    result->F_t = (double)((Real)sign_of(end.V) * end.coulomb + s->sigma_2 * end.V);
-    const At start = scene_at(w, 0.0L, false);
-    result->F_t_start = (double)((Real)sign_of(start.V) * start.coulomb + s->sigma_2 * start.V);
-    // at a reversal either sign will do
-    const bool turns = fabsl(end.V) <= 1e-13L * (fabsl((Real)s->V) + fabsl((Real)s->V_1));
-    result->F_t_other = turns ? -result->F_t : result->F_t;
-    result->gap = turns ? 0.0 : INFINITY;
-    const bool starts_turning = fabsl(start.V) <= 1e-13L * (fabsl((Real)s->V) + fabsl((Real)s->V_1));
-    result->F_t_start_other = starts_turning ? -result->F_t_start : result->F_t_start;
-    result->gap_start = starts_turning ? 0.0 : INFINITY;
-    result->sigma = (double)end.sigma;
-    result->delta = result->delta_start = s->delta_0;
-    result->F_t_mean = (double)(impulse / w->h);
-    result->work = result->heat = (double)work;
-    result->limit = (double)(limit / w->h);
-    result->scale = force_scale(w, result->limit);
-    result->largest = (double)end.coulomb;
+    const Closed part = closed_part(w);
+    without_bristle(w, 0.0L, part.from, sums);
+    if (part.to > part.from) {
+        // what has no load has no rate: the last 1e-18 of the way to it is left out
+        Closed inner = part;
+        const Real edge = ldexpl(part.to - part.from, -58);
+        inner.from += part.from > 0.0L ? edge : 0.0L;
+        inner.to -= part.to < w->h ? edge : 0.0L;
+        March march = {.w = w, .delta = part.from > 0.0L ? 0.0L : *delta, .slip = *slip};
+        march_over(&march, inner);
+        add_times(sums, &march.sums, 1.0L);
+        *delta = march.delta;
+        *slip = march.slip;
+        result->known = w->panels <= MOST_PANELS;
+    }
+    if (part.to < w->h) {
+        if (w->scene.contact == CONTACT_CONSTANT) {
+            sums->heat += 0.5L * w->scene.contact_sigma * *delta * *delta;
+        }
+        *delta = 0.0L;
+        *slip = 0;
+    }
+    without_bristle(w, part.to, w->h, sums);
 }
 
 ReferenceScene reference_scene(void) {
@@ -1023,92 +1589,69 @@ ReferenceScene reference_scene(void) {
                             .limit = LIMIT_CONSTANT,
                             .contact = CONTACT_ASPERITIES,
                             .input = INPUT_SEPARATION,
-                            .initial = START_GIVEN,
-                            .binds = 1};
+                            .initial = START_GIVEN};
 }
 
-// What a bristle at a time does to F_t, and would do on the other side of a jump: slipping, or not.
-typedef struct {
-    Real force, other; // N
-    Real gap;          // N, from that jump; what it has slipped is the way back
-} AtJump;
-
-// slip is the side along which the bristle slips, since so long [s]; 0 where it is free.
-static AtJump force_near_jump(const World* w, Real t, Real delta, int slip, Real slips_since) {
-    const int side = sign_of(delta);
-    AtJump at = {.force = force_at(w, t, delta, slip), .gap = INFINITY};
-    at.other = at.force;
-    if (!w->bounded || side == 0) {
-        return at;
+void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
+                    ReferenceStep* result) {
+    World w = make_world(scene, scene->h, fineness);
+    const World held = held_world(&w, w.h);
+    w.S = largest_force(&w, scene->delta_0);
+    find_path(&w);
+    *result = (ReferenceStep){.path = (double)w.path, .S = (double)w.S, .known = true};
+    Sums sums = {0};
+    Real delta = scene->delta_0;
+    int slip = scene->slips;
+    const bool bristle = scene->law != LAW_COULOMB;
+    if (bristle) {
+        Sums cycle = {0};
+        Real length;
+        if (scene->initial == START_SETTLED) {
+            jump(NULL, &held, &delta, &slip);
+            slip = 0;
+            result->known = settle(&w, &delta, &slip, &cycle, &length);
+        } else {
+            sums.heat = jump(before, &w, &delta, &slip);
+        }
     }
-    const Real sigma = scene_at(w, t, false).sigma, leaves = outward(w, t, side);
-    if (slip) {
-        at.other = force_at(w, t, delta, 0);
-        at.gap = sigma * fmaxl(0.0L, leaves) * slips_since;
-    } else if (leaves > 0.0L) {
-        at.other = force_at(w, t, delta, side);
-        at.gap = sigma * fmaxl(0.0L, gap(w, t, delta, side));
+    const bool open = is_open(&w, 0.0L);
+    int slip_start = slip;
+    if (!open && (w.bounded || (scene->law == LAW_ELASTIC_PLASTIC && w.excess == 0.0L))) {
+        const At at = scene_at(&w, 0.0L, false); // a state that was rounded may lie next to its bound
+        slip_start = fabsl(delta) >= (1.0L - 1e-11L) * at.B / at.sigma ? sign_of(delta) : 0;
     }
-    return at;
+    result->F_t_start = (double)force_at(&held, 0.0L, delta, slip_start, open);
+    if (bristle) {
+        step_of_bristle(&w, &delta, &slip, result, &sums);
+    } else {
+        coulomb_over(&w, &sums);
+    }
+    result->delta = (double)delta;
+    result->slips = scene->law == LAW_ELASTIC_PLASTIC && w.excess != 0.0L ? slip : 0;
+    result->F_t = (double)force_at(&w, w.h, delta, slip, is_open(&w, w.h));
+    result->F_t_mean = (double)(sums.impulse / w.h);
+    result->work = (double)sums.work;
+    result->heat = (double)sums.heat;
 }
 
-// With held inputs. A start that is given slips where it cannot be told from its bound.
-static AtJump force_at_start(const World* w, const Settled* start) {
-    World held = *w;
-    held.scene.V_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate = 0.0;
-    int slip = start->slip;
-    const int side = sign_of(start->delta);
-    if (slip == 0 && w->bounded && side != 0 && outward(&held, 0.0L, side) > 0.0L &&
-        gap(&held, 0.0L, start->delta, side) <= 1e-17L * fabsl(start->delta)) {
-        slip = side;
+bool reference_settled_force(const ReferenceScene* scene, double* force, double* S) {
+    ReferenceScene still = *scene;
+    still.V_rate = still.d_rate = still.E_rate = still.load_rate = 0.0;
+    still.start = 0.0;
+    World w = make_world(&still, 1.0L / still.f, 1);
+    w.S = largest_force(&w, still.delta_0);
+    *S = (double)w.S;
+    Sums cycle = {0};
+    Real length = 1.0L, delta = still.delta_0;
+    int slip = 0;
+    bool known = true;
+    if (still.law == LAW_COULOMB) {
+        coulomb_over(&w, &cycle);
+    } else {
+        jump(NULL, &w, &delta, &slip);
+        slip = 0;
+        known = settle(&w, &delta, &slip, &cycle, &length);
     }
-    return force_near_jump(&held, 0.0L, start->delta, slip, start->slips_since);
-}
-
-void reference_step(const ReferenceScene* scene, int fineness, ReferenceStep* result) {
-    World w = make_world(scene, fineness);
-    *result = (ReferenceStep){.path = (double)w.path, .changed = -1.0};
-    if (scene->law == LAW_COULOMB) {
-        step_of_coulomb(&w, result);
-        return;
-    }
-    Settled from = {.delta = scene->delta_0};
-    if (scene->initial == START_SETTLED) {
-        from = settled(&w);
-    }
-    const Real delta = from.delta;
-    from.delta = inside_bound(&w, delta);
-    March march;
-    const int slip = march_over(&w, delta, &march);
-    result->delta_start = (double)from.delta;
-    const AtJump starts = force_at_start(&w, &from);
-    result->F_t_start = (double)starts.force;
-    result->F_t_start_other = (double)starts.other;
-    result->gap_start = (double)starts.gap;
-    const AtJump at_end = force_near_jump(&w, w.h, march.delta, slip, w.h - march.changed);
-    result->delta = (double)march.delta;
-    result->F_t = (double)at_end.force;
-    result->F_t_other = (double)at_end.other;
-    result->gap = (double)at_end.gap;
-    result->sigma = (double)scene_at(&w, w.h, false).sigma;
-    result->F_t_mean = (double)(march.sums.impulse / w.h);
-    result->work = (double)march.sums.work;
-    result->heat = (double)march.sums.heat;
-    result->limit = (double)(march.sums.limit / w.h);
-    result->scale = force_scale(&w, result->limit);
-    const At at_start = scene_at(&w, 0.0L, false);
-    result->largest = (double)fmaxl(march.sums.peak, at_start.sigma * fabsl(from.delta));
-    result->changed = (double)march.changed;
-    result->panels = (double)w.panels;
-    result->unresolved = (double)w.unresolved;
-}
-
-void reference_frame(const ReferenceScene* scene, ReferenceStep* frame) {
-    const World w = make_world(scene, 1);
-    *frame = (ReferenceStep){.path = (double)w.path,
-                             .sigma = (double)scene_at(&w, w.h, false).sigma,
-                             .scale = force_scale(&w, 0.0),
-                             .largest = (double)(scene_at(&w, 0.0L, false).sigma * fabsl(scene->delta_0)),
-                             .gap = INFINITY,
-                             .gap_start = INFINITY};
+    *force = (double)(cycle.impulse / (length / still.f));
+    return known;
 }

@@ -4,11 +4,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "fmu_step.h"
 #include "names.h"
 
 static const double TURN = 6.283185307179586;
-static const double MOST_PERIODS = 30.0; // of a step, but for a few long ones
+// The domain of docs/numerics.md.
+static const double LEAST_KAPPA = 1e-3, MOST_KAPPA = 1e8;
+static const double SHORTEST = 1e-9;    // s, of a step
+static const double MOST_PERIODS = 1e6; // of a step
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Random numbers: splitmix64, or bytes that a fuzzer chose, four for each number and zeros where they end
@@ -53,7 +55,7 @@ static double velocity(Draw* draw, double V_1) {
         return 0.0;
     }
     if (V_1 > 0.0 && kind < 0.25) { // dips and grazing reversals
-        return sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-13, 1e-1));
+        return sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-9, 1e-1));
     }
     if (V_1 > 0.0 && kind < 0.35) {
         return sign(draw) * V_1 * log_between(draw, 1e-9, 1.0);
@@ -73,14 +75,12 @@ static void surfaces(Draw* draw, ReferenceScene* s) {
         s->nu = between(draw, 0.0, 0.49);
         s->Y *= log_between(draw, 0.3, 30.0);
     }
-    s->E = chance(draw, 0.7) ? between(draw, 20e9, 90e9) : log_between(draw, 1e9, 1e12);
+    s->E = chance(draw, 0.7) ? between(draw, 20e9, 90e9) : log_between(draw, 5e9, 5e11);
     const double length = s->R_q / s->lambda;
-    s->d = length * (chance(draw, 0.8) ? between(draw, 5.0, 9.0) : log_between(draw, 0.3, 60.0));
+    s->d = length * (chance(draw, 0.9) ? between(draw, 5.0, 9.0) : log_between(draw, 1.5, 60.0));
     if (chance(draw, 0.65)) {
         s->a_d = length * log_between(draw, 1e-4, 1.3);
-        if (chance(draw, 0.1)) { // down to contact
-            s->a_d = s->d * (1.0 - log_between(draw, 1e-2, 0.5));
-        }
+        s->a_d = fmin(s->a_d, 0.7 * s->d);
         s->phase_d = chance(draw, 0.2) ? TURN / 4.0 * pick(draw, 4) : between(draw, -TURN, TURN);
     }
 }
@@ -92,7 +92,7 @@ static double pressed(const ReferenceScene* s) {
 }
 
 static double rest_separation(const ReferenceScene* s) {
-    return s->input == INPUT_LOAD ? s->R_q / s->lambda * log(pressed(s) / s->load) : s->d;
+    return s->input == INPUT_LOAD ? s->R_q / s->lambda * log(pressed(s) / fmax(s->load, 1e-99)) : s->d;
 }
 
 static double limit_now(const ReferenceScene* s) {
@@ -116,7 +116,7 @@ static double stiffness_now(const ReferenceScene* s) {
 }
 
 double scene_kappa(const ReferenceScene* s) {
-    return stiffness_now(s) * top_speed(s) / (TURN * s->f * limit_now(s));
+    return stiffness_now(s) * top_speed(s) / (TURN * s->f * fmax(limit_now(s), 1e-250));
 }
 
 static void friction(Draw* draw, const Grammar* grammar, ReferenceScene* s) {
@@ -125,63 +125,61 @@ static void friction(Draw* draw, const Grammar* grammar, ReferenceScene* s) {
     s->F_C = log_between(draw, 1e-2, 1e4);
     s->mu = log_between(draw, 0.03, 1.0);
     s->contact = 1 + pick(draw, 3);
-    s->input = chance(draw, 0.35) ? INPUT_LOAD : INPUT_SEPARATION;
+    s->input = chance(draw, 0.45) ? INPUT_LOAD : INPUT_SEPARATION;
     s->load = log_between(draw, 1e-1, 1e3);
-    const double kappa = log_between(draw, 1e-3, 1e12);
-    const double scale = kappa / scene_kappa(s);
-    if (s->contact == CONTACT_CONSTANT) {
-        s->contact_sigma = fmax(1e-6, s->contact_sigma * scale);
-    } else {
-        s->stiffnessScale = fmax(1e-15, scale);
-    }
+    const double scale =
+        log_between(draw, LEAST_KAPPA, chance(draw, 0.5) ? 1e3 : MOST_KAPPA) / scene_kappa(s);
+    *(s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
-        s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 3.0);
-        s->V_S = top_speed(s) * log_between(draw, 1e-6, 10.0);
+        s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
+        s->V_S = top_speed(s) * log_between(draw, 1e-3, 10.0);
     }
     const double damping = limit_now(s) / top_speed(s);
     if (s->law != LAW_COULOMB && chance(draw, 0.3)) {
-        s->sigma_1 = damping * log_between(draw, 1e-4, chance(draw, 0.15) ? 1e4 : 1.0);
+        s->sigma_1 = damping * log_between(draw, 1e-4, 1.0);
     }
     if (chance(draw, 0.3)) {
         s->sigma_2 = damping * log_between(draw, 1e-4, 1.0);
     }
 }
 
-// A time [s] near one at which V reverses or vibrates through its extremes, of a period near the given one.
-static double eventful(Draw* draw, const ReferenceScene* s, double near) {
-    const double ratio = s->V_1 > 0.0 ? -s->V / s->V_1 : 0.0;
-    const double angle = fabs(ratio) < 1.0 ? acos(ratio) : ratio > 0.0 ? 0.0 : TURN / 2.0;
-    const double cycle = floor(near * s->f) + sign(draw) * angle / TURN;
-    const double off = chance(draw, 0.2) ? 0.0 : sign(draw) * log_between(draw, 1e-16, 1e-2);
-    return (cycle + off) / s->f;
+static double deflection(Draw* draw, const ReferenceScene* s) {
+    const double most = limit_now(s) / stiffness_now(s) * s->staticRatio;
+    const double kind = unit(draw);
+    if (kind < 0.4) {
+        return 0.0;
+    }
+    return most * (kind < 0.45  ? sign(draw)
+                   : kind < 0.6 ? sign(draw) * log_between(draw, 1.0, 100.0)
+                                : between(draw, -1.0, 1.0));
 }
 
-static void times(Draw* draw, ReferenceScene* s, bool linear) {
+// A length of a step [s]; with moving inputs the reference takes each period by itself.
+static double length(Draw* draw, const ReferenceScene* s, bool linear) {
+    const double kind = unit(draw);
+    const double periods = kind < 0.1              ? log_between(draw, 1e-6, 1e-3)
+                           : kind < 0.9            ? log_between(draw, 1e-3, 4.0)
+                           : linear || kind < 0.96 ? log_between(draw, 4.0, 30.0)
+                                                   : log_between(draw, 30.0, MOST_PERIODS);
+    return fmax(SHORTEST, periods / s->f);
+}
+
+static ReferenceScene contact_drawn(Draw* draw, const Grammar* grammar) {
+    ReferenceScene s = reference_scene();
+    s.f = log_between(draw, 1e2, 1e5);
+    s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
+    s.V = velocity(draw, s.V_1);
+    surfaces(draw, &s);
+    friction(draw, grammar, &s);
     if (chance(draw, 0.6)) {
-        s->start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e8 : 1e3) / s->f;
+        s.start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e6 : 1e3) / s.f;
     }
-    const bool at_event = chance(draw, 0.3);
-    if (at_event) {
-        s->start = eventful(draw, s, s->start);
-    }
-    s->h = log_between(draw, 1e-3, linear ? 4.0 : MOST_PERIODS) / s->f;
-    if (chance(draw, at_event ? 0.4 : 0.05)) { // so short that an event just after the start counts
-        s->h = log_between(draw, 1e-9, 1e-3) / s->f;
-    }
-    if (chance(draw, 0.2)) {
-        const double end = eventful(draw, s, s->start + s->h);
-        s->h = end > s->start ? end - s->start : s->h;
-    }
-    if (!linear && chance(draw, 0.04)) {
-        s->h = log_between(draw, MOST_PERIODS, 1e6) / s->f;
-    }
+    return s;
 }
 
-// A frequency and a start whose phase has no rounding, nor half a period later, nor many periods.
-static void put_on_grid(ReferenceScene* s) {
-    s->f = exp2(rint(log2(s->f)));
-    s->start = ldexp(rint(ldexp(fmod(s->start * s->f, 1024.0), 30)), -30) / s->f;
-}
+// ---------------------------------------------------------------------------------------------------------------------
+// Steps at random
+// ---------------------------------------------------------------------------------------------------------------------
 
 static void rates(Draw* draw, ReferenceScene* s) {
     const double top = top_speed(s);
@@ -193,54 +191,19 @@ static void rates(Draw* draw, ReferenceScene* s) {
         s->V_rate = fmax(-3.0 * top, fmin(3.0 * top, to - s->V)) / s->h;
     }
     if (chance(draw, 0.5)) {
-        const double room = s->d - s->a_d, kind = unit(draw);
-        const double most = kind < 0.1 ? 18.0 : kind < 0.4 ? 5.0 : 0.3; // the load falls by eight decades
-        const double to = fmax(0.02 * room, room + between(draw, -1.0, 1.0) * most * s->R_q / s->lambda);
+        const double room = s->d - s->a_d, most = chance(draw, 0.2) ? 18.0 : 2.0;
+        const double to = fmax(0.1 * room, room + between(draw, -1.0, 1.0) * most * s->R_q / s->lambda);
         s->d_rate = (to - room) / s->h;
     }
-    if (chance(draw, 0.4)) {
-        const double to = chance(draw, 0.7) ? between(draw, 0.7, 1.3) : log_between(draw, 1e-8, 10.0);
-        s->E_rate = s->E * (to - 1.0) / s->h;
+    if (chance(draw, 0.3)) {
+        s->E_rate = s->E * (log_between(draw, 0.11, 9.0) - 1.0) / s->h;
     }
     if (chance(draw, 0.6)) {
-        const double to = chance(draw, 0.5) ? between(draw, 0.5, 2.0) : log_between(draw, 1e-8, 10.0);
-        s->load_rate = s->load * (to - 1.0) / s->h;
+        const double share = chance(draw, 0.5)   ? between(draw, 0.5, 2.0)
+                             : chance(draw, 0.6) ? log_between(draw, 1e-8, 10.0)
+                                                 : between(draw, -1.0, 0.1);
+        s->load_rate = (s->load > 0.0 ? s->load * (share - 1.0) : log_between(draw, 0.1, 1e3)) / s->h;
     }
-}
-
-static double deflection(Draw* draw, const ReferenceScene* s) {
-    const double most = limit_now(s) / stiffness_now(s) * s->staticRatio;
-    const double kind = unit(draw);
-    if (kind < 0.2) {
-        return 0.0;
-    }
-    if (kind < 0.3) {
-        return sign(draw) * most;
-    }
-    return most * (kind < 0.4 ? between(draw, -3.0, 3.0) : between(draw, -1.0, 1.0));
-}
-
-static ReferenceScene first_step(Draw* draw, const Grammar* grammar) {
-    ReferenceScene s = reference_scene();
-    s.f = log_between(draw, 1e2, 1e5);
-    s.V_1 = chance(draw, 0.75) ? log_between(draw, 1e-3, 3.0) : 0.0;
-    s.V = velocity(draw, s.V_1);
-    surfaces(draw, &s);
-    friction(draw, grammar, &s);
-    const bool linear = chance(draw, 0.4);
-    times(draw, &s, linear);
-    if (linear) {
-        rates(draw, &s);
-    }
-    s.delta_0 = s.law == LAW_COULOMB ? 0.0 : deflection(draw, &s);
-    const double settles = s.sigma_1 > 0.0 ? 0.3 : 0.1;
-    if (grammar->settled == 2 || (grammar->settled == 1 && chance(draw, settles))) {
-        s.initial = START_SETTLED;
-    }
-    if (chance(draw, 0.3)) {
-        put_on_grid(&s);
-    }
-    return s;
 }
 
 static void scale(Draw* draw, double* value, double most) {
@@ -249,60 +212,160 @@ static void scale(Draw* draw, double* value, double most) {
     }
 }
 
-// What a later step changes: inputs that jump, tunable parameters, the length of the step and its rates.
-static ReferenceScene later_step(Draw* draw, const ReferenceScene* before) {
-    ReferenceScene usual = scene_after(before, 0.0), s = usual;
-    scale(draw, &s.V_1, 3.0);
-    if (chance(draw, 0.3)) {
-        s.V = velocity(draw, s.V_1);
-    }
-    scale(draw, &s.d, 1.1);
-    scale(draw, &s.E, 1.5);
-    scale(draw, &s.load, 2.0);
-    scale(draw, &s.f, 2.0);
-    scale(draw, &s.a_d, 1.1);
-    if (chance(draw, 0.1)) {
-        s.phase_d = between(draw, -TURN, TURN);
-    }
-    double* const factors[] = {&s.F_C, &s.mu, &s.V_S, &s.sigma_1, &s.sigma_2};
-    for (int k = 0; k < 5; k++) {
+static void change_parameters(Draw* draw, ReferenceScene* s) {
+    double* const factors[] = {&s->F_C, &s->mu, &s->V_S,
+                               s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale};
+    for (int k = 0; k < 4; k++) {
         scale(draw, factors[k], 3.0);
     }
-    scale(draw, s.contact == CONTACT_CONSTANT ? &s.contact_sigma : &s.stiffnessScale, 3.0);
-    if (s.staticRatio != 1.0 && chance(draw, 0.2)) {
-        s.staticRatio = 1.0 + log_between(draw, 1e-3, 3.0);
+    s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
+    if (s->staticRatio != 1.0 && chance(draw, 0.2)) {
+        s->staticRatio = 1.0 + log_between(draw, 1e-3, 2.0);
     }
-    if (chance(draw, 0.5)) {
-        s.h = log_between(draw, 1e-3, 4.0) / s.f;
-    }
+}
+
+// Inputs that jump, tunable parameters, the length of the step and its rates.
+static void step_at_random(Draw* draw, ReferenceScene* s) {
+    scale(draw, &s->V_1, 3.0);
     if (chance(draw, 0.3)) {
-        s.h = fmin(s.h, MOST_PERIODS / s.f); // each period costs its own while inputs move
-        rates(draw, &s);
+        s->V = velocity(draw, s->V_1);
     }
-    ReferenceScene changes = no_change();
-    for (int k = 0; k < REFERENCE_DOUBLES; k++) {
-        if (*scene_value(&s, k) != *scene_value(&usual, k)) {
-            *scene_value(&changes, k) = *scene_value(&s, k);
-        }
+    scale(draw, &s->d, 1.1);
+    s->d = fmax(s->d, 1.1 * s->a_d);
+    scale(draw, &s->E, 3.0);
+    if (chance(draw, 0.1)) {
+        s->load = chance(draw, 0.5) ? 0.0 : log_between(draw, 0.1, 1e3);
     }
-    return changes;
+    scale(draw, &s->load, 2.0);
+    scale(draw, &s->f, 2.0);
+    change_parameters(draw, s);
+    if (chance(draw, 0.1)) {
+        s->phase_d = between(draw, -TURN, TURN);
+    }
+    const bool linear = chance(draw, 0.4);
+    s->h = length(draw, s, linear);
+    if (linear) {
+        rates(draw, s);
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Steps of signals as users have them
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Shares of the drawn load, velocity and amplitudes at the ends of steps. A load of 0 is an open contact.
+typedef struct {
+    double load[MOST_STEPS], V[MOST_STEPS], vibration[MOST_STEPS];
+} Signal;
+
+static const Signal SIGNALS[] = {
+    // a tool approaches, presses, slides, lifts off, and is set down again
+    {{0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1}, {0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    // a bounce
+    {{0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    // a mass on a belt sticks and slips
+    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    // a sweep of V, and of the load
+    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {{0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    // the vibration is switched on and off; a contact that is held; stop and go
+    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0}},
+    {{1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 1, 1, 0, 0, 1, 1}},
+    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 0, 0, 0, 1, 0, -1, 0, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+};
+
+// The load of a share, or the separation that gives it.
+static void press(Draw* draw, const ReferenceScene* full, double share, double* load, double* d) {
+    *load = share > 0.0 ? full->load * share : chance(draw, 0.3) ? -0.1 * full->load : 0.0;
+    *d = full->d - full->R_q / full->lambda * (share > 0.0 ? log(share) : -between(draw, 30.0, 600.0));
+    *d = fmax(*d, 1.1 * full->a_d);
+}
+
+// Step k of the signal: from its value k - 1 to its value k, or held at that.
+static void step_of_signal(Draw* draw, const Signal* signal, int k, const ReferenceScene* full, bool linear,
+                           ReferenceScene* s) {
+    double load, d;
+    press(draw, full, signal->load[k], &load, &d);
+    const double V = full->V * signal->V[k];
+    s->V_1 = full->V_1 * signal->vibration[k];
+    s->a_d = full->a_d * signal->vibration[k];
+    if (linear && k > 0) {
+        s->V = full->V * signal->V[k - 1]; // as the user samples it, not as the last step's rate left it
+        s->V_rate = (V - s->V) / s->h;
+        s->d_rate = (d - s->d) / s->h;
+        s->load_rate = (load - s->load) / s->h;
+    } else {
+        s->V = V;
+        s->d = d;
+        s->load = load;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Sequences
+// ---------------------------------------------------------------------------------------------------------------------
+
+static bool is_in_domain(const ReferenceScene* s) {
+    const ReferenceScene end = scene_after(s);
+    const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
+    const bool vibrates = s->V_1 != 0.0 || s->a_d != 0.0;
+    return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
+           !(vibrates && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
+           (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }
 
 static Sequence sequence_of(Draw draw, const Grammar* grammar) {
-    Sequence sequence = {.method = grammar->method, .steps = 1};
-    sequence.step[0] = first_step(&draw, grammar);
-    const double more = unit(&draw);
-    sequence.steps += (more > 0.7) + (more > 0.9);
-    ReferenceScene before = sequence.step[0];
-    for (int k = 1; k < sequence.steps; k++) {
-        sequence.step[k] = later_step(&draw, &before);
-        before = sequence_scene(&sequence, k, &before, 0.0);
-    }
-    if (sequence.method == 0) {
-        sequence.method = unit(&draw) > 0.9 ? FMU_CVODE : FMU_COLLOCATION;
-    }
-    if (sequence.method == FMU_CVODE && sequence.step[0].h * sequence.step[0].f > MOST_PERIODS) {
-        sequence.step[0].h = 1.0 / sequence.step[0].f; // for it each period costs its own
+    Sequence sequence = {.method = 1};
+    const ReferenceScene full = contact_drawn(&draw, grammar);
+    const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
+    const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
+    const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
+    const double usual_h = length(&draw, &full, linear);
+    ReferenceScene before = full;
+    for (int k = 0; k < wanted; k++) {
+        ReferenceScene usual = k == 0 ? full : scene_after(&before), s = usual;
+        if (of_user) {
+            s.h = usual_h;
+            step_of_signal(&draw, signal, k, &full, linear, &s);
+            if (tunes && k > 0) {
+                change_parameters(&draw, &s);
+            }
+        } else if (k > 0) {
+            step_at_random(&draw, &s);
+        } else {
+            s.h = usual_h;
+            if (linear) {
+                rates(&draw, &s);
+            }
+        }
+        if (k == 0) {
+            s.delta_0 =
+                s.law == LAW_COULOMB || (of_user && chance(&draw, 0.7)) ? 0.0 : deflection(&draw, &full);
+            s.initial = chance(&draw, 0.15) ? START_SETTLED : START_GIVEN;
+        }
+        if (!is_in_domain(&s)) {
+            break;
+        }
+        sequence.step[sequence.steps] = s;
+        if (k > 0) {
+            ReferenceScene changes = no_change();
+            for (int i = 0; i < REFERENCE_DOUBLES; i++) {
+                if (*scene_value(&s, i) != *scene_value(&usual, i)) {
+                    *scene_value(&changes, i) = *scene_value(&s, i);
+                }
+            }
+            sequence.step[sequence.steps] = changes;
+        }
+        sequence.steps++;
+        before = s;
     }
     return sequence;
 }

@@ -6,7 +6,7 @@
 
 #include "names.h"
 
-ReferenceScene scene_after(const ReferenceScene* before, double delta) {
+ReferenceScene scene_after(const ReferenceScene* before) {
     ReferenceScene s = *before;
     s.start = before->start + before->h;
     s.V += before->V_rate * before->h;
@@ -14,7 +14,6 @@ ReferenceScene scene_after(const ReferenceScene* before, double delta) {
     s.E += before->E_rate * before->h;
     s.load += before->load_rate * before->h;
     s.V_rate = s.d_rate = s.E_rate = s.load_rate = 0.0;
-    s.delta_0 = delta;
     s.initial = START_GIVEN;
     return s;
 }
@@ -27,11 +26,11 @@ ReferenceScene no_change(void) {
     return none;
 }
 
-ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before, double delta) {
+ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before) {
     if (k == 0) {
         return sequence->step[0];
     }
-    ReferenceScene scene = scene_after(before, delta), changes = sequence->step[k];
+    ReferenceScene scene = scene_after(before), changes = sequence->step[k];
     for (int i = 0; i < REFERENCE_DOUBLES; i++) {
         const double value = *scene_value(&changes, i);
         if (!isnan(value)) {

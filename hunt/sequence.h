@@ -8,7 +8,7 @@
 
 #include "reference.h"
 
-enum { MOST_STEPS = 3, SEQUENCE_TEXT = 4000 };
+enum { MOST_STEPS = 10, SEQUENCE_TEXT = 8000 };
 
 typedef struct {
     int method; // one of solver.method's numbers
@@ -18,11 +18,11 @@ typedef struct {
     ReferenceScene step[MOST_STEPS];
 } Sequence;
 
-// What a step leaves to the next one: inputs where they end and then held, the parameters, and the deflection [m].
-ReferenceScene scene_after(const ReferenceScene* before, double delta);
+// What a step leaves to the next one: inputs where they end and then held, and the parameters.
+ReferenceScene scene_after(const ReferenceScene* before);
 
 // The scene after that one, with all that the sequence's step k changes.
-ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before, double delta);
+ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before);
 
 // A later step that changes nothing.
 ReferenceScene no_change(void);

@@ -88,7 +88,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     }
     const FcScene scene = fc_friction_contact_scene(&instance->contact);
     const double rate =
-        fc_force_rate(&scene, fc_reach(&scene, fc_friction_contact_bristle(&instance->contact)));
+        fc_force_rate(&scene, fc_friction_contact_reached(&instance->contact, &scene));
     if (!isfinite(rate)) {
         return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
     }
@@ -169,7 +169,7 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
     const FcScene scene =
         hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const FcBristle reached = hybrid ? bristle : fc_reach(&scene, bristle);
+    const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
     FcDirection direction = {.V = along->input[FC_INPUT_V],
                              .d = along->input[FC_INPUT_D],
                              .E = along->input[FC_INPUT_E],

@@ -36,7 +36,7 @@ static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
 _Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FcHybrid must be added to transfer_hybrid");
-_Static_assert(sizeof(FcPast) == 5 * sizeof(double), "a new member of FcPast must be added to transfer_past");
+_Static_assert(sizeof(FcPast) == 6 * sizeof(double), "a new member of FcPast must be added to transfer_past");
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
                                               2 * sizeof(int) + sizeof(FcPast) + sizeof(FcHybrid),
                "a new member of FcFrictionState must be added to transfer_state");
@@ -95,7 +95,8 @@ static void transfer_past(Cursor* cursor, FcPast* past) {
     transfer_real(cursor, &past->d);
     transfer_real(cursor, &past->V);
     transfer_real(cursor, &past->E);
-    transfer_real(cursor, &past->limit);
+    transfer_real(cursor, &past->static_limit);
+    transfer_real(cursor, &past->kinetic_limit);
     transfer_real(cursor, &past->sigma);
 }
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "model/root.h"
 #include "solver/panels/panel_tables.h"
 
 FcPast fc_past(const FcScene* scene) {
@@ -12,7 +13,8 @@ FcPast fc_past(const FcScene* scene) {
     return (FcPast){.d = fc_scene_depends_on_d(scene) ? fc_scene_d(scene, 0.0) : 0.0,
                     .V = at.V,
                     .E = scene->drive.E.value,
-                    .limit = at.limit / fc_stribeck(scene->friction, at.V),
+                    .static_limit = at.limit * fc_static_over_limit(scene->friction, at.V),
+                    .kinetic_limit = at.limit,
                     .sigma = at.sigma};
 }
 
@@ -70,85 +72,144 @@ static Place at_place(const Ramp* ramp, double s) {
     return at;
 }
 
+// Of the bound of a bristle that slips or not.
 static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
     const FcPast now = fc_past(scene);
-    Ramp ramp = {.scene = scene, .past = *past, .slips = 0};
+    Ramp ramp = {.scene = scene, .past = *past, .slips = slips};
     ramp.d = now.d - past->d;
     ramp.V = now.V - past->V;
     ramp.E = now.E - past->E;
     const Place start = at_place(&ramp, 0.0); // with the parameters of now
-    ramp.log_limit = log(start.limit / (fc_static_ratio(scene->friction) * past->limit));
+    const bool is_kinetic = fc_has_static_friction(scene->friction) && slips != 0;
+    ramp.log_limit = log(start.limit / (is_kinetic ? past->kinetic_limit : past->static_limit));
     ramp.log_sigma = log(start.sigma / past->sigma);
-    ramp.slips = slips;
     return ramp;
 }
 
-// The place at which the bound comes to lie below |delta|, which it does by the end: by the secant rule, halved where that is slow.
-static double where_met(const Ramp* ramp, double delta) {
-    double a = 0.0;
-    double b = 1.0;
-    double at_a = at_place(ramp, a).D - delta;
-    double at_b = at_place(ramp, b).D - delta;
-    if (!(at_a > 0.0)) {
-        return 0.0;
-    }
-    for (int i = 0; i < 100 && b - a > 1e-15; i++) {
-        const double s = i % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * at_a / (at_a - at_b);
-        if (!(s > a && s < b)) {
-            break;
-        }
-        const double at_s = at_place(ramp, s).D - delta;
-        if (at_s > 0.0) {
-            a = s;
-            at_a = at_s;
-        } else {
-            b = s;
-            at_b = at_s;
-        }
-    }
-    return b;
+typedef struct {
+    const Ramp* ramp;
+    double delta; // m
+} AboveBound;
+
+static double above_bound(void* context, double s) {
+    const AboveBound* of = context;
+    return of->delta - at_place(of->ramp, s).D;
 }
 
-// The integral of g |dD| from the place s on: by panels over which D and g move by e at the most.
-static double heat_from(const Ramp* ramp, double s) {
-    const Place start = at_place(ramp, s);
-    const Place end = at_place(ramp, 1.0);
-    const double panels =
-        ceil(fabs(log(end.D / start.D)) + fabs(log(end.limit / start.limit)) + 1e-3); // at least one
-    const FcGaussRule* rule = &FC_GAUSS_12;
-    const double length = (1.0 - s) / panels;
-    double heat = 0.0;
-    for (double k = 0.0; k < panels; k += 1.0) {
-        for (int i = 0; i < 12; i++) {
-            const Place at = at_place(ramp, s + (k + 0.5 + rule->node[i]) * length);
-            heat += rule->weight[i] * length * at.limit * fabs(at.rate);
-        }
+static double bound_rate(void* context, double s) {
+    const AboveBound* of = context;
+    return at_place(of->ramp, s).rate;
+}
+
+// Between two places over which D falls, or rises: the bristle at |delta| follows where D is lower, for g |dD| of heat.
+static double follow(const Ramp* ramp, double a, double b, double delta, double* heat) {
+    const Place end = at_place(ramp, b);
+    if (!(end.D < delta)) {
+        return delta;
     }
-    return heat;
+    AboveBound of = {ramp, delta};
+    double none = 0.0;
+    const double at_a = above_bound(&of, a);
+    const double from = at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, &none) : a;
+    const FcGaussRule* rule = &FC_GAUSS_8;
+    for (int i = 0; i < 8; i++) {
+        const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
+        *heat += rule->weight[i] * (b - from) * at.limit * fabs(at.rate);
+    }
+    return end.D;
+}
+
+// The ramp is taken in steps over which D and g move by no more than e to this power, Stribeck's curve by a part of V_S.
+static const double STEP_OF_LOG = 0.5;
+static const double STEP_OF_CURVE = 0.5;
+// Beyond this velocity, over V_S, there is no curve.
+static const double END_OF_CURVE = 7.0;
+
+// The next place to stop at after s.
+static double next_place(const Ramp* ramp, double s, double step) {
+    const double V_S = ramp->scene->friction->V_S;
+    const double V = ramp->past.V + s * ramp->V;
+    double next = s + step;
+    if (ramp->slips != 0 && fc_has_static_friction(ramp->scene->friction) && ramp->V != 0.0) {
+        const double beyond = fabs(V) / V_S - END_OF_CURVE;
+        next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / fabs(ramp->V));
+    }
+    return next < 1.0 - 1e-9 ? next : 1.0;
+}
+
+// |delta| at the end of the ramp, from the place s on.
+static double follow_from(const Ramp* ramp, double s, double delta, double* heat) {
+    const Place first = at_place(ramp, s);
+    const Place last = at_place(ramp, 1.0);
+    const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
+                         fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay;
+    const double step = (1.0 - s) / ceil(moves / STEP_OF_LOG + 1e-3);
+    AboveBound of = {ramp, delta};
+    double none = 0.0;
+    while (s < 1.0) {
+        const double next = next_place(ramp, s, step);
+        const double rate = at_place(ramp, s).rate;
+        const double rate_next = at_place(ramp, next).rate;
+        double lowest = next;
+        if (rate < 0.0 && rate_next > 0.0) {
+            lowest = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, &none);
+        }
+        delta = follow(ramp, s, lowest, delta, heat);
+        s = next;
+    }
+    return delta;
+}
+
+// The first place, of those that are stopped at, by which the static bound is below |delta|; 1 for none.
+static double where_it_breaks(const Ramp* ramp, double delta) {
+    AboveBound of = {ramp, delta};
+    double none = 0.0;
+    double s = 0.0;
+    double at_s = above_bound(&of, s);
+    const double moves = 1.0 + fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG;
+    while (s < 1.0 && at_s <= 0.0) {
+        const double next = s + 1.0 / ceil(moves) < 1.0 - 1e-9 ? s + 1.0 / ceil(moves) : 1.0;
+        const double at_next = above_bound(&of, next);
+        if (at_next > 0.0) {
+            return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, &none) : s;
+        }
+        s = next;
+        at_s = at_next;
+    }
+    return s;
 }
 
 FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat) {
-    const FcBristle reached = fc_reach(scene, bristle);
     const double delta = fabs(bristle.delta);
-    const double D = fabs(reached.delta);
     *heat = 0.0;
-    if (D == delta) {
+    if (!fc_is_bounded(scene->friction) && !fc_scene_is_loose(scene)) {
+        return bristle;
+    }
+    if (past->sigma == 0.0 || fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
+        const FcBristle reached = fc_reach(scene, bristle);
+        const double sigma = fc_scene_contact(scene, 0.0).sigma;
+        *heat = 0.5 * sigma * (delta - fabs(reached.delta)) * (delta + fabs(reached.delta));
         return reached;
     }
-    const double sigma = fc_scene_contact(scene, 0.0).sigma;
-    if (past->sigma == 0.0 ||
-        fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
-        *heat = 0.5 * sigma * (delta - D) * (delta + D);
-        return reached;
+    const FcPast now = fc_past(scene);
+    if (now.d == past->d && now.V == past->V && now.E == past->E && now.sigma == past->sigma &&
+        now.static_limit == past->static_limit && now.kinetic_limit == past->kinetic_limit) {
+        return fc_reach(scene, bristle);
     }
-    const bool breaks_away = fc_has_static_friction(scene->friction) && bristle.slips == 0;
+    const int side = bristle.delta < 0.0 ? -1 : 1;
     Ramp ramp = ramp_from(scene, past, bristle.slips);
-    const double s = where_met(&ramp, delta);
-    if (breaks_away) {
-        ramp.slips = bristle.delta < 0.0 ? -1 : 1;
-        const Place at = at_place(&ramp, s);
-        *heat = 0.5 * at.sigma * (delta - at.D) * (delta + at.D);
+    double reached = delta;
+    if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
+        const double s = where_it_breaks(&ramp, delta);
+        if (s < 1.0) {
+            bristle.slips = side;
+            ramp = ramp_from(scene, past, side);
+            const Place at = at_place(&ramp, s);
+            *heat = 0.5 * at.sigma * (delta - at.D) * (delta + at.D);
+            reached = follow_from(&ramp, s, at.D, heat);
+        }
+    } else {
+        reached = follow_from(&ramp, 0.0, delta, heat);
     }
-    *heat += heat_from(&ramp, s);
-    return reached;
+    return fc_reach(scene, (FcBristle){side * reached, bristle.slips});
 }

@@ -17,15 +17,16 @@ typedef struct {
     double d;     // m
     double V;     // m/s
     double E;     // Pa
-    double limit; // N, F_C or mu F_n
-    double sigma; // N/m, 0 for no past, or an open contact
+    double static_limit;  // N, staticRatio times F_C or mu F_n
+    double kinetic_limit; // N, of a bristle of ElasticPlastic that slips
+    double sigma;         // N/m, 0 for no past, or an open contact
 } FcPast;
 
 // Of a scene at its start.
 FcPast fc_past(const FcScene* scene);
 
-// The state with which the scene starts, fc_reach of the bristle; *heat [J] is what the way there costs. Without a past, sigma has
-// always been what it is.
+// The state with which the scene starts, fc_reach of the bristle but for a bound that has been lower on the way; *heat [J] is what
+// the way there costs. Without a past, sigma has always been what it is.
 FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat);
 
 #endif

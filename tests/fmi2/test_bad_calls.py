@@ -87,12 +87,3 @@ def test_values_that_do_not_go_together_are_refused_and_can_be_mended(
     assert instance.step(0.0, 1e-5) == OK
     assert twin.step(0.0, 1e-5) == OK
     assert instance.get(*OUTPUTS) == twin.get(*OUTPUTS)
-
-
-def test_values_that_do_not_go_together_are_refused_when_initialization_ends(instance: Instance) -> None:
-    assert instance.set({"vibration.a_d": 20e-6}) == OK
-    assert instance.call("fmi2EnterInitializationMode") == OK
-    assert instance.call("fmi2ExitInitializationMode") == ERROR
-    assert "vibration.a_d" in instance.last_message.text
-    assert instance.set({"vibration.a_d": 1e-6}) == OK
-    assert instance.call("fmi2ExitInitializationMode") == OK

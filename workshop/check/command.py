@@ -205,7 +205,7 @@ def check_hunt_guided(extent: Extent) -> None:
     options = [
         f"-seed={extent.seed}",
         f"-max_total_time={round(60 * extent.hunt_minutes)}",
-        "-max_len=260",
+        "-max_len=700",
         "-timeout=100",
         "-verbosity=0",
         "-print_funcs=0",

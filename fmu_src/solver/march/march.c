@@ -270,7 +270,10 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
         const double part = fastest > 0.0 ? (slip->at.V[i] - m->side * slip->rate[i]) / fastest : 0.0;
         f[i] = slip->at.limit[i] * (1.0 + part);
     }
-    return fc_error_at_points(&slip->at, f) * slip->at.h <= FC_SHARE_OF_FORMULA * allowed(m) * m->duration;
+    // The heat g (V - D') may miss its part of the path alone, which may be much less than what the bound moves by.
+    const double of_path = fastest > 0.0 ? m->speed / fastest : 1.0;
+    return fc_error_at_points(&slip->at, f) * slip->at.h <=
+           FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
 }
 
 // Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.

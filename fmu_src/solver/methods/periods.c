@@ -14,7 +14,8 @@ static const double MOST_CHANGING_PERIODS = 1e6;
 // that still changes.
 static const double SAME_END = 1e-10;
 
-// Periods in a row that meet the bound and never end alike are followed up to this number. By hand: they would have ended alike.
+// Periods that meet the bound are followed up to this number for a repetition. With static friction where the bristle sticks again may
+// depend on where it broke away: then periods need not repeat, and the mean over so many meetings is taken. By hand.
 enum { MOST_MEETINGS = 1000 };
 
 void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
@@ -118,9 +119,11 @@ static bool repeats(const Walk* walk) {
 }
 
 // Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
-// single free one repeats.
+// single free one repeats. If too many meetings do not repeat, met_at is the first of them.
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
+    FcStepResult first_met = *total;
+    double first_met_at = -1.0;
     walk->met_at = -1.0;
     int meetings = 0;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
@@ -141,6 +144,10 @@ static void walk_to_repetition(Walk* walk, double periods) {
             }
             walk->met = *total;
             walk->met_at = walk->done;
+            if (first_met_at < 0.0) {
+                first_met = *total;
+                first_met_at = walk->done;
+            }
             continue;
         }
         if (isinf(n)) {
@@ -153,6 +160,10 @@ static void walk_to_repetition(Walk* walk, double periods) {
         const FcMap map = fc_map_power(&walk->free_map, n);
         fc_map_apply(&map, total);
         walk->done += n;
+    }
+    if (isinf(periods)) {
+        walk->met = first_met;
+        walk->met_at = first_met_at;
     }
 }
 
