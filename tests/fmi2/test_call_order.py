@@ -31,14 +31,6 @@ def test_every_function(new_instance: Callable[..., Instance], kind: int, state:
         assert instance.fingerprint() == new_instance(kind=kind).fingerprint()
 
 
-@pytest.mark.parametrize(("kind", "state"), PLACES)
-def test_free(new_instance: Callable[..., Instance], kind: int, state: str) -> None:
-    instance = new_instance(kind=kind)
-    instance.bring_to(state)
-    instance.free()
-    assert not [message for message in instance.messages if message.status == ERROR]
-
-
 def test_a_state_of_the_other_interface_is_refused(new_instance: Callable[..., Instance]) -> None:
     stepped, exchanged = new_instance(kind=CO_SIMULATION), new_instance(kind=MODEL_EXCHANGE)
     state, before = stepped.save(), exchanged.fingerprint()

@@ -111,13 +111,6 @@ def test_the_drive_has_the_stiffness_and_force_of_the_formulas() -> None:
                 assert abs(multiprecision(got) / expected - 1) < 1e-16
 
 
-def test_the_load_is_the_mean_of_the_normal_force() -> None:
-    scene = Scene(input="Load", load=123.0, a_d=2 * UM, phase_d=1.0, d=1.0)
-    drive = reference.Drive(scene, 0.0, reference.EXTENDED)
-    times = reference.EXTENDED.array([scene.period * k / 64 for k in range(64)])
-    assert float(drive.normal_force(times).mean()) == pytest.approx(123.0, rel=1e-15)
-
-
 @pytest.mark.parametrize(
     ("kappa", "zeta", "printed"), [(1.0, 0.1, 0.122328249), (2.0, 0.25, 0.227294259), (5.0, 0.5, 0.379341496)]
 )
@@ -125,23 +118,6 @@ def test_periodic_means(kappa: float, zeta: float, printed: float) -> None:
     contact = Contact(model="Constant", sigma=kappa * 2 * np.pi * 20e3 * 55.0)
     scene = Scene(V=zeta, V_1=1.0, contact=contact)
     assert float(cycle(scene).impulse) * 20e3 / 55.0 == pytest.approx(printed, abs=1e-9)
-
-
-def test_soft_mean_with_moving_stiffness() -> None:
-    """Soft, delta hardly moves: F_t_mean = F_C <V> <sigma> / <sigma V>, not F_C, though V > 0 always."""
-    contact = Contact(stiffnessScale=1e-11)
-    scene = Scene(V=0.013, V_1=0.0091, a_d=0.5 * UM, phase_d=0.0, contact=contact)
-    drive = reference.Drive(scene, 0, reference.EXTENDED)
-    times = reference.EXTENDED.array([scene.period * k / 256 for k in range(256)])
-    sigma, V = drive.sigma(times), drive.V(times)
-    expected = float(V.mean() * sigma.mean() / (sigma * V).mean())
-    assert expected > 1.2
-    assert float(cycle(scene).impulse) * 20e3 / 55.0 == pytest.approx(expected, rel=1e-8)
-
-
-def test_five_millimetres_a_second_relax_within_nanoseconds() -> None:
-    rate = reference.Drive(Scene(V=0.005), 0, reference.EXTENDED).relaxation_rate(reference.EXTENDED.real(0))
-    assert float(1 / rate) == pytest.approx(1.915353e-9, rel=1e-6)
 
 
 SPRING = Contact(model="Constant", sigma=2.5e6)
