@@ -41,7 +41,7 @@ typedef struct {
         [2]; // m, the highest and the lowest start that meets no bound; infinite before they are asked for
     FcStepResult total;
     double done; // periods
-    // After the last period that met its bound.
+    // After a period that met its bound: the last one whose number is a power of 2.
     FcStepResult met;
     double met_at; // periods; negative for none
 } Walk;
@@ -138,8 +138,11 @@ static void walk_to_repetition(Walk* walk, double periods) {
             if (repeats(walk)) {
                 return;
             }
-            walk->met = *total;
-            walk->met_at = walk->done;
+            if ((meetings & (meetings - 1)) ==
+                0) { // kept ever longer, so that a cycle of any length comes back to it
+                walk->met = *total;
+                walk->met_at = walk->done;
+            }
             continue;
         }
         if (isinf(n)) {
@@ -177,7 +180,7 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
     while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
         walk_to_repetition(&walk, periods);
         const double cycle = walk.done - walk.met_at;
-        if (walk.done < periods && walk.met_at >= 0.0 && cycle > 0.0) {
+        if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
             repeat(&walk, floor((periods - walk.done) / cycle));
         } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
             const FcMap map = free_map_of(&walk);
