@@ -164,15 +164,16 @@ static void slopes_by_inputs(const Case* one, double delta, int side) {
     const double sizes[] = {fabs(drive->V.value), drive->d.value, drive->E.value, drive->load.value};
     const double force = force_scale(&one->scene, delta);
     const double V = velocity_scale(&one->scene);
-    const double scale[QUANTITIES] = {force, V, force * V, force * V, bound_at(&one->scene, side, 0.0), 1.0, 1.0, 1.0};
+    const double scale[QUANTITIES] = {force, V,   force * V, force * V, bound_at(&one->scene, side, 0.0),
+                                      1.0,   1.0, 1.0};
     for (int input = 0; input < 4; input++) {
         if (input == (one->contact.input == FC_CONTACT_LOAD ? 1 : 3)) {
             continue; // no input of this contact
         }
         const double k = 5e-4 * (input == 0 ? fmin(sizes[0], 0.02) : sizes[input]);
         const double with_it = 0.1 * delta / sizes[input];
-        const FcDirection along = {.V = input == 0, .d = input == 1, .E = input == 2, .load = input == 3,
-                                   .delta = with_it};
+        const FcDirection along = {
+            .V = input == 0, .d = input == 1, .E = input == 2, .load = input == 3, .delta = with_it};
         const All got = slopes_of(&one->scene, delta, side, &along, contact[input]);
         All at[5];
         for (int i = 0; i < 5; i++) {
