@@ -73,7 +73,7 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double* evaluations) {
-    const double rounding = DBL_EPSILON * (b - a);
+    const double rounding = DBL_EPSILON * fmax(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b, far = a, before = a;
     double at_near = at_b, at_far = at_a, at_before = at_a;
