@@ -140,6 +140,30 @@ static void at_the_start(void) {
     }
 }
 
+// One that is not quite at the end of its push, and one that is back within the first cell.
+static void just_left(void) {
+    const double omega = TWO_PI * F;
+    for (int side = -1; side <= 1; side += 2) {
+        for (int left = -1; left <= 1; left++) {
+            Case one; // pushed for 1e-8 / omega more
+            make(&one, side * D, 0.0, 0.05 * D, (side > 0 ? 0.25 : 0.75) * TWO_PI - 1e-8, 0.0);
+            one.course.left = left;
+            run(&one, 0.2 / F, 1);
+            CHECK(meeting_of(&one).side == (left == side ? 0 : side));
+        }
+        Case one;
+        make(&one, side * D, 0.0, 0.05 * D, (side > 0 ? 0.75 : 0.25) * TWO_PI - 0.3, 0.0);
+        run(&one, 0.9 / omega, 0);
+        one.course.left = side;
+        const int last = one.course.count - 1;
+        one.course.t[1] = one.course.t[last];
+        one.course.V[1] = one.course.V[last];
+        one.course.delta[1] = one.course.delta[last];
+        one.course.count = 2;
+        check_meets(&one, side, 0.6 / omega, 0.9 / omega, 1e-9);
+    }
+}
+
 // p on dense samples; the first one above `over`.
 static FcMeeting by_samples(const Case* one, double h, double over) {
     enum { SAMPLES = 20000 };
@@ -180,6 +204,7 @@ int main(void) {
     crossings_between_points();
     hidden_and_grazing();
     at_the_start();
+    just_left();
     random_courses();
     return check_result();
 }

@@ -138,8 +138,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
             if (repeats(walk)) {
                 return;
             }
-            if ((meetings & (meetings - 1)) ==
-                0) { // kept ever longer, so that a cycle of any length comes back to it
+            // Kept ever longer, so that a cycle of any length comes back to it.
+            if ((meetings & (meetings - 1)) == 0) {
                 walk->met = *total;
                 walk->met_at = walk->done;
             }
