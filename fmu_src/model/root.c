@@ -84,7 +84,9 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
         if (at_near == 0.0 || (on_side && fabs(at_near) <= close) || fabs(near - far) <= rounding) {
             break;
         }
-        const double t = near + fmax(1e-9, fmin(1.0 - 1e-9, part)) * (far - near);
+        const double least =
+            fmin(0.5, fmax(1e-9, rounding / fabs(near - far))); // so that t is another number
+        const double t = near + fmax(least, fmin(1.0 - least, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;
         before = near;
