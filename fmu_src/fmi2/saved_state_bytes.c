@@ -295,6 +295,11 @@ static const char* unsound_part(FcSavedState* saved) {
         !all_finite(friction->next_rate, FC_INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
+    const FcPast* past = &friction->past;
+    if (friction->slips < -1 || friction->slips > 1 ||
+        !all_finite((double[]){past->d, past->V, past->E, past->limit, past->sigma}, 5)) {
+        return "what the last step left";
+    }
     if (!hybrid_is_sound(friction)) {
         return "what model exchange keeps";
     }

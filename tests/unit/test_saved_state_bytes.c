@@ -36,6 +36,8 @@ static FcSavedState full_state(void) {
         friction->next_rate[input] = -2.5 - input;
     }
     friction->next_rate_set = 1;
+    friction->slips = -1;
+    friction->past = (FcPast){.d = 3e-6, .V = 0.7, .E = 5e9, .limit = 44.0, .sigma = 8e6};
     FcHybrid* hybrid = &friction->hybrid;
     hybrid->seen_time = 0.75;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
@@ -99,7 +101,7 @@ static void every_byte_of_a_number_counts(fmi2Component c) {
         check_counts(c, variables + fc_variables[vr].offset, size);
     }
     const size_t first = offsetof(FcFrictionState, time);
-    const size_t last = offsetof(FcFrictionState, next_rate_set) + sizeof(int);
+    const size_t last = offsetof(FcFrictionState, past) + sizeof(FcPast);
     check_counts(c, offsetof(FcSavedState, friction) + first, last - first);
     check_counts(c, offsetof(FcSavedState, friction) + offsetof(FcFrictionState, hybrid), sizeof(FcHybrid));
     const size_t experiment = offsetof(FcSavedState, experiment);
@@ -117,6 +119,8 @@ static void infinite_numbers_are_refused(fmi2Component c) {
                               offsetof(FcFrictionState, rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
                               offsetof(FcFrictionState, next_rate),
                               offsetof(FcFrictionState, next_rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
+                              offsetof(FcFrictionState, past),
+                              offsetof(FcFrictionState, past.sigma),
                               offsetof(FcFrictionState, hybrid.seen_time),
                               offsetof(FcFrictionState, hybrid.seen),
                               offsetof(FcFrictionState, hybrid.speed) + (FC_INPUT_COUNT - 1) * sizeof(double),
@@ -192,11 +196,11 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
     }
     put(&layout, (unsigned)friction->next_rate_set, 4);
     put(&layout, (unsigned)friction->slips, 4);
-    const double past[] = {friction->past.d, friction->past.V, friction->past.E, friction->past.limit,
-                           friction->past.sigma};
-    for (int k = 0; k < 5; k++) {
-        put_real(&layout, past[k]);
-    }
+    put_real(&layout, friction->past.d);
+    put_real(&layout, friction->past.V);
+    put_real(&layout, friction->past.E);
+    put_real(&layout, friction->past.limit);
+    put_real(&layout, friction->past.sigma);
     const FcHybrid* hybrid = &friction->hybrid;
     put(&layout, (unsigned)hybrid->regime, 4);
     put(&layout, (unsigned)hybrid->changed, 4);
@@ -246,7 +250,7 @@ static void bytes_are_as_documented(fmi2Component c) {
 static void other_bytes_are_refused(fmi2Component c) {
     const FcSavedState saved = full_state();
     const size_t size = layout_of(&saved, 4, 0).size;
-    for (unsigned version = 0; version < 5; version++) {
+    for (unsigned version = 0; version < 6; version++) {
         const Layout layout = layout_of(&saved, version, size);
         CHECK(is_read(c, &layout, size) == (version == 4));
     }
@@ -307,6 +311,11 @@ static void impossible_flags_are_refused(fmi2Component c) {
         CHECK(is_read_with(c, &saved) == (regime >= -1 && regime <= 1));
         saved.friction.variables.friction.limit = FC_LIMIT_CONSTANT;
         CHECK(is_read_with(c, &saved) == (regime == 0));
+    }
+    for (int slips = -2; slips <= 2; slips++) {
+        FcSavedState saved = full_state();
+        saved.friction.slips = slips;
+        CHECK(is_read_with(c, &saved) == (slips >= -1 && slips <= 1));
     }
     FcSavedState saved = full_state();
     saved.experiment.start_time = INFINITY;
