@@ -297,7 +297,8 @@ static const char* unsound_part(FcSavedState* saved) {
     }
     const FcPast* past = &friction->past;
     if (friction->slips < -1 || friction->slips > 1 ||
-        !all_finite((double[]){past->d, past->V, past->E, past->limit, past->sigma}, 5)) {
+        !all_finite((double[]){past->d, past->V, past->E, past->limit, past->ratio, past->V_S, past->sigma},
+                    7)) {
         return "what the last step left";
     }
     if (!hybrid_is_sound(friction)) {

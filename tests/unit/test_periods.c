@@ -142,7 +142,7 @@ static void too_much_work_is_refused(void) {
     CHECK(!step((Case){1e-9, 1.0, (1e6 + 1.0) * PERIOD}, &result, &message));
     CHECK(asked.steps == 0 && strstr(message.text, "1000001 vibration periods"));
     CHECK(step((Case){1e-9, 1.0, 1e6 * PERIOD}, &result, &message));
-    CHECK(asked.steps == 1000001);
+    CHECK(asked.steps + asked.maps < 100); // moving ones are interpolated
 
     evaluations_each = 0.6 * FC_MOST_EVALUATIONS;
     result = (FcStepResult){.delta = 7.0};

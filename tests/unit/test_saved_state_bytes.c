@@ -37,7 +37,8 @@ static FcSavedState full_state(void) {
     }
     friction->next_rate_set = 1;
     friction->slips = -1;
-    friction->past = (FcPast){.d = 3e-6, .V = 0.7, .E = 5e9, .limit = 44.0, .sigma = 8e6};
+    friction->past =
+        (FcPast){.d = 3e-6, .V = 0.7, .E = 5e9, .limit = 44.0, .ratio = 1.5, .V_S = 0.02, .sigma = 8e6};
     FcHybrid* hybrid = &friction->hybrid;
     hybrid->seen_time = 0.75;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
@@ -200,6 +201,8 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
     put_real(&layout, friction->past.V);
     put_real(&layout, friction->past.E);
     put_real(&layout, friction->past.limit);
+    put_real(&layout, friction->past.ratio);
+    put_real(&layout, friction->past.V_S);
     put_real(&layout, friction->past.sigma);
     const FcHybrid* hybrid = &friction->hybrid;
     put(&layout, (unsigned)hybrid->regime, 4);
