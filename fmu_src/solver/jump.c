@@ -136,6 +136,8 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
 
 // The ramp is taken in steps over which D and g move by no more than e to this power, Stribeck's curve by a part of V_S.
 static const double STEP_OF_LOG = 0.5;
+// By hand: more than there are from the smallest number to the largest.
+static const double MOST_STEPS = 1e4;
 static const double STEP_OF_CURVE = 0.5;
 // Beyond this velocity, over V_S, there is no curve.
 static const double END_OF_CURVE = 7.0;
@@ -159,7 +161,7 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
                          fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
                          fabs(ramp->log_V_S);
-    const double step = (1.0 - s) / ceil(moves / STEP_OF_LOG + 1e-3);
+    const double step = (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
     AboveBound of = {ramp, delta};
     double none = 0.0;
     while (s < 1.0) {
