@@ -18,9 +18,14 @@ static const double NEAR_THE_BOUND = 0.9;
 // The shortest time, over the time itself, that tells an input's speed. By hand: rounding leaves it four digits.
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
 
-// Points of a vibration period between which a push turns once at the most. By hand: two turns nearer than that bound a slip of
-// under 1e-3 of the vibration's amplitude.
-enum { POINTS_OF_PERIOD = 32 };
+// Parts of a vibration period, or changes of V over V_S in Stribeck's peak, within which a push turns once at the most. By hand:
+// two turns nearer than a part bound a slip of under 1e-3 of the vibration's amplitude.
+static const double PART_OF_PERIOD = 1.0 / 32.0;
+static const double PART_OF_PEAK = 0.5;
+static const double LEAST_PART_OF_PERIOD = 1e-4;
+
+// Beyond this velocity, over V_S, e^-25 is left of Stribeck's peak. By hand.
+static const double END_OF_PEAK = 5.0;
 
 // By this part of a period an event of time is later than the turn that it stands for. By hand: the indicators see the turn
 // first, and an event at a turn does not ask for a second one.
@@ -249,6 +254,17 @@ static void begin_regime(FcFrictionContact* contact) {
     }
 }
 
+// What the drop of a bristle that breaks away, which is motion, does to its damper.
+static void add_drop(FcFrictionContact* contact, double before) {
+    FcVariables* v = &contact->state.variables;
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const double work = v->friction.sigma_1 * (v->delta - before) * fc_drive_V(&scene.drive, 0.0);
+    if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
+        v->W_f += work;
+        move_to(contact, v->delta, work);
+    }
+}
+
 void fc_hybrid_event_begins(FcFrictionContact* contact) {
     look_at_inputs(contact);
     look_at_lag(contact);
@@ -261,7 +277,9 @@ void fc_hybrid_event_begins(FcFrictionContact* contact) {
     contact->state.past = (FcPast){.sigma = 0.0};
     FcMessage unheard;
     if (fc_friction_contact_check(contact, &unheard)) {
+        const double before = contact->state.variables.delta;
         begin_regime(contact);
+        add_drop(contact, before);
     }
 }
 
@@ -290,21 +308,34 @@ static double push(void* context, double t) {
     return fc_push(&of->view->scene, &of->view->bound, t, of->side);
 }
 
-// The first local time up to `end` at which the bristle is pushed towards the bound of that side no more; else end.
-static double first_turn(const View* view, int side, double start, double end) {
+// The time [s] from t on within which the push turns once at the most.
+static double part_of_period(const View* view, double t, double period) {
+    const FcFriction* friction = view->scene.friction;
+    double part = PART_OF_PERIOD * period;
+    if (fc_has_static_friction(friction) && view->side != 0) {
+        const FcVelocity at = fc_drive_velocity(&view->scene.drive, t);
+        const double change = fmax(PART_OF_PEAK * friction->V_S, fabs(at.V) - END_OF_PEAK * friction->V_S);
+        part = fmin(part, fc_velocity_time_of_change(&at, change));
+    }
+    return fmax(part, LEAST_PART_OF_PERIOD * period);
+}
+
+// The first local time within the period at which the bristle is pushed towards the bound of that side no more; else its end.
+static double first_turn(const View* view, int side, double start, double period) {
     Pushed of = {view, side};
     double evaluations = 0.0;
     double before = push(&of, start);
-    const double step = (end - start) / POINTS_OF_PERIOD;
-    for (int k = 1; k <= POINTS_OF_PERIOD; k++) {
-        const double t = start + k * step;
-        const double after = push(&of, t);
+    double t = start;
+    while (t < period) {
+        const double next = fmin(period, t + part_of_period(view, t, period));
+        const double after = push(&of, next);
         if (before > 0.0 && after <= 0.0) {
-            return fc_root_between(push, &of, t - step, before, t, after, &evaluations);
+            return fc_root_between(push, &of, t, before, next, after, 0.0, &evaluations);
         }
         before = after;
+        t = next;
     }
-    return end;
+    return period;
 }
 
 // Whether a bristle that sticks from now on is near the bound of that side at the time t.

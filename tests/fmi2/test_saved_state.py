@@ -183,7 +183,9 @@ def offsets(library: Library) -> dict[str, int]:
     places["time_rest"] = at + 8
     places["next_rate of V"] = at + 8 * 8
     places["next_rate_set"] = at + 8 * 12
-    places["regime"] = places["next_rate_set"] + 4
+    places["slips"] = places["next_rate_set"] + 4
+    places["past sigma"] = places["slips"] + 4 + 4 * 8
+    places["regime"] = places["past sigma"] + 8
     places["seen_time"] = places["regime"] + 2 * 4
     places["nominal_energy"] = places["seen_time"] + 10 * 8
     places["lag_heat"] = places["nominal_energy"] + 3 * 8
@@ -200,7 +202,7 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
     data = instance.fingerprint()
     places = offsets(library)
     assert data[:8] == b"FRICTION"
-    assert struct.unpack_from("<II", data, 8) == (3, len(data))
+    assert struct.unpack_from("<II", data, 8) == (4, len(data))
     assert data[GUID_AT:BODY_AT].decode() == library.guid
     assert struct.unpack_from("<d", data, places["V"]) == (0.125,)
     assert struct.unpack_from("<i", data, places["solver.method"]) == (1,)
@@ -222,6 +224,8 @@ def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, i
         ("time_rest", struct.pack("<d", float("inf")), "time"),
         ("next_rate of V", struct.pack("<d", float("inf")), "rate"),
         ("next_rate_set", struct.pack("<i", 2), "rate"),
+        ("slips", struct.pack("<i", 1), "the bristle's memory"),  # Dahl remembers no slip
+        ("past sigma", struct.pack("<d", float("nan")), "the bristle's memory"),
         ("regime", struct.pack("<i", 1), "what model exchange keeps"),  # Dahl has no bound here
         ("seen_time", struct.pack("<d", float("nan")), "what model exchange keeps"),
         ("nominal_energy", struct.pack("<d", float("inf")), "what model exchange keeps"),

@@ -33,9 +33,25 @@ static FcFrictionContact pressed(double load) {
     return contact;
 }
 
+// What the host does at an event; whether a state has changed.
+static bool update(FcFrictionContact* contact) {
+    bool changed;
+    bool nominals_changed;
+    FcMessage message;
+    CHECK(fc_hybrid_update(contact, &changed, &nominals_changed, &message));
+    fc_hybrid_event_ends(contact);
+    return changed;
+}
+
+static bool event(FcFrictionContact* contact) {
+    fc_hybrid_event_begins(contact);
+    return update(contact);
+}
+
 static void the_speed_of_inputs_is_that_between_two_steps(void) {
     FcFrictionContact contact = pressed(100.0);
     FcHybrid* hybrid = &contact.state.hybrid;
+    update(&contact);
     fc_hybrid_set_time(&contact, 0.5);
     contact.state.variables.load = 90.0;
     CHECK(!fc_hybrid_step_completed(&contact));

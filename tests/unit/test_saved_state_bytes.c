@@ -263,7 +263,7 @@ static void other_bytes_are_refused(fmi2Component c) {
 }
 
 static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
-    const Layout layout = layout_of(saved, 3, layout_of(saved, 3, 0).size);
+    const Layout layout = layout_of(saved, 4, layout_of(saved, 4, 0).size);
     return is_read(c, &layout, layout.size);
 }
 
@@ -301,6 +301,13 @@ static void impossible_flags_are_refused(fmi2Component c) {
         CHECK(is_read_with(c, &saved) == (regime >= -1 && regime <= 1));
         saved.friction.variables.friction.limit = FC_LIMIT_CONSTANT;
         CHECK(is_read_with(c, &saved) == (regime == 0));
+    }
+    for (int slips = -2; slips <= 2; slips++) { // only with static friction it is remembered
+        FcSavedState saved = full_state();
+        saved.friction.slips = slips;
+        CHECK(is_read_with(c, &saved) == (slips == 0));
+        saved.friction.variables.friction.model = FC_ELASTIC_PLASTIC;
+        CHECK(is_read_with(c, &saved) == (slips >= -1 && slips <= 1));
     }
     FcSavedState saved = full_state();
     saved.experiment.start_time = INFINITY;
