@@ -11,8 +11,8 @@
 // integrator tells apart.
 static const double HYSTERESIS = 1e-10;
 
-// A bristle that turns back farther from its bound has not met it between two steps of an integrator. By hand: less makes
-// more events, more may pass over such a meeting.
+// A bristle of ElasticPlastic that will turn back farther from its bound does not meet it. By hand: less makes more events, more
+// trusts that the inputs stay.
 static const double NEAR_THE_BOUND = 0.9;
 
 // The shortest time, over the time itself, that tells an input's speed. By hand: rounding leaves it four digits.
@@ -102,17 +102,6 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     return true;
 }
 
-// Of a bristle of ElasticPlastic that sticks near a bound that inputs move: the velocity [m/s] at which it comes nearer. Where it
-// turns back it may have met the bound and left it again since the integrator's last step: an event there shows it. A
-// vibration's turns are announced.
-static double approach(const View* view, double delta, double D) {
-    if (fc_drive_vibrates(&view->scene.drive) || fc_bound_rate(&view->bound, 0.0) == 0.0 ||
-        fabs(delta) < NEAR_THE_BOUND * D) {
-        return 1.0;
-    }
-    return fc_push(&view->scene, &view->bound, 0.0, delta < 0.0 ? -1 : 1);
-}
-
 // Of a bounded bristle of a closed contact.
 static void find_indicators_of_bound(const View* view, FcRegime regime, double delta, double* z) {
     const double D = fc_bound(&view->bound, 0.0);
@@ -124,8 +113,6 @@ static void find_indicators_of_bound(const View* view, FcRegime regime, double d
         const double speed =
             fabs(drive->V.value) + drive->vibration.V_1 + fabs(fc_bound_rate(&view->bound, 0.0));
         z[2] = fc_push(&view->scene, &view->bound, 0.0, view->side) + HYSTERESIS * speed;
-    } else if (view->scene.friction->model == FC_ELASTIC_PLASTIC) {
-        z[0] = approach(view, delta, D);
     }
 }
 

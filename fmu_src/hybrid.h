@@ -41,8 +41,7 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
-//   0   V with its vibration [m/s], where |V| has a kink; in ElasticPlastic, which has none, the velocity at which a bristle that
-//       sticks comes nearer to a bound that inputs move, where it is near to it, else 1
+//   0   V with its vibration [m/s], where |V| has a kink; 1 in ElasticPlastic, which has none
 //   1   (D - |delta|) / D + hysteresis while a bounded bristle is free, else 1
 //   2   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
 //   3   what keeps a closed contact from opening, or an open one from closing: the load [N], or the way of d [m]; 1 where
