@@ -151,3 +151,54 @@ def test_inputs_that_jump_at_an_event(fmu: FrictionFmu) -> None:
     """As between two steps of co-simulation."""
     heats = [heat for number in range(120) for heat in heats_of_jumps(fmu, number)]
     assert sum(heat > 0.0 for heat in heats) > 30
+
+
+def test_no_slip_is_stepped_over(fmu: FrictionFmu) -> None:
+    """A vibration that exceeds the bound by 1e-4 to 3 % slips for a while that a host may step over."""
+    worst = []
+    for number in range(60):
+        rng = np.random.default_rng([5, number])
+        amplitude = 55.0 / 50e6 * (1.0 + 10.0 ** rng.uniform(-4.0, -1.5))
+        start: dict[str, Value] = {
+            "friction.model": "ElasticPlastic",
+            "contact.model": "Constant",
+            "contact.sigma": 50e6,
+            "V": 0.0,
+        }
+        if number % 3 == 1:
+            amplitude *= 1.3
+            start |= {"friction.staticRatio": 1.3, "friction.V_S": 0.1}
+        if number % 3 == 2:
+            phase = rng.uniform(0.0, 2.0 * np.pi)
+            start |= {"friction.limit": "Load", "vibration.a_d": 0.3e-6, "vibration.phase_d": phase}
+        start["vibration.V_1"] = amplitude * 2.0 * np.pi / PERIOD
+        stop = rng.uniform(0.6, 1.4) * PERIOD
+        with (
+            fmu.session({**start, "solver.tolerance": 1e-8}) as session,
+            Host(fmu, start, lambda t, own: {}, tolerance=1e-6) as host,
+        ):
+            session.step(stop)
+            host.advance(stop)
+            host.event()
+            worst.append(abs(host.get("Q_f")[0] - session.get("Q_f")) / (55.0 * 4.0 * amplitude))
+    assert max(worst) < 5e-5
+
+
+@pytest.mark.parametrize("V", [0.02, -0.2, 0.5])
+def test_a_settled_start_with_static_friction(fmu: FrictionFmu, V: float) -> None:
+    """It may slip from the start: the first period after it is that of co-simulation."""
+    start: dict[str, Value] = {
+        "initialState": "Settled",
+        "friction.model": "ElasticPlastic",
+        "friction.staticRatio": 1.4,
+        "friction.V_S": 0.1,
+        "contact.model": "Constant",
+        "contact.sigma": 50e6,
+        "V": V,
+        "vibration.V_1": 0.3,
+    }
+    times = np.linspace(0.0, PERIOD, 21)
+    found = exchanged(fmu, start, lambda t: {}, times, 1e-9)
+    expected = stepped(fmu, start, lambda t: {}, times)
+    energy = 55.0 * 0.3 * PERIOD
+    assert np.abs((found - expected) / [55.0, 1e3, 1.1e-6, energy, energy]).max() < 1e-6
