@@ -151,7 +151,7 @@ static double next_place(const Ramp* ramp, double s, double step) {
         const double beyond = fabs(V) / V_S - END_OF_CURVE;
         next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / fabs(ramp->V));
     }
-    return next < 1.0 - 1e-9 ? next : 1.0;
+    return next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
 }
 
 // |delta| at the end of the ramp, from the place s on.
@@ -184,7 +184,7 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
     double none = 0.0;
     double s = 0.0;
     double at_s = above_bound(&of, s);
-    const double moves = 1.0 + fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG;
+    const double moves = 1.0 + fmin(fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG, MOST_STEPS);
     while (s < 1.0 && at_s <= 0.0) {
         const double next = s + 1.0 / ceil(moves) < 1.0 - 1e-9 ? s + 1.0 / ceil(moves) : 1.0;
         const double at_next = above_bound(&of, next);

@@ -184,7 +184,7 @@ def offsets(library: Library) -> dict[str, int]:
     places["next_rate of V"] = at + 8 * 8
     places["next_rate_set"] = at + 8 * 12
     places["slips"] = places["next_rate_set"] + 4
-    places["past sigma"] = places["slips"] + 4 + 4 * 8
+    places["past sigma"] = places["slips"] + 4 + 6 * 8
     places["regime"] = places["past sigma"] + 8
     places["seen_time"] = places["regime"] + 2 * 4
     places["nominal_energy"] = places["seen_time"] + 10 * 8
