@@ -75,8 +75,12 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
                        double at_b, double close, double* evaluations) {
     const double rounding = DBL_EPSILON * (b - a);
     // The root lies between near and far; before is the end that was replaced last.
-    double near = b, far = a, before = a;
-    double at_near = at_b, at_far = at_a, at_before = at_a;
+    double near = b;
+    double far = a;
+    double before = a;
+    double at_near = at_b;
+    double at_far = at_a;
+    double at_before = at_a;
     const bool ends_negative = at_b < 0.0;
     double part = at_b / (at_b - at_a);
     for (int i = 0; i < MOST_ROOT_STEPS; i++) {

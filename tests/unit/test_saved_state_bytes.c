@@ -191,6 +191,12 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
         put_real(&layout, friction->next_rate[input]);
     }
     put(&layout, (unsigned)friction->next_rate_set, 4);
+    put(&layout, (unsigned)friction->slips, 4);
+    const double past[] = {friction->past.d, friction->past.V, friction->past.E, friction->past.limit,
+                           friction->past.sigma};
+    for (int k = 0; k < 5; k++) {
+        put_real(&layout, past[k]);
+    }
     const FcHybrid* hybrid = &friction->hybrid;
     put(&layout, (unsigned)hybrid->regime, 4);
     put(&layout, (unsigned)hybrid->changed, 4);
@@ -228,7 +234,7 @@ static bool is_read(fmi2Component c, const Layout* layout, size_t size) {
 static void bytes_are_as_documented(fmi2Component c) {
     FcSavedState saved = full_state();
     const Bytes written = bytes_of(c, &saved);
-    const Layout layout = layout_of(&saved, 3, written.size);
+    const Layout layout = layout_of(&saved, 4, written.size);
     CHECK(layout.size == written.size && memcmp(layout.bytes, written.bytes, written.size) == 0);
     CHECK(is_read(c, &layout, layout.size));
     char too_few[MOST_BYTES];
@@ -239,15 +245,15 @@ static void bytes_are_as_documented(fmi2Component c) {
 // Other versions, other sizes, bytes cut off or too many, and each byte damaged with the hash put right or not.
 static void other_bytes_are_refused(fmi2Component c) {
     const FcSavedState saved = full_state();
-    const size_t size = layout_of(&saved, 3, 0).size;
+    const size_t size = layout_of(&saved, 4, 0).size;
     for (unsigned version = 0; version < 5; version++) {
         const Layout layout = layout_of(&saved, version, size);
-        CHECK(is_read(c, &layout, size) == (version == 3));
+        CHECK(is_read(c, &layout, size) == (version == 4));
     }
-    const Layout good = layout_of(&saved, 3, size);
+    const Layout good = layout_of(&saved, 4, size);
     for (size_t given = 0; given < size + 20; given++) {
         CHECK(is_read(c, &good, given) == (given == size));
-        const Layout layout = layout_of(&saved, 3, given);
+        const Layout layout = layout_of(&saved, 4, given);
         CHECK(is_read(c, &layout, size) == (given == size));
     }
     for (size_t i = 0; i < size; i++) {

@@ -1,4 +1,4 @@
-// The scene: the laws' limits and forces, surfaces that float on a load, rates against differences, bounds.
+// The scene: the laws' limits, surfaces that float on a load, rates against differences, bounds.
 #include "model/scene.h"
 
 #include "check.h"
@@ -21,76 +21,6 @@ static void limits_of_the_laws(void) {
         const double F_n = fc_scene_contact(&follows, t).F_n;
         CHECK_NEAR(fc_scene_coefficients(&follows, t).limit,
                    0.176 * F_n * (1.0 + 0.5 * exp(-(V / 0.2) * (V / 0.2))), 1e-14);
-    }
-}
-
-// F_t = sigma delta + sigma_1 delta' + sigma_2 V, and Coulomb's g sgn V + sigma_2 V.
-static void forces_of_the_laws(void) {
-    const FcContactParameters contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_SEPARATION);
-    const double delta = 8e-6; // m; sigma delta = 20 N, below 55 N
-    for (double t = 0.0; t < PERIOD; t += 0.13 * PERIOD) {
-        const FcFriction coulomb = law(FC_COULOMB, FC_LIMIT_CONSTANT);
-        const FcScene sliding = moving_scene(&contact, &coulomb, 0.0);
-        const double V = fc_drive_V(&sliding.drive, t);
-        CHECK_NEAR(fc_scene_outputs(&sliding, t, delta).F_t, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-15);
-        CHECK(fc_scene_deflection_rate(&sliding, t, delta) == 0.0);
-
-        const FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
-        const FcScene sticking = moving_scene(&contact, &plastic, 0.0);
-        CHECK_NEAR(fc_scene_outputs(&sticking, t, delta).F_t, 20.0 + 40.0 * V + 3.0 * V, 1e-14);
-
-        const FcFriction lugre = law(FC_LUGRE, FC_LIMIT_CONSTANT);
-        const FcScene bristle = moving_scene(&contact, &lugre, 0.0);
-        const double g = 55.0 * (1.0 + 0.5 * exp(-(V / 0.2) * (V / 0.2)));
-        const double rate = V - 2.5e6 * fabs(V) * delta / g;
-        CHECK_NEAR(fc_scene_deflection_rate(&bristle, t, delta), rate, 1e-14);
-        CHECK_NEAR(fc_scene_outputs(&bristle, t, delta).F_t, 20.0 + 40.0 * rate + 3.0 * V, 1e-14);
-    }
-}
-
-// A bristle beyond its bound lies on it; one on it slips while V pushes outwards.
-static void an_elastic_plastic_bristle_slips(void) {
-    const FcContactParameters contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_SEPARATION);
-    FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
-    plastic.sigma_2 = 0.0;
-    plastic.staticRatio = 1.0;
-    const FcScene scene = moving_scene(&contact, &plastic, 0.0);
-    const double bound = 55.0 / 2.5e6;
-    CHECK(fc_drive_V(&scene.drive, 0.0) > 0.0);
-    CHECK(fc_scene_slip_side(&scene, 0.0, bound) == 1.0 && fc_scene_slip_side(&scene, 0.0, -bound) == 0.0);
-    CHECK(fc_scene_slip_side(&scene, 0.0, 0.99 * bound) == 0.0);
-    CHECK(fc_scene_deflection_rate(&scene, 0.0, bound) == 0.0);
-    CHECK_NEAR(fc_scene_outputs(&scene, 0.0, 2.0 * bound).F_t, 55.0, 1e-15);
-}
-
-// Where the limit follows the load, a bristle of Dahl or LuGre beyond the bound lies on it, mu F_n or staticRatio mu F_n, and
-// slips along it while its law would lead beyond: with V held, where the bound falls.
-static void a_bristle_slips_along_a_limit_that_follows_the_load(void) {
-    const FcContactParameters contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_SEPARATION);
-    for (int model = FC_DAHL; model <= FC_LUGRE; model += FC_LUGRE - FC_DAHL) {
-        for (double d_rate = -0.02; d_rate <= 0.02; d_rate += 0.04) { // F_n rises, falls
-            FcFriction friction = law(model, FC_LIMIT_LOAD);
-            friction.sigma_2 = 0.0;
-            FcScene scene = moving_scene(&contact, &friction, 0.0);
-            scene.drive.vibration = (FcVibration){.f = F};
-            scene.drive.d.rate = d_rate;
-            scene.drive.V.value = 1e-3;
-            const double F_n = scene.at_E.load_0 * exp(-scene.at_E.decay * 14e-6);
-            const double limit = (model == FC_LUGRE ? 1.5 : 1.0) * 0.176 * F_n;
-            const double D = limit / 2.5e6;
-            const double D_rate = -D * scene.at_E.decay * d_rate;
-            const double free_rate =
-                1e-3 * (1.0 - (model == FC_LUGRE ? 1.5 / (1.0 + 0.5 * exp(-2.5e-5)) : 1.0));
-            const bool slips = d_rate > 0.0;
-            CHECK(fc_scene_slip_side(&scene, 0.0, D) == (slips ? 1.0 : 0.0));
-            CHECK(fc_scene_slip_side(&scene, 0.0, -D) == 0.0 || slips);
-            CHECK(fc_scene_slip_side(&scene, 0.0, 0.99 * D) == 0.0);
-            const double rate = slips ? D_rate : free_rate;
-            CHECK_WITHIN(fc_scene_deflection_rate(&scene, 0.0, D), rate, 1e-11 * 1e-3);
-            CHECK_NEAR(fc_scene_outputs(&scene, 0.0, 2.0 * D).F_t, limit + 40.0 * rate, 1e-12);
-            friction.limit = FC_LIMIT_CONSTANT;
-            CHECK(fc_scene_slip_side(&scene, 0.0, 2.0 * D) == 0.0);
-        }
     }
 }
 
@@ -126,14 +56,6 @@ static double log_stiffness(const FcScene* scene, double t) {
     return log(fc_scene_coefficients(scene, t).sigma);
 }
 static double log_limit(const FcScene* scene, double t) { return log(fc_scene_coefficients(scene, t).limit); }
-// Of LuGre the bound is staticRatio times the limit without its curve.
-static double bound(const FcScene* scene, double t) {
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double ratio = at.V / 0.2;
-    const bool is_lugre = scene->friction->model == FC_LUGRE;
-    return at.limit / at.sigma * (is_lugre ? 1.5 / (1.0 + 0.5 * exp(-ratio * ratio)) : 1.0);
-}
-
 static void rates_are_derivatives(void) {
     const double omega = TWO_PI * F;
     for (int k = 0; k < KINDS; k++) {
@@ -144,10 +66,6 @@ static void rates_are_derivatives(void) {
             CHECK_WITHIN(rates.sigma, slope(log_stiffness, &scene, t), 1e-8 * omega);
             CHECK_WITHIN(rates.limit, slope(log_limit, &scene, t), 1e-8 * omega);
             CHECK_WITHIN(fc_scene_d_rate(&scene, t), slope(fc_scene_d, &scene, t), 1e-9 * omega * 1.1e-6);
-            if (one.friction.limit == FC_LIMIT_LOAD) {
-                CHECK_WITHIN(fc_scene_bound_rate(&scene, t), slope(bound, &scene, t),
-                             1e-7 * omega * bound(&scene, t));
-            }
         }
     }
 }
@@ -281,26 +199,10 @@ static void is_as_the_equations_say(const Random* one) {
         CHECK_NEAR(got.limit, expected.limit, 1e-11);
         CHECK_NEAR(fc_scene_stiffness(scene, t), expected.sigma, 1e-11);
         CHECK_NEAR(fc_scene_contact(scene, t).F_n, there.F_n, 1e-11);
-        const double delta = 0.1 * expected.limit / expected.sigma;
-        const FcOutputs outputs = fc_scene_outputs(scene, t, delta);
-        const double rate = one->made.friction.model == FC_ELASTIC_PLASTIC
-                                ? expected.V
-                                : expected.V - expected.sigma * fabs(expected.V) * delta / expected.limit;
-        CHECK_NEAR(outputs.F_n, there.F_n, 1e-11);
-        CHECK_NEAR(outputs.A_r, there.A_r, 1e-11);
-        CHECK_NEAR(outputs.sigma, there.sigma, 1e-11);
-        CHECK_WITHIN(outputs.F_t, 0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
-                     1e-10 * (expected.limit + 43.0 * fabs(expected.V)));
         const FcScene later = fc_scene_later(scene, PERIOD);
         CHECK_NEAR(later.drive.E.value, one->given.E.value + one->given.E.rate * PERIOD, 1e-14);
         CHECK_NEAR(later.at_E.load_0, surfaces(one, PERIOD).at_E.load_0, 1e-13);
     }
-    // The mean of the limit without its curve, over a period of the vibration.
-    const Surfaces now = surfaces(one, 0.0);
-    const double mean = fc_contact_response(&now.at_E, now.rest).F_n *
-                        exp(log_mean_of_exponential(now.at_E.decay * one->given.vibration.a_d));
-    CHECK_NEAR(fc_scene_force_scale(scene), scene->friction->limit == FC_LIMIT_LOAD ? 0.176 * mean : 55.0,
-               1e-11);
 }
 
 static double of_d(const FcScene* scene, double t) { return fc_scene_d(scene, t); }
@@ -358,45 +260,9 @@ static void random_scenes(void) {
     }
 }
 
-// On its bound it slips while V pushes outwards faster than the bound recedes: g follows the load, V is held.
-static void it_slips_where_V_outruns_the_bound(void) {
-    int slips = 0, sticks = 0;
-    for (int k = 0; k < 20 * KINDS; k++) {
-        Random one;
-        make_random(&one, k);
-        one.made.friction.model = FC_ELASTIC_PLASTIC;
-        one.made.friction.sigma_1 = 0.0;
-        one.made.friction.sigma_2 = 0.0;
-        const FcCoefficients at = fc_scene_coefficients(&one.scene, 0.0);
-        const double D = at.limit / at.sigma;
-        const double k_t = 1e-4 * PERIOD;
-        const double D_rate = (bound(&one.scene, k_t) - bound(&one.scene, -k_t)) / (2.0 * k_t);
-        for (double side = -1.0; side < 2.0; side += 2.0) {
-            const double outruns = side * at.V - D_rate;
-            if (fabs(outruns) < 1e-3 * (fabs(at.V) + fabs(D_rate))) {
-                continue;
-            }
-            const double expected = outruns > 0.0 ? side : 0.0;
-            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * D) == expected);
-            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * 1.1 * D) == expected);
-            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * (1.0 - 1e-9) * D) == 0.0);
-            CHECK_WITHIN(fc_scene_deflection_rate(&one.scene, 0.0, side * D),
-                         expected != 0.0 ? side * D_rate : at.V, 1e-4 * (fabs(at.V) + fabs(D_rate)));
-            CHECK_NEAR(fc_scene_outputs(&one.scene, 0.0, side * 2.0 * D).F_t, side * at.limit, 1e-13);
-            slips += expected != 0.0;
-            sticks += expected == 0.0;
-        }
-    }
-    CHECK(slips > 100 && sticks > 100);
-}
-
 int main(void) {
     random_scenes();
-    it_slips_where_V_outruns_the_bound();
     limits_of_the_laws();
-    forces_of_the_laws();
-    an_elastic_plastic_bristle_slips();
-    a_bristle_slips_along_a_limit_that_follows_the_load();
     surfaces_float_on_the_load();
     rates_are_derivatives();
     bounds_hold();

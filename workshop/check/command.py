@@ -247,12 +247,6 @@ def check_hunt_coverage(extent: Extent) -> None:
     _run([*gcovr, *options, "--fail-under-branch", str(LEAST_BRANCHES)])
 
 
-def write_bad_input(extent: Extent) -> None:
-    """Writes docs/bad-input.md anew from the tests' bad calls."""
-    build_fmu()
-    _run([sys.executable, "tests/fmi2/bad_input_page.py"])
-
-
 CHECKS: dict[str, Callable[[Extent], None]] = {
     "sanitize": check_sanitize,
     "threads": check_threads,
@@ -264,7 +258,6 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "hunt-coverage": check_hunt_coverage,
     "leaks": check_leaks,
     "coverage": check_coverage,
-    "bad-input": write_bad_input,
 }
 IN_CI = ("sanitize", "leaks", "fuzz")
 

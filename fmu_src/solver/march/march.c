@@ -245,7 +245,10 @@ static void add_slip(March* m, const Slip* slip) {
     note_slip(m, slip->at.h);
     FcStepResult* result = m->result;
     const FcPoints* at = &slip->at;
-    double limit = 0.0, limit_V = 0.0, recedes = 0.0, V_recedes = 0.0;
+    double limit = 0.0;
+    double limit_V = 0.0;
+    double recedes = 0.0;
+    double V_recedes = 0.0;
     for (int i = 1; i <= at->n; i++) {
         const double w = at->rule->weight[i - 1] * at->h;
         limit += w * at->limit[i];
