@@ -295,15 +295,14 @@ static const char* unsound_part(FcSavedState* saved) {
         !all_finite(friction->next_rate, FC_INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
     }
+    const FcPast* past = &friction->past;
+    if (friction->slips < -1 || friction->slips > 1 ||
+        !all_finite((double[]){past->d, past->V, past->E, past->limit, past->ratio, past->V_S, past->sigma},
+                    7)) {
+        return "what the last step left";
+    }
     if (!hybrid_is_sound(friction)) {
         return "what model exchange keeps";
-    }
-    const FcPast* past = &friction->past;
-    const double of_past[] = {past->d, past->V, past->E, past->limit, past->ratio, past->V_S, past->sigma};
-    if (friction->slips < -1 || friction->slips > 1 ||
-        (friction->slips != 0 && !fc_has_static_friction(&friction->variables.friction)) ||
-        !all_finite(of_past, sizeof of_past / sizeof *of_past)) {
-        return "the bristle's memory";
     }
     return experiment_is_sound(&saved->experiment) ? NULL : "the state of the instance";
 }
