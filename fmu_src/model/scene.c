@@ -52,6 +52,12 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     return scene;
 }
 
+double fc_scene_closed_by(const FcScene* scene) {
+    return follows_load(scene)
+               ? scene->drive.load.value - NOTHING
+               : fmax(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
+}
+
 // By this factor a load may move in a piece. By hand: more needs finer panels, less more pieces.
 static const double LOAD_OF_PIECE = 4.0;
 // A contact opens earlier and closes later by this part of the step. Derived: what the bristle does in that time goes with

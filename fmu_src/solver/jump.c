@@ -136,6 +136,8 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
 
 // The ramp is taken in steps over which D and g move by no more than e to this power, Stribeck's curve by a part of V_S.
 static const double STEP_OF_LOG = 0.5;
+// By hand: more than there are from the smallest number to the largest.
+static const double MOST_STEPS = 1e4;
 static const double STEP_OF_CURVE = 0.5;
 // Beyond this velocity, over V_S, there is no curve.
 static const double END_OF_CURVE = 7.0;
@@ -149,7 +151,7 @@ static double next_place(const Ramp* ramp, double s, double step) {
         const double beyond = fabs(V) / V_S - END_OF_CURVE;
         next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / fabs(ramp->V));
     }
-    return next < 1.0 - 1e-9 ? next : 1.0;
+    return next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
 }
 
 // |delta| at the end of the ramp, from the place s on.
@@ -159,7 +161,7 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
                          fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
                          fabs(ramp->log_V_S);
-    const double step = (1.0 - s) / ceil(moves / STEP_OF_LOG + 1e-3);
+    const double step = (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
     AboveBound of = {ramp, delta};
     double none = 0.0;
     while (s < 1.0) {
@@ -182,7 +184,7 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
     double none = 0.0;
     double s = 0.0;
     double at_s = above_bound(&of, s);
-    const double moves = 1.0 + fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG;
+    const double moves = 1.0 + fmin(fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG, MOST_STEPS);
     while (s < 1.0 && at_s <= 0.0) {
         const double next = s + 1.0 / ceil(moves) < 1.0 - 1e-9 ? s + 1.0 / ceil(moves) : 1.0;
         const double at_next = above_bound(&of, next);

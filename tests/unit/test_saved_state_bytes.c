@@ -38,7 +38,7 @@ static FcSavedState full_state(void) {
     friction->next_rate_set = 1;
     friction->slips = -1;
     friction->past =
-        (FcPast){.d = 3e-6, .V = 0.7, .E = 5e9, .limit = 44.0, .ratio = 1.5, .V_S = 0.02, .sigma = 8e6};
+        (FcPast){.d = 1e-5, .V = -2.0, .E = 3e9, .limit = 4.0, .ratio = 5.0, .V_S = 6.0, .sigma = 7e6};
     FcHybrid* hybrid = &friction->hybrid;
     hybrid->seen_time = 0.75;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
@@ -197,13 +197,11 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
     }
     put(&layout, (unsigned)friction->next_rate_set, 4);
     put(&layout, (unsigned)friction->slips, 4);
-    put_real(&layout, friction->past.d);
-    put_real(&layout, friction->past.V);
-    put_real(&layout, friction->past.E);
-    put_real(&layout, friction->past.limit);
-    put_real(&layout, friction->past.ratio);
-    put_real(&layout, friction->past.V_S);
-    put_real(&layout, friction->past.sigma);
+    const FcPast* of = &friction->past;
+    const double past[] = {of->d, of->V, of->E, of->limit, of->ratio, of->V_S, of->sigma};
+    for (int k = 0; k < 7; k++) {
+        put_real(&layout, past[k]);
+    }
     const FcHybrid* hybrid = &friction->hybrid;
     put(&layout, (unsigned)hybrid->regime, 4);
     put(&layout, (unsigned)hybrid->changed, 4);
