@@ -97,12 +97,19 @@ def test_the_page_has_what_long_steps_cost(bench: Bench) -> None:
 
 def test_the_table_of_long_steps_is_renewed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     page = tmp_path / "numerics.md"
-    page.write_text("over those of one\nperiod with held inputs:\n\n| old |\n| 1 |\n\nmore\n")
+    page.write_text("of one period with held inputs:\n\n| old |\n| 1 |\n\nmore\n")
     monkeypatch.setattr(work_precision, "PAGE", page)
     rows = [
-        {"law": "Dahl", "limit": "Load", "inputs": kind, "periods": 10**6, "ratio": ratio, "cpu_s": 0.05}
+        {
+            "law": "Dahl",
+            "limit": "Load",
+            "inputs": kind,
+            "periods": 10**6,
+            "ratio": ratio,
+            "cpu_ratio": 1640.0,
+        }
         for kind, ratio in (("held", 2.0), ("moving", 16.0))
     ]
     renew_periods(rows)
-    assert "| Dahl | Load | 2.00 | 16.0 | 50 ms |\n\nmore" in page.read_text()
+    assert "| Dahl | Load | 2.00 | 16.0 | 1600 |\n\nmore" in page.read_text()
     assert "old" not in page.read_text()
