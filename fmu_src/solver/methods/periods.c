@@ -215,7 +215,7 @@ bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMess
         return fc_message_set(
             message,
             "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
-            "at most %.9g periods are computed one by one: the largest step is %.9g s",
+            "at most %.9g of them are computed: the largest step is %.9g s",
             h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
     }
     if (evaluations > FC_MOST_EVALUATIONS) {
