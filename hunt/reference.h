@@ -55,6 +55,9 @@ ReferenceScene reference_scene(void);
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result);
 
+// Whether the contact is open at the start of a scene.
+bool reference_is_open(const ReferenceScene* scene);
+
 // F_t_settled [N] of the scene's inputs, held, from delta_0; false where no cycle of periods was found. S is that of a step
 // of no length.
 bool reference_settled_force(const ReferenceScene* scene, double* force, double* S);
