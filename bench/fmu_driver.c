@@ -59,7 +59,8 @@ static fmi2Status step(fmi2Component c, const Job* job, const fmi2ValueReference
         }
     }
     if (worst <= fmi2Warning) {
-        worst = fmi->DoStep(c, job->start + k * job->step, job->step, fmi2True);
+        worst = job->calls ? fmi->DoStep(c, job->start, 0.0, fmi2True)
+                           : fmi->DoStep(c, job->start + k * job->step, job->step, fmi2True);
     }
     if (worst <= fmi2Warning) {
         worst = fmi->GetReal(c, job->output, (size_t)job->outputs, row);

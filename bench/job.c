@@ -76,6 +76,8 @@ Job job_read(void) {
             job.budget = read_number(keyword);
         } else if (strcmp(keyword, "count") == 0) {
             job.count = (int)read_number(keyword);
+        } else if (strcmp(keyword, "calls") == 0) {
+            job.calls = (int)read_number(keyword);
         } else if (strcmp(keyword, "linear") == 0) {
             job.linear = (int)read_number(keyword);
         } else if (strcmp(keyword, "integer") == 0 || strcmp(keyword, "real") == 0) {

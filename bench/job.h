@@ -4,6 +4,7 @@
 //     step 5e-5           s, communication step H
 //     count 20            steps
 //     budget 0.05         s of CPU time for repeating the run, which is done at least three times
+//     calls 1             every step has the length 0 and stays at the start: what the calls of the FMU cost
 //     linear 1            inputs move linearly between their samples; 0: they are held over a step
 //     integer 27 1        start value: value reference, value
 //     real 28 1e-6        the same
@@ -38,6 +39,7 @@ typedef struct {
     double step;   // s
     double budget; // s
     int count;
+    int calls;
     int linear;
     int values;
     StartValue value[JOB_VALUES];

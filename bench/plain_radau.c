@@ -1,27 +1,22 @@
-// Radau IIA of order 5 with the step control of RADAU5 (Hairer, Wanner, Solving ODEs II, IV.8), which stops at
-// reversals: what a host does that knows when V turns and that the equation is affine, but nothing of friction.
+// Radau IIA of order 5, 9 or 13 with the step control of RADAU (Hairer, Wanner, Solving ODEs II, IV.8), which stops
+// at reversals: what a host does that knows when V turns and that the equation is affine, but nothing of friction.
+// One program for each order; STAGES is 3, 5 or 7 by the compiler's command line.
 //
 //     y = (delta, integral of F_t dt)        rtol as given, atol = rtol times F_C / sigma_ref and F_C H
 //
-//     plain_radau < job        see job.h and plain_equation.h
+//     plain_radau_9 < job        see job.h and plain_equation.h
 //
-// The equation is affine, so the three stages are one linear system of that size and need no iteration.
+// The equation is affine, so the stages are one linear system of their number and need no iteration.
 #include <math.h>
 #include <stdio.h>
 
 #include "plain_equation.h"
 
-enum { STAGES = 3 };
-
-#define ROOT_6 2.449489742783178
-static const double NODE[STAGES] = {(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0};
-static const double A[STAGES][STAGES] = {
-    {(88.0 - 7.0 * ROOT_6) / 360.0, (296.0 - 169.0 * ROOT_6) / 1800.0, (-2.0 + 3.0 * ROOT_6) / 225.0},
-    {(296.0 + 169.0 * ROOT_6) / 1800.0, (88.0 + 7.0 * ROOT_6) / 360.0, (-2.0 - 3.0 * ROOT_6) / 225.0},
-    {(16.0 - ROOT_6) / 36.0, (16.0 + ROOT_6) / 36.0, 1.0 / 9.0}};
-// The embedded error estimate: (GAMMA / h - J)^-1 (f_0 + sum of DD z / h), 1 / GAMMA the real eigenvalue of A.
-static const double GAMMA = 3.637834252744496;
-static const double DD[STAGES] = {-(13.0 + 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0};
+static double node[STAGES];
+static double A[STAGES][STAGES];
+// The embedded error estimate: (eigenvalue / h - J)^-1 (f_0 + sum of dd z / h), the one real eigenvalue of A^-1.
+static double eigenvalue;
+static double dd[STAGES];
 static const double SAFETY = 0.9, LARGEST_GROWTH = 8.0, LARGEST_CUT = 5.0;
 static const long MOST_STEPS = 10000000; // in a communication step
 
@@ -64,13 +59,90 @@ static void solve(double matrix[STAGES][STAGES], double right[STAGES], double x[
     }
 }
 
+// Coefficients, in powers of the nodes, of the Lagrange polynomial that is 1 at the node j and 0 at the others.
+static void lagrange(const long double c[STAGES], int j, long double coefficient[STAGES]) {
+    for (int power = 0; power < STAGES; power++) {
+        coefficient[power] = power == 0 ? 1.0L : 0.0L;
+    }
+    int degree = 0;
+    for (int i = 0; i < STAGES; i++) {
+        if (i == j) {
+            continue;
+        }
+        degree++;
+        for (int power = degree; power >= 0; power--) { // times (x - c_i) / (c_j - c_i)
+            const long double lower = power > 0 ? coefficient[power - 1] : 0.0L;
+            coefficient[power] = (lower - c[i] * coefficient[power]) / (c[j] - c[i]);
+        }
+    }
+}
+
+// P_n - P_(n-1) of Legendre at x, n the number of stages, and its derivative (by x^2 < 1).
+static long double radau_polynomial(long double x, long double* slope) {
+    long double before = 1.0L, now = x, older = 0.0L;
+    for (int n = 1; n < STAGES; n++) {
+        older = before;
+        before = now;
+        now = ((2 * n + 1) * x * before - n * older) / (n + 1);
+    }
+    const long double slope_now = STAGES * (before - x * now) / (1.0L - x * x);
+    const long double slope_before = (STAGES - 1) * (older - x * before) / (1.0L - x * x);
+    *slope = slope_now - slope_before;
+    return now - before;
+}
+
+// The denominator of the method's stability function, whose one real zero is the real eigenvalue of A^-1.
+static long double denominator(long double z, long double* slope) {
+    long double term = 1.0L,
+                value = 1.0L; // the coefficient of (-z)^k is s! (2 s - 1 - k)! / ((2 s - 1)! k! (s - k)!)
+    *slope = 0.0L;
+    for (int k = 1; k <= STAGES; k++) {
+        term *= -(long double)(STAGES - k + 1) / ((2 * STAGES - k) * k);
+        *slope += k * term * powl(z, k - 1);
+        value += term * powl(z, k);
+    }
+    return value;
+}
+
+// Nodes, A, its eigenvalue and dd, each from its definition.
+static void make_tables(void) {
+    long double c[STAGES], slope, z = STAGES;
+    c[STAGES - 1] = 1.0L;
+    for (int i = 0; i + 1 < STAGES; i++) {
+        long double x = -cosl(acosl(-1.0L) * (2 * i + 1) / (2 * STAGES - 1));
+        for (int n = 0; n < 50; n++) {
+            x -= radau_polynomial(x, &slope) / slope;
+        }
+        c[i] = 0.5L * (1.0L + x);
+    }
+    for (int n = 0; n < 100; n++) {
+        z -= denominator(z, &slope) / slope;
+    }
+    eigenvalue = (double)z;
+    double transposed[STAGES][STAGES], right[STAGES];
+    for (int j = 0; j < STAGES; j++) {
+        long double polynomial[STAGES];
+        lagrange(c, j, polynomial);
+        node[j] = (double)c[j];
+        right[j] = -(double)polynomial[0]; // the weights that give -1 for a constant and 0 for higher powers
+        for (int i = 0; i < STAGES; i++) {
+            long double integral = 0.0L;
+            for (int power = STAGES - 1; power >= 0; power--) {
+                integral = (integral + polynomial[power] / (power + 1)) * c[i];
+            }
+            A[i][j] = transposed[j][i] = (double)integral;
+        }
+    }
+    solve(transposed, right, dd);
+}
+
 static Stages stages(Radau* r, double h) {
     PlainCoefficients at[STAGES];
     for (int i = 0; i < STAGES; i++) {
-        at[i] = plain_at(&r->plain, r->t + NODE[i] * h);
+        at[i] = plain_at(&r->plain, r->t + node[i] * h);
     }
     double matrix[STAGES][STAGES];
-    double right[STAGES] = {0.0, 0.0, 0.0};
+    double right[STAGES] = {0.0};
     for (int i = 0; i < STAGES; i++) {
         for (int j = 0; j < STAGES; j++) {
             matrix[i][j] = (i == j ? 1.0 : 0.0) - h * A[i][j] * at[j].rate;
@@ -88,15 +160,17 @@ static Stages stages(Radau* r, double h) {
 }
 
 static double norm(double x, double y) { return sqrt(0.5 * (x * x + y * y)); }
-static double fourth_root(double x) { return sqrt(sqrt(x)); }
+static double root(double x) { return STAGES == 3 ? sqrt(sqrt(x)) : pow(x, 1.0 / (STAGES + 1)); }
 
 // Estimated local error over the tolerances.
 static double error_of(const Radau* r, const Stages* z, double h, int is_new) {
-    const double gamma = GAMMA / h;
-    const double sum_delta = (DD[0] * z->delta[0] + DD[1] * z->delta[1] + DD[2] * z->delta[2]) / h;
-    const double sum_impulse = (DD[0] * z->impulse[0] + DD[1] * z->impulse[1] + DD[2] * z->impulse[2]) / h;
-    const double slope = r->at.rate * r->delta + r->at.V + sum_delta;
-    const double force = r->at.sigma * r->delta + sum_impulse;
+    const double gamma = eigenvalue / h;
+    double slope = r->at.rate * r->delta + r->at.V;
+    double force = r->at.sigma * r->delta;
+    for (int i = 0; i < STAGES; i++) {
+        slope += dd[i] * z->delta[i] / h;
+        force += dd[i] * z->impulse[i] / h;
+    }
     const double rtol = r->plain.p[PLAIN_TOLERANCE];
     const double scale_delta = r->atol_delta + rtol * fabs(r->delta);
     const double scale_impulse = r->atol_impulse + rtol * fabs(r->impulse);
@@ -123,7 +197,7 @@ static int advance(Radau* r, double end, int transient) {
         const double h = is_last ? end - r->t : r->h;
         const Stages z = stages(r, h);
         const double error = error_of(r, &z, h, is_new);
-        double quotient = fmax(1.0 / LARGEST_GROWTH, fmin(LARGEST_CUT, fourth_root(error) / SAFETY));
+        double quotient = fmax(1.0 / LARGEST_GROWTH, fmin(LARGEST_CUT, root(error) / SAFETY));
         if (!(error < 1.0)) {
             is_new = 1;
             r->h = h / quotient;
@@ -133,7 +207,7 @@ static int advance(Radau* r, double end, int transient) {
             continue;
         }
         if (r->accepted_h > 0.0) { // Gustafsson's prediction
-            const double trend = r->accepted_h / h * fourth_root(error * error / r->accepted_error) / SAFETY;
+            const double trend = r->accepted_h / h * root(error * error / r->accepted_error) / SAFETY;
             quotient = fmax(quotient, fmax(1.0 / LARGEST_GROWTH, fmin(LARGEST_CUT, trend)));
         } else if (transient) {
             r->first_h = h;
@@ -185,6 +259,7 @@ static void run_job(const Job* job, Run* run) {
 }
 
 int main(void) {
+    make_tables();
     const Job job = job_read();
     job_measure(&job, run_job);
     return 0;

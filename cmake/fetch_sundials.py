@@ -19,7 +19,6 @@ import tempfile
 from pathlib import Path
 
 FOLDERS = (
-    "src/arkode",
     "src/cvode",
     "src/sundials",
     "src/nvector/serial",

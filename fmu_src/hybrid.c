@@ -5,20 +5,31 @@
 #include <string.h>
 
 #include "model/constants.h"
+#include "model/root.h"
 
 // What an event is late by, of the bound and of the velocities. By hand: far above rounding, far below what a host's
 // integrator tells apart.
 static const double HYSTERESIS = 1e-10;
 
-// At an event a bristle deflected by this much of its bound lies on it. By hand: 4500 eps, and a hundredth of HYSTERESIS.
-static const double ON_BOUND_AT_EVENT = 1.0 - 1e-12;
-
-// A bristle that turns back farther from its bound has not met it between two steps of an integrator. By hand: less makes
-// more events, more may pass over such a meeting.
+// A bristle of ElasticPlastic that will turn back farther from its bound does not meet it. By hand: less makes more events, more
+// trusts that the inputs stay.
 static const double NEAR_THE_BOUND = 0.9;
 
 // The shortest time, over the time itself, that tells an input's speed. By hand: rounding leaves it four digits.
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
+
+// Parts of a vibration period, or changes of V over V_S in Stribeck's peak, within which a push turns once at the most. By hand:
+// two turns nearer than a part bound a slip of under 1e-3 of the vibration's amplitude.
+static const double PART_OF_PERIOD = 1.0 / 32.0;
+static const double PART_OF_PEAK = 0.5;
+static const double LEAST_PART_OF_PERIOD = 1e-4;
+
+// Beyond this velocity, over V_S, e^-25 is left of Stribeck's peak. By hand.
+static const double END_OF_PEAK = 5.0;
+
+// By this part of a period an event of time is later than the turn that it stands for. By hand: the indicators see the turn
+// first, and an event at a turn does not ask for a second one.
+static const double AFTER_TURN = 1e-9;
 
 bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
     if (contact->state.variables.friction.model == FC_COULOMB) {
@@ -46,26 +57,22 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
     contact->state.time_rest = 0.0;
 }
 
-// The bound of the bristle at the start of a scene.
-static double bound_of(const FcFrictionContact* contact, const FcScene* scene) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, contact->state.slips, &friction);
-    return fc_bound(&bound, 0.0);
-}
-
-static double push_of(const FcFrictionContact* contact, const FcScene* scene, int side) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, contact->state.slips, &friction);
-    return fc_push(scene, &bound, 0.0, side);
-}
-
-static double bound_rate_of(const FcFrictionContact* contact, const FcScene* scene) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, contact->state.slips, &friction);
-    return fc_bound_rate(&bound, 0.0);
-}
-
 static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
+
+// The contact with its inputs as they are, moving as they were seen to, and its bristle's bound.
+typedef struct {
+    FcScene scene;
+    FcScene bound; // points to bound_law
+    FcFriction bound_law;
+    int side; // of the bound that ends its regime: 0 for either
+} View;
+
+static void look(FcFrictionContact* contact, View* view) {
+    const int slips = contact->state.slips;
+    view->scene = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
+    view->bound = fc_scene_of_bound(&view->scene, slips, &view->bound_law);
+    view->side = slips != 0 ? slips : (int)regime_of(contact);
+}
 
 static bool fail_rates(const FcVariables* v, FcMessage* message) {
     return fc_message_set(message,
@@ -95,23 +102,18 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     return true;
 }
 
-// What pushes a bristle that slips, with hysteresis [m/s].
-static double push(FcFrictionContact* contact, int side) {
-    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
-    const FcDrive* drive = &moving.drive;
-    const double speed = fabs(drive->V.value) + drive->vibration.V_1 + fabs(bound_rate_of(contact, &moving));
-    return push_of(contact, &moving, side) + HYSTERESIS * speed;
-}
-
-// Of a bristle of ElasticPlastic that sticks near a bound that moves: the velocity [m/s] at which it comes nearer. Where it
-// turns back it may have met the bound and left it again since the integrator's last step: an event there shows it.
-static double approach(FcFrictionContact* contact) {
-    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
-    const double delta = contact->state.variables.delta;
-    if (bound_rate_of(contact, &moving) == 0.0 || fabs(delta) < NEAR_THE_BOUND * bound_of(contact, &moving)) {
-        return 1.0;
+// Of a bounded bristle of a closed contact.
+static void find_indicators_of_bound(const View* view, FcRegime regime, double delta, double* z) {
+    const double D = fc_bound(&view->bound, 0.0);
+    if (regime == FC_FREE) {
+        z[1] = (1.0 - (view->side != 0 ? view->side * delta : fabs(delta)) / D) + HYSTERESIS;
     }
-    return push_of(contact, &moving, delta < 0.0 ? -1 : 1);
+    if (view->side != 0) {
+        const FcDrive* drive = &view->scene.drive;
+        const double speed =
+            fabs(drive->V.value) + drive->vibration.V_1 + fabs(fc_bound_rate(&view->bound, 0.0));
+        z[2] = fc_push(&view->scene, &view->bound, 0.0, view->side) + HYSTERESIS * speed;
+    }
 }
 
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
@@ -119,18 +121,20 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
         return false;
     }
     const FcVariables* v = &contact->state.variables;
-    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    View now;
+    look(contact, &now);
     double* z = indicators->of;
-    z[0] = v->friction.model == FC_ELASTIC_PLASTIC ? 1.0 : fc_drive_V(&scene.drive, 0.0);
-    z[1] = z[2] = z[3] = 1.0;
-    if (regime_of(contact) != FC_FREE) {
-        z[3] = push(contact, regime_of(contact));
-    } else if (fc_is_bounded(scene.friction)) {
-        const double reached = v->delta / bound_of(contact, &scene);
-        z[1] = (1.0 - reached) + HYSTERESIS;
-        z[2] = (1.0 + reached) + HYSTERESIS;
-        if (v->friction.model == FC_ELASTIC_PLASTIC) {
-            z[0] = approach(contact);
+    z[0] = z[1] = z[2] = z[3] = 1.0;
+    if (fc_scene_depends_on_d(&now.scene)) {
+        const double closed_by = fc_scene_closed_by(&now.scene);
+        z[3] = contact->state.past.sigma == 0.0 ? -closed_by : closed_by; // an open contact leaves no past
+    }
+    if (!fc_scene_is_loose(&now.scene)) {
+        if (v->friction.model != FC_ELASTIC_PLASTIC) {
+            z[0] = fc_drive_V(&now.scene.drive, 0.0);
+        }
+        if (fc_is_bounded(&v->friction)) {
+            find_indicators_of_bound(&now, regime_of(contact), v->delta, z);
         }
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
@@ -165,16 +169,19 @@ static void look_at_inputs(FcFrictionContact* contact) {
     hybrid->seen_time = contact->state.time;
 }
 
-// Where the bound is that the bristle slips along, with its sign [m], and the bristle's force there [N]; false where none slips.
+// Where the bound is that the bristle slips along, with its sign [m], and the bristle's force there [N]; false where none slips,
+// or the contact has opened and taken the stiffness along.
 static bool slips_along(FcFrictionContact* contact, double* bound, double* force) {
     FcMessage unheard;
     if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &unheard)) {
         return false;
     }
-    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    *bound = (double)regime_of(contact) * bound_of(contact, &scene);
-    *force = fc_scene_stiffness(&scene, 0.0) * *bound;
-    return true;
+    View now;
+    look(contact, &now);
+    const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
+    *bound = fc_scene_is_loose(&now.scene) ? 0.0 : (double)regime_of(contact) * fc_bound(&now.bound, 0.0);
+    *force = sigma * *bound;
+    return sigma != 0.0;
 }
 
 // The rates do not see how inputs move the bound: delta lags behind it. What Q_f lags behind by is the integral of the
@@ -199,17 +206,49 @@ bool fc_hybrid_step_completed(FcFrictionContact* contact) {
     look_at_lag(contact);
     FcEventIndicators z;
     FcMessage unheard;
-    return fc_is_bounded(&contact->state.variables.friction) && fc_hybrid_indicators(contact, &z, &unheard) &&
+    return fc_hybrid_indicators(contact, &z, &unheard) &&
            (z.of[1] <= 0.0 || z.of[2] <= 0.0 || z.of[3] <= 0.0);
 }
 
-// Moves delta and adds heat [J], if both stay numbers.
+// Moves delta and adds heat [J], if they stay numbers.
 static void move_to(FcFrictionContact* contact, double delta, double heat) {
     FcVariables* v = &contact->state.variables;
-    if (isfinite(delta) && isfinite(v->Q_f + heat)) {
-        contact->state.hybrid.changed |= delta != v->delta || heat != 0.0;
+    if (isfinite(delta) && delta != v->delta) {
+        contact->state.hybrid.changed = 1;
         v->delta = delta;
+    }
+    if (isfinite(v->Q_f + heat) && heat != 0.0) {
+        contact->state.hybrid.changed = 1;
         v->Q_f += heat;
+    }
+}
+
+// The state and the regime that the inputs of now make of the past, and the past that they are.
+static void begin_regime(FcFrictionContact* contact) {
+    FcFrictionState* state = &contact->state;
+    View now;
+    look(contact, &now);
+    double heat;
+    const FcBristle bristle = fc_jump(&now.scene, &state->past, fc_friction_contact_bristle(contact), &heat);
+    move_to(contact, bristle.delta, heat);
+    state->slips = bristle.slips;
+    state->hybrid.regime = fc_regime(&now.scene, bristle);
+    state->past = fc_past(&now.scene);
+    double bound;
+    double force;
+    if (slips_along(contact, &bound, &force)) { // but for rounding it is there
+        move_to(contact, bound, 0.0);
+    }
+}
+
+// What the drop of a bristle that breaks away, which is motion, does to its damper.
+static void add_drop(FcFrictionContact* contact, double before) {
+    FcVariables* v = &contact->state.variables;
+    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const double work = v->friction.sigma_1 * (v->delta - before) * fc_drive_V(&scene.drive, 0.0);
+    if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
+        v->W_f += work;
+        move_to(contact, v->delta, work);
     }
 }
 
@@ -219,29 +258,16 @@ void fc_hybrid_event_begins(FcFrictionContact* contact) {
     FcHybrid* hybrid = &contact->state.hybrid;
     double bound;
     double force;
-    if (slips_along(contact, &bound, &force)) {
-        move_to(contact, bound, hybrid->lag_heat);
-    }
+    const bool slips = slips_along(contact, &bound, &force);
+    move_to(contact, slips ? bound : contact->state.variables.delta, hybrid->lag_heat);
     hybrid->lag = hybrid->lag_heat = hybrid->lag_force = 0.0;
-}
-
-// An input may have jumped at the event: a bristle that is now within its bound is free, one beyond is taken onto it, and
-// what it stored in between is heat.
-static FcRegime next_regime(FcFrictionContact* contact) {
-    const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const double D = bound_of(contact, &scene);
-    const double delta = contact->state.variables.delta;
-    if (fabs(delta) < ON_BOUND_AT_EVENT * D) {
-        return FC_FREE;
+    contact->state.past = (FcPast){.sigma = 0.0};
+    FcMessage unheard;
+    if (fc_friction_contact_check(contact, &unheard)) {
+        const double before = contact->state.variables.delta;
+        begin_regime(contact);
+        add_drop(contact, before);
     }
-    const int side = delta < 0.0 ? -1 : 1;
-    const double sigma = fc_scene_stiffness(&scene, 0.0);
-    move_to(contact, side * D, 0.5 * sigma * (delta - side * D) * (delta + side * D));
-    if (regime_of(contact) == (FcRegime)side) {
-        return push(contact, side) > 0.0 ? (FcRegime)side : FC_FREE;
-    }
-    const FcScene moving = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
-    return push_of(contact, &moving, side) > 0.0 ? (FcRegime)side : FC_FREE;
 }
 
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
@@ -250,15 +276,80 @@ bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_
         return false;
     }
     FcHybrid* hybrid = &contact->state.hybrid;
-    if (fc_is_bounded(&contact->state.variables.friction)) {
-        hybrid->regime = next_regime(contact);
-    }
+    begin_regime(contact);
     *changed = hybrid->changed;
     *nominals_changed = nominals.of[0] != hybrid->nominal_delta || nominals.of[1] != hybrid->nominal_energy;
     hybrid->changed = 0;
     hybrid->nominal_delta = nominals.of[0];
     hybrid->nominal_energy = nominals.of[1];
     return true;
+}
+
+typedef struct {
+    const View* view;
+    int side;
+} Pushed;
+
+static double push(void* context, double t) {
+    const Pushed* of = context;
+    return fc_push(&of->view->scene, &of->view->bound, t, of->side);
+}
+
+// The time [s] from t on within which the push turns once at the most.
+static double part_of_period(const View* view, double t, double period) {
+    const FcFriction* friction = view->scene.friction;
+    double part = PART_OF_PERIOD * period;
+    if (fc_has_static_friction(friction) && view->side != 0) {
+        const FcVelocity at = fc_drive_velocity(&view->scene.drive, t);
+        const double change = fmax(PART_OF_PEAK * friction->V_S, fabs(at.V) - END_OF_PEAK * friction->V_S);
+        part = fmin(part, fc_velocity_time_of_change(&at, change));
+    }
+    return fmax(part, LEAST_PART_OF_PERIOD * period);
+}
+
+// The first local time within the period at which the bristle is pushed towards the bound of that side no more; else its end.
+static double first_turn(const View* view, int side, double start, double period) {
+    Pushed of = {view, side};
+    double evaluations = 0.0;
+    double before = push(&of, start);
+    double t = start;
+    while (t < period) {
+        const double next = fmin(period, t + part_of_period(view, t, period));
+        const double after = push(&of, next);
+        if (before > 0.0 && after <= 0.0) {
+            return fc_root_between(push, &of, t, before, next, after, 0.0, &evaluations);
+        }
+        before = after;
+        t = next;
+    }
+    return period;
+}
+
+// Whether a bristle that sticks from now on is near the bound of that side at the time t.
+static bool turns_near(const View* view, int side, double delta, double t) {
+    return view->scene.friction->model != FC_ELASTIC_PLASTIC ||
+           side * (delta + fc_drive_displacement(&view->scene.drive, 0.0, t)) >
+               NEAR_THE_BOUND * fc_bound(&view->bound, t);
+}
+
+bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
+    View now;
+    look(contact, &now);
+    const FcDrive* drive = &now.scene.drive;
+    if (!fc_drive_vibrates(drive) || !fc_is_bounded(now.scene.friction) || fc_scene_is_loose(&now.scene)) {
+        return false;
+    }
+    const double period = 1.0 / drive->vibration.f;
+    const double start = 1e3 * AFTER_TURN * period;
+    double turn = period;
+    for (int side = -1; side <= 1; side += 2) {
+        const double t = now.side != -side ? first_turn(&now, side, start, period) : period;
+        if (now.side != 0 || turns_near(&now, side, contact->state.variables.delta, t)) {
+            turn = fmin(turn, t);
+        }
+    }
+    *time = contact->state.time + turn + AFTER_TURN * period;
+    return isfinite(*time) && *time > contact->state.time;
 }
 
 void fc_hybrid_event_ends(FcFrictionContact* contact) {
@@ -269,21 +360,34 @@ void fc_hybrid_event_ends(FcFrictionContact* contact) {
     hybrid->lag_heat = 0.0; // what it starts from
 }
 
+// The separation [m] whose force an open contact is measured by until it has been closed. By hand: surfaces that just touch.
+static double touching(const FcScene* scene) { return 10.0 / scene->at_E.decay; }
+
 bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
+    const FcHybrid* hybrid = &contact->state.hybrid;
+    const bool open = fc_scene_is_loose(&scene);
+    if (open && hybrid->nominal_delta > 0.0) {
+        *nominals = (FcStates){.of = {hybrid->nominal_delta, hybrid->nominal_energy, hybrid->nominal_energy}};
+        return true;
+    }
+    const double d = open ? touching(&scene) : scene.drive.d.value;
+    const FcContactResponse at = fc_contact_response(&scene.at_E, d);
     const FcVibration* vibration = &scene.drive.vibration;
-    const double force = fc_scene_mean_limit(&scene, 0.0);
-    const double length = force / fc_contact_stiffness(&scene.at_E, scene.drive.d.value);
+    const double force = !open                                   ? fc_scene_mean_limit(&scene, 0.0)
+                         : fc_limit_follows_load(scene.friction) ? scene.friction->mu * at.F_n
+                                                                 : scene.F_C;
+    const double length = force / at.sigma;
     const double amplitude = vibration->V_1 / (FC_TWO_PI * vibration->f);
     const double energy = force * fmax(length, amplitude);
     if (!(length > 0.0 && energy > 0.0) || !isfinite(length) || !isfinite(energy)) {
         return fc_message_set(message,
                               "the nominal values of the states are no finite numbers above 0: the limit of "
                               "the force is %.9g N, sigma = %.9g N/m",
-                              force, fc_contact_stiffness(&scene.at_E, scene.drive.d.value));
+                              force, at.sigma);
     }
     *nominals = (FcStates){.of = {length, energy, energy}};
     return true;

@@ -2,9 +2,12 @@
 // W_f and Q_f; the inputs are what they are when asked.
 //
 // A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event: it slips once it is
-// beyond its bound and pushed, and is free again once it is pushed no more. Both have a little hysteresis, so that the
-// rounding of an event's time starts no second event. The motion between two events depends on time, states, inputs and regime
-// alone. Whether a bristle is still pushed depends besides on how fast the inputs move its bound. That is estimated from the
+// beyond its bound and pushed, and is free again once it is pushed no more; with static friction it breaks away and drops to
+// the kinetic bound. A contact opens and closes at events, too. All have a little hysteresis, so that the rounding of an event's
+// time starts no second event. The motion between two events depends on time, states, inputs and regime alone. Inputs that
+// jump at an event do so as between two steps of co-simulation (solver/jump.h).
+//
+// Whether a bristle is still pushed depends besides on how fast the inputs move its bound. That is estimated from the
 // inputs at the end of the last two steps of the integrator; an error of it enters the moment of sticking, and delta and
 // the force by its square. From step to step the heat is summed, too, that the rates of a bristle that slips do not see: the
 // next event gives it to Q_f.
@@ -38,11 +41,11 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
-//   0   V with its vibration [m/s], where |V| has a kink; in ElasticPlastic, which has none, the velocity at which a bristle that
-//       sticks comes nearer to a bound that moves, where it is near to it, else 1
-//   1   (D - delta) / D + hysteresis while a bounded bristle is free, else 1
-//   2   (D + delta) / D + hysteresis while a bounded bristle is free, else 1
-//   3   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
+//   0   V with its vibration [m/s], where |V| has a kink; 1 in ElasticPlastic, which has none
+//   1   (D - |delta|) / D + hysteresis while a bounded bristle is free, else 1
+//   2   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
+//   3   what keeps a closed contact from opening, or an open one from closing: the load [N], or the way of d [m]; 1 where
+//       neither changes anything
 // The first may have either sign. False as fc_hybrid_refresh.
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message);
 
@@ -51,12 +54,17 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
 bool fc_hybrid_step_completed(FcFrictionContact* contact);
 
 // An event begins, with the inputs as they were before it: a bristle that slips is taken onto its bound, which inputs have
-// moved, and the heat of that way to Q_f.
+// moved, and the heat of that way to Q_f. What is left is the past from which inputs and parameters may jump.
 void fc_hybrid_event_begins(FcFrictionContact* contact);
 
 // The regime after the event. *changed says whether a state has changed since the event began, *nominals_changed whether
 // the nominal values have. False as fc_hybrid_refresh.
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
+
+// The time [s] of the next event that the indicators may miss, for a step over two of their zeros: where the vibration, with the
+// inputs as they are, turns a bounded bristle back from a bound; a period ahead if it turns nowhere before. False where
+// there is none.
+bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
 
 // The event is over: the inputs may have jumped in it, which is no motion.
 void fc_hybrid_event_ends(FcFrictionContact* contact);

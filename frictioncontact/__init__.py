@@ -1,22 +1,26 @@
 """Dry friction between rough surfaces under vibration: the FMU FrictionContact, and what one does with it.
 
     import frictioncontact as fc
-
-    # one scene, as a table
-    fc.simulate({"V": 0.5, "vibration.V_1": 1.44}, stop=1e-3, step=5e-5)
+    scene = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
+    # the friction law that a machine sees, as a function
+    law = fc.friction_law(scene)
+    print(law([0.1, 0.5, 1.0]), law.derivative(0.5))
+    # one scene over time, as a table
+    fc.simulate(scene, stop=1e-3, step=5e-5, outputs=["F_t_mean"])
     # thousands of scenes
-    fc.simulate_many({"V": velocities}, ["F_t_mean"])
-    # parameters from measurements
-    fc.identify("mine.csv", fit=["contact.stiffnessScale"])
+    fc.simulate_many({**scene, "V": [0.1, 0.5, 1.0]}, ["F_t_mean"])
+    # a measured contact, and a fit to its measurements
+    steel = fc.contacts["steel-dry"]
+    law = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+    print(fc.identify(steel.data, fit="contact.sigma", start=law))
     # what to set for an accuracy
-    fc.advise({"V": 0.5, "vibration.V_1": 1.44}, accuracy=1e-3)
-    # millions of scenes, into Parquet
-    fc.sweep(output="sweep", random=10**6, vary={"V": "0.01:1:log"})
-    # the .fmu file, for other tools
-    fc.FMU
+    print(fc.advise(scene, accuracy=1e-3))
+    # every variable, and the .fmu file for other tools
+    print(fc.variables(), fc.FMU)
 
-Variables have their names in the FMU, all values are in SI units. What is wrong with them is a UserError in
-one line. Modules are imported when what they hold is first used.
+`fc.sweep` runs millions of scenes into Parquet. Variables have their names in the FMU, all values are in SI
+units. A name or a value that is wrong is a UserError of one line, a ValueError; a scene that was hardly meant
+gives a FrictionWarning. Modules are imported when they are first used.
 """
 
 from __future__ import annotations
@@ -28,18 +32,26 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from .advice.answer import Advice, advise
-    from .batch import BatchError, simulate_many
-    from .errors import UserError
-    from .fmu import FrictionError, FrictionFmu
+    from .batch import simulate_many
+    from .errors import BatchError, FrictionError, FrictionWarning, UserError
+    from .fmu import FrictionFmu
     from .identification.api import Identification, identify
+    from .law.law import FrictionLaw, friction_law
+    from .measured.contacts import Contact, Contacts
     from .simulation.run import simulate
+    from .simulation.variables import variables
     from .sweeps.run import Swept, sweep
 
     FMU: Path
+    contacts: Contacts
     __version__: str
 
 _HOME = {
     "simulate": "simulation.run",
+    "variables": "simulation.variables",
+    "friction_law": "law.law",
+    "FrictionLaw": "law.law",
+    "Contact": "measured.contacts",
     "simulate_many": "batch",
     "identify": "identification.api",
     "Identification": "identification.api",
@@ -49,23 +61,30 @@ _HOME = {
     "Swept": "sweeps.run",
     "FrictionFmu": "fmu",
     "UserError": "errors",
-    "FrictionError": "fmu",
-    "BatchError": "batch",
+    "FrictionError": "errors",
+    "BatchError": "errors",
+    "FrictionWarning": "errors",
 }
 __all__ = [
     "FMU",
     "Advice",
     "BatchError",
+    "Contact",
     "FrictionError",
     "FrictionFmu",
+    "FrictionLaw",
+    "FrictionWarning",
     "Identification",
     "Swept",
     "UserError",
     "advise",
+    "contacts",
+    "friction_law",
     "identify",
     "simulate",
     "simulate_many",
     "sweep",
+    "variables",
 ]
 
 
@@ -77,6 +96,10 @@ def __getattr__(name: str) -> object:
         from .resources import fmu
 
         value = fmu()
+    elif name == "contacts":
+        from .measured.contacts import contacts
+
+        value = contacts()
     elif name == "__version__":
         from importlib.metadata import version
 

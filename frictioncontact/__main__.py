@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -14,8 +15,10 @@ COMMANDS = {  # name -> its room, and what it does
     "sweep": ("sweeps", "many scenarios on all cores or a Dask cluster, into Parquet"),
     "identify": ("identification", "fits parameters to your measurements"),
     "advise": ("advice", "what to set for your scene and accuracy"),
+    "law": ("law", "the friction law under vibration, for slower machines: a table or a picture"),
+    "contacts": ("measured", "contacts that were measured, as start values"),
     "gap": ("gap", "the separation for a normal load, and the load for a separation"),
-    "validate": ("validate", "every law of friction against published measurements"),
+    "validate": ("validate", "the measured contacts against their measurements"),
     "playground": ("playground", "one web page with the FMU alive in it"),
     "version": ("", "the version of the package, and the path of its FMU"),
 }
@@ -33,14 +36,12 @@ def _chosen() -> Callable[[], None]:
     if name in ("version", "--version"):
         return _version
     if name not in COMMANDS:
-        sys.exit(f"error: {name[:40]!r} is no command; these are: {', '.join(COMMANDS)}")
+        from frictioncontact.errors import did_you_mean, shown
+
+        hint = did_you_mean(name, COMMANDS)
+        sys.exit(f"error: {shown(name)} is no command{hint or ';'} these are: {', '.join(COMMANDS)}")
     del sys.argv[1]
-    try:
-        return importlib.import_module(f"frictioncontact.{COMMANDS[name][0]}.command").main
-    except ModuleNotFoundError as missing:
-        if missing.name != "pyarrow":
-            raise
-        sys.exit(f"error: {missing}")
+    return importlib.import_module(f"frictioncontact.{COMMANDS[name][0]}.command").main
 
 
 def _usage() -> None:
@@ -65,48 +66,26 @@ def interruptible(load: Callable[[], Callable[[], None]]) -> None:
 
     The line is what the KeyboardInterrupt says, or "stopped".
     """
-    asked = False
-
-    def interrupt(*_: object) -> None:
-        nonlocal asked
-        asked = True
-        raise KeyboardInterrupt
-
-    heeded = signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if heeded:
-        signal.signal(signal.SIGINT, interrupt)
-    if hasattr(signal, "SIGALRM"):  # not on Windows
-        sys.unraisablehook = _take_up
-        signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    before = signal.getsignal(signal.SIGINT)
+    heeded = before is signal.default_int_handler
     try:
+        if heeded:
+            signal.signal(signal.SIGINT, _leave)
         run = load()
-        if asked:  # and some import caught it
-            raise KeyboardInterrupt
+        signal.signal(signal.SIGINT, before)
         run()
     except KeyboardInterrupt as stopped:
-        _stopped(str(stopped))
-    except Exception:
-        if not asked:
-            raise
-        _stopped()  # NumPy's import makes an ImportError of it
+        print(str(stopped) or "stopped", file=sys.stderr)
+        sys.exit(130)
     finally:
-        if hasattr(signal, "SIGALRM"):
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
         if heeded:
             signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to be tidied up
 
 
-def _take_up(dropped: sys.UnraisableHookArgs) -> None:
-    """A Control-C that fell into a destructor or a callback, where Python drops exceptions, comes again."""
-    if issubclass(dropped.exc_type, KeyboardInterrupt):
-        signal.setitimer(signal.ITIMER_REAL, 0.01)
-    else:
-        sys.__unraisablehook__(dropped)
-
-
-def _stopped(said: str = "") -> None:
-    print(said or "stopped", file=sys.stderr)
-    sys.exit(130)
+def _leave(*_: object) -> None:
+    """Ends at once: an import has nothing to tidy up, and may catch or change an exception."""
+    os.write(2, b"stopped\n")
+    os._exit(130)
 
 
 if __name__ == "__main__":

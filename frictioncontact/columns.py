@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
 
 HEADING = re.compile(r"\s*([^\[\]]+?)\s*(?:\[\s*([^\[\]]*?)\s*\]\s*)?")
@@ -67,9 +67,10 @@ def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> C
     elif plain in accepted(fmu):
         known = units(fmu, plain)
     else:
-        others = ", ".join([*OWN, *accepted(fmu)])
+        others = [*OWN, *accepted(fmu)]
         raise UserError(
-            f"{where}: there is no variable {name!r}; columns may be {others}, and NAME.uncertainty of each"
+            f"{where}: there is no variable {name!r}{did_you_mean(plain, others) or ';'} columns may be "
+            f"{', '.join(others)}, and NAME.uncertainty of each"
         )
     if unit is not None and unit not in known:
         raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")

@@ -7,24 +7,35 @@ import csv
 import importlib.util
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NoReturn
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from frictioncontact import resources
-from frictioncontact.errors import UserError
+from frictioncontact.errors import FrictionWarning, UserError
 from frictioncontact.files import whole_file
 
 TABLE = 120  # characters, of the widest table
 called_as: str | None = None  # what a file of scripts/ calls the command of its user
 
 
+class Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """As argparse's, with the grammar of values."""
+        words = message.partition("unrecognized arguments: ")[2].split()
+        if words and "=" in words[0] and "--set" in self.format_usage():
+            message += f"; write --set {words[0].lstrip('-')}"
+        super().error(message)
+
+
 def command_line(prog: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
     """The parser of a command; its texts keep their lines, and %(prog)s in them is what it is called."""
-    return argparse.ArgumentParser(
+    return Parser(
         prog=called_as or prog,
         description=description,
         epilog=epilog,
@@ -34,6 +45,13 @@ def command_line(prog: str, description: str, epilog: str | None = None) -> argp
 
 def add_fmu(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fmu", type=Path, help="use this FMU instead of the package's own")
+
+
+def add_set(parser: argparse.ArgumentParser, of: str) -> None:
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE",
+        help=f"start value {of}, in SI units; of an enumeration an item or its number; again for each",
+    )  # fmt: skip
 
 
 def add_output(parser: argparse.ArgumentParser, default: Path) -> None:
@@ -47,6 +65,8 @@ def place(path: Path) -> str:
 
 def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespace) -> None:
     """Runs a command. What its user can mend becomes one line on standard error, and the exit status 1."""
+    warnings.simplefilter("always", FrictionWarning)
+    warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
     try:
         run(options)
         sys.stdout.flush()
@@ -96,7 +116,8 @@ def shown(path: Path) -> str:
 
 
 def say_written(paths: Sequence[Path]) -> None:
-    print("Written:", ", ".join(map(shown, paths)))
+    if paths:
+        print("Written:", ", ".join(map(shown, paths)))
 
 
 def write_csv(rows: Sequence[Mapping[str, object]], path: Path) -> Path:

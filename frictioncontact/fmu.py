@@ -4,8 +4,8 @@
         session.step(5e-5)
         session.get("F_t_mean")
 
-A value of an enumeration is its number or its item's name. Every refused call raises FrictionError with
-the FMU's own message.
+A value of an enumeration is its number or its item's name. UserError is raised for a name or a value that is
+wrong, FrictionError with the FMU's own message for a call that it refuses.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import shutil
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from functools import cache
 from pathlib import Path
@@ -35,23 +35,30 @@ from fmpy.fmi2 import (
 )
 
 from . import resources
-from .errors import UserError
+from .errors import FrictionError, UserError, shown
 from .platforms import library_in
-from .values import path_of
+from .values import Value, Variables, pairs, path_of, real
 
-Value = float | int | str
 MODEL = "FrictionContact"
+FMI2_WARNING = 1
 INPUTS = ("V", "d", "E", "load")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
 
 
-class FrictionError(UserError):
-    """The FMU refused a call; the text is its message."""
-
-
 class FrictionFmu:
-    """The unzipped FMU and its model description."""
+    """The unzipped FMU and its model description, from which sessions are opened.
+
+    path      the .fmu file, for example `fc.FMU`
+    raises    UserError: no such file, or not an FMU of this model
+
+    It is closed at the end of a `with` block, or by `close()`.
+
+        with fc.FrictionFmu(fc.FMU) as fmu, fmu.session({"vibration.V_1": 1.44}) as contact:
+            contact.set("V", 0.5)
+            contact.step(1e-3)
+            print(contact.get("F_t_mean"))
+    """
 
     def __init__(self, path: str | Path) -> None:
         self.path = path_of(path, "fmu")
@@ -64,6 +71,10 @@ class FrictionFmu:
         except (zlib.error, EOFError, RuntimeError) as error:
             self.close()
             raise UserError(f"{path} is not an FMU: damaged: {error}") from None
+        except OSError as error:
+            self.close()
+            what = "" if error.filename == str(path) else f"can't be unpacked into {self._temporary}: "
+            raise UserError(f"{path}: {what}{error.strerror or error}") from None
         try:
             self.description = read_model_description(str(self.directory), validate=False)
         except Exception as error:  # whatever the reader makes of the text
@@ -73,7 +84,8 @@ class FrictionFmu:
         if self.description.modelName != MODEL:
             self.close()
             raise UserError(f"{path} is another FMU: {self.description.modelName}")
-        self.variables = {variable.name: variable for variable in self.description.modelVariables}
+        self.known = Variables(self.description)
+        self.variables = self.known.all
         self._library = self._slave()  # keeps the shared library loaded between sessions
 
     def _slave(self) -> FMU2Slave:
@@ -94,10 +106,18 @@ class FrictionFmu:
         start: float = 0.0,
         tolerance: float | None = None,
     ) -> Session:
-        """An initialized instance; times in s."""
-        return Session(self, self._slave(), start_values or {}, start, tolerance)
+        """An initialized instance.
+
+        start_values  name of an input or parameter -> its value, SI units; of an enumeration an item or its
+                      number
+        start         time at which it starts, s
+        tolerance     solver.tolerance, if the start values have none
+        raises        UserError: an unknown name or a wrong value; FrictionError: the FMU refuses them
+        """
+        return Session(self, self._slave(), start_values or {}, real(start, "start"), tolerance)
 
     def close(self) -> None:
+        """Removes the unzipped files."""
         shutil.rmtree(self._temporary, ignore_errors=True)
 
     def __enter__(self) -> FrictionFmu:
@@ -109,11 +129,13 @@ class FrictionFmu:
         self.close()
 
 
-def logging_callbacks(messages: list[str]) -> fmi2CallbackFunctions:
+def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2CallbackFunctions:
     """Callbacks of an instance, which keep its messages; the caller keeps them while the instance lives."""
 
     def log(environment: object, instance: bytes, status: int, category: bytes, message: bytes) -> None:
         messages.append(message.decode())
+        if warnings is not None and status == FMI2_WARNING:
+            warnings.append(message.decode())
 
     callbacks = fmi2CallbackFunctions()
     callbacks.logger = fmi2CallbackLoggerTYPE(log)
@@ -123,7 +145,12 @@ def logging_callbacks(messages: list[str]) -> fmi2CallbackFunctions:
 
 
 class Session:
-    """One instance in step mode."""
+    """One instance, stepped by its user. `time` [s] is where it is, `warnings` what the FMU warned of.
+
+    Opened by `FrictionFmu.session`, closed at the end of a `with` block or by `close()`. Every call raises
+    UserError for an unknown name or a wrong value, and FrictionError if the FMU refuses it; the instance is
+    then as before.
+    """
 
     def __init__(
         self,
@@ -137,15 +164,17 @@ class Session:
         self.slave = slave
         self.time = start
         self.messages: list[str] = []
-        self._callbacks = logging_callbacks(self.messages)
+        self.warnings: list[str] = []
+        self._callbacks = logging_callbacks(self.messages, self.warnings)
         slave.instantiate(callbacks=self._callbacks, loggingOn=True)
         try:
+            tolerance = None if tolerance is None else real(tolerance, "tolerance")
             self._call(slave.setupExperiment, tolerance, start)
-            for name, value in start_values.items():
+            for name, value in pairs(start_values, "start_values").items():
                 self.set(name, value)
             self._call(slave.enterInitializationMode)
             self._call(slave.exitInitializationMode)
-        except FrictionError:
+        except UserError:
             self.close()
             raise
 
@@ -157,36 +186,44 @@ class Session:
             raise FrictionError("; ".join(self.messages[before:]) or str(error)) from None
 
     def set(self, name: str, value: Value) -> None:
-        variable = self.fmu.variables[name]
-        if variable.type == "Real":
-            self._call(self.slave.setReal, [variable.valueReference], [float(value)])
-            return
-        if isinstance(value, str):
-            value = {item.name: int(item.value) for item in variable.declaredType.items}[value]
-        self._call(self.slave.setInteger, [variable.valueReference], [int(value)])
+        """Sets an input or a parameter, SI units; of an enumeration an item or its number."""
+        variable = self.fmu.variables.get(name)
+        if variable is None or type(value) is not float or variable.type != "Real":
+            code = self.fmu.known.number(name, value, f"set {name}")
+        else:
+            code = value  # checked by the FMU
+        is_real = self.fmu.variables[name].type == "Real"
+        setter = self.slave.setReal if is_real else self.slave.setInteger
+        self._call(setter, [self.fmu.variables[name].valueReference], [code if is_real else int(code)])
 
     def set_rates(self, **rates: float) -> None:
-        """Time derivatives of inputs over the next step."""
-        references = [self.fmu.variables[name].valueReference for name in rates]
-        self._call(self.slave.setRealInputDerivatives, references, [1] * len(rates), list(rates.values()))
+        """Time derivatives [SI units per s] of inputs over the next step."""
+        references = [self.fmu.known.find(name, "set_rates", ("input",)).valueReference for name in rates]
+        values = [real(rate, name) for name, rate in rates.items()]
+        self._call(self.slave.setRealInputDerivatives, references, [1] * len(rates), values)
 
     def step(self, h: float) -> None:
-        """Advance by h [s]."""
+        """Advances by h [s], with the inputs held or moving at the rates that were set."""
+        h = real(h, "h")
         self._call(self.slave.doStep, self.time, h)
         self.time += h
 
     def step_many(self, h: float, count: int) -> None:
         """count steps of h [s] with held inputs, with as little Python as possible between them."""
         do_step, component, time = self.slave.fmi2DoStep, self.slave.component, self.time
-        for k in range(count):
+        for k in range(int(real(count, "count"))):
             self._call(do_step, component, time + k * h, h, 1)
         self.time = time + count * h
 
     def get(self, name: str) -> float:
+        """The value of any variable of type Real now, SI units."""
         return float(self.read([name])[0])
 
     def read(self, names: Sequence[str] = OUTPUTS) -> np.ndarray:
-        references = [self.fmu.variables[name].valueReference for name in names]
+        """The values of several variables now, an array of their number."""
+        if isinstance(names, str) or not isinstance(names, Iterable):
+            raise UserError(f"read: {shown(names)} is not a sequence of names")
+        references = [self.fmu.known.readable(name, "read").valueReference for name in names]
         return np.array(self._call(self.slave.getReal, references))
 
     def force_rate(self) -> float:
@@ -197,11 +234,12 @@ class Session:
         return value[0]
 
     def slope(self, output: str, name: str) -> float:
-        """Partial derivative of an output by an input."""
-        of, by = ([self.fmu.variables[each].valueReference] for each in (output, name))
+        """Partial derivative of an output by an input or a tunable parameter now, SI units."""
+        of, by = ([self.fmu.known.readable(each, "slope").valueReference] for each in (output, name))
         return self._call(self.slave.getDirectionalDerivative, of, by, [1.0])[0]
 
     def close(self) -> None:
+        """Frees the instance."""
         if self.slave.component is not None:
             self.slave.fmi2FreeInstance(self.slave.component)
             self.slave.component = None
@@ -245,10 +283,12 @@ def run(
     rates: Mapping[str, np.ndarray],
     start: float = 0.0,
     outputs: Sequence[str] = OUTPUTS,
+    warnings: list[str] | None = None,
 ) -> np.ndarray:
     """Outputs at the start and after each of the steps [s], [point, output].
 
     inputs and rates: value at the begin of each step, and its time derivative over the step (none: held).
+    warnings: gets what the FMU warned of.
     """
     rows = np.empty((len(steps) + 1, len(outputs)))
     first = {name: float(values[0]) for name, values in inputs.items()}
@@ -261,6 +301,8 @@ def run(
                 session.set_rates(**{name: values[k] for name, values in rates.items()})
             session.step(float(step))
             rows[k + 1] = session.read(outputs)
+        if warnings is not None:
+            warnings += session.warnings
     return rows
 
 

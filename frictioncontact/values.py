@@ -1,25 +1,23 @@
-"""Values that users write: NAME=VALUE, numbers, the cells of CSV files."""
+"""Is this a value of that variable? The one answer, for Python, command lines and CSV files."""
 
 from __future__ import annotations
 
 import csv
 import math
+import numbers
 import os
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from fmpy.model_description import ModelDescription, ScalarVariable
 
-from frictioncontact.errors import SHOWN, UserError, indefinite, unknown_variable
+from frictioncontact.errors import UserError, indefinite, shown, unknown_variable
 
 Value = float | str
-
-
-def shown(text: str) -> str:
-    """Quoted, and cut where it is long."""
-    return repr(text if len(text) <= SHOWN else text[:SHOWN] + "...")
+SETTABLE = ("input", "parameter")
 
 
 def number(text: str, where: str) -> float:
@@ -36,23 +34,18 @@ def number(text: str, where: str) -> float:
 def real(value: Any, where: str) -> float:
     """A number from Python code, which may be NaN or infinite."""
     try:
-        if not isinstance(value, str) and not is_bool(value):
+        if not isinstance(value, (str, bool, np.bool_)):
             return float(value)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise UserError(f"{where} = {shown(str(value))} is not a number")
+    raise UserError(f"{where} = {shown(value)} is not a number")
 
 
 def path_of(value: Any, where: str) -> Path:
     """A path from Python code."""
     if not isinstance(value, (str, os.PathLike)) or "\0" in str(value):
-        raise UserError(f"{where} = {shown(str(value))}: is no path")
+        raise UserError(f"{where} = {shown(value)}: is no path")
     return Path(value)
-
-
-def is_bool(value: object) -> bool:
-    """Python takes it for 0 or 1; where a number is meant, it is a mistake."""
-    return isinstance(value, (bool, np.bool_))
 
 
 def pairs(values: Any, where: str) -> Mapping[Any, Any]:
@@ -60,16 +53,21 @@ def pairs(values: Any, where: str) -> Mapping[Any, Any]:
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise UserError(f"{where} = {shown(str(values))}: must be a mapping of names to values")
+        raise UserError(f"{where} = {shown(values)}: must be a mapping of names to values")
     return values
 
 
-def assignment(text: str, option: str = "") -> tuple[str, str]:
-    """Name and value of "NAME=VALUE", as the option takes it."""
-    name, equals, rest = text.partition("=")
-    if not equals or not rest:
-        raise UserError(f"{option} {text}".lstrip() + ": is not of the form NAME=VALUE")
-    return name.strip(), rest.strip()
+def assignments(texts: Sequence[str], option: str) -> dict[str, str]:
+    """Names and values of several NAME=VALUE, as an option takes them."""
+    values: dict[str, str] = {}
+    for text in texts:
+        name, _, value = (part.strip() for part in text.partition("="))
+        if not name or not value:
+            raise UserError(f"{option} {text}: is not of the form NAME=VALUE")
+        if name in values:
+            raise UserError(f"{option} {name}: is given twice")
+        values[name] = value
+    return values
 
 
 def csv_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
@@ -77,8 +75,13 @@ def csv_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             reader = csv.reader(file, strict=True)
+            first = True
             for cells in reader:
                 if any(cells) and not cells[0].lstrip().startswith("#"):
+                    if first and len(cells) == 1 and re.search("[;\t]", cells[0].strip()):
+                        kind = "semicolons" if ";" in cells[0] else "tabs"
+                        raise UserError(f"{path}: its columns are separated by {kind}; write commas")
+                    first = False
                     yield reader.line_num, [cell.strip() for cell in cells]
     except OSError as error:
         raise UserError(f"{path}: {error.strerror}") from None
@@ -86,73 +89,151 @@ def csv_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
         raise UserError(f"{path}: is not a CSV file in UTF-8: {error}") from None
 
 
-def items_of(variable: ScalarVariable) -> dict[str, float] | None:
-    """Names and numbers of the items of an enumeration."""
-    if variable.type != "Enumeration":
-        return None
-    return {item.name: float(item.value) for item in variable.declaredType.items}
+def numbers_of(value: object, where: str, items: Mapping[str, float] | None = None) -> np.ndarray:
+    """Finite doubles of the value's own shape; of an enumeration the numbers of its items.
+
+    The value is a number, an item's name, or an array of them. UserError names the place and the row, counted
+    from 0; of an array of more dimensions its indices.
+    """
+    array = _cells(value, where)
+    if array.dtype.kind not in "fiu":
+        array = _each(array, where, items or {})
+    array = array.astype(float, copy=False)
+    if array.ndim == 0 and not items and math.isfinite(array):
+        return array
+    good = np.isin(array, list(items.values())) if items else np.isfinite(array)
+    if not good.all():
+        row = int(np.argmin(good))
+        raise UserError(
+            f"{where}{row_of(array, row)}: {_wanted(f'{array.flat[row]:g}', items or {}, 'finite number')}"
+        )
+    return array
+
+
+def _cells(value: object, where: str) -> np.ndarray:
+    if isinstance(value, np.ma.MaskedArray) and value.mask.any():
+        raise UserError(f"{where}{row_of(value.mask, int(np.argmax(value.mask)))}: is masked")
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise UserError(f"{where}: its rows are not of one length") from None
+
+
+def _each(array: np.ndarray, where: str, items: Mapping[str, float]) -> np.ndarray:
+    """The doubles of an array whose cells are not all numbers."""
+    numeric, known = np.empty(array.shape), dict[object, float]()
+    for row, cell in enumerate(array.flat):
+        try:
+            if cell not in known:
+                known[cell] = _number(cell, items)
+            numeric.flat[row] = known[cell]
+        except TypeError:  # neither number nor text
+            raise UserError(f"{where}{row_of(array, row)}: {_wanted(shown(cell), items, 'number')}") from None
+        except OverflowError:
+            raise UserError(f"{where}{row_of(array, row)}: {shown(cell)} is not a finite number") from None
+    return numeric
+
+
+def _number(cell: object, items: Mapping[str, float]) -> float:
+    if isinstance(cell, str) and cell in items:
+        return items[cell]
+    if isinstance(cell, numbers.Real) and not isinstance(cell, (bool, np.timedelta64)):
+        return float(cell)
+    raise TypeError
+
+
+def row_of(array: np.ndarray, flat_index: int) -> str:
+    """ ", row 3" of an array's cell, as errors name it; nothing of a single value."""
+    if array.ndim == 0:
+        return ""
+    index = [int(i) for i in np.unravel_index(flat_index, array.shape)]
+    return f", row {index[0] if len(index) == 1 else tuple(index)}"
+
+
+def _wanted(given: str, items: Mapping[str, float], kind: str) -> str:
+    """What is wrong with a value."""
+    if not items:
+        return f"{given} is not a {kind}"
+    return f"{given} is not one of {', '.join(items)}, nor a number from 1 to {len(items)}"
 
 
 class Variables:
-    """The FMU's variables that a user can set."""
+    """The variables of the FMU."""
 
     def __init__(self, description: ModelDescription) -> None:
-        self._all = {variable.name: variable for variable in description.modelVariables}
-        self.settable = [v.name for v in description.modelVariables if v.causality in ("input", "parameter")]
+        self.all = {variable.name: variable for variable in description.modelVariables}
+        self.settable = [name for name, variable in self.all.items() if variable.causality in SETTABLE]
+        self.inputs = [name for name, variable in self.all.items() if variable.causality == "input"]
+        self.items = {  # of an enumeration: names and numbers; of a Real none
+            name: {item.name: float(item.value) for item in variable.declaredType.items}
+            if variable.type == "Enumeration"
+            else {}
+            for name, variable in self.all.items()
+        }
+        self.factors = {  # of a unit and another that it is shown in
+            (unit.name, display.name): display.factor
+            for unit in description.unitDefinitions
+            for display in unit.displayUnits
+        }
 
-    def find(self, name: str, where: str) -> ScalarVariable:
-        if name in self.settable:
-            return self._all[name]
-        if name in self._all:
-            raise UserError(
-                f"{where}: {name} is {indefinite(self._all[name].causality)} of the FMU and can't be set"
-            )
-        raise UserError(f"{where}: {unknown_variable(name, self.settable)}")
+    def find(self, name: object, where: str, causalities: Sequence[str] = SETTABLE) -> ScalarVariable:
+        """The variable of this name that can be set."""
+        found = self.all.get(name) if isinstance(name, str) else None
+        if found is None:
+            names = [each for each, other in self.all.items() if other.causality in causalities]
+            raise UserError(f"{where}: {unknown_variable(str(name), names)}")
+        if found.causality not in causalities:
+            raise UserError(f"{where}: {name} is {indefinite(found.causality)} of the FMU and can't be set")
+        return found
 
-    def readable(self, name: str, where: str) -> ScalarVariable:
+    def readable(self, name: object, where: str) -> ScalarVariable:
         """The Real of this name."""
-        if name not in self._all:
-            raise UserError(f"{where}: {unknown_variable(name, self._all)}")
-        if self._all[name].type != "Real":
-            raise UserError(f"{where}: {name} is of type {self._all[name].type}; only Real is read")
-        return self._all[name]
+        found = self.all.get(name) if isinstance(name, str) else None
+        if found is None:
+            raise UserError(f"{where}: {unknown_variable(str(name), self.all)}")
+        if found.type != "Real":
+            raise UserError(f"{where}: {name} is of type {found.type}; only Real is read")
+        return found
 
-    def value(self, name: str, text: str, where: str) -> Value:
-        """The value that a text stands for, as the named variable takes it. Bounds are left to the FMU."""
-        items = items_of(self.find(name, where))
-        if items is None:
-            return number(text, where)
-        if text not in items:
-            raise UserError(f"{where}: {shown(text)} is not one of {', '.join(items)}")
-        return text
+    def numbers(self, name: object, value: object, where: str) -> np.ndarray:
+        """The doubles that a value or an array of values stands for."""
+        return numbers_of(value, where, self.items[self.find(name, where).name])
 
-    def given(self, name: str, value: object, where: str) -> Value:
-        """A value from Python code: a number, or for an enumeration the name of an item or its number."""
-        items = items_of(self.find(name, where))
-        if isinstance(value, str) and items is not None:
-            return self.value(name, value, f"{where}: {name}")
+    def number(self, name: object, value: object, where: str) -> float:
+        """The double that one value stands for. Bounds are left to the FMU."""
+        found = self.numbers(name, value, where)
+        if found.ndim:
+            raise UserError(f"{where}: {shown(value)} is not one value")
+        return float(found)
+
+    def value(self, name: object, value: object, where: str) -> Value:
+        """One value: a number, or of an enumeration the item's name."""
+        return self.named(str(name), self.number(name, value, where))
+
+    def named(self, name: str, number: float) -> Value:
+        """The number; of an enumeration the item's name."""
+        return next((item for item, each in self.items[name].items() if each == number), number)
+
+    def values(self, given: Any, where: str) -> dict[str, Value]:
+        """A mapping from Python code, as values."""
+        return {
+            name: self.value(name, value, f"{where}: {name}" if name in self.settable else where)
+            for name, value in pairs(given, where).items()
+        }
+
+    def text(self, name: str, text: str, where: str) -> Value:
+        """The value that a text stands for."""
         try:
-            number = float(value)  # type: ignore[arg-type]
-        except (TypeError, ValueError, OverflowError):
-            number = math.nan
-        if isinstance(value, str) or is_bool(value) or not math.isfinite(number):
-            raise UserError(f"{where}: {name} = {shown(str(value))} is not a finite number")
-        if items is not None and number not in items.values():
-            raise UserError(f"{where}: {name} = {number:g} is not one of {', '.join(items)}")
-        return number
+            number: Value = float(text)
+        except ValueError:
+            number = text
+        return self.value(name, number, where)
 
-    def named(self, name: str, value: Value) -> Value:
-        """The value; for an enumeration the name of the item that a number stands for."""
-        items = items_of(self.find(name, name))
-        if items is None or isinstance(value, str):
-            return value
-        return next(item for item, number in items.items() if number == value)
+    def assigned(self, texts: Sequence[str], option: str = "--set") -> dict[str, Value]:
+        """The values of several NAME=VALUE of an option."""
+        pairs = assignments(texts, option).items()
+        return {name: self.text(name, text, f"{option} {name}") for name, text in pairs}
 
     def starts(self) -> dict[str, Value]:
         """Start values of all that can be set."""
-        return {name: self.named(name, float(self._all[name].start)) for name in self.settable}
-
-    def assigned(self, text: str, option: str) -> tuple[str, Value]:
-        """Name and value of "NAME=VALUE"."""
-        name, rest = assignment(text, option)
-        return name, self.value(name, rest, f"{option} {name}")
+        return {name: self.named(name, float(self.all[name].start)) for name in self.settable}

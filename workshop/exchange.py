@@ -100,7 +100,12 @@ class Host:
             self._model.exitInitializationMode()
         except FMICallException as error:
             raise FrictionError("; ".join(self.messages) or str(error)) from None
-        self._model.newDiscreteStates()
+        self._update()
+
+    def _update(self) -> None:
+        """The end of an event, and the time of the next one that the FMU announces."""
+        *_, announced, time = self._model.newDiscreteStates()
+        self._next_event = time if announced else np.inf
         self._model.enterContinuousTimeMode()
 
     def _set(self, name: str, value: Value) -> None:
@@ -149,11 +154,11 @@ class Host:
     def advance(self, stop: float) -> None:
         """To the time stop, by way of the events."""
         while self.time < stop:
-            at_event, _, reached = self._solver.step(self.time, stop)
+            at_event, _, reached = self._solver.step(self.time, min(stop, self._next_event))
             self._set_time(reached)
             self._set_inputs()
             wanted, _ = self._model.completedIntegratorStep()
-            if at_event or wanted:
+            if at_event or wanted or reached >= self._next_event:
                 self.event()
 
     def event(self) -> None:
@@ -161,8 +166,7 @@ class Host:
         self.events += 1
         self._model.enterEventMode()
         self._set_inputs()
-        self._model.newDiscreteStates()
-        self._model.enterContinuousTimeMode()
+        self._update()
         self._solver.reset(self.time)
 
     def get(self, *names: str) -> np.ndarray:

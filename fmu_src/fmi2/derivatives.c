@@ -87,8 +87,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
     const FcScene scene = fc_friction_contact_scene(&instance->contact);
-    const double rate =
-        fc_force_rate(&scene, fc_friction_contact_reached(&instance->contact, &scene));
+    const double rate = fc_force_rate(&scene, fc_friction_contact_reached(&instance->contact, &scene));
     if (!isfinite(rate)) {
         return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
     }

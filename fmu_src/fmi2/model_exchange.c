@@ -19,18 +19,35 @@ static bool array_fits(const FcInstance* instance, FcCall call, const void* arra
     return true;
 }
 
-// An integrator may look beyond the stop time and come back, but not end a step there. Hosts add or multiply their steps.
-static bool is_before_stop(const FcInstance* instance, FcCall call) {
+// How far a time is after the stop time [s]; not above 0 without one. Hosts add or multiply their steps.
+static double after_stop(const FcInstance* instance, double time) {
     const FcExperiment* experiment = &instance->experiment;
-    const double time = instance->contact.state.time;
     const double stop = experiment->stop_time;
     const double rounding = 1e-9 * (stop - experiment->start_time) + 16.0 * DBL_EPSILON * fabs(stop);
-    if (!experiment->has_stop_time || time <= stop + rounding) {
-        return true;
-    }
+    return experiment->has_stop_time ? time - stop - rounding : 0.0;
+}
+
+static void refuse_time(const FcInstance* instance, FcCall call, double time) {
     fc_refuse(instance, call, "time = %s is after the stop time %s", fc_quantity_text(time, "s").text,
-              fc_quantity_text(stop, "s").text);
-    return false;
+              fc_quantity_text(instance->experiment.stop_time, "s").text);
+}
+
+static bool is_before_stop(const FcInstance* instance, FcCall call) {
+    const double time = instance->contact.state.time;
+    if (after_stop(instance, time) > 0.0) {
+        refuse_time(instance, call, time);
+        return false;
+    }
+    return true;
+}
+
+// An integrator may look beyond the stop time and come back, but not from there, nor farther than the run is long.
+static bool may_look_at(const FcInstance* instance, double time) {
+    const FcExperiment* experiment = &instance->experiment;
+    const double seen = instance->contact.state.hybrid.seen_time;
+    const double after = after_stop(instance, time);
+    const double run = experiment->stop_time - experiment->start_time;
+    return !(after > 0.0) || (seen < experiment->stop_time - 1e-9 * run && after <= run);
 }
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
@@ -56,17 +73,19 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* fmi2eventInfo) 
     }
     FcMessage message;
     bool changed, nominals_changed;
+    double next_event = 0.0;
     if (!fc_hybrid_update(&instance->contact, &changed, &nominals_changed, &message)) {
         return fc_refuse(instance, FC_CALL_NEW_DISCRETE_STATES, "%s", message.text);
     }
     instance->experiment.outputs_stale = 1;
+    const bool announced = fc_hybrid_next_event(&instance->contact, &next_event);
     *fmi2eventInfo = (fmi2EventInfo){
         .newDiscreteStatesNeeded = fmi2False,
         .terminateSimulation = fmi2False,
         .nominalsOfContinuousStatesChanged = nominals_changed ? fmi2True : fmi2False,
         .valuesOfContinuousStatesChanged = changed ? fmi2True : fmi2False,
-        .nextEventTimeDefined = fmi2False,
-        .nextEventTime = 0.0,
+        .nextEventTimeDefined = announced ? fmi2True : fmi2False,
+        .nextEventTime = next_event,
     };
     return fmi2OK;
 }
@@ -108,6 +127,10 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
     if (!isfinite(time)) {
         return fc_refuse(instance, FC_CALL_SET_TIME, "time = %s is not a finite number",
                          fc_quantity_text(time, "s").text);
+    }
+    if (!may_look_at(instance, time)) {
+        refuse_time(instance, FC_CALL_SET_TIME, time);
+        return fmi2Error;
     }
     fc_hybrid_set_time(&instance->contact, time);
     instance->experiment.outputs_stale = 1;

@@ -36,7 +36,7 @@ static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
 _Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FcHybrid must be added to transfer_hybrid");
-_Static_assert(sizeof(FcPast) == 6 * sizeof(double), "a new member of FcPast must be added to transfer_past");
+_Static_assert(sizeof(FcPast) == 7 * sizeof(double), "a new member of FcPast must be added to transfer_past");
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
                                               2 * sizeof(int) + sizeof(FcPast) + sizeof(FcHybrid),
                "a new member of FcFrictionState must be added to transfer_state");
@@ -95,8 +95,9 @@ static void transfer_past(Cursor* cursor, FcPast* past) {
     transfer_real(cursor, &past->d);
     transfer_real(cursor, &past->V);
     transfer_real(cursor, &past->E);
-    transfer_real(cursor, &past->static_limit);
-    transfer_real(cursor, &past->kinetic_limit);
+    transfer_real(cursor, &past->limit);
+    transfer_real(cursor, &past->ratio);
+    transfer_real(cursor, &past->V_S);
     transfer_real(cursor, &past->sigma);
 }
 
@@ -293,6 +294,12 @@ static const char* unsound_part(FcSavedState* saved) {
         !isfinite(friction->Q_f_rest) || !all_finite(friction->rate, FC_INPUT_COUNT) ||
         !all_finite(friction->next_rate, FC_INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
         return "the time or a rate of an input";
+    }
+    const FcPast* past = &friction->past;
+    if (friction->slips < -1 || friction->slips > 1 ||
+        !all_finite((double[]){past->d, past->V, past->E, past->limit, past->ratio, past->V_S, past->sigma},
+                    7)) {
+        return "what the last step left";
     }
     if (!hybrid_is_sound(friction)) {
         return "what model exchange keeps";

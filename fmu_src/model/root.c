@@ -73,10 +73,14 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double* evaluations) {
-    const double rounding = DBL_EPSILON * (b - a);
+    const double rounding = DBL_EPSILON * fmax(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
-    double near = b, far = a, before = a;
-    double at_near = at_b, at_far = at_a, at_before = at_a;
+    double near = b;
+    double far = a;
+    double before = a;
+    double at_near = at_b;
+    double at_far = at_a;
+    double at_before = at_a;
     const bool ends_negative = at_b < 0.0;
     double part = at_b / (at_b - at_a);
     for (int i = 0; i < MOST_ROOT_STEPS; i++) {
@@ -84,7 +88,9 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
         if (at_near == 0.0 || (on_side && fabs(at_near) <= close) || fabs(near - far) <= rounding) {
             break;
         }
-        const double t = near + fmax(1e-9, fmin(1.0 - 1e-9, part)) * (far - near);
+        const double least =
+            fmin(0.5, fmax(1e-9, rounding / fabs(near - far))); // so that t is another number
+        const double t = near + fmax(least, fmin(1.0 - least, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;
         before = near;

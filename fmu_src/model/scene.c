@@ -22,12 +22,16 @@ static double open_separation(const FcContactAtModulus* at_E) {
     if (at_E->model == FC_CONTACT_CONSTANT) {
         return without_load;
     }
-    // Of sigma = stiffness_0 e^(-2 decay d) / d^3 at the d where F_n has gone halfway.
-    const double d = 0.5 * without_load;
-    const double powers = at_E->model == FC_CONTACT_ASPERITIES ? 2.0 : 1.0;
-    const double front =
-        at_E->model == FC_CONTACT_ASPERITIES ? at_E->stiffness_0 / (d * d * d) : at_E->stiffness_0;
-    return fmin(without_load, log(front / NOTHING) / (powers * at_E->decay));
+    const double without_stiffness = log(at_E->stiffness_0 / NOTHING);
+    if (at_E->model == FC_CONTACT_MINDLIN) {
+        return fmin(without_load, without_stiffness / at_E->decay);
+    }
+    double d =
+        without_load; // of stiffness_0 e^(-2 decay d) / d^3, by iteration: an error falls to 1 % each time
+    for (int i = 0; i < 8; i++) {
+        d = (without_stiffness - 3.0 * log(d)) / (2.0 * at_E->decay);
+    }
+    return fmin(without_load, d);
 }
 
 FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
@@ -48,6 +52,12 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
     return scene;
 }
 
+double fc_scene_closed_by(const FcScene* scene) {
+    return follows_load(scene)
+               ? scene->drive.load.value - NOTHING
+               : fmax(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
+}
+
 // By this factor a load may move in a piece. By hand: more needs finer panels, less more pieces.
 static const double LOAD_OF_PIECE = 4.0;
 // A contact opens earlier and closes later by this part of the step. Derived: what the bristle does in that time goes with
@@ -62,8 +72,11 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
         return rest;
     }
     // Time to where the contact opens or closes; behind if negative.
-    const double to_edge =
-        (by_load ? -drive->load.value : open_separation(&scene->at_E) - drive->d.value) / rate;
+    const bool is_far = by_load || scene->is_open ||
+                        scene->at_E.decay * fmax(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
+    const double to_edge = by_load  ? -drive->load.value / rate
+                           : is_far ? (open_separation(&scene->at_E) - drive->d.value) / rate
+                                    : -1.0;
     const double room = NEARLY_OPEN * whole;
     scene->is_open = scene->is_open || (to_edge > 0.0 && to_edge <= room);
     if (scene->is_open) {

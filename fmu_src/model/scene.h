@@ -53,6 +53,9 @@ static inline bool fc_scene_has_pieces(const FcScene* scene) {
     return fc_scene_depends_on_d(scene) && (scene->drive.load.rate != 0.0 || scene->drive.d.rate != 0.0);
 }
 
+// What keeps the contact closed at the start: the load [N], or the way to the separation at which it opens [m]. Open at 0 and below.
+double fc_scene_closed_by(const FcScene* scene);
+
 // How long [s], up to `rest`, the scene may be taken as a whole from its start on, in a step of `whole` [s]: until the contact
 // opens or closes, or the load, given or made from d, has moved by a factor of 4. Sets is_open if the contact opens within
 // 2^-44 of the step.

@@ -13,8 +13,9 @@ FcPast fc_past(const FcScene* scene) {
     return (FcPast){.d = fc_scene_depends_on_d(scene) ? fc_scene_d(scene, 0.0) : 0.0,
                     .V = at.V,
                     .E = scene->drive.E.value,
-                    .static_limit = at.limit * fc_static_over_limit(scene->friction, at.V),
-                    .kinetic_limit = at.limit,
+                    .limit = at.limit / fc_stribeck(scene->friction, at.V),
+                    .ratio = fc_static_ratio(scene->friction),
+                    .V_S = scene->friction->V_S,
                     .sigma = at.sigma};
 }
 
@@ -22,9 +23,9 @@ FcPast fc_past(const FcScene* scene) {
 typedef struct {
     const FcScene* scene;
     FcPast past;
-    double d, V, E;              // by which they change
-    double log_limit, log_sigma; // by which parameters change them
-    int slips;                   // whose bound is meant
+    double d, V, E;                                  // by which they change
+    double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
+    int slips;                                       // whose bound is meant
 } Ramp;
 
 typedef struct {
@@ -34,12 +35,28 @@ typedef struct {
     double rate;  // m, of D along the ramp
 } Place;
 
+// Static over Coulomb friction, or Stribeck's curve of a bristle that slips, and the rate of its logarithm.
+static double curve_at(const Ramp* ramp, double s, double* log_rate) {
+    const FcFriction* friction = ramp->scene->friction;
+    const double ratio = ramp->past.ratio * exp(s * ramp->log_ratio);
+    *log_rate = ramp->log_ratio;
+    if (!fc_has_static_friction(friction) || ramp->slips == 0) {
+        return ratio;
+    }
+    const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
+    const double x = (ramp->past.V + s * ramp->V) / V_S;
+    const double peak = exp(-x * x);
+    const double curve = 1.0 + (ratio - 1.0) * peak;
+    *log_rate = peak / curve *
+                (ratio * ramp->log_ratio - 2.0 * (ratio - 1.0) * x * (ramp->V / V_S - x * ramp->log_V_S));
+    return curve;
+}
+
 static Place at_place(const Ramp* ramp, double s) {
     const FcScene* scene = ramp->scene;
     const FcFriction* friction = scene->friction;
     const double d = ramp->past.d + s * ramp->d;
     const double E = ramp->past.E + s * ramp->E;
-    const double V = ramp->past.V + s * ramp->V;
     const bool follows_load = fc_limit_follows_load(friction);
     Place at = {.limit = scene->F_C, .sigma = scene->at_E.stiffness_0};
     double rate = ramp->log_limit - ramp->log_sigma;
@@ -59,30 +76,27 @@ static Place at_place(const Ramp* ramp, double s) {
             rate += ((follows_load ? by_E.F_n : 0.0) - by_E.sigma) * ramp->E;
         }
     }
+    double curve_rate;
     at.sigma *= exp((s - 1.0) * ramp->log_sigma);
-    at.limit *= exp((s - 1.0) * ramp->log_limit);
-    if (fc_has_static_friction(friction) && ramp->slips != 0) {
-        at.limit *= fc_stribeck(friction, V);
-        rate += fc_stribeck_slope(friction, V) / fc_stribeck(friction, V) * ramp->V;
-    } else {
-        at.limit *= fc_static_ratio(friction);
-    }
+    at.limit *= exp((s - 1.0) * ramp->log_limit) * curve_at(ramp, s, &curve_rate);
     at.D = at.limit / at.sigma;
-    at.rate = at.D * rate;
+    at.rate = at.D * (rate + curve_rate);
     return at;
 }
 
 // Of the bound of a bristle that slips or not.
 static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
     const FcPast now = fc_past(scene);
-    Ramp ramp = {.scene = scene, .past = *past, .slips = slips};
+    Ramp ramp = {.scene = scene, .past = *past, .slips = 0};
     ramp.d = now.d - past->d;
     ramp.V = now.V - past->V;
     ramp.E = now.E - past->E;
-    const Place start = at_place(&ramp, 0.0); // with the parameters of now
-    const bool is_kinetic = fc_has_static_friction(scene->friction) && slips != 0;
-    ramp.log_limit = log(start.limit / (is_kinetic ? past->kinetic_limit : past->static_limit));
+    ramp.log_ratio = log(now.ratio / past->ratio);
+    ramp.log_V_S = log(now.V_S / past->V_S);
+    const Place start = at_place(&ramp, 0.0); // with the other parameters of now
+    ramp.log_limit = log(start.limit / (past->ratio * past->limit));
     ramp.log_sigma = log(start.sigma / past->sigma);
+    ramp.slips = slips;
     return ramp;
 }
 
@@ -110,7 +124,8 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     AboveBound of = {ramp, delta};
     double none = 0.0;
     const double at_a = above_bound(&of, a);
-    const double from = at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, &none) : a;
+    const double from =
+        at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, &none) : a;
     const FcGaussRule* rule = &FC_GAUSS_8;
     for (int i = 0; i < 8; i++) {
         const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
@@ -121,20 +136,22 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
 
 // The ramp is taken in steps over which D and g move by no more than e to this power, Stribeck's curve by a part of V_S.
 static const double STEP_OF_LOG = 0.5;
+// By hand: more than there are from the smallest number to the largest.
+static const double MOST_STEPS = 1e4;
 static const double STEP_OF_CURVE = 0.5;
 // Beyond this velocity, over V_S, there is no curve.
 static const double END_OF_CURVE = 7.0;
 
 // The next place to stop at after s.
 static double next_place(const Ramp* ramp, double s, double step) {
-    const double V_S = ramp->scene->friction->V_S;
+    const double V_S = fmin(ramp->scene->friction->V_S, ramp->past.V_S);
     const double V = ramp->past.V + s * ramp->V;
     double next = s + step;
     if (ramp->slips != 0 && fc_has_static_friction(ramp->scene->friction) && ramp->V != 0.0) {
         const double beyond = fabs(V) / V_S - END_OF_CURVE;
         next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / fabs(ramp->V));
     }
-    return next < 1.0 - 1e-9 ? next : 1.0;
+    return next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
 }
 
 // |delta| at the end of the ramp, from the place s on.
@@ -142,8 +159,9 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
     const Place first = at_place(ramp, s);
     const Place last = at_place(ramp, 1.0);
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
-                         fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay;
-    const double step = (1.0 - s) / ceil(moves / STEP_OF_LOG + 1e-3);
+                         fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
+                         fabs(ramp->log_V_S);
+    const double step = (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
     AboveBound of = {ramp, delta};
     double none = 0.0;
     while (s < 1.0) {
@@ -166,7 +184,7 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
     double none = 0.0;
     double s = 0.0;
     double at_s = above_bound(&of, s);
-    const double moves = 1.0 + fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG;
+    const double moves = 1.0 + fmin(fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG, MOST_STEPS);
     while (s < 1.0 && at_s <= 0.0) {
         const double next = s + 1.0 / ceil(moves) < 1.0 - 1e-9 ? s + 1.0 / ceil(moves) : 1.0;
         const double at_next = above_bound(&of, next);
@@ -185,7 +203,8 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     if (!fc_is_bounded(scene->friction) && !fc_scene_is_loose(scene)) {
         return bristle;
     }
-    if (past->sigma == 0.0 || fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
+    if (past->sigma == 0.0 ||
+        fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
         const FcBristle reached = fc_reach(scene, bristle);
         const double sigma = fc_scene_contact(scene, 0.0).sigma;
         *heat = 0.5 * sigma * (delta - fabs(reached.delta)) * (delta + fabs(reached.delta));
@@ -193,7 +212,7 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     }
     const FcPast now = fc_past(scene);
     if (now.d == past->d && now.V == past->V && now.E == past->E && now.sigma == past->sigma &&
-        now.static_limit == past->static_limit && now.kinetic_limit == past->kinetic_limit) {
+        now.limit == past->limit && now.ratio == past->ratio && now.V_S == past->V_S) {
         return fc_reach(scene, bristle);
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;

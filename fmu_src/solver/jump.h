@@ -17,9 +17,10 @@ typedef struct {
     double d;     // m
     double V;     // m/s
     double E;     // Pa
-    double static_limit;  // N, staticRatio times F_C or mu F_n
-    double kinetic_limit; // N, of a bristle of ElasticPlastic that slips
-    double sigma;         // N/m, 0 for no past, or an open contact
+    double limit; // N, F_C or mu F_n
+    double ratio; // 1, static over Coulomb friction
+    double V_S;   // m/s
+    double sigma; // N/m, 0 for no past, or an open contact
 } FcPast;
 
 // Of a scene at its start.

@@ -20,12 +20,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST = 1e-2  # solver.tolerance
+TIGHT = 1e-10  # the tolerance that grades
 # From five phases, since an error may vanish at one; steps of which not all are a whole number of periods.
 PHASES = tuple(k / 5.0 for k in range(5))
 STEPS = (1.0, 0.37, 1.0)  # over the communication step
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Advice:
     """What to set, and what it was graded by. str() gives it in words."""
 
@@ -45,6 +46,10 @@ class Advice:
     def knows_the_mean(self) -> bool:
         """Whether some tolerance gives that accuracy of the mean friction."""
         return self.asked.accuracy * abs(self.mean) >= LEAST * self.scale
+
+    def __repr__(self) -> str:
+        settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
+        return f"<advice: {settings}; within {self.asked.accuracy:g}>"
 
     def __str__(self) -> str:
         asked, known = self.asked, self.knows_the_mean
@@ -78,7 +83,7 @@ def advise(
     """What to set so that F_t and F_t_mean are within an accuracy of F_C and of the mean friction.
 
     scene     start values of what describes it, SI units
-    accuracy  largest error, over F_C and over the mean friction, from 1e-10 to 1
+    accuracy  largest error, over F_C and over the mean friction, from 1e-8 to 1
     step      communication step, s (a period of the vibration)
     output    which output must be accurate: "F_t", "F_t_mean" or "both"
     inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load: the steps are
@@ -86,9 +91,16 @@ def advise(
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
     fmu       another .fmu file of this model
+    returns   an `Advice`: settings, start_values, mean and error [N]; str() says it in words
+    raises    UserError: the question is wrong, or the FMU refuses the scene
+    warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 
-    The advice is held against the FMU at solver.tolerance = 1e-10, from rest and settled. UserError names
-    what is wrong with the question.
+    The advice is graded against the FMU at solver.tolerance = 1e-10, from rest and settled.
+
+        import frictioncontact as fc
+        advice = fc.advise({"V": 0.5, "vibration.V_1": 1.44}, accuracy=1e-3, step=1e-3, output="F_t_mean")
+        print(advice)
+        fc.simulate(advice.start_values, stop=0.01, step=1e-3, outputs=["F_t_mean"])
     """
     loaded = opened(fmu)
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)
@@ -172,7 +184,7 @@ def _run_errors(fmu: FrictionFmu, asked: Question, settings: Mapping[str, Value]
         steps = asked.step * np.array(STEPS)
     held = {name: samples[: len(steps)] for name, samples in asked.inputs.items()}
     rates = {name: np.diff(samples) / steps for name, samples in asked.inputs.items()} if asked.linear else {}
-    tight = {"solver.tolerance": LEAST, **{name: settings[name] for name in SETTLED if name in settings}}
+    tight = {"solver.tolerance": TIGHT, **{name: settings[name] for name in SETTLED if name in settings}}
     advised, right = (
         run(fmu, {**asked.given, **chosen}, steps, held, rates, start, ("F_t", "F_t_mean"))[1:]
         for chosen in (settings, tight)

@@ -3,39 +3,37 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from frictioncontact import resources
 from frictioncontact.advice.answer import PHASES, advise
 from frictioncontact.advice.question import OUTPUTS, STEP_LENGTHS, between, scene_values
 from frictioncontact.advice.stuck_mass import MASTERS, advice
-from frictioncontact.command import add_fmu, command_line, finish, progress_bar, shown
+from frictioncontact.command import add_fmu, add_set, command_line, finish, progress_bar, shown
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Session, Value, opened
 from frictioncontact.simulation.command import read_inputs
-from frictioncontact.values import Variables, assignment
 
 DESCRIPTION = """\
 Says what to set for a scene so that F_t and F_t_mean are within an accuracy of F_C and of the mean friction:
 the default at a tolerance, or Coulomb friction where a bound shows that it is close enough. It then holds
 what it says against the FMU at its tightest tolerance, from rest and settled, from several phases.
 
-  %(prog)s --accuracy 1e-3 vibration.V_1=1.44 vibration.a_d=1.1e-6 V=0.005
-  %(prog)s --accuracy 1e-2 --step 1e-3 --output-of F_t_mean vibration.V_1=1.44
-  %(prog)s --inputs drive.csv --linear contact.stiffnessScale=1e-6
+  %(prog)s --accuracy 1e-3 --set vibration.V_1=1.44 --set vibration.a_d=1.1e-6
+  %(prog)s --accuracy 1e-2 --step 1e-3 --output-of F_t_mean --set vibration.V_1=1.44
+  %(prog)s --inputs drive.csv --linear --set contact.stiffnessScale=1e-6
 
 With --mass it says how to couple the contact to a mass while it sticks: the smallest damping friction.sigma_1
 that keeps the master's exchange stable at the communication step, and the largest step.
 
-  %(prog)s --mass 1 --step 1e-4 contact.model=Constant contact.sigma=1e6"""
+  %(prog)s --mass 1 --step 1e-4 --set contact.model=Constant --set contact.sigma=1e6"""
 
 MASSES = (1e-12, 1e12)  # kg
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact advise", DESCRIPTION)
-    parser.add_argument("values", nargs="*", metavar="NAME=VALUE", help="start values of the scene")
+    add_set(parser, "of the scene")
     parser.add_argument("--accuracy", type=float, default=1e-3, help="largest error over F_C (1e-3)")
     parser.add_argument("--step", type=float, help="communication step, s (a vibration period)")
     parser.add_argument(
@@ -53,17 +51,15 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--linear", action="store_true", help="inputs move linearly between their samples")
     parser.add_argument("--quick", action="store_true", help="grade from two phases instead of five")
     add_fmu(parser)
-    return parser.parse_intermixed_args(argv)
+    return parser.parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:
-    path = options.fmu or resources.fmu()
-    fmu = opened(path)
-    variables = Variables(fmu.description)
-    scene = dict(assignment(text) for text in options.values)
-    known = scene_values(fmu, {name: variables.value(name, text, name) for name, text in scene.items()})
+    fmu = opened(options.fmu)
+    known = scene_values(fmu, fmu.known.assigned(options.set))
     if options.mass is not None:
-        print(coupling(fmu, known, options))
+        said, settings = coupling(fmu, known, options)
+        print(said, start_values(fmu, known | settings), sep="\n\n")
         return
     with progress_bar() as progress:
         progress.add_task("Grading", total=None)
@@ -75,14 +71,21 @@ def run(options: argparse.Namespace) -> None:
             inputs=read_inputs(options.inputs, fmu) if options.inputs else None,
             linear=options.linear,
             phases=PHASES[:2] if options.quick else PHASES,
-            fmu=path,
+            fmu=options.fmu,
         )
-    words = " ".join(f"{name} {value}" for name, value in found.start_values.items())
-    command = f"fmpy simulate {shown(path)} --output-interval {found.asked.step:.6g} --start-values {words}"
-    print(found, command, sep="\n\n")
+    command = f"fmpy simulate {shown(fmu.path)} --output-interval {found.asked.step:.6g}"
+    print(found, f"{command} {start_values(fmu, found.start_values)}", sep="\n\n")
 
 
-def coupling(fmu: FrictionFmu, values: dict[str, Value], options: argparse.Namespace) -> str:
+def start_values(fmu: FrictionFmu, values: Mapping[str, Value]) -> str:
+    """Values as fmpy's command takes them: of an enumeration the number."""
+    codes = {name: fmu.known.items[name].get(str(value), value) for name, value in values.items()}
+    return " ".join(["--start-values", *(f"{name} {code:.10g}" for name, code in codes.items())])
+
+
+def coupling(
+    fmu: FrictionFmu, values: dict[str, Value], options: argparse.Namespace
+) -> tuple[str, dict[str, Value]]:
     """The advice for --mass."""
     for name in ("inputs", "linear"):
         if getattr(options, name):
@@ -97,7 +100,7 @@ def coupling(fmu: FrictionFmu, values: dict[str, Value], options: argparse.Names
         raise UserError("--mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
     with fmu.session(values) as session:
         sigma = stiffest(session)
-    return advice(options.mass, sigma, options.master, options.step, values)
+    return advice(options.mass, sigma, options.master, options.step)
 
 
 def stiffest(session: Session) -> float:

@@ -23,7 +23,6 @@ With a = H^2 sigma / m and b = H sigma_1 / m the eigenvalues x are the roots of
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 from frictioncontact.fmu import Value
 
@@ -61,8 +60,8 @@ def least_damping(m: float, sigma: float, master: str, H: float) -> float | None
     return None if span is None else min(MARGIN * span[0], math.sqrt(span[0] * span[1]))
 
 
-def advice(m: float, sigma: float, master: str, H: float, start_values: Mapping[str, Value]) -> str:
-    """What to set for a mass of m [kg] on a contact of sigma [N/m] and a step of H [s], in words."""
+def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str, Value]]:
+    """What to set for a mass of m [kg] on a contact of sigma [N/m] and a step of H [s]: words and values."""
     time = math.sqrt(m / sigma)
     lines = [
         f"The stuck contact is a spring of {sigma:.6g} N/m under {m:g} kg: sqrt(m / sigma) = {time:.6g} s.",
@@ -71,7 +70,7 @@ def advice(m: float, sigma: float, master: str, H: float, start_values: Mapping[
     span, damping = damping_range(m, sigma, master, H), least_damping(m, sigma, master, H)
     if span is None or damping is None:
         lines.append(f"At a step of {H:g} s no friction.sigma_1 does. Take a shorter step, or Gauss-Seidel.")
-        return "\n".join(lines)
+        return "\n".join(lines), {}
     lines.append(f"At a step of {H:g} s it is stable from {span[0]:.6g} to {span[1]:.6g} N s/m.")
     if damping == 0.0:
         lines.append("It needs none: the smallest errs least.")
@@ -80,7 +79,7 @@ def advice(m: float, sigma: float, master: str, H: float, start_values: Mapping[
             f"Set {damping:.6g} N s/m, the smallest and a tenth: more errs more.",
             "It adds sigma_1 delta' to F_t, also while the contact slides under a vibration: F_t may then",
             "swing by many times F_C, though its mean stays. Set it only where the mass sticks.",
+            f"At break-away F_t exceeds the static friction by sigma_1 V, {damping:.6g} N for each m/s.",
+            "If that matters, take Gauss-Seidel, which needs no damping.",
         ]
-    settings = {**start_values, "friction.sigma_1": f"{damping:.6g}"}
-    lines.append("\n--start-values " + " ".join(f"{name} {value}" for name, value in settings.items()))
-    return "\n".join(lines)
+    return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}

@@ -21,7 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import resources
-from .errors import BatchError
+from ..doubts import warn_of
+from ..errors import BatchError, UserError
 from .prepare import Outputs, Unit, check_whole, prepared
 from .run import Progress
 from .runner import runner
@@ -51,15 +52,15 @@ def simulate_many(
 ) -> dict[str, np.ndarray] | pd.DataFrame:
     """Results of every scenario: arrays of the shape that the values broadcast to, or a frame for a frame.
 
-    values    what is set at the start: name of an input or parameter -> values in the units of the model
-              description, those of an enumeration as names of its items or as numbers. Arrays broadcast
-              as in NumPy; a row of a frame is a scenario, and nothing broadcasts beyond its rows
+    values    name of an input or parameter -> values at the start, SI units; of an enumeration items or their
+              numbers. Arrays broadcast as in NumPy; a row of a frame is a scenario, and nothing broadcasts
+              beyond its rows
     outputs   names of variables to be read; or name of a result -> variable, or (variable, statistic)
               with a statistic of "end" (after the last step, the default), "change" (since the settling),
               "mean", "min", "max" (of the samples), "samples" (all of them: one axis more; in a frame the
               columns NAME[0], NAME[1], ...)
     fmu       another .fmu file of this model with a binary for this platform, or its bytes
-    settle    length of a first step that is not read. Where it is not given, there is none; then scenarios
+    settle    length of a first step that is not read. If it is not given, there is none; then scenarios
               start settled if the unit is the period and the values say nothing of initialState
     duration  what is read after that, in samples equal steps
     unit      of settle and duration: a period of the vibration, 1 / vibration.f, or a second
@@ -71,27 +72,42 @@ def simulate_many(
     threads   that run at once, up to 1024; one for each processor that this process may use
     progress  True: a bar on a terminal; or a function that is told how many scenarios are finished and
               how many of them refused
+    returns   name of each result -> array, SI units; of a frame the frame of its rows
+    raises    BatchError: a name, a value or a length is wrong, before anything runs, with column and row,
+              counted from 0; a scenario is refused
+    warns     FrictionWarning: of a setting that has no effect in any scenario; of an unlikely magnitude
 
-    BatchError before anything runs where a name, a value or a length is wrong; it names column and row,
-    counted from 0. At a KeyboardInterrupt the threads stop after their present step, and within a second
-    it goes on to the caller; a few steps of the default method are run without a thread, to their end.
+    At a KeyboardInterrupt the threads stop after their present step, and within a second the exception
+    reaches the caller; a few steps of the default method are run without a thread, to their end.
+
+        import numpy as np
+        import frictioncontact as fc
+        V = np.linspace(0.1, 2.0, 20)
+        ratio = np.array([[1.0], [0.5]])
+        found = fc.simulate_many({"V": V, "F_C": 55 * ratio, "vibration.V_1": 1.44}, ["F_t_mean"])
+        print(found["F_t_mean"].shape)
     """
-    batch = prepared(
-        loaded_fmu(resources.fmu() if fmu is None else fmu, runner(resources.batch_host())),
-        values,
-        outputs,
-        settle=settle,
-        duration=duration,
-        samples=samples,
-        unit=unit,
-        settled=settled,
-        inputs=inputs,
-        steps=steps,
-    )
     if errors not in ("raise", "keep"):
         raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
     if threads is not None:
         check_whole(threads, MOST_THREADS, "threads =")
+    try:
+        loaded = loaded_fmu(resources.fmu() if fmu is None else fmu, runner(resources.batch_host()))
+        batch = prepared(
+            loaded,
+            values,
+            outputs,
+            settle=settle,
+            duration=duration,
+            samples=samples,
+            unit=unit,
+            settled=settled,
+            inputs=inputs,
+            steps=steps,
+        )
+    except UserError as error:
+        raise BatchError(str(error)) from None
+    warn_of(loaded.variables, batch.starts | (inputs or {}), is_over_period=unit == "period")
     with shown_progress(progress, batch.scenarios) as shown:
         results = batch.run(threads or processors(), errors == "raise", shown)
     if errors == "raise":

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .columns import common_shape, flat, numbers_of, start_values
-from .errors import BatchError
+from ..errors import BatchError, shown
+from ..values import numbers_of, pairs
+from .columns import common_shape, flat, lengths_of
 from .run import Batch
 from .runner import STATISTICS
 from .unpacked import LoadedFmu
@@ -41,7 +42,7 @@ def prepared(
     """The batch of `simulate_many`, checked."""
     lengths = None
     if steps is not None:
-        lengths = _row(numbers_of(steps, "steps", 0.0), "steps")
+        lengths = _row(lengths_of(steps, "steps"), "steps")
         samples = len(lengths)
     if unit not in ("period", "s"):
         raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
@@ -50,8 +51,9 @@ def prepared(
     if settle is None:
         settle = 0.0
         settled = settled or (unit == "period" and "initialState" not in named)
-    starts = start_values(fmu, _settled(fmu, named) if settled else named)
-    spans = {"settle": numbers_of(settle, "settle", 0.0), "duration": numbers_of(duration, "duration", 0.0)}
+    named = _settled(named) if settled else named
+    starts = {name: fmu.variables.numbers(name, value, f"column {name}") for name, value in named.items()}
+    spans = {"settle": lengths_of(settle, "settle"), "duration": lengths_of(duration, "duration")}
     shape = common_shape(starts | spans, None if isinstance(values, Mapping) else len(values))
     try:
         columns = {name: flat(column, shape) for name, column in (starts | spans).items()}
@@ -65,8 +67,8 @@ def prepared(
         columns["duration"],
         int(samples),
         _read(fmu, outputs),
-        fmu.variable("vibration.f", "unit").valueReference if unit == "period" else None,
-        *_moving(fmu, inputs or {}, int(samples)),
+        fmu.variables.all["vibration.f"].valueReference if unit == "period" else None,
+        *_moving(fmu, pairs(inputs, "inputs"), int(samples)),
         lengths,
     )
 
@@ -77,7 +79,7 @@ def _moving(
     """Value references, and values before each step."""
     references, columns = [], []
     for name, values in inputs.items():
-        references.append(fmu.variable(name, f"input {name}", ("input",)).valueReference)
+        references.append(fmu.variables.find(name, f"input {name}", ("input",)).valueReference)
         columns.append(_row(numbers_of(values, f"input {name}"), f"input {name}"))
         if len(columns[-1]) != samples:
             raise BatchError(f"input {name}: {len(columns[-1])} values for {samples} steps")
@@ -107,8 +109,7 @@ def _named(values: Mapping[str, npt.ArrayLike] | pd.DataFrame) -> Mapping[str, n
     return {name: values[name].array for name in values.columns}
 
 
-def _settled(fmu: LoadedFmu, named: Mapping[str, npt.ArrayLike]) -> Mapping[str, npt.ArrayLike]:
-    fmu.variable("initialState", "settled")
+def _settled(named: Mapping[str, npt.ArrayLike]) -> Mapping[str, npt.ArrayLike]:
     if "initialState" in named:
         raise BatchError("column initialState: settled gives it already")
     return {**named, "initialState": "Settled"}
@@ -125,15 +126,14 @@ def _read(fmu: LoadedFmu, outputs: Outputs) -> dict[str, tuple[int, Statistic]]:
     """Name of each result -> value reference and statistic."""
     if isinstance(outputs, str) or not isinstance(outputs, Iterable):
         raise BatchError(f"outputs = {outputs!r}: must be a sequence of names, or a mapping")
-    named = dict(outputs) if isinstance(outputs, Mapping) else {name: name for name in outputs}
+    if not isinstance(outputs, Mapping):
+        outputs = {fmu.variables.readable(name, "outputs").name: name for name in outputs}
     read = {}
-    for name, output in named.items():
+    for name, output in outputs.items():
         variable, statistic = _pair(output, f"output {name}")
-        found = fmu.variable(variable, f"output {name}")
-        if found.type != "Real":
-            raise BatchError(f"output {name}: {variable} is of type {found.type}; only Real is read")
+        found = fmu.variables.readable(variable, f"output {name}")
         if statistic not in STATISTICS:
-            raise BatchError(f"output {name}: {statistic!r} is not one of {', '.join(STATISTICS)}")
+            raise BatchError(f"output {name}: {shown(statistic)} is not one of {', '.join(STATISTICS)}")
         if name == "reason":
             raise BatchError(f"output {name}: the name is taken")
         read[name] = found.valueReference, statistic

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .errors import BatchError
+from ..errors import BatchError
 from .runner import DONE, REFUSED, STATISTICS, TEXT, Column, Plan, Result, Start
 from .unpacked import LoadedFmu
 
@@ -111,7 +111,7 @@ class _Running:
             raise BatchError(f"no memory for {batch.scenarios} scenarios")
 
     def _start(self, name: str, column: np.ndarray) -> Start:
-        variable = self.batch.fmu.variables[name]
+        variable = self.batch.fmu.variables.all[name]
         return Start(variable.valueReference, variable.type != "Real", _column(column))
 
     def work(self, threads: int, progress: Progress) -> None:

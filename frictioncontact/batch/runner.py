@@ -13,7 +13,7 @@ from pathlib import Path
 
 import fmpy
 
-from .errors import BatchError
+from ..errors import BatchError
 
 TEXT = 512  # FMI2_TEXT
 STATISTICS = ("end", "change", "mean", "min", "max", "samples")  # BatchStatistic

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import fmpy
-from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
+from fmpy.model_description import ModelDescription, read_model_description
 
-from ..errors import indefinite, unknown_variable
+from ..errors import BatchError
 from ..platforms import library_in
-from .errors import BatchError
+from ..values import Variables
 from .runner import load_fmu
 
 
@@ -26,16 +26,7 @@ class LoadedFmu:
     runner: ctypes.CDLL
     handle: int
     guid: bytes
-    variables: dict[str, ScalarVariable] = field(repr=False)
-
-    def variable(self, name: str, where: str, causalities: tuple[str, ...] = ()) -> ScalarVariable:
-        """The variable of this name, which must be of one of the causalities if any are given."""
-        found = self.variables.get(name)
-        if found is None:
-            raise BatchError(f"{where}: {unknown_variable(name, self.variables)}")
-        if causalities and found.causality not in causalities:
-            raise BatchError(f"{where}: {name} is {indefinite(found.causality)} of the FMU and can't be set")
-        return found
+    variables: Variables = field(repr=False)
 
 
 _loaded: dict[tuple[object, ...], LoadedFmu] = {}
@@ -64,8 +55,7 @@ def loaded_fmu(fmu: str | Path | bytes, runner: ctypes.CDLL) -> LoadedFmu:
 def _load(content: bytes, name: str, runner: ctypes.CDLL) -> LoadedFmu:
     description, library = description_and_library(content, name)
     handle = load_fmu(runner, description.coSimulation.modelIdentifier, library)
-    variables = {variable.name: variable for variable in description.modelVariables}
-    return LoadedFmu(runner, handle, description.guid.encode(), variables)
+    return LoadedFmu(runner, handle, description.guid.encode(), Variables(description))
 
 
 def description_and_library(content: bytes, name: str) -> tuple[ModelDescription, bytes]:

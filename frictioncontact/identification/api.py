@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +14,8 @@ from rich.console import Console
 
 from frictioncontact.columns import accepted
 from frictioncontact.command import TABLE
-from frictioncontact.errors import UserError
+from frictioncontact.doubts import unused, warn_of
+from frictioncontact.errors import UserError, did_you_mean, quiet
 from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.identification.bootstrap import bootstrap as refits_of
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
@@ -36,7 +38,7 @@ DEFAULT = ("contact.stiffnessScale", "vibration.phase_d")
 LEAST_REFITS = 40  # below, there is no 2.5 % quantile
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Identification:
     """What a fit found. str() says first whether the law fits; plot() draws it."""
 
@@ -60,6 +62,12 @@ class Identification:
     def misfits(self) -> list[str]:
         """What is wrong with the law for these data, in words; empty where it fits."""
         return self.fit.misfits
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
+        return (
+            f"<identification: {values}; {f'{len(self.misfits)} misfits' if self.misfits else 'no misfit'}>"
+        )
 
     def __str__(self) -> str:
         text = io.StringIO()
@@ -92,13 +100,20 @@ def identify(
                steady mean, F_t_mean with V and any other input or parameter; or a series in time, F_t with
                position or V. NAME.uncertainty is the standard uncertainty of a column
     fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
-    start      start values that all rows share, SI units
+    start      start values that all rows share, SI units; of an enumeration an item or its number
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")
     bootstrap  so many refits to data with new noise, at least 40, for intervals by simulation too
     fmu        another .fmu file of this model
     tell       is told what is begun
+    returns    an `Identification`: values, intervals, misfits; str() says it in words, plot() draws it
+    raises     UserError: the data or the request are wrong; a parameter has no effect on these data
+    warns      FrictionWarning: of a start value that has no effect; of an unlikely magnitude
 
-    UserError names what is wrong with the data or the request.
+        import frictioncontact as fc
+        law = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+        found = fc.identify(fc.contacts["steel-dry"].data, fit="contact.sigma", start=law)
+        print(found)
+        fc.simulate({**law, **found.values, "V": 1e-3}, stop=1e-3, step=1e-4)
     """
     if bootstrap is not None:
         if not isinstance(bootstrap, (int, np.integer)):
@@ -108,8 +123,7 @@ def identify(
                 f"bootstrap {bootstrap}: must be at least {LEAST_REFITS}, to have a 2.5 % quantile"
             )
     loaded = opened(fmu)
-    variables = Variables(loaded.description)
-    constants = {name: variables.given(name, value, "start") for name, value in pairs(start, "start").items()}
+    constants = loaded.known.values(start, "start")
     stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
     rows = read(path_of(data, "data") if isinstance(data, (str, Path)) else data, loaded, constants, stated)
     asked = fit.items() if isinstance(fit, Mapping) else ((name, None) for name in _names(fit))
@@ -117,9 +131,11 @@ def identify(
     if not parameters:
         raise UserError("fit: names no parameter")
     _check(parameters, rows, constants)
+    _check_use(loaded.known, parameters, rows)
     experiment = (Record if isinstance(rows, Series) else Rows)(loaded, rows, parameters)
-    found = fitted(experiment, tell)
-    spread = None if bootstrap is None else refits_of(experiment, found, bootstrap, tell)
+    with quiet():
+        found = fitted(experiment, tell)
+        spread = None if bootstrap is None else refits_of(experiment, found, bootstrap, tell)
     return Identification(found, experiment, spread)
 
 
@@ -134,8 +150,10 @@ def _names(fit: Iterable[str]) -> list[str]:
 
 
 def _stated(fmu: FrictionFmu, name: str, value: float | str) -> Stated:
-    if name not in (MEASURED, FORCE, *accepted(fmu)):
-        raise UserError(f"the uncertainty of {name}: {name} is no variable that a file may hold")
+    known = (MEASURED, FORCE, *accepted(fmu))
+    if name not in known:
+        hint = did_you_mean(str(name), known)
+        raise UserError(f"the uncertainty of {name}: {name} is no variable that a file may hold{hint}")
     text = str(value)
     found = number(text.removesuffix("%"), f"the uncertainty of {name}")
     if not 1.0 / LARGEST <= found <= LARGEST:
@@ -155,6 +173,20 @@ def _parameter(
             raise UserError(f"{name} = {low:g}..{high:g}: the range is empty")
         return parameter(fmu, name, None, (low, high), constants)
     return parameter(fmu, name, None if value is None else real(value, name), None, constants)
+
+
+def _check_use(known: Variables, parameters: Sequence[Parameter], rows: Measurements | Series) -> None:
+    """That every parameter has an effect on the rows; warns of other settings that have none."""
+    if isinstance(rows, Series):
+        given = {**rows.constants, "V": rows.V, **rows.inputs}
+    else:
+        given = {name: [row[name] for row in rows.conditions] for name in rows.conditions[0]}
+    numbers = {name: np.atleast_1d(known.numbers(name, value, name)) for name, value in given.items()}
+    fitted = {p.name: np.array([math.nan]) for p in parameters}
+    idle = unused(known, numbers | fitted)
+    for name in fitted.keys() & idle:
+        raise UserError(f"{name} can't be fitted: {idle[name]}")
+    warn_of(known, given)
 
 
 def _check(

@@ -10,6 +10,7 @@ from frictioncontact import resources
 from frictioncontact.command import (
     add_fmu,
     add_output,
+    add_set,
     can_draw,
     command_line,
     finish,
@@ -20,7 +21,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.identification.api import DEFAULT, identify
 from frictioncontact.identification.show import show
-from frictioncontact.values import Variables, assignment, number
+from frictioncontact.values import assignments, number
 
 DESCRIPTION = """\
 Fits any parameters of the FMU to measured friction by least squares. Says first, in words, whether the law
@@ -64,13 +65,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help="parameter to fit, with a start value or a range that it stays in, in SI units; again for each "
         "(contact.stiffnessScale and vibration.phase_d)",
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="start value for all rows, in SI units",
-    )
+    add_set(parser, "of all rows")
     parser.add_argument(
         "--uncertain",
         action="append",
@@ -89,17 +84,15 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def run(options: argparse.Namespace) -> None:
-    path = options.fmu or resources.fmu()
-    variables = Variables(opened(path).description)
     with progress_bar() as bar:
         task = bar.add_task("", total=None)
         found = identify(
             options.csv,
             fit_of(options.fit),
-            start=dict(variables.assigned(text, "--set") for text in options.set),
-            uncertain=dict(assignment(text, "--uncertain") for text in options.uncertain),
+            start=opened(options.fmu).known.assigned(options.set),
+            uncertain=assignments(options.uncertain, "--uncertain"),
             bootstrap=options.bootstrap,
-            fmu=path,
+            fmu=options.fmu,
             tell=lambda text: bar.update(task, description=text),
         )
     show(table_console(), found.experiment, found.fit, found.spread)

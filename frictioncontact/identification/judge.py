@@ -16,6 +16,7 @@ from frictioncontact.identification.search import SAME
 # e-fold of sigma outside of these, the first pair with d constant, the second where it vibrates.
 INFORMATIVE = {False: (0.1, 100.0), True: (0.01, 3000.0)}
 STIFFNESS_LIKE = ("contact.stiffnessScale", "contact.sigma", "d", "E", "load")
+LARGE = 0.2  # a misfit over the force that no scatter of a mean explains
 MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
 
 
@@ -53,6 +54,12 @@ def _misfits(experiment: Experiment, result: Fit) -> list[str]:
                 f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / scatter:.3g} times the "
                 f"scatter of neighbouring samples, {scatter:.2g} N. "
                 f"The intervals count {result.correlated:.3g} samples as one"
+            )
+    elif result.degrees > 0:
+        size = float(np.sqrt(np.mean(experiment.force**2)))
+        if rms > LARGE * size:
+            found.append(
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.0%} of the measured one"
             )
     return found
 

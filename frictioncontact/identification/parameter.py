@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from frictioncontact.columns import accepted
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
 
 # The ranges where nothing is given. Of other parameters starts are sought within a factor of 3 of the usual
@@ -76,8 +76,11 @@ def parameter(
     search is the range that it stays in; of a phase it says only where starts are sought. UserError where the
     name is none that can be fitted, or a value is out of bounds.
     """
-    if name not in accepted(fmu):
-        raise UserError(f"{name} can't be fitted; these can: {', '.join(accepted(fmu))}")
+    names = accepted(fmu)
+    if name not in names:
+        raise UserError(
+            f"{name} can't be fitted{did_you_mean(str(name), names) or ';'} these can: {', '.join(names)}"
+        )
     variable = fmu.variables[name]
     low = -LARGEST if variable.min is None else float(variable.min)
     high = LARGEST if variable.max is None else float(variable.max)

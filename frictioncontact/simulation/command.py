@@ -6,14 +6,13 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from frictioncontact import resources
 from frictioncontact.columns import MEASURED, columns_of
-from frictioncontact.command import add_fmu, command_line, finish, say_written
+from frictioncontact.command import add_fmu, add_set, command_line, finish, say_written
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, FrictionFmu, opened
 from frictioncontact.simulation.run import simulate
-from frictioncontact.values import Variables, csv_rows, number
+from frictioncontact.values import csv_rows, number
 
 DESCRIPTION = """\
 Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file. All values
@@ -25,7 +24,7 @@ are in SI units, as in the FMU; what is not set has the FMU's start value.
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact simulate", DESCRIPTION)
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="start value")
+    add_set(parser, "of the scene")
     parser.add_argument("--stop", type=float, required=True, help="end, s")
     parser.add_argument("--step", type=float, required=True, help="time between two rows, s")
     parser.add_argument(
@@ -42,16 +41,14 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def run(options: argparse.Namespace) -> None:
-    path = options.fmu or resources.fmu()
-    variables = Variables(opened(path).description)
-    start = dict(variables.assigned(text, "--set") for text in options.set)
+    fmu = opened(options.fmu)
     table = simulate(
-        start,
+        fmu.known.assigned(options.set),
         stop=options.stop,
         step=options.step,
-        inputs=read_inputs(options.inputs, opened(path)) if options.inputs else None,
+        inputs=read_inputs(options.inputs, fmu) if options.inputs else None,
         outputs=options.outputs,
-        fmu=path,
+        fmu=options.fmu,
     )
     if options.output:
         write_whole(options.output, table.to_csv(index=False))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from frictioncontact.errors import UserError
-from frictioncontact.fmu import INPUTS
+from frictioncontact.errors import UserError, did_you_mean
+from frictioncontact.values import numbers_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,14 +54,15 @@ class Samples:
         return values, rates
 
 
-def samples(table: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[str] = INPUTS) -> Samples:
+def samples(table: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[str]) -> Samples:
     """The samples of a table with a column time [s] and any of the named inputs; UserError if it is wrong."""
     if not isinstance(table, Mapping) and not hasattr(table, "columns"):
         raise UserError("inputs: must be a mapping of names to samples, or a pandas frame")
     columns = {str(name): table[name] for name in table}
     for name in columns:
         if name not in ("time", *names):
-            raise UserError(f"inputs: {name} is no input of the FMU; these are: {', '.join(names)}")
+            hint = did_you_mean(name, names) or ";"
+            raise UserError(f"inputs: {name} is no input of the FMU{hint} these are: {', '.join(names)}")
     if "time" not in columns or len(columns) < 2:
         raise UserError(f"inputs: needs a column time [s] and at least one of {', '.join(names)}")
     arrays = {name: _numbers(name, column) for name, column in columns.items()}
@@ -79,22 +80,10 @@ def samples(table: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[s
 
 
 def _numbers(name: str, column: npt.ArrayLike) -> np.ndarray:
-    try:
-        array = np.ma.asarray(column)
-        if array.dtype.kind in "bmM":
-            kind = "truth values" if array.dtype.kind == "b" else "dates"
-            raise UserError(f"inputs: {name} holds {kind}; it must be a row of numbers")
-        array = array.astype(float).filled(np.nan)
-    except (TypeError, ValueError):
-        raise UserError(f"inputs: {name} is not a row of numbers") from None
+    array = numbers_of(column, f"inputs: {name}")
     if array.ndim != 1:
         raise UserError(f"inputs: {name} is not a row of numbers")
-    if not np.isfinite(array).all():
-        k = int(np.argmin(np.isfinite(array)))
-        raise UserError(f"inputs: {name} = {array[k]} at sample {k} is not a finite number")
     if (abs(array) > LARGEST).any():
         k = int(np.argmax(abs(array)))
-        raise UserError(
-            f"inputs: {name} = {array[k]:g} at sample {k}: must be from {-LARGEST:g} to {LARGEST:g}"
-        )
+        raise UserError(f"inputs: {name}, row {k}: {array[k]:g} must be from {-LARGEST:g} to {LARGEST:g}")
     return array

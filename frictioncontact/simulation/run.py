@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
-from frictioncontact.fmu import OUTPUTS, FrictionFmu, Value, opened, run
+from frictioncontact.fmu import OUTPUTS, Value, opened, run
 from frictioncontact.simulation.inputs import Samples, samples
-from frictioncontact.values import Variables, pairs, real
+from frictioncontact.values import real
 
 if TYPE_CHECKING:
     Table = Mapping[str, npt.ArrayLike] | pd.DataFrame
@@ -31,29 +32,40 @@ def simulate(
     outputs: Sequence[str] = OUTPUTS,
     fmu: str | Path | None = None,
 ) -> pd.DataFrame:
-    """A scene from 0 to stop; a row each step, with the column time [s] and one for each output.
+    """A scene from 0 to stop; a row each step.
 
-    start    name of an input or parameter -> its value at the start, in the units of the model description;
-             of an enumeration the name of an item or its number
-    stop     s; the last step is shorter where stop is no multiple of step
-    step     s between two rows; F_t_mean is the mean over the time since the row before
-    inputs   a table (mapping or frame) with time [s] and any of V, d, E, load: linear between the samples,
-             held before the first and after the last; two samples at one time are a jump. The result does not
-             depend on how samples and steps lie to each other
-    outputs  names of variables to be read
-    fmu      another .fmu file of this model
+    start     name of an input or parameter -> its value at the start, SI units; of an enumeration an item or
+              its number
+    stop      s; the last step is shorter if stop is not a multiple of step
+    step      s between two rows; F_t_mean is the mean over the time since the row before
+    inputs    a table (mapping or frame) with time [s] and any inputs: linear between the samples, held before
+              the first and after the last; two samples at one time are a jump. The result does not depend
+              on how samples and steps lie to each other
+    outputs   names of the variables to read
+    fmu       another .fmu file of this model
+    returns   a frame of ceil(stop / step) + 1 rows: the column time [s], and one for each output, SI units
+    raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses the scene
+    warns     FrictionWarning: of the FMU's log; of a setting that has no effect; of an unlikely magnitude
 
-    UserError names what is wrong with a name or value; FrictionError is the FMU's own refusal.
+        import frictioncontact as fc
+        scene = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
+        print(fc.simulate(scene, stop=1e-3, step=5e-5, outputs=["F_t_mean", "W_f"]))
     """
     loaded = opened(fmu)
     outputs = _names(outputs)
-    values = checked(loaded, pairs(start, "start"), outputs)
-    ends = _ends(stop, step)
-    moving = samples(inputs) if inputs is not None else Samples(np.zeros(1), {})
+    for name in outputs:
+        loaded.known.readable(name, "outputs")
+    values = loaded.known.values(start, "start")
+    ends = _ends(real(stop, "stop"), real(step, "step"))
+    moving = samples(inputs, loaded.known.inputs) if inputs is not None else Samples(np.zeros(1), {})
     times = moving.steps(ends)
     begins = np.concatenate([[0.0], times[:-1]])
     lengths = times - begins
-    rows = run(loaded, values, lengths, *moving.over(begins, times), outputs=outputs)
+    log: list[str] = []
+    rows = run(loaded, values, lengths, *moving.over(begins, times), outputs=outputs, warnings=log)
+    if "F_t" not in outputs:  # the sample that an undersampled vibration makes of it is not read
+        log = [text for text in log if "F_t is then one sample" not in text]
+    warn_of(loaded.known, values | moving.values, log)
     if "F_t_mean" in outputs:
         k = list(outputs).index("F_t_mean")
         impulse = np.concatenate([[0.0], np.cumsum(rows[1:, k] * lengths)])
@@ -61,14 +73,6 @@ def simulate(
         rows = rows[kept]
         rows[1:, k] = np.diff(impulse[kept]) / np.diff(ends, prepend=0.0)
     return pd.DataFrame({"time": np.concatenate([[0.0], ends]), **dict(zip(outputs, rows.T, strict=True))})
-
-
-def checked(fmu: FrictionFmu, start: Mapping[str, Value], outputs: Sequence[str]) -> dict[str, Value]:
-    """The start values; UserError where a name or a value is wrong, or an output can't be read."""
-    variables = Variables(fmu.description)
-    for name in outputs:
-        variables.readable(name, "outputs")
-    return {name: variables.given(str(name), value, "start") for name, value in start.items()}
 
 
 def _names(outputs: object) -> list[str]:
@@ -80,7 +84,7 @@ def _names(outputs: object) -> list[str]:
 def _ends(stop: float, step: float) -> np.ndarray:
     """Times [s] of the rows after the first."""
     for name, value in (("stop", stop), ("step", step)):
-        if not 0.0 < real(value, name) < math.inf:
+        if not 0.0 < value < math.inf:
             raise UserError(f"{name} = {value}: must be a positive number of seconds")
     if stop > MOST * step:
         raise UserError(f"step = {step:g} s: stop / step must be at most {MOST}")

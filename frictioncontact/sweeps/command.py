@@ -6,16 +6,14 @@ import argparse
 import signal
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from frictioncontact import resources
 from frictioncontact.batch.many import processors
 from frictioncontact.command import command_line, finish
-from frictioncontact.errors import UserError
 from frictioncontact.sweeps.group import RESULTS
 from frictioncontact.sweeps.run import sweep
 from frictioncontact.sweeps.workers import GOES_ON
-from frictioncontact.values import assignment
+from frictioncontact.values import assignments
 
 DESCRIPTION = """\
 Runs the FMU over a settled period of the vibration in many scenarios and writes one row for each to
@@ -23,7 +21,7 @@ results.parquet, a folder of files that pandas.read_parquet reads as one.
 
 Scenarios: every combination of the --vary values (a grid); --random N rows drawn from the --vary ranges;
 or the rows of a --csv file whose header names variables. Values are in SI units; those of enumerations
-are names.
+items or their numbers.
 
   %(prog)s --vary V=0.005:0.5:20:log --vary vibration.V_1=0:1.5:16
   %(prog)s --random 10000 --seed 1 --vary V=1e-3:1:log --vary d=10e-6:18e-6 --set vibration.V_1=1.44
@@ -64,21 +62,10 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return options
 
 
-def named(texts: Sequence[str], option: str) -> dict[str, str]:
-    """Of several "NAME=VALUE" of an option."""
-    values: dict[str, str] = {}
-    for text in texts:
-        name, value = assignment(text, option)
-        if name in values:
-            raise UserError(f"{option} {name}: is given twice")
-        values[name] = value
-    return values
-
-
-def wanted(options: argparse.Namespace) -> dict[str, Any]:
+def wanted(options: argparse.Namespace) -> dict[str, object]:
     """The arguments of `sweep`."""
     given = {name: value for name, value in vars(options).items() if name != "quick"}
-    return given | {name: named(given[name], f"--{name}") for name in ("vary", "set")}
+    return given | {name: assignments(given[name], f"--{name}") for name in ("vary", "set")}
 
 
 def run(options: argparse.Namespace) -> None:

@@ -15,9 +15,6 @@ import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from frictioncontact.errors import UserError
 from frictioncontact.files import whole_file, write_whole
 from frictioncontact.sweeps.group import Group, Part
@@ -96,6 +93,9 @@ def _name(group: Group) -> str:
 
 def _rows(file: Path) -> int:
     """None of what is missing or cut short."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     try:
         return pq.read_metadata(file).num_rows
     except (OSError, pa.ArrowException):

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.batch.prepare import Output
 from frictioncontact.batch.run import Progress
+from frictioncontact.errors import quiet
 from frictioncontact.sweeps.scenarios import Rows
 from frictioncontact.values import Value
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 Group = tuple[int, int]  # first scenario, and the one after the last
 
@@ -53,10 +56,13 @@ class Part:
 
 def run_group(job: Job, group: Group, progress: bool | Progress = False) -> Part:
     """Runs the scenarios on one thread. Whatever progress raises ends them."""
+    import pyarrow as pa
+
     values: dict[str, npt.ArrayLike] = {**job.rows(*group), **job.fixed}
-    results = simulate_many(
-        values, OUTPUTS, fmu=job.fmu, samples=job.samples, errors="keep", threads=1, progress=progress
-    )
+    with quiet():
+        results = simulate_many(
+            values, OUTPUTS, fmu=job.fmu, samples=job.samples, errors="keep", threads=1, progress=progress
+        )
     reasons = pa.array(results.pop("reason"), pa.string())
     results["reduction"] = 100.0 * (1.0 - results["F_mean"] / results["reduction"])
     scenarios = {"scenario": np.arange(*group)}
@@ -68,6 +74,9 @@ def run_group(job: Job, group: Group, progress: bool | Progress = False) -> Part
 
 def _parquet(table: pa.Table) -> pa.Buffer:
     """Dictionaries serve names alone: numbers seldom come twice."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     sink = pa.BufferOutputStream()
     names = [field.name for field in table.schema if pa.types.is_string(field.type)]
     pq.write_table(table, sink, use_dictionary=names)

@@ -7,6 +7,7 @@ import json
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from importlib.util import find_spec
 from numbers import Integral
 from pathlib import Path
 
@@ -14,12 +15,13 @@ from frictioncontact import resources
 from frictioncontact.batch.many import processors, shown_progress
 from frictioncontact.batch.prepare import MOST_SAMPLES, check_whole
 from frictioncontact.batch.unpacked import description_and_library
+from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.sweeps import workers as at
 from frictioncontact.sweeps.folder import Folder
 from frictioncontact.sweeps.group import Group, Job
-from frictioncontact.sweeps.scenarios import Rows, Vary, drawn, from_csv, grid
-from frictioncontact.values import Value, Variables, is_bool, pairs, path_of
+from frictioncontact.sweeps.scenarios import Scenarios, Vary, drawn, from_csv, grid
+from frictioncontact.values import Value, Variables, pairs, path_of
 
 MOST_WORKERS = 1000
 MOST_GROUP = 1_000_000  # scenarios; a worker holds its group's rows, some 300 bytes each
@@ -76,12 +78,13 @@ def sweep(
 ) -> Swept:
     """Runs the FMU over a period of the vibration in many scenarios; one row each in OUTPUT/results.parquet.
 
-    They start settled, unless initialState is among their values.
+    They start settled, unless initialState is among their values. Needs the extra frictioncontact[sweep].
 
     output    folder of the results; that of an unfinished sweep with the same arguments is gone on with
     fmu       another .fmu file of this model with a binary for this platform
     vary      name of an input or parameter -> its values: "a,b,c", a sequence, or "low:high:count[:log]" of
-              a grid of all combinations, "low:high[:log]" of a random sweep; in SI units, items by name
+              a grid of all combinations, "low:high[:log]" of a random sweep; SI units, of an enumeration
+              items or their numbers
     random    this many scenarios, drawn from `vary`: row k depends on seed and k alone
     csv       a file whose header names variables and whose rows are scenarios, in place of `vary`
     set       name -> value, the same in all scenarios
@@ -91,9 +94,17 @@ def sweep(
     samples   of the period
     fresh     discard what the folder holds of a sweep
     progress  a bar on a terminal
+    returns   where the results are, and what they took
+    raises    UserError: an argument is wrong, before anything runs; the output can't be written
+    warns     FrictionWarning: of a setting that has no effect in any scenario; of an unlikely magnitude
 
-    UserError where an argument is wrong, before anything runs, and where the output can't be written.
+        import pandas as pd
+        import frictioncontact as fc
+        swept = fc.sweep(output="sweep", vary={"V": "0.01:1:20:log"}, set={"vibration.V_1": 1.44})
+        print(pd.read_parquet(swept.results)[["V", "F_mean", "reduction"]])
     """
+    if find_spec("pyarrow") is None:
+        raise UserError("sweeps need pyarrow: pip install 'frictioncontact[sweep]'")
     fmu = resources.fmu() if fmu is None else path_of(fmu, "fmu")
     output = path_of(output, "output")
     csv = None if csv is None else path_of(csv, "csv")
@@ -102,12 +113,13 @@ def sweep(
     content = _content(f"--fmu {fmu}", fmu)
     variables = Variables(description_and_library(content, f"--fmu {fmu}")[0])
     vary = {name: _listed(name, values) for name, values in pairs(vary, "vary").items()}
-    count, rows = _scenarios(variables, vary, random, seed, csv)
-    varied, fixed = rows(0, 1), {}
-    for name, value in pairs(set, "set").items():
-        if name in varied:
-            raise UserError(f"--set {name}: is given twice")
-        fixed[name] = variables.value(name, str(value), f"--set {name}")
+    scenarios = _scenarios(variables, vary, random, seed, csv)
+    count, rows = scenarios.count, scenarios.rows
+    texts = {name: str(value) for name, value in pairs(set, "set").items()}
+    fixed = {name: variables.text(name, text, f"--set {name}") for name, text in texts.items()}
+    for name in fixed.keys() & scenarios.seen:
+        raise UserError(f"--set {name}: is given twice")
+    warn_of(variables, {**scenarios.seen, **fixed}, is_over_period=True)
     if group is None:
         group = min(GROUP, -(-count // GROUPS))
     check_whole(group, MOST_GROUP, "--group")
@@ -160,8 +172,8 @@ def _listed(name: str, values: str | Iterable[Value]) -> str | list[Value]:
 
 def _scenarios(
     variables: Variables, vary: Vary, random: int | None, seed: int, csv: Path | None
-) -> tuple[int, Rows]:
-    if not isinstance(seed, Integral) or is_bool(seed) or seed < 0:
+) -> Scenarios:
+    if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
         raise UserError(f"--seed {seed}: must be a whole number from 0")
     if csv is not None:
         if vary or random is not None:

@@ -15,14 +15,23 @@ from pathlib import Path
 import numpy as np
 
 from frictioncontact.batch.prepare import check_whole
-from frictioncontact.errors import UserError
-from frictioncontact.values import Value, Variables, csv_rows, items_of, number, shown
+from frictioncontact.errors import UserError, shown
+from frictioncontact.values import Value, Variables, csv_rows, number
 
 MOST_SCENARIOS = 1_000_000_000
 MOST_VALUES = 10_000_000  # of one variable of a grid, which are held
 
 Rows = Callable[[int, int], dict[str, np.ndarray]]  # the columns of scenarios first to stop - 1
 Vary = Mapping[str, str | Sequence[Value]]
+
+
+@dataclass(frozen=True)
+class Scenarios:
+    """How many rows, what makes them, and the values that they take: all, or the ends of a range."""
+
+    count: int
+    rows: Rows
+    seen: Mapping[str, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -44,7 +53,7 @@ class Range:
         return np.clip(values, self.low, self.high)
 
 
-def grid(variables: Variables, vary: Vary) -> tuple[int, Rows]:
+def grid(variables: Variables, vary: Vary) -> Scenarios:
     """Every combination of the values; the last variable changes fastest."""
     axes = {}
     for name, given in vary.items():
@@ -53,7 +62,7 @@ def grid(variables: Variables, vary: Vary) -> tuple[int, Rows]:
     count = math.prod(map(len, axes.values()))
     if count > MOST_SCENARIOS:
         raise UserError(f"the grid has {count} scenarios; the most that a sweep runs is {MOST_SCENARIOS}")
-    return count, partial(_grid_rows, axes)
+    return Scenarios(count, partial(_grid_rows, axes), axes)
 
 
 def _grid_rows(axes: Mapping[str, np.ndarray], first: int, stop: int) -> dict[str, np.ndarray]:
@@ -61,11 +70,12 @@ def _grid_rows(axes: Mapping[str, np.ndarray], first: int, stop: int) -> dict[st
     return {name: axis[place] for (name, axis), place in zip(axes.items(), places, strict=True)}
 
 
-def drawn(variables: Variables, vary: Vary, count: int, seed: int) -> tuple[int, Rows]:
+def drawn(variables: Variables, vary: Vary, count: int, seed: int) -> Scenarios:
     """Each value drawn by itself."""
     check_whole(count, MOST_SCENARIOS, "--random")
     values = {name: _values(variables, name, given, "low:high")[0] for name, given in vary.items()}
-    return count, partial(_drawn_rows, values, seed)
+    ends = {name: each.spaced(2) if isinstance(each, Range) else each for name, each in values.items()}
+    return Scenarios(count, partial(_drawn_rows, values, seed), ends)
 
 
 def _drawn_rows(
@@ -80,7 +90,7 @@ def _drawn_rows(
     return rows
 
 
-def from_csv(variables: Variables, path: Path) -> tuple[int, Rows]:
+def from_csv(variables: Variables, path: Path) -> Scenarios:
     """A header with names of variables, then a scenario a row. Errors name row, from 1, and column."""
     rows = csv_rows(path)
     _, names = next(rows, (1, []))
@@ -95,11 +105,15 @@ def from_csv(variables: Variables, path: Path) -> tuple[int, Rows]:
         if len(cells) != len(names):
             raise UserError(f"{path}: row {row}: has {len(cells)} cells where the header has {len(names)}")
         where = f"{path}: row {row}, column"
-        table.append([variables.value(n, cell, f"{where} {n}") for n, cell in zip(names, cells, strict=True)])
+        table.append([variables.text(n, cell, f"{where} {n}") for n, cell in zip(names, cells, strict=True)])
     if not table:
         raise UserError(f"{path}: has no row below the header")
     columns = dict(zip(names, map(np.array, zip(*table, strict=True)), strict=True))
-    return len(table), lambda first, stop: {name: column[first:stop] for name, column in columns.items()}
+    return Scenarios(len(table), partial(_csv_rows, columns), columns)
+
+
+def _csv_rows(columns: Mapping[str, np.ndarray], first: int, stop: int) -> dict[str, np.ndarray]:
+    return {name: column[first:stop] for name, column in columns.items()}
 
 
 def _values(
@@ -107,15 +121,17 @@ def _values(
 ) -> tuple[np.ndarray | Range, str]:
     """Of "a,b,c", a sequence of values, or a range "low:high[:count][:log]", whose count it gives too."""
     where = f"--vary {name}"
-    items = items_of(variables.find(name, where))
+    items = variables.items[variables.find(name, where).name]
     parts = given.split(":") if isinstance(given, str) else []
     if len(parts) < 2:
-        texts = given.split(",") if isinstance(given, str) else map(str, given)
-        listed = np.array([variables.value(name, text.strip(), where) for text in texts])
+        cells = given.split(",") if isinstance(given, str) else list(given)
+        if all(isinstance(cell, str) for cell in cells):
+            cells = [variables.text(name, cell.strip(), where) for cell in cells]
+        listed = np.array([variables.value(name, cell, where) for cell in cells])
         if not len(listed):
             raise UserError(f"{where}: has no values")
         return listed, ""
-    if items is not None:
+    if items:
         raise UserError(f"{where}: {shown(given)} is a range, but its values are names: {','.join(items)}")
     logarithmic = parts[-1] == "log"
     if len(parts) - logarithmic != form.count(":") + 1:

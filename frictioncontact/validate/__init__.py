@@ -1,1 +1,1 @@
-"""Holds every law of friction against measurements that others published."""
+"""Holds the measured contacts against their measurements."""

@@ -1,176 +1,45 @@
-"""Every law of friction against measurements that others published."""
+"""Holds the measured contacts against the means that they were fitted to."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
 
-from rich.table import Table
+import numpy as np
+import pandas as pd
 
-from frictioncontact import resources
-from frictioncontact.command import add_fmu, add_output, can_draw, command_line, finish, table_console
-from frictioncontact.fmu import FrictionFmu
-from frictioncontact.validate import elements, longitudinal, measurements, normal, record
+from frictioncontact.batch import simulate_many
+from frictioncontact.command import add_fmu, command_line, finish
+from frictioncontact.errors import quiet
+from frictioncontact.fmu import opened
+from frictioncontact.identification.data import read
+from frictioncontact.measured.contacts import contacts
 
 DESCRIPTION = """\
-Holds every law of friction against measurements that others published: sliding under longitudinal
-vibration (dry, oil), a record of cycles and of an unloading, sliding under normal vibration. Says what
-was fixed, what was fitted on which rows, and what was predicted on the others, and draws a picture of each.
-What it means: docs/validation.md."""
+Holds the measured contacts against the means that they were fitted to: measured, by the FMU, the difference.
+The documentation's page on validation holds every law against every measurement."""
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact validate", DESCRIPTION)
+    parser.add_argument(
+        "--quick", action="store_true", help="accepted like by all commands; nothing here is slow"
+    )
     add_fmu(parser)
-    add_output(parser, resources.output("validation"))
-    parser.add_argument("--quick", action="store_true", help="without the record, which takes some 10 s")
     return parser.parse_args(argv)
 
 
-def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[longitudinal.Fit]) -> Table:
-    table = Table(title=f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]")
-    for heading in ("", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    table.add_row("measured", "", *(f"{force:.3f}" for force in data.vibrated), "", "")
-    for fit in fits:
-        stiffness = "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
-        if fit.law in ("Dahl", "LuGre"):
-            stiffness = "any"
-        table.add_row(
-            fit.law,
-            stiffness,
-            *(f"{force:.4f}" for force in fit.model),
-            f"{longitudinal.rms(fit.model, data.vibrated):.3f}",
-            f"{longitudinal.rms(fit.predicted, data.vibrated):.3f}",
-        )
-    return table
-
-
-def scatter_line(data: measurements.Record) -> str:
-    from_mean, from_last, work = record.scatter(data)
-    return (
-        f"A measured cycle differs from the mean one by {from_mean:.1%} (rms over the sliding friction), "
-        f"from the one before it over sqrt 2 by {from_last:.1%}; the work of cycles by {work:.1%}."
-    )
-
-
-def cycles_table(fits: Sequence[record.RecordFit]) -> Table:
-    table = Table(title="The cycles: fitted on two, 47 predicted. Misfit over the measured friction")
-    for heading in ("", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    for fit in fits:
-        table.add_row(
-            fit.law,
-            "" if fit.stiffness is None else f"{1e-3 * fit.stiffness:.2f}",
-            f"{fit.mu:.3f}",
-            f"{fit.rms_fitted:.1%}",
-            f"{fit.rms_predicted:.1%}",
-            f"{fit.work:.3f}",
-        )
-    return table
-
-
-def elements_table(fits: Sequence[elements.ElementFit]) -> Table:
-    table = Table(title="What would mend ElasticPlastic, fitted to the same two cycles")
-    for heading in ("", "rms fitted", "rms predicted"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    for fit in fits:
-        name = f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name
-        table.add_row(name, f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}")
-    return table
-
-
-def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
-    part = data.between(*record.UNLOADING)
-    dahl, elastic_plastic = (
-        next(fit for fit in fits if fit.law == law) for law in ("Dahl", "ElasticPlastic")
-    )
-    table = Table(
-        title="The unloading, predicted by what the two cycles gave: rms over the "
-        f"{record.friction_before_unloading(data):.2f} N before it, "
-        f"and |F| / F_n while F_n > {record.CARRYING} N"
-    )
-    for heading in ("", "rms", "least F / F_n", "largest"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=not heading)
-    for name, forces in (
-        ("measured", part.friction),
-        ("ElasticPlastic, limit mu F_n", elastic_plastic.unloading),
-        ("mu F_n alone, mu of ElasticPlastic", -elastic_plastic.mu * part.load),
-        ("Dahl, limit mu F_n, as the FMU has it", dahl.unloading),
-        ("Dahl, limit mu F_n, Eq. 2 alone", record.without_bound(data, dahl)),
-        ("ElasticPlastic, constant limit", elastic_plastic.constant_limit),
-        ("Dahl, constant limit", dahl.constant_limit),
-    ):
-        rms = "" if forces is part.friction else f"{record.misfit_of_unloading(data, forces):.1%}"
-        table.add_row(name, rms, *(f"{ratio:.3f}" for ratio in record.over_the_load(data, forces)))
-    return table
-
-
-def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.NormalFit]) -> Table:
-    table = Table(
-        title=f"Normal vibration: fitted to {data.reduction[0]:.0%} at 20.3 mm/s; measured at 87 mm/s: "
-        f"{data.reduction[1]:.0%}. A constant limit gives 0"
-    )
-    for heading in (
-        "limit mu F_n, law",
-        "swing lambda a_d / R_q",
-        "mu load / k [um]",
-        "predicted at 40.6 mm/s",
-        "at 87 mm/s",
-    ):
-        table.add_column(heading, justify="left" if "law" in heading else "right")
-    for fit in fits:
-        reached = fit.yielding is not None and fit.predicted is not None
-        table.add_row(
-            fit.law,
-            f"{fit.swing:g}",
-            f"{1e6 * fit.yielding:.3g}" if reached else "none reaches it",
-            f"{fit.between:.1%}" if reached else "",
-            f"{fit.predicted:.1%}" if reached else "",
-        )
-    return table
-
-
 def run(options: argparse.Namespace) -> None:
-    console = table_console()
-    path = options.fmu or resources.fmu()
-    draws = can_draw()
-
-    sliding = {}
-    for name in ("dry", "oil"):
-        data = measurements.sliding(name)
-        fits = [longitudinal.fit(path, data, law) for law in longitudinal.LAWS]
-        fits += [longitudinal.constant_ratio(data), longitudinal.logarithm(data)]
-        sliding[name] = (data, fits)
-        console.print(longitudinal_table(name, data, fits))
-
-    vibration = measurements.normal_vibration()
-    normal_fits = [
-        normal.fit(path, vibration, law, float(swing)) for law in normal.LAWS for swing in normal.SWINGS
-    ]
-    console.print(normal_table(vibration, normal_fits))
-
-    whole, record_fits = measurements.record(), []
-    if not options.quick:
-        with FrictionFmu(path) as fmu:
-            record_fits = [record.fit(fmu, whole, law) for law in record.LAWS]
-        console.print(scatter_line(whole), cycles_table(record_fits), sep="\n")
-        console.print(elements_table(elements.fits(whole)), unloading_table(whole, record_fits), sep="\n")
-
-    if draws:
-        from frictioncontact import style
-        from frictioncontact.validate import figures
-
-        drawn = {
-            "validation-longitudinal": figures.longitudinal(sliding),
-            "validation-normal": figures.normal(path, vibration, normal_fits),
-        }
-        if record_fits:
-            drawn["validation-cycles"] = figures.cycles(whole, record_fits)
-            drawn["validation-unloading"] = figures.unloading(whole, record_fits)
-        for name, figure in drawn.items():
-            style.save(figure, options.output / f"{name}.png")
-        print(f"Written: {len(drawn)} pictures in {options.output}")
+    for contact in filter(lambda contact: contact.data, contacts().values()):
+        rows = read(contact.data, opened(options.fmu), {})
+        scenes = pd.DataFrame([{**contact.start, **conditions} for conditions in rows.conditions])
+        with quiet():
+            found = simulate_many(scenes, fmu=options.fmu)["F_t_mean"].to_numpy()
+        miss = found - rows.force
+        table = scenes[list(rows.names)].assign(measured=rows.force, FMU=found, difference=miss)
+        print(f"{contact.name}: {contact.title}. SI units, mean friction [N]")
+        print(table.to_string(index=False, float_format="{:.5g}".format))
+        print(f"misfit: {np.sqrt(np.mean(miss**2)):.3f} N (rms)")
 
 
 def main(argv: Sequence[str] | None = None) -> None:

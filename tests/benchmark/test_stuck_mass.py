@@ -1,4 +1,4 @@
-"""A mass and a stuck contact that exchange values: the edges of stability that docs/using.md promises.
+"""A mass and a stuck contact that exchange values: the edges of stability that docs/tools.md promises.
 
 They are measured with the FMU in a master written here, and held against eigenvalues where it is one's turn.
 """
@@ -29,8 +29,8 @@ from workshop.project import ROOT
 M, SIGMA = 1.0, 1e6
 TIME = math.sqrt(M / SIGMA)
 COUNT = 600  # steps
-GUIDE = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
-TITLES = {  # of the rows in docs/using.md
+GUIDE = (ROOT / "docs" / "tools.md").read_text(encoding="utf-8")
+TITLES = {  # of the rows in docs/tools.md
     JACOBI: "Jacobi, held values",
     REREAD: "Jacobi that reads",
     LINEAR: "Jacobi with input and output derivatives",
@@ -144,7 +144,7 @@ def test_damping_outside_sets_the_held_step(fmu: FrictionFmu) -> None:
 
 
 def test_damping_swings_the_force_of_a_contact_that_slides_under_vibration(fmu: FrictionFmu) -> None:
-    """As docs/using.md says; from F_t = sigma delta + sigma_1 delta' of the same motion of the bristle."""
+    """As docs/tools.md says; from F_t = sigma delta + sigma_1 delta' of the same motion of the bristle."""
     start = {"V": 0.5, "vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.54e6}
     ranges, heats, means = [], [], []
     for sigma_1 in (0.0, 500.0):
@@ -166,7 +166,7 @@ def test_damping_swings_the_force_of_a_contact_that_slides_under_vibration(fmu: 
 
 
 def run(capsys: pytest.CaptureFixture[str], master: str, *words: str) -> str:
-    scene = ["contact.model=Constant", "contact.sigma=1e6", *words]
+    scene = [f"--set={word}" for word in ("contact.model=Constant", "contact.sigma=1e6", *words)]
     advise.main(["--mass", "1", "--step", "1e-4", "--master", master, *scene])
     return capsys.readouterr().out
 
@@ -177,8 +177,20 @@ def test_the_advice_can_be_pasted(fmu: FrictionFmu, capsys: pytest.CaptureFixtur
     assert run(capsys, GAUSS_SEIDEL, "friction.sigma_1=5").endswith("friction.sigma_1 0\n")
 
 
+def test_the_damping_and_static_friction(fmu: FrictionFmu, capsys: pytest.CaptureFixture[str]) -> None:
+    """At break-away F_t is the static friction and sigma_1 V, as the advice says."""
+    assert "At break-away F_t exceeds the static friction by sigma_1 V, 111.123 N for" in run(capsys, JACOBI)
+    sticking = {
+        "friction.model": "ElasticPlastic", "friction.staticRatio": 1.5, "friction.sigma_1": 111.123,
+        "contact.model": "Constant", "contact.sigma": 1e6, "V": 0.1,
+    }  # fmt: skip
+    with fmu.session(sticking) as session:
+        session.step(0.999 * 1.5 * 55.0 / 1e6 / 0.1)
+        assert session.get("F_t") == pytest.approx(0.999 * 1.5 * 55.0 + 111.123 * 0.1, rel=1e-6)
+
+
 def test_a_step_that_nothing_makes_stable_is_said() -> None:
-    assert "no friction.sigma_1 does" in advice(M, SIGMA, JACOBI, 0.6 * TIME, {})
+    assert "no friction.sigma_1 does" in advice(M, SIGMA, JACOBI, 0.6 * TIME)[0]
 
 
 @pytest.mark.parametrize(
@@ -190,7 +202,7 @@ def test_a_step_that_nothing_makes_stable_is_said() -> None:
         (["--mass", "1"], "--mass needs --step"),
         (["--mass", "1", "--step", "1e-4", "--inputs", "drive.csv"], "--mass does not take --inputs"),
         (["--mass", "1", "--step", "1e-4", "--linear"], "--mass does not take --linear"),
-        (["--mass", "1", "--step", "1e-4", "friction.model=Coulomb"], "Coulomb never sticks"),
+        (["--mass", "1", "--step", "1e-4", "--set", "friction.model=Coulomb"], "Coulomb never sticks"),
     ],
 )
 def test_wrong_options_are_one_line(words: list[str], message: str) -> None:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from workshop.bench import work_precision
 from workshop.bench.driver import Bench
 from workshop.bench.grade import Point
-from workshop.bench.periodic_means import SCENES, closed_form, harmonic_balance
-from workshop.bench.work_precision import cheapest, cost_at, step_size_points
-from workshop.reference import solution as reference
-from workshop.reference.start_values import scene_of
+from workshop.bench.work_precision import cheapest, cost_at, ratios, renew_tables, step_size_points
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:
@@ -35,20 +34,38 @@ def test_failures_do_not_count() -> None:
     assert math.isnan(cost_at([made(1e-9, 1.0, "refused")], 1e-6))
 
 
-@pytest.mark.parametrize("title", SCENES)
-def test_peers_of_the_periodic_mean_solve_the_same_scene(title: str) -> None:
-    scene = scene_of(SCENES[title])
-    right = float(reference.periodic_mean(scene))
-    still = float(reference.sigma(replace(scene, a_d=0.0), 0))
-    assert harmonic_balance(scene, still, 2048) == pytest.approx(right, abs=1e-3)
-    if scene.contact.model == "Constant":
-        assert closed_form(scene, still, 512) == pytest.approx(right, abs=1e-11)
+def test_ratios_are_over_the_default_at_the_same_error() -> None:
+    def line(method: str, cpu: float) -> list[Point]:
+        return [replace(made(10.0**-k, cpu * k), method=method) for k in (3, 12)]
+
+    calls = replace(made(math.nan, 1.5), method="calls")
+    rows = ratios([calls, *line("collocation", 1.0), *line("Radau 9", 3.0)])
+    assert [row["error"] for row in rows] == [1e-6, 1e-9]
+    assert [row["Radau 9"] for row in rows] == pytest.approx([3.0, 3.0])
+    assert rows[0]["calls"] == pytest.approx(1.5 / (1e-6 * rows[0]["collocation_us_per_period"]))  # type: ignore[operator]
 
 
-def test_the_table_of_ratios_leads_with_the_best_peer() -> None:
-    row = {"cvode": 5.0, "Radau IIA": 3.0, "rk4": math.nan}
-    assert cheapest(row, ["cvode", "Radau IIA", "rk4", "trapezoid"]) == ("3", "Radau IIA")
-    assert cheapest(row, ["rk4"]) == ("not reached", "")
+def test_the_cheapest_of_several_methods_is_shown() -> None:
+    row = {"cvode": 5.0, "Radau 9": 3.0, "rk4": math.nan}
+    assert cheapest(row, ["cvode", "Radau 9", "rk4", "trapezoid"]) == "3"
+    assert cheapest(row, ["rk4"]) == "not reached"
+
+
+def test_the_page_has_the_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    page = tmp_path / "numerics.md"
+    page.write_text(
+        "with errors of at most 1e-6 `F_C`:\n\n| old |\n| 1 |\n\nand errors of at most 1e-9 `F_C`:\n\n"
+    )
+    monkeypatch.setattr(work_precision, "PAGE", page)
+    rows = [{"error": error, "case": "held", "calls": 0.5, "Radau 9": 1e9 * error} for error in (1e-6, 1e-9)]
+    for _ in range(2):
+        renew_tables(rows, {"held": "Held"})
+        lines = [line for line in page.read_text().splitlines() if line.startswith("| ")]
+        assert [line.split(" | ")[:4] for line in lines if "Held" in line] == [
+            ["| Held", "50 %", "not reached", "1000"],
+            ["| Held", "50 %", "not reached", "1"],
+        ]
+        assert "old" not in page.read_text()
 
 
 def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> None:

@@ -12,7 +12,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
 from frictioncontact.sweeps import command as sweep
-from frictioncontact.validate import command as validate
+from workshop.validate import command as validate
 
 PLACES = 60
 

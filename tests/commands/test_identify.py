@@ -24,8 +24,6 @@ from frictioncontact.identification.fit import Fit, fit
 from frictioncontact.identification.parameter import parameter
 from frictioncontact.identification.series import Record
 from frictioncontact.parameters import STIFFNESS_PRINTED
-from frictioncontact.validate import longitudinal
-from frictioncontact.validate.measurements import sliding
 from workshop.project import ROOT
 from workshop.report.recovery import (
     LOOP_TRUTH,
@@ -37,6 +35,8 @@ from workshop.report.recovery import (
     measurements,
     true_forces,
 )
+from workshop.validate import longitudinal
+from workshop.validate.measurements import sliding
 
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 LOOPS = 100  # seeds
@@ -426,7 +426,7 @@ def test_a_measured_loop(fmu: FrictionFmu) -> None:
     [
         (["--fit", "F_C", "--fit", "vibration.V_1"], "vibration.V_1 is a column of the measurements"),
         (["--fit", "F_C", "--fit", "contact.eta", "--fit", "d"], "2 rows can't give 3 parameters"),
-        (["--fit", "sigma"], "sigma can't be fitted; these can: V, d, E, F_C"),
+        (["--fit", "sigma"], "sigma can't be fitted; did you mean contact.sigma. these"),
         (["--fit", "F_C=-3"], r"F_C = -3 N must be from 1e-12"),
         (["--fit", "F_C=3..2"], "the range is empty"),
         (

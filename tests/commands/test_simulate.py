@@ -91,10 +91,10 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
     [
         ({"start": {"v": 1.0}}, "start: v is no variable of the FMU; did you mean V?"),
         ({"start": {"F_t": 1.0}}, "start: F_t is an output of the FMU and can't be set"),
-        ({"start": {"V": "fast"}}, "start: V = 'fast' is not a finite number"),
-        ({"start": {"V": float("nan")}}, "start: V = 'nan' is not a finite number"),
+        ({"start": {"V": "fast"}}, "start: V: 'fast' is not a number"),
+        ({"start": {"V": float("nan")}}, "start: V: nan is not a finite number"),
         ({"start": {"friction.model": "Dal"}}, "start: friction.model: 'Dal' is not one of Dahl, "),
-        ({"start": {"friction.model": 9}}, "start: friction.model = 9 is not one of Dahl, "),
+        ({"start": {"friction.model": 9}}, "start: friction.model: 9 is not one of Dahl, "),
         ({"start": {"d": -1e-6}}, "d = -1e-06 m is below its minimum"),
         ({"outputs": ["F"]}, "outputs: F is no variable of the FMU; did you mean F_t?"),
         (
@@ -106,23 +106,23 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"inputs": {"V": [1.0]}}, "inputs: needs a column time [s] and at least one of V, d, E, load"),
         ({"inputs": {"time": [0.0], "F_C": [1.0]}}, "inputs: F_C is no input of the FMU; these are: V, d"),
         ({"inputs": {"time": [0.0, 1.0], "V": [1.0]}}, "inputs: V has 1 values and time has 2"),
-        ({"inputs": {"time": [0.0, 1.0], "V": [-1e308, 1e308]}}, "inputs: V = -1e+308 at sample 0: must be"),
-        ({"inputs": {"time": [0.0], "V": [True]}}, "inputs: V holds truth values; it must be a row of"),
+        ({"inputs": {"time": [0.0, 1.0], "V": [-1e308, 1e308]}}, "inputs: V, row 0: -1e+308 must be"),
+        ({"inputs": {"time": [0.0], "V": [True]}}, "inputs: V, row 0: 'True' is not a number"),
         ({"stop": True}, "stop = 'True' is not a number"),
         ({"stop": "1"}, "stop = '1' is not a number"),
         ({"inputs": {"time": [1.0, 0.5], "V": [1.0, 1.0]}}, "inputs: time falls from 1 to 0.5 s at sample 1"),
-        ({"inputs": {"time": [0.0, 1.0], "V": [1.0, np.inf]}}, "inputs: V = inf at sample 1 is not a finite"),
-        ({"inputs": {"time": [0.0], "V": ["x"]}}, "inputs: V is not a row of numbers"),
+        ({"inputs": {"time": [0.0, 1.0], "V": [1.0, np.inf]}}, "inputs: V, row 1: inf is not a finite"),
+        ({"inputs": {"time": [0.0], "V": ["x"]}}, "inputs: V, row 0: 'x' is not a number"),
         ({"inputs": {"time": [], "V": []}}, "inputs: no samples"),
-        ({"inputs": {"time": np.array(["2026-01-01"], "M8[s]"), "V": [1.0]}}, "inputs: time holds dates"),
-        ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V = nan at sample 0 is"),
+        ({"inputs": {"time": np.array(["2026-01-01"], "M8[s]"), "V": [1.0]}}, "inputs: time, row 0: "),
+        ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V, row 0: is masked"),
         ({"inputs": "drive.csv"}, "inputs: must be a mapping of names to samples, or a pandas frame"),
         ({"fmu": "absent.fmu"}, "absent.fmu: No such file"),
         ({"fmu": "."}, ".: Is a directory"),
         ({"start": [("V", 1.0)]}, "start = \"[('V', 1.0)]\": must be a mapping of names to values"),
         (
             {"start": {"V": 10**400}},
-            f"start: V = '{10**39}...' is not a finite number",
+            f"start: V: '{10**39}...' is not a finite number",
         ),
         ({"step": 5e-324}, "step = 4.94066e-324 s: stop / step must be at most"),
         ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence of names"),
@@ -136,11 +136,11 @@ def test_what_is_wrong_is_named(fmu_path: Path, arguments: dict, message: str) -
 
 
 def test_a_refused_reading_has_the_fmu_s_own_words(fmu: FrictionFmu) -> None:
-    with fmu.session() as session:
+    with fmu.session({"friction.sigma_2": 1e10}) as session:
         session.set("V", 1e300)
-        with pytest.raises(fc.FrictionError, match="at most 1e\\+15 m/s"):
+        with pytest.raises(fc.FrictionError, match="is beyond the largest number"):
             session.get("F_t_settled")
-        with pytest.raises(fc.FrictionError, match="at most 1e\\+15 m/s"):
+        with pytest.raises(fc.FrictionError, match="is beyond the largest number"):
             session.read(["F_t", "F_t_settled"])
 
 

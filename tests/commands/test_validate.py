@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.validate import command, elements, longitudinal, measurements, normal, record
 from workshop.project import ROOT
+from workshop.validate import command, elements, longitudinal, measurements, normal, record
 
 PAGE = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
 
@@ -46,6 +46,11 @@ def test_the_dry_rows(fmu_path: Path) -> None:
     misfit = longitudinal.rms(fit.model, data.vibrated)
     assert f"{100 * misfit / data.vibrated.mean():.0f} % of the mean vibrated friction" in PAGE
     assert f"{100 * misfit / data.without.mean():.0f} % of F_C" in PAGE
+    missed = longitudinal.rms(fit.predicted, data.vibrated)
+    said = f"predicted, {missed:.3f} N is {100 * missed / data.vibrated.mean():.0f} %."
+    assert said in " ".join(PAGE.split())
+    assert f"F_C - k a = {data.without[0] - fit.stiffness * data.amplitude:.3f} N" in PAGE
+    assert longitudinal.STRIBECK == 1e-4 and "V_S = 0.1 mm/s" in PAGE
     for baseline in (longitudinal.constant_ratio(data), longitudinal.logarithm(data)):
         cells = [f"{force:.4f}" for force in baseline.model]
         cells += [
@@ -86,6 +91,11 @@ def test_normal_vibration(fmu_path: Path, law: str) -> None:
         assert row(["-" if p is None else percent(p) for p in predicted]) in PAGE
 
 
+def test_a_formula_without_physics_stands_beside_the_normal_vibration() -> None:
+    at_second, between = normal.hyperbola(measurements.normal_vibration())
+    assert f"gives {percent(at_second)} at 87 mm/s and {percent(between)} at 40.6 mm/s" in PAGE
+
+
 def test_the_record_is_what_its_page_says() -> None:
     data = measurements.record()
     from_mean, from_last, work = record.scatter(data)
@@ -94,6 +104,11 @@ def test_the_record_is_what_its_page_says() -> None:
     assert f"work by {percent(work)}" in PAGE
     assert f"sliding friction, {record.sliding_friction(data):.2f} N" in PAGE
     assert abs(record.tare(data)) < 5e-4
+    same, later = record.repeated(data), record.predicted_cycles(data)
+    error = record.rms(same.friction - later.friction) / record.sliding_friction(data)
+    ratio = record.work(same.friction, later) / record.work(later.friction, later)
+    assert f"the mean of the two cycles | | | | {percent(error)} | {ratio:.3f} |" in PAGE
+    assert f"within {1e6 * record.rms(same.position - later.position):.2f} µm (rms)" in PAGE
     creep = np.ptp(data.between(*record.UNLOADING).position)
     assert f"creeps by {1e6 * creep:.1f} µm" in PAGE
 

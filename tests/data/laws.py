@@ -23,8 +23,8 @@ class LawStep:
     W_f: float  # J     since the start of the scene
     Q_f: float  # J
     delta: float  # m
-    limit: float  # N   time mean of F_C(t)
-    limit_path: float  # J   F_C(t)'s mean times the path, since the start: the scale of W_f and Q_f
+    scale: float  # N   what the tolerance is relative to
+    energy: float  # J   the sum of scale times path since the start: the same of W_f and Q_f
 
     @property
     def rates(self) -> dict[str, float]:
@@ -39,11 +39,6 @@ class LawStep:
         if self.rates:
             session.set_rates(**self.rates)
         session.step(self.h)
-
-
-def is_bounded(scene: Scene) -> bool:
-    """Whether the limit bounds a bristle that relaxes: the fast reference makes these rows."""
-    return scene.limit == "Load" and scene.friction in ("Dahl", "LuGre")
 
 
 @dataclass(frozen=True)
@@ -72,7 +67,7 @@ def _values(row: dict[str, str], names: set[str]) -> dict[str, float | str]:
 
 @cache
 def law_scenes(name: str) -> list[LawScene]:
-    """A law's 500 scenes, or with the name Settled the 100 that start settled."""
+    """A law's 200 scenes, or with the name Settled the 60 that start settled."""
     groups: dict[int, list[dict[str, str]]] = {}
     with Path(__file__).with_name(f"laws_{name.lower()}.csv").open(newline="") as file:
         for row in csv.DictReader(file):
@@ -84,11 +79,11 @@ def _scene(number: int, rows: list[dict[str, str]]) -> LawScene:
     first = rows[0]
     lasting = {field.name for field in fields(Scene)} - {"contact", *_MOVING}
     whole = {**_values(first, lasting), "contact": Contact(**_values(first, _CONTACT))}
-    steps, limit_path = [], 0.0
+    steps, energy = [], 0.0
     for row in rows:
         scene = Scene(**whole, **_values(row, set(_MOVING)))
-        limit_path += float(row["limit_mean"]) * float(row["path"])
-        results = (float(row[name]) for name in "h F_t F_t_mean W_f Q_f delta limit_mean".split())
-        steps.append(LawStep(scene, *results, limit_path))
+        energy += float(row["scale"]) * float(row["path"])
+        results = (float(row[name]) for name in "h F_t F_t_mean W_f Q_f delta scale".split())
+        steps.append(LawStep(scene, *results, energy))
     settled = float(first["settled"]) if first.get("settled") else None
     return LawScene(number, float(first["delta_0"]), settled, float(first["tolerance"]), steps)

@@ -16,11 +16,11 @@ from workshop.project import ROOT
 
 systems = pytest.importorskip("workshop.systems", reason="libcosimpy is not installed")
 DESCRIPTION = (ROOT / "examples" / "stick-slip" / "SystemStructure.ssd").read_text(encoding="utf-8")
-GUIDE = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs" / "tools.md").read_text(encoding="utf-8")
 SPEED = 1e-6  # m/s, from which the swing starts: the bristle does not creep at it
 COUNT = 600  # steps
 AT_REST = Belt(m=1.0, k=1e5, c=0.0, V_0=0.0, V_a=0.0, F_C=1e9)
-SYSTEMS = {  # as docs/using.md names them: damping outside, and sigma_1 [N s/m]
+SYSTEMS = {  # as docs/tools.md names them: damping outside, and sigma_1 [N s/m]
     "outside: c = 300 N s/m": (replace(AT_REST, c=300.0), 0.0),
     "`friction.sigma_1` = 300 N s/m": (AT_REST, 300.0),
     "`friction.sigma_1` = 2500 N s/m": (AT_REST, 2500.0),

@@ -1,15 +1,12 @@
-"""docs/bad-input.md: what each wrong call or value gets, from the very calls that the tests make.
-
-.venv/bin/python tests/fmi2/bad_input_page.py     writes the page
-"""
+"""Makes docs/bad-input.md for the site: what wrong calls get, from the very calls that the tests make."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from bad_model_exchange import ALL_GROUPS
+from bad_calls import CALLS
+from call_table import MODEL_EXCHANGE_TABLE, TABLE
 from fmi_library import Instance, Library
-from test_call_order import MODEL_EXCHANGE_TABLE, TABLE
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.build import build_fmu
@@ -19,13 +16,14 @@ PAGE = ROOT / "docs" / "bad-input.md"
 FMI2_ERROR = 3
 
 HEAD = """\
-# What wrong calls and values get
+# Wrong calls and values
 
-Each row is a call that a test makes (`tests/fmi2/bad_calls.py`) and the message that reached the logger, in
-the category `logStatusError`. Every one returns `fmi2Error` and nothing is written to stdout or stderr. The
-state afterwards is the state before, to the last bit: the test compares it with that of an instance that
-was never called wrongly, and lets both run on to equal results. `scripts/check bad-input` writes this page;
-a test holds it to what the FMU does.
+Each row is a call that a test makes (`tests/fmi2/bad_calls.py`), and the message that reaches the logger in
+the category `logStatusError`. Every call returns `fmi2Error`. The state afterwards is the state before, to
+the last bit. `scripts/site` makes this page from the FMU.
+
+| call | in state | message |
+|---|---|---|
 """
 
 ORDER = """
@@ -78,20 +76,16 @@ def _instantiation(library: Library) -> list[str]:
 def page(folder: Path) -> str:
     """The text of the page, from the unpacked FMU."""
     library = Library(folder)
-    lines = [HEAD]
-    for group, calls in ALL_GROUPS.items():
-        lines += [f"## {group}\n", "| call | in state | message |", "|---|---|---|"]
-        for bad in calls:
-            with Instance(library, kind=bad.kind) as instance:
-                bad.setup(instance)
-                instance.bring_to(bad.state)
-                bad.prepare(instance)
-                instance.messages.clear()
-                if bad.call(instance) != FMI2_ERROR:
-                    raise AssertionError(f"{bad.title} is no error")
-                text = instance.last_message.text
-            lines.append(f"| {_cell(bad.title)} | {bad.state} | {_cell(text)} |")
-        lines.append("")
+    lines = [HEAD.rstrip("\n")]
+    for bad in CALLS:
+        with Instance(library, kind=bad.kind) as instance:
+            bad.setup(instance)
+            instance.bring_to(bad.state)
+            bad.prepare(instance)
+            instance.messages.clear()
+            if bad.call(instance) != FMI2_ERROR:
+                raise AssertionError(f"{bad.title} is no error")
+            lines.append(f"| {_cell(bad.title)} | {bad.state} | {_cell(instance.last_message.text)} |")
     with Instance(library) as instance:
         instance.bring_to("step complete")
         instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
@@ -110,10 +104,7 @@ def page(folder: Path) -> str:
 
 def write_page() -> None:
     with FrictionFmu(build_fmu()) as fmu:
-        text = page(fmu.directory)
-    PAGE.parent.mkdir(exist_ok=True)
-    PAGE.write_text(text)
-    print(f"wrote {PAGE.relative_to(ROOT)}")
+        PAGE.write_text(page(fmu.directory), encoding="utf-8")
 
 
 if __name__ == "__main__":

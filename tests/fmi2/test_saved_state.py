@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 from ctypes import byref, c_void_p, create_string_buffer
 
 import pytest
-from fmi_library import ERROR, OK, Instance, Library
+from fmi_library import ERROR, OK, Instance
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta", "solver.evaluations", "V", "d", "E")
 METHODS = {"collocation": 1, "cvode": 2, "backwardEuler": 3, "trapezoid": 4, "rk4": 5, "explicitEuler": 6}
@@ -162,102 +161,6 @@ def test_too_small_a_buffer_is_refused_untouched(instance: Instance) -> None:
     assert str(size) in instance.last_message.text
     assert buffer.raw == b"\x55" * (size - 1)
     assert instance.drop(state) == OK
-
-
-def resealed(data: bytes, position: int, new: bytes) -> bytes:
-    """The bytes with a new content and a valid checksum (64-bit FNV-1a)."""
-    body = bytearray(data[:-HASH_SIZE])
-    body[position : position + len(new)] = new
-    checksum = 14695981039346656037
-    for byte in body:
-        checksum = (checksum ^ byte) * 1099511628211 % 2**64
-    return bytes(body) + checksum.to_bytes(HASH_SIZE, "little")
-
-
-def offsets(library: Library) -> dict[str, int]:
-    at, places = BODY_AT, {}
-    for variable in library.variables.values():
-        places[variable.name] = at
-        at += 8 if variable.kind == "Real" else 4
-    places["time"] = at
-    places["time_rest"] = at + 8
-    places["next_rate of V"] = at + 8 * 8
-    places["next_rate_set"] = at + 8 * 12
-    places["regime"] = places["next_rate_set"] + 4
-    places["seen_time"] = places["regime"] + 2 * 4
-    places["nominal_energy"] = places["seen_time"] + 10 * 8
-    places["lag_heat"] = places["nominal_energy"] + 3 * 8
-    places["interface"] = places["lag_heat"] + 8
-    places["state"] = places["interface"] + 4
-    places["outputs_stale"] = places["state"] + 4
-    places["start_time"] = places["state"] + 16
-    return places
-
-
-def test_the_bytes_are_little_endian_in_the_documented_order(library: Library, instance: Instance) -> None:
-    assert instance.set({"V": 0.125}) == OK
-    instance.initialize(start=2.0)
-    data = instance.fingerprint()
-    places = offsets(library)
-    assert data[:8] == b"FRICTION"
-    assert struct.unpack_from("<II", data, 8) == (3, len(data))
-    assert data[GUID_AT:BODY_AT].decode() == library.guid
-    assert struct.unpack_from("<d", data, places["V"]) == (0.125,)
-    assert struct.unpack_from("<i", data, places["solver.method"]) == (1,)
-    assert struct.unpack_from("<d", data, places["time"]) == (2.0,)
-    assert len(data) == places["start_time"] + 2 * 8 + HASH_SIZE
-    assert resealed(data, 0, b"") == data
-
-
-@pytest.mark.parametrize(
-    ("place", "new", "told"),
-    [
-        ("V", struct.pack("<d", float("nan")), "V"),
-        ("d", struct.pack("<d", -1.0), "d"),
-        ("F_t", struct.pack("<d", float("inf")), "F_t"),
-        ("contact.R_q", struct.pack("<d", 0.0), "contact.R_q"),
-        ("friction.model", struct.pack("<i", 5), "friction.model"),
-        ("solver.method", struct.pack("<i", -1), "solver.method"),
-        ("time", struct.pack("<d", float("nan")), "time"),
-        ("time_rest", struct.pack("<d", float("inf")), "time"),
-        ("next_rate of V", struct.pack("<d", float("inf")), "rate"),
-        ("next_rate_set", struct.pack("<i", 2), "rate"),
-        ("regime", struct.pack("<i", 1), "what model exchange keeps"),  # Dahl has no bound here
-        ("seen_time", struct.pack("<d", float("nan")), "what model exchange keeps"),
-        ("nominal_energy", struct.pack("<d", float("inf")), "what model exchange keeps"),
-        ("lag_heat", struct.pack("<d", float("nan")), "what model exchange keeps"),
-        ("interface", struct.pack("<i", 1), "state"),  # of model exchange, and between two steps
-        ("interface", struct.pack("<i", 3), "state"),
-        ("state", struct.pack("<i", 1 << 4), "state"),
-        ("state", struct.pack("<i", 1 << 10), "state"),
-        ("outputs_stale", struct.pack("<i", 2), "state"),
-        ("start_time", struct.pack("<d", float("-inf")), "state"),
-    ],
-)
-def test_sealed_bytes_with_impossible_values_are_refused(
-    library: Library, instance: Instance, place: str, new: bytes, told: str
-) -> None:
-    instance.initialize()
-    before = instance.fingerprint()
-    status, state = instance.deserialize(resealed(before, offsets(library)[place], new))
-    assert (status, state.value) == (ERROR, None)
-    assert (
-        instance.last_message.text.endswith(f"impossible value of {told}")
-        or told in instance.last_message.text
-    )
-    assert instance.fingerprint() == before
-
-
-@pytest.mark.parametrize(
-    ("position", "new", "told"),
-    [(0, b"OTHERFMU", "do not begin with FRICTION"), (8, b"\x01", "version"), (GUID_AT + 1, b"zzzz", "guid")],
-)
-def test_foreign_bytes_are_refused_with_the_reason(
-    instance: Instance, position: int, new: bytes, told: str
-) -> None:
-    status, _ = instance.deserialize(resealed(instance.fingerprint(), position, new))
-    assert status == ERROR
-    assert told in instance.last_message.text
 
 
 @pytest.mark.parametrize("state", ["initialization", "step complete"])

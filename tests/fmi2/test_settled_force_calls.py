@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from ctypes import c_double
 
@@ -124,17 +123,6 @@ def test_what_it_refuses(instance: Instance) -> None:
 
 
 @pytest.mark.slow
-def test_a_derivative_that_takes_too_long_is_refused(instance: Instance) -> None:
-    """At a stiffness beyond all measure, and the finest tolerance: more evaluations than are granted."""
-    instance.initialize()
-    assert instance.set(VIBRATING | {"V": 0.0, "E": 1e300}) == OK
-    before = instance.fingerprint()
-    assert instance.directional(["F_t_settled"], {"V": 1.0})[0] == ERROR
-    assert "F_t_settled or its derivative needs more than 1e+08 evaluations" in instance.last_message.text
-    assert instance.fingerprint() == before
-    assert math.isfinite(instance.get("F_t_settled")[0])
-
-
 def test_the_model_description_says_what_it_depends_on(library: Library) -> None:
     model = description.read()
     (output,) = (each for each in model.outputs if each.variable.name == "F_t_settled")

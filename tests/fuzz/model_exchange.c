@@ -80,8 +80,8 @@ static fmi2Status update(fmi2Component c) {
     fmi2EventInfo info;
     const fmi2Status status = fmi2NewDiscreteStates(c, &info);
     if (status == fmi2OK) {
-        HOLD(!info.newDiscreteStatesNeeded && !info.terminateSimulation && !info.nextEventTimeDefined,
-             "an event needs one look");
+        HOLD(!info.newDiscreteStatesNeeded && !info.terminateSimulation, "an event needs one look");
+        HOLD(!info.nextEventTimeDefined || isfinite(info.nextEventTime), "the next event has a time");
         double z[INDICATORS];
         HOLD(fmi2GetEventIndicators(c, z, INDICATORS) != fmi2OK || (z[1] > 0.0 && z[2] > 0.0 && z[3] > 0.0),
              "no indicator asks for a second event");

@@ -1,28 +1,22 @@
-"""Seeded scenes for model exchange, and how far a run of the FMU in a host is from the reference.
-
-PYTHONPATH=tests .venv/bin/python -m model_exchange.exchange_scenes --scenes 500     prints the errors
-"""
+"""Seeded scenes for model exchange, and how far a run of the FMU in a host is from the reference."""
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from reference.fast_reference import advance
 
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.build import build_fmu
 from workshop.exchange import Host
+from workshop.reference.course import Course
 from workshop.reference.solution import Contact, Scene
 from workshop.reference.start_values import start_values_of
 
 LAWS = ("Dahl", "LuGre", "ElasticPlastic")
 F, MU, LOAD, FREQUENCY = 55.0, 0.176, 312.0, 20e3
 OUTPUTS = 40  # points at which the host ends a step of its own
-FINER = 100.0  # the tolerance over the one that shows whose an error is
 
 
 @dataclass(frozen=True)
@@ -43,16 +37,9 @@ class ExchangeScene:
     def is_held(self) -> bool:
         return all(getattr(self.scene, f"{name}_rate") == 0.0 for name in ("V", "d", "E", "load"))
 
-    @property
-    def inputs_move_a_bound(self) -> bool:
-        scene = self.scene
-        bounded = scene.friction == "ElasticPlastic" or scene.limit == "Load"
-        by_V = scene.friction == "ElasticPlastic" and scene.staticRatio > 1.0 and scene.V_rate != 0.0
-        return bounded and (by_V or scene.d_rate != 0.0 or scene.E_rate != 0.0 or scene.load_rate != 0.0)
-
 
 class Errors(NamedTuple):
-    F_t: float  # over the limit of the friction
+    F_t: float  # over the largest force of the step
     W_f: float  # over that times the path
     Q_f: float
 
@@ -108,14 +95,11 @@ def drawn(number: int, fmu: FrictionFmu) -> ExchangeScene:
 
 def errors(scene: ExchangeScene, values: Mapping[str, float]) -> Errors:
     """Of F_t, W_f and Q_f at the end."""
-    truth = advance(scene.scene, scene.h, scene.delta_0)
-    energy = truth.limit * truth.path
-    low, high = sorted((truth.F_t, truth.F_t_other))  # F_t has two values where V jumps through zero
-    F_t = values["F_t"]
+    truth = Course(scene.scene, scene.delta_0).step(scene.scene, scene.h)
     return Errors(
-        abs(min(max(F_t, low), high) - F_t) / truth.limit,
-        abs(values["W_f"] - truth.work) / energy,
-        abs(values["Q_f"] - truth.heat) / energy,
+        abs(float(truth.F_t) - values["F_t"]) / truth.scale,
+        abs(float(truth.W_f) - values["W_f"]) / (truth.scale * truth.path),
+        abs(float(truth.Q_f) - values["Q_f"]) / (truth.scale * truth.path),
     )
 
 
@@ -133,45 +117,3 @@ def run(scene: ExchangeScene, fmu: FrictionFmu, tolerance: float) -> dict[str, f
         host.event()
         names = ("F_t", "W_f", "Q_f", "solver.evaluations")
         return {**dict(zip(names, host.get(*names), strict=True)), "events": host.events}
-
-
-def print_host_share(coarse: np.ndarray, fine: np.ndarray, tolerance: float) -> None:
-    """An error of the host's integrator falls with its tolerance; that of an event unseen stays."""
-    large = coarse > 3 * tolerance
-    ratios = coarse[large] / np.maximum(fine[large], 1e-16)
-    print(f"tolerance / {FINER:g}: errors above 3 tolerances fall by a median of {np.median(ratios):.0f}")
-    for i in np.flatnonzero((large & (fine > coarse * 3 / FINER**0.5)).any(1)):
-        print(f"scene {i} keeps F_t {fine[i][0]:.1e}, W_f {fine[i][1]:.1e}")
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=60)
-    parser.add_argument("--tolerance", type=float, default=1e-7)
-    chosen = parser.parse_args()
-    found: dict[tuple[str, bool], list[Errors]] = {}
-    coarse, fine = [], []
-    with FrictionFmu(build_fmu()) as fmu:
-        for number in range(chosen.scenes):
-            scene = drawn(number, fmu)
-            one, finer = (
-                errors(scene, run(scene, fmu, tolerance))
-                for tolerance in (chosen.tolerance, chosen.tolerance / FINER)
-            )
-            found.setdefault((scene.scene.friction, scene.inputs_move_a_bound), []).append(one)
-            coarse.append(one[:2])
-            fine.append(finer[:2])
-    print(f"host's tolerance {chosen.tolerance:g}; errors over it: largest, median")
-    for (law, moved), all_errors in sorted(found.items()):
-        of = np.array(all_errors) / chosen.tolerance
-        what = "inputs move its bound" if moved else ""
-        cells = "  ".join(
-            f"{name} {largest:8.3g} {median:8.3g}"
-            for name, largest, median in zip(Errors._fields, of.max(0), np.median(of, 0), strict=True)
-        )
-        print(f"{law:15}{len(of):4} scenes  {cells}  {what}")
-    print_host_share(np.array(coarse), np.array(fine), chosen.tolerance)
-
-
-if __name__ == "__main__":
-    main()

@@ -29,7 +29,7 @@ def test_fmpy_validate_finds_nothing(fmu_path: Path) -> None:
 
 
 def test_fmpy_sends_no_input_derivatives(fmu_path: Path) -> None:
-    """As docs/using.md says: FMPy's array of derivatives has nine places, whatever the inputs are."""
+    """As docs/tools.md says: FMPy's array of derivatives has nine places, whatever the inputs are."""
     drive = np.array([(0.0, 0.1), (1e-3, 0.2)], dtype=[("time", float), ("V", float)])
     with pytest.raises(ValueError, match="sequence of same size"):
         simulate_fmu(str(fmu_path), input=drive, set_input_derivatives=True, stop_time=1e-3)

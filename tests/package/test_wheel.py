@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -72,7 +73,7 @@ def python_of_all() -> str:
 
 @pytest.fixture(scope="module")
 def user(wheel: Path) -> Iterator[User]:
-    """With the wheel installed, its dependencies as the clone pins them."""
+    """With the wheel and libcosim installed, their dependencies as the clone pins them."""
     with tempfile.TemporaryDirectory(prefix="frictioncontact-user-") as temporary:
         yield installed(wheel, Path(temporary))
 
@@ -89,10 +90,10 @@ def installed(wheel: Path, folder: Path) -> User:
     constraints = folder / "constraints.txt"
     constraints.write_text("\n".join(pins) + "\n")
     pip = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "-d", str(found), "-c", str(constraints), str(wheel)], check=True)
+    subprocess.run([*pip, "-d", str(found), "-c", str(constraints), str(wheel), "libcosimpy"], check=True)
     user.run(
         "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index",
-        "--no-compile", "--find-links", str(found), str(found / wheel.name),
+        "--no-compile", "--find-links", str(found), str(found / wheel.name), "libcosimpy",
     )  # fmt: skip
     return user
 
@@ -146,7 +147,57 @@ def test_every_command_that_needs_no_extra(user: User) -> None:
     user.run("frictioncontact", "simulate", "--stop", "1e-3", "--step", "5e-4", "--output", "out.csv")
     assert len((user.work / "out.csv").read_text().splitlines()) == 4
     assert "stiffnessScale" in user.run("frictioncontact", "identify", "--quick")
-    assert "Promise" in user.run("frictioncontact", "advise", "--quick", "V=0.5")
+    assert "Promise" in user.run("frictioncontact", "advise", "--quick", "--set", "V=0.5")
     user.run("frictioncontact", "playground", "--output", "page.html")
     assert (user.work / "page.html").read_text(encoding="utf-8") == PAGE
-    assert "Longitudinal vibration" in user.run("frictioncontact", "validate", "--quick")
+    assert "misfit: 0.049 N" in user.run("frictioncontact", "validate", "--quick")
+    assert "usage: frictioncontact sweep" in user.run("frictioncontact", "sweep", "--help")
+
+
+PAGES = (
+    "README.md",
+    *(f"docs/{name}.md" for name in ("using", "python", "tools", "api", "measured-parameters")),
+    "examples/friction-law/README.md",
+)
+PYTHON = [
+    pytest.param(code, id=f"{page}-{number}")
+    for page in PAGES
+    for number, code in enumerate(
+        re.findall(r"```python\n(.*?)```", (ROOT / page).read_text("utf-8"), re.DOTALL)
+    )
+]
+LINES = [
+    pytest.param(line.strip().replace("\\\n", ""), id=f"{page}: {line.strip()[:60]}")
+    for page in PAGES
+    for line in re.findall(
+        r"^(?: {4})?(frictioncontact (?:.*\\\n)*.*)$", (ROOT / page).read_text("utf-8"), re.MULTILINE
+    )
+]
+
+
+@pytest.mark.parametrize("code", PYTHON)
+def test_every_block_of_the_pages_runs(user: User, code: str) -> None:
+    (user.work / "block.py").write_text(code, encoding="utf-8")
+    user.run("python", "-W", "error::UserWarning:__main__", "block.py")
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_every_line_of_the_pages_runs(user: User, line: str) -> None:
+    """mine.csv and drive.csv are the user's own."""
+    rows = "V [mm/s],vibration.V_1 [m/s],F_t_mean [N]", "100,1.44,5.5", "500,1.44,26.4", "1000,1.44,46.6"
+    (user.work / "mine.csv").write_text("\n".join([*rows, "1400,1.44,54.6"]), encoding="utf-8")
+    user.run(*shlex.split(line, comments=True))
+
+
+def test_what_needs_an_extra_is_there_and_says_so(user: User) -> None:
+    """help() and import * reach every name; a sweep names its extra."""
+    code = (
+        "from frictioncontact import *; import frictioncontact as fc; help(fc); print(hasattr(fc, 'sweep'))"
+    )
+    (user.work / "all.py").write_text(code)
+    assert user.run("python", "all.py").endswith("True\n")
+    (user.work / "sweep.py").write_text(
+        "import frictioncontact as fc\ntry:\n    fc.sweep(output='out', vary={'V': '1,2'})\n"
+        "except ValueError as error:\n    print(error)\n"
+    )
+    assert user.run("python", "sweep.py") == "sweeps need pyarrow: pip install 'frictioncontact[sweep]'\n"

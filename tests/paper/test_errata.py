@@ -279,7 +279,24 @@ def test_17_exponential_against_gaussian() -> None:
     low, high = brentq(lambda h: ratio(h) - 2.0, 0.1, 1.0), brentq(lambda h: ratio(h) - 2.0, 3.0, 5.0)
     assert min(ratio(h) for h in np.linspace(low, high, 60)) > 0.5
     at = ratio(14 / 6)
-    stated(17, f"{at:.3f} of the Gaussian's", f"{at**2:.3f} of it", f"{low:.2f} and {high:.2f}")
+    inside = math.ceil(100 * low) / 100, math.floor(100 * high) / 100
+    stated(17, f"{at:.3f} of the Gaussian's", f"{at**2:.3f} of it", "{:.2f} and {:.2f}".format(*inside))
+
+
+def test_17_at_a_given_load_the_areas_are_equal_and_eq_3_is_not() -> None:
+    physics = " ".join(
+        (Path(__file__).resolve().parents[2] / "docs" / "physics.md").read_text("utf-8").split()
+    )
+    lower = []
+    for force in (100.0, 312.44):
+        d, gaussian = (
+            brentq(lambda d, m=model, f=force: load(SURFACES, d, model=m) - f, 5e-6, 30e-6)
+            for model in ("exponential", "gaussian")
+        )
+        same = area(SURFACES, gaussian, model="gaussian") / area(SURFACES, d)
+        assert same == pytest.approx(1.0, abs=1e-6)
+        lower.append(100 * (1 - stiffness(SURFACES, gaussian, model="gaussian") / stiffness(SURFACES, d)))
+    assert "by {:.0f} % at 100 N and by {:.0f} % at 312.44 N".format(*lower) in physics
 
 
 def test_18_eq_3_is_no_sum_over_contacts(fmu: FrictionFmu) -> None:

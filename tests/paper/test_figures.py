@@ -8,7 +8,6 @@ import pytest
 from frictioncontact.fmu import FrictionFmu
 from workshop.figure import Figure, Level, Line
 from workshop.paper import figures as paper_figures
-from workshop.report import panels as report_plotly
 
 
 @pytest.fixture(scope="module")
@@ -52,9 +51,3 @@ def test_means_of_figures_9_11_13(figures: dict[str, Figure]) -> None:
     assert level(figures["fig-11"], 0, "FMU, mean") == pytest.approx(1.506797919, rel=1e-7)
     assert level(figures["fig-13"], 1, "FMU, mean") == pytest.approx(55.0, abs=1e-4)
     assert level(figures["fig-13"], 0, "its (max") == pytest.approx(47.89, abs=0.01)
-
-
-def test_page_gets_the_same_numbers(figures: dict[str, Figure]) -> None:
-    panel = figures["fig-04"].panels[1]
-    trace = report_plotly.panel_data(panel)["traces"][0]
-    assert trace["y"] == pytest.approx(list(panel.items[0].y), rel=1e-4, abs=1e-4)

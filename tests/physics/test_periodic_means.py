@@ -83,6 +83,16 @@ def test_a_moving_separation_asks_for_a_stiffer_contact_than_a_constant_one(fmu:
     assert np.max(np.abs(means - coulomb)) < 0.01 * F_C
 
 
+def test_how_far_kappa_100_is_from_coulomb_is_what_the_page_says(fmu: FrictionFmu) -> None:
+    text = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
+    off = {
+        zeta: periodic_mean(fmu, constant_stiffness(100.0, zeta)) / 55.0 - 2 / np.pi * np.arcsin(zeta)
+        for zeta in (0.3, 0.9, 0.99)
+    }
+    said = f"{off[0.3]:.4f} F_C at ζ = 0.3, by {off[0.9]:.3f} F_C at 0.9 and by {off[0.99]:.3f} F_C at 0.99"
+    assert said in text
+
+
 @pytest.mark.parametrize("zeta", [-0.9, 0.05, 0.3, 0.999])
 def test_soft_limit(fmu: FrictionFmu, zeta: float) -> None:
     turn = MP.acos(-MP.mpf(zeta))

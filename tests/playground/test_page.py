@@ -13,6 +13,7 @@ from playwright.sync_api import Browser
 from workshop.description import description
 from workshop.playground.browser import PAINTED, SCHEMES, SIZES
 from workshop.playground.page import XML
+from workshop.presets import Preset
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -101,3 +102,20 @@ def test_the_core_imports_nothing(playground: Playground) -> None:
     )
     assert imports == []
     assert {"fmi2DoStep", "fmi2SetReal", "fmi2GetReal", "fmi2Reset", "host_message"} <= set(exports)
+
+
+def test_axes_have_labels_and_no_reduction_is_rounding(playground: Playground, offered: list[Preset]) -> None:
+    for preset in offered:
+        playground.choose(preset)
+        for figure in ("force", "loop"):
+            for side in ("middle", "end"):  # of the x and of the y axis
+                labels = playground.page.locator(f'#{figure} .grid text[text-anchor="{side}"]')
+                assert labels.count() >= 2, (preset.id, figure, side)
+        assert "·10" not in playground.page.locator("#reduction").inner_text(), preset.id
+
+
+def test_the_laws_with_a_static_friction_show_it(playground: Playground) -> None:
+    for law, has in (("Dahl", False), ("LuGre", True), ("ElasticPlastic", True)):
+        playground.pick("friction.model", law)
+        shown = playground.page.locator('[data-variable="friction.staticRatio"]').is_visible()
+        assert shown == has, law

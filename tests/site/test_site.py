@@ -57,7 +57,25 @@ def test_every_page_is_there(site: Path) -> None:
         title = re.search(r"^# (.*)$", document.read_text(encoding="utf-8"), re.MULTILINE)[1]
         shown = html.parse(str(made)).find(".//h1").text_content()
         assert shown.startswith(title.replace("`", "")), document
-    assert (site / "index.html").read_bytes() == (site / "README.html").read_bytes()
+
+
+def test_the_front_page_has_three_doors(site: Path) -> None:
+    front = html.parse(str(site / "index.html")).getroot()
+    doors = {door.find("h2").text: door.get("href") for door in front.find_class("door")}
+    assert doors == {
+        "Python": "docs/python.html",
+        "Your FMI tool": "docs/tools.html",
+        "The live page": "docs/playground.html",
+    }
+    home = html.parse(str(site / "docs" / "using.html")).getroot().find_class("navbar-brand")
+    assert [link.get("href") for link in home] == ["../index.html"]
+
+
+def test_formulas_are_typeset(site: Path) -> None:
+    for name, least in {"physics": 20, "numerics": 1}.items():
+        article = html.parse(str(site / "docs" / f"{name}.html")).getroot().find(".//article")
+        assert len(article.findall(".//math")) >= least
+        assert "$" not in article.text_content()
 
 
 def test_the_version_stands_on_every_page(site: Path) -> None:
@@ -124,6 +142,12 @@ def test_search_finds_a_page_and_its_section(page: Page, site: Path) -> None:
     assert any("docs/validation.html" in address for address in addresses)
     hits.first.click()
     expect(page.locator("article")).to_contain_text("ElasticPlastic")
+
+
+def test_search_finds_a_variable_in_its_table_first(page: Page, site: Path) -> None:
+    page.goto((site / "search.html").as_uri() + "?q=F_t_settled")
+    first = page.locator("ul.search li a").first
+    expect(first).to_have_attribute("href", re.compile(r"docs/using\.html#index-\d"))
 
 
 def test_the_playground_lives_in_its_page(page: Page, site: Path) -> None:

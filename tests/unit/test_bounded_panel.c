@@ -100,7 +100,8 @@ static State exact(const FcScene* scene, double h, double delta_0) {
 // takes none.
 static double excess(const Panel* panel, double tolerance, double start, int* count) {
     const FcScene* scene = &panel->scene;
-    const FcInterval interval = fc_interval_make(scene, scene, panel->h, tolerance);
+    const FcSolverOptions options = {.tolerance = tolerance, .force = fc_scene_mean_limit(scene, 0.0)};
+    const FcInterval interval = fc_interval_make(scene, scene, panel->h, &options);
     const double X = fc_drive_displacement(&scene->drive, 0.0, panel->h);
     const FcTrajectories from = {.delta_0 = start * interval.limit / interval.stiffness, .speed = 1.0};
     const double z = interval.stiffness * fabs(X) / interval.limit;

@@ -44,7 +44,7 @@ static FcStepResult brute_force(const FcScene* scene, double h, double delta_0) 
 // Holds an interval's force, impulse, work and heat against brute force; force [N] is what errors are relative to.
 static double evaluations_from(const FcScene* scene, double delta_0, double force, double h,
                                double tolerance) {
-    const FcSolverOptions options = {.tolerance = tolerance, .step_size = 1e-8};
+    const FcSolverOptions options = {.tolerance = tolerance, .force = force};
     double evaluations = 0.0;
     const FcMap map = fc_collocation_interval(scene, &options, h, delta_0, FC_MAP_THIS_START, &evaluations);
     FcStepResult found = {.delta = delta_0};
@@ -72,7 +72,7 @@ static void intervals_of_no_length(void) {
         for (double sigma = 6e2; sigma < 1e13; sigma *= 1e3) {
             Slider slider;
             make(&slider, sigma, models[law], 0.5, 1.3e-5);
-            const FcSolverOptions options = {.tolerance = 1e-6};
+            const FcSolverOptions options = {.tolerance = 1e-6, .force = F_C};
             double evaluations = 0.0;
             const FcMap map =
                 fc_collocation_interval(&slider.scene, &options, 0.0, 1e-6, FC_MAP_THIS_START, &evaluations);
@@ -189,7 +189,7 @@ static void ends_where_V_touches_zero(void) {
             const double stiffness = fc_scene_stiffness(&slider.scene, h);
             const double exact = deflection_after(&slider.scene, h, layer);
             for (double tolerance = 1e-2; tolerance > 5e-8; tolerance *= 0.1) {
-                const FcSolverOptions options = {.tolerance = tolerance, .step_size = 1e-8};
+                const FcSolverOptions options = {.tolerance = tolerance, .force = F_C};
                 double evaluations = 0.0;
                 const FcMap map =
                     fc_collocation_interval(&slider.scene, &options, h, 0.0, FC_MAP_THIS_START, &evaluations);

@@ -22,16 +22,16 @@ int main(void) {
         fc_drive_make((FcLinearInput){0.5, 0.0}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
                       (FcLinearInput){100.0, 0.0}, vibration, 0.0, 0.0);
     const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
-    const FcSolverOptions options = {.tolerance = 1e-6};
+    const FcSolverOptions options = {.tolerance = 1e-6, .force = 55.0};
 
-    FcStepResult first = {0}, other = {0}, again = {0}, none = {0};
-    CHECK(fc_cvode_step(solver, &scene, &options, 1.3e-4, 1e-6, &first, &message));
-    CHECK(fc_cvode_step(solver, &scene, &options, 2e-5, -3e-6, &other, &message));
-    CHECK(fc_cvode_step(solver, &scene, &options, 1.3e-4, 1e-6, &again, &message));
+    FcStepResult first = {.delta = 1e-6}, other = {.delta = -3e-6}, again = first, none = first;
+    CHECK(fc_cvode_step(solver, &scene, &options, 1.3e-4, &first, &message));
+    CHECK(fc_cvode_step(solver, &scene, &options, 2e-5, &other, &message));
+    CHECK(fc_cvode_step(solver, &scene, &options, 1.3e-4, &again, &message));
     CHECK(first.delta == again.delta && first.impulse == again.impulse && first.work == again.work);
     CHECK(first.evaluations == again.evaluations && other.evaluations < first.evaluations);
 
-    CHECK(fc_cvode_step(solver, &scene, &options, 0.0, 1e-6, &none, &message));
+    CHECK(fc_cvode_step(solver, &scene, &options, 0.0, &none, &message));
     CHECK(none.delta == 1e-6 && none.impulse == 0.0 && none.work == 0.0 && none.evaluations == 0.0);
     fc_cvode_free(solver);
     return check_result();

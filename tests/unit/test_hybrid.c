@@ -33,9 +33,25 @@ static FcFrictionContact pressed(double load) {
     return contact;
 }
 
+// What the host does at an event; whether a state has changed.
+static bool update(FcFrictionContact* contact) {
+    bool changed;
+    bool nominals_changed;
+    FcMessage message;
+    CHECK(fc_hybrid_update(contact, &changed, &nominals_changed, &message));
+    fc_hybrid_event_ends(contact);
+    return changed;
+}
+
+static bool event(FcFrictionContact* contact) {
+    fc_hybrid_event_begins(contact);
+    return update(contact);
+}
+
 static void the_speed_of_inputs_is_that_between_two_steps(void) {
     FcFrictionContact contact = pressed(100.0);
     FcHybrid* hybrid = &contact.state.hybrid;
+    update(&contact);
     fc_hybrid_set_time(&contact, 0.5);
     contact.state.variables.load = 90.0;
     CHECK(!fc_hybrid_step_completed(&contact));
@@ -56,25 +72,20 @@ static void the_speed_of_inputs_is_that_between_two_steps(void) {
 static void a_bound_that_falls_takes_the_bristle_along(void) {
     FcFrictionContact contact = pressed(100.0);
     FcVariables* v = &contact.state.variables;
+    update(&contact);
     v->delta = MU * 95.0 / SIGMA;
     fc_hybrid_set_time(&contact, 0.1);
     v->load = 90.0;
     CHECK(fc_hybrid_step_completed(&contact));
-    fc_hybrid_event_begins(&contact);
-    bool changed;
-    bool nominals_changed;
-    FcMessage message;
-    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message));
-    fc_hybrid_event_ends(&contact);
+    CHECK(event(&contact));
     const double D = MU * 90.0 / SIGMA;
-    CHECK(changed && nominals_changed && contact.state.hybrid.regime == FC_SLIPS_FORWARD);
+    CHECK(contact.state.hybrid.regime == FC_SLIPS_FORWARD);
     CHECK_NEAR(v->delta, D, 1e-13);
     CHECK_NEAR(v->Q_f, 0.5 * SIGMA * (MU * 95.0 / SIGMA * (MU * 95.0 / SIGMA) - D * D), 1e-12);
     fc_hybrid_set_time(&contact, 0.2);
     CHECK(fc_hybrid_step_completed(&contact)); // the load stands still: nothing pushes any more
-    fc_hybrid_event_begins(&contact);
-    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message));
-    CHECK(contact.state.hybrid.regime == FC_FREE && !nominals_changed);
+    event(&contact);
+    CHECK(contact.state.hybrid.regime == FC_FREE);
     fc_friction_contact_free(&contact);
 }
 
@@ -84,11 +95,7 @@ static void a_bristle_that_slips_gives_its_heat_at_the_next_event(void) {
     FcVariables* v = &contact.state.variables;
     v->V = 1e-3;
     v->delta = MU * 100.0 / SIGMA;
-    bool changed;
-    bool nominals_changed;
-    FcMessage message;
-    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message));
-    fc_hybrid_event_ends(&contact);
+    update(&contact);
     CHECK(contact.state.hybrid.regime == FC_SLIPS_FORWARD);
     const double start = v->delta;
     const double Q_f = v->Q_f; // of rounding
@@ -98,16 +105,41 @@ static void a_bristle_that_slips_gives_its_heat_at_the_next_event(void) {
         CHECK(!fc_hybrid_step_completed(&contact));
         CHECK(v->Q_f == Q_f && v->delta == start);
     }
-    fc_hybrid_event_begins(&contact);
-    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message) && changed);
-    fc_hybrid_event_ends(&contact);
+    CHECK(event(&contact));
     CHECK(contact.state.hybrid.regime == FC_SLIPS_FORWARD);
     const double end = MU * 20.0 / SIGMA;
     CHECK_NEAR(v->delta, end, 1e-14);
     CHECK_NEAR(v->Q_f, 0.5 * SIGMA * (start * start - end * end), 1e-12);
-    fc_hybrid_event_begins(&contact); // nothing has moved since
-    CHECK(fc_hybrid_update(&contact, &changed, &nominals_changed, &message) && !changed);
+    CHECK(!event(&contact)); // nothing has moved since
     fc_friction_contact_free(&contact);
+}
+
+// Static friction: while it slips V falls, the kinetic bound rises ahead of it and takes the push: it sticks before V is 0.
+static void it_sticks_where_the_kinetic_bound_outruns_it(void) {
+    FcFrictionContact contact = pressed(100.0);
+    FcVariables* v = &contact.state.variables;
+    v->friction.staticRatio = 1.5;
+    v->friction.V_S = 0.1;
+    v->V = 0.2;
+    v->delta = 1.5 * MU * 100.0 / SIGMA * (1.0 + 1e-9);
+    update(&contact);
+    CHECK(contact.state.slips == 1 && contact.state.hybrid.regime == FC_SLIPS_FORWARD);
+    // The push V + D s'(V) |V'| / s, with D = mu load s / sigma: it is V (1 - |V'| 2 (R - 1) mu load e^-(V / V_S)^2 / (sigma V_S^2)).
+    const double rate = 2e3; // m/s2
+    const double outrun = 2.0 * 0.5 * MU * 100.0 / SIGMA / (0.1 * 0.1) * rate;
+    const double sticks_at = 0.1 * sqrt(log(outrun));
+    for (int k = 0; v->V > 0.0; k++) {
+        fc_hybrid_set_time(&contact, 1e-6 * k);
+        v->V = 0.2 - rate * 1e-6 * k;
+        if (fc_hybrid_step_completed(&contact)) {
+            break;
+        }
+    }
+    CHECK_WITHIN(v->V, sticks_at, rate * 1e-6);
+    event(&contact);
+    CHECK(contact.state.slips == 0 && contact.state.hybrid.regime == FC_FREE);
+    const double kinetic = 1.0 + 0.5 * exp(-v->V * v->V / 0.01);
+    CHECK_NEAR(v->delta, MU * 100.0 / SIGMA * kinetic, 1e-12);
 }
 
 static void coulomb_is_refused(void) {
@@ -121,6 +153,7 @@ int main(void) {
     the_speed_of_inputs_is_that_between_two_steps();
     a_bound_that_falls_takes_the_bristle_along();
     a_bristle_that_slips_gives_its_heat_at_the_next_event();
+    it_sticks_where_the_kinetic_bound_outruns_it();
     coulomb_is_refused();
     return check_result();
 }

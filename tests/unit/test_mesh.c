@@ -48,7 +48,8 @@ static void fades_at_least_as_told(void) {
         const double end = fc_drive_next_event(&drive, start, 2.0 * PERIOD).time;
         const double displacement = fc_drive_displacement(&drive, start, end);
         const double tolerance = random_log(1e-12, 1e-2);
-        const FcInterval interval = fc_interval_make(&scene, &scene, end, tolerance);
+        const FcSolverOptions options = {.tolerance = tolerance, .force = fc_scene_mean_limit(&scene, 0.0)};
+        const FcInterval interval = fc_interval_make(&scene, &scene, end, &options);
         const FcCoefficients here = fc_scene_coefficients(&scene, start);
         FcStretch stretch = {.interval = &interval,
                              .start = start,

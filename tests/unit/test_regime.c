@@ -53,9 +53,11 @@ static void closed_forms(void) {
     check_motion(&at, SIGMA * delta, V, V);
     at = fc_motion(&one.scene, FC_SLIPS_BACK, -1.1 * D); // the force is that of the bound, whatever delta is
     check_motion(&at, -F_C, 0.0, V);
-    CHECK_NEAR(fc_regime_bound(&one.scene), D, 1e-15);
-    CHECK_NEAR(fc_regime_push(&one.scene, -1), -V, 1e-15);
-    CHECK_NEAR(fc_regime_push(&one.scene, 1), V, 1e-15);
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(&one.scene, 0, &friction);
+    CHECK_NEAR(fc_bound(&bound, 0.0), D, 1e-15);
+    CHECK_NEAR(fc_push(&one.scene, &bound, 0.0, -1), -V, 1e-15);
+    CHECK_NEAR(fc_push(&one.scene, &bound, 0.0, 1), V, 1e-15);
     make(&one, FC_DAHL, V);
     at = fc_motion(&one.scene, FC_FREE, delta);
     check_motion(&at, SIGMA * delta, V * (1.0 + delta / D), V);
@@ -63,6 +65,12 @@ static void closed_forms(void) {
     at = fc_motion(&one.scene, FC_FREE, 0.0);
     CHECK_NEAR(at.F_t, -F_C + 7.0 * V, 1e-15);
     CHECK(at.rates.delta == 0.0);
+}
+
+static double bound_of(const FcScene* scene) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, 0, &friction);
+    return fc_bound(&bound, 0.0);
 }
 
 // Along a bound that vibrates with the normal force: its rate is the difference of the bound in time.
@@ -76,11 +84,13 @@ static void a_bound_that_moves(void) {
         const FcScene now = scene_at(&one, 0.3, 1e-6, t);
         const FcScene after = scene_at(&one, 0.3, 1e-6, t + tau);
         const FcScene before = scene_at(&one, 0.3, 1e-6, t - tau);
-        const double rate = (fc_regime_bound(&after) - fc_regime_bound(&before)) / (2.0 * tau);
-        const double pace = fc_regime_bound(&now) * now.drive.omega;
+        const double rate = (bound_of(&after) - bound_of(&before)) / (2.0 * tau);
+        const double pace = bound_of(&now) * now.drive.omega;
         CHECK_WITHIN(fc_motion(&now, FC_SLIPS_FORWARD, 0.0).rates.delta, rate, 1e-6 * pace);
         CHECK_WITHIN(fc_motion(&now, FC_SLIPS_BACK, 0.0).rates.delta, -rate, 1e-6 * pace);
-        CHECK_WITHIN(fc_regime_push(&now, 1), -rate, 1e-6 * pace); // on its bound it would relax to it
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(&now, 0, &friction);
+        CHECK_WITHIN(fc_push(&now, &bound, 0.0, 1), -rate, 1e-6 * pace); // on its bound it would relax to it
     }
 }
 

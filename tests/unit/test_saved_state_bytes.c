@@ -36,6 +36,9 @@ static FcSavedState full_state(void) {
         friction->next_rate[input] = -2.5 - input;
     }
     friction->next_rate_set = 1;
+    friction->slips = -1;
+    friction->past =
+        (FcPast){.d = 1e-5, .V = -2.0, .E = 3e9, .limit = 4.0, .ratio = 5.0, .V_S = 6.0, .sigma = 7e6};
     FcHybrid* hybrid = &friction->hybrid;
     hybrid->seen_time = 0.75;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
@@ -99,7 +102,7 @@ static void every_byte_of_a_number_counts(fmi2Component c) {
         check_counts(c, variables + fc_variables[vr].offset, size);
     }
     const size_t first = offsetof(FcFrictionState, time);
-    const size_t last = offsetof(FcFrictionState, next_rate_set) + sizeof(int);
+    const size_t last = offsetof(FcFrictionState, past) + sizeof(FcPast);
     check_counts(c, offsetof(FcSavedState, friction) + first, last - first);
     check_counts(c, offsetof(FcSavedState, friction) + offsetof(FcFrictionState, hybrid), sizeof(FcHybrid));
     const size_t experiment = offsetof(FcSavedState, experiment);
@@ -117,6 +120,8 @@ static void infinite_numbers_are_refused(fmi2Component c) {
                               offsetof(FcFrictionState, rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
                               offsetof(FcFrictionState, next_rate),
                               offsetof(FcFrictionState, next_rate) + (FC_INPUT_COUNT - 1) * sizeof(double),
+                              offsetof(FcFrictionState, past),
+                              offsetof(FcFrictionState, past.sigma),
                               offsetof(FcFrictionState, hybrid.seen_time),
                               offsetof(FcFrictionState, hybrid.seen),
                               offsetof(FcFrictionState, hybrid.speed) + (FC_INPUT_COUNT - 1) * sizeof(double),
@@ -191,6 +196,12 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
         put_real(&layout, friction->next_rate[input]);
     }
     put(&layout, (unsigned)friction->next_rate_set, 4);
+    put(&layout, (unsigned)friction->slips, 4);
+    const FcPast* of = &friction->past;
+    const double past[] = {of->d, of->V, of->E, of->limit, of->ratio, of->V_S, of->sigma};
+    for (int k = 0; k < 7; k++) {
+        put_real(&layout, past[k]);
+    }
     const FcHybrid* hybrid = &friction->hybrid;
     put(&layout, (unsigned)hybrid->regime, 4);
     put(&layout, (unsigned)hybrid->changed, 4);
@@ -228,7 +239,7 @@ static bool is_read(fmi2Component c, const Layout* layout, size_t size) {
 static void bytes_are_as_documented(fmi2Component c) {
     FcSavedState saved = full_state();
     const Bytes written = bytes_of(c, &saved);
-    const Layout layout = layout_of(&saved, 3, written.size);
+    const Layout layout = layout_of(&saved, 4, written.size);
     CHECK(layout.size == written.size && memcmp(layout.bytes, written.bytes, written.size) == 0);
     CHECK(is_read(c, &layout, layout.size));
     char too_few[MOST_BYTES];
@@ -239,15 +250,15 @@ static void bytes_are_as_documented(fmi2Component c) {
 // Other versions, other sizes, bytes cut off or too many, and each byte damaged with the hash put right or not.
 static void other_bytes_are_refused(fmi2Component c) {
     const FcSavedState saved = full_state();
-    const size_t size = layout_of(&saved, 3, 0).size;
-    for (unsigned version = 0; version < 5; version++) {
+    const size_t size = layout_of(&saved, 4, 0).size;
+    for (unsigned version = 0; version < 6; version++) {
         const Layout layout = layout_of(&saved, version, size);
-        CHECK(is_read(c, &layout, size) == (version == 3));
+        CHECK(is_read(c, &layout, size) == (version == 4));
     }
-    const Layout good = layout_of(&saved, 3, size);
+    const Layout good = layout_of(&saved, 4, size);
     for (size_t given = 0; given < size + 20; given++) {
         CHECK(is_read(c, &good, given) == (given == size));
-        const Layout layout = layout_of(&saved, 3, given);
+        const Layout layout = layout_of(&saved, 4, given);
         CHECK(is_read(c, &layout, size) == (given == size));
     }
     for (size_t i = 0; i < size; i++) {
@@ -263,7 +274,7 @@ static void other_bytes_are_refused(fmi2Component c) {
 }
 
 static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
-    const Layout layout = layout_of(saved, 3, layout_of(saved, 3, 0).size);
+    const Layout layout = layout_of(saved, 4, layout_of(saved, 4, 0).size);
     return is_read(c, &layout, layout.size);
 }
 
@@ -301,6 +312,11 @@ static void impossible_flags_are_refused(fmi2Component c) {
         CHECK(is_read_with(c, &saved) == (regime >= -1 && regime <= 1));
         saved.friction.variables.friction.limit = FC_LIMIT_CONSTANT;
         CHECK(is_read_with(c, &saved) == (regime == 0));
+    }
+    for (int slips = -2; slips <= 2; slips++) {
+        FcSavedState saved = full_state();
+        saved.friction.slips = slips;
+        CHECK(is_read_with(c, &saved) == (slips >= -1 && slips <= 1));
     }
     FcSavedState saved = full_state();
     saved.experiment.start_time = INFINITY;

@@ -1,7 +1,8 @@
-// The scene: the laws' limits and forces, surfaces that float on a load, rates against differences, bounds.
+// The scene: the laws' limits and forces, where a bristle slips, surfaces that float on a load, rates against differences, bounds.
 #include "model/scene.h"
 
 #include "check.h"
+#include "model/regime.h"
 #include "moving_scene.h"
 #include "random.h"
 
@@ -24,6 +25,18 @@ static void limits_of_the_laws(void) {
     }
 }
 
+// Of a bristle that touches no bound, at the time t.
+static FcMotion free_motion(const FcScene* scene, double t, double delta) {
+    const FcScene then = fc_scene_from(scene, t);
+    return fc_motion(&then, FC_FREE, delta);
+}
+
+// Of a bristle at the start, wherever it is.
+static FcMotion motion_of(const FcScene* scene, FcBristle bristle) {
+    const FcBristle reached = fc_reach(scene, bristle);
+    return fc_motion(scene, fc_regime(scene, reached), reached.delta);
+}
+
 // F_t = sigma delta + sigma_1 delta' + sigma_2 V, and Coulomb's g sgn V + sigma_2 V.
 static void forces_of_the_laws(void) {
     const FcContactParameters contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_SEPARATION);
@@ -32,35 +45,48 @@ static void forces_of_the_laws(void) {
         const FcFriction coulomb = law(FC_COULOMB, FC_LIMIT_CONSTANT);
         const FcScene sliding = moving_scene(&contact, &coulomb, 0.0);
         const double V = fc_drive_V(&sliding.drive, t);
-        CHECK_NEAR(fc_scene_outputs(&sliding, t, delta).F_t, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-15);
-        CHECK(fc_scene_deflection_rate(&sliding, t, delta) == 0.0);
+        const FcMotion slides = free_motion(&sliding, t, delta);
+        CHECK_NEAR(slides.F_t, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-14);
+        CHECK(slides.rates.delta == 0.0 && slides.rates.Q_f == slides.rates.W_f);
 
         const FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
         const FcScene sticking = moving_scene(&contact, &plastic, 0.0);
-        CHECK_NEAR(fc_scene_outputs(&sticking, t, delta).F_t, 20.0 + 40.0 * V + 3.0 * V, 1e-14);
+        const FcMotion sticks = free_motion(&sticking, t, delta);
+        CHECK_NEAR(sticks.F_t, 20.0 + 40.0 * V + 3.0 * V, 1e-14);
+        CHECK_NEAR(sticks.rates.Q_f, 43.0 * V * V, 1e-13);
 
         const FcFriction lugre = law(FC_LUGRE, FC_LIMIT_CONSTANT);
         const FcScene bristle = moving_scene(&contact, &lugre, 0.0);
         const double g = 55.0 * (1.0 + 0.5 * exp(-(V / 0.2) * (V / 0.2)));
         const double rate = V - 2.5e6 * fabs(V) * delta / g;
-        CHECK_NEAR(fc_scene_deflection_rate(&bristle, t, delta), rate, 1e-14);
-        CHECK_NEAR(fc_scene_outputs(&bristle, t, delta).F_t, 20.0 + 40.0 * rate + 3.0 * V, 1e-14);
+        const FcMotion relaxes = free_motion(&bristle, t, delta);
+        CHECK_NEAR(relaxes.rates.delta, rate, 1e-13);
+        CHECK_NEAR(relaxes.F_t, 20.0 + 40.0 * rate + 3.0 * V, 1e-13);
+        CHECK_NEAR(relaxes.rates.W_f, relaxes.F_t * V, 1e-13);
     }
 }
 
-// A bristle beyond its bound lies on it; one on it slips while V pushes outwards.
-static void an_elastic_plastic_bristle_slips(void) {
+// With static friction it sticks up to the static bound and then drops to the kinetic one, along which it slips while V pushes it.
+static void an_elastic_plastic_bristle_breaks_away(void) {
     const FcContactParameters contact = table_1(FC_CONTACT_CONSTANT, FC_CONTACT_SEPARATION);
-    FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
-    plastic.sigma_2 = 0.0;
-    plastic.staticRatio = 1.0;
+    const FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
     const FcScene scene = moving_scene(&contact, &plastic, 0.0);
-    const double bound = 55.0 / 2.5e6;
-    CHECK(fc_drive_V(&scene.drive, 0.0) > 0.0);
-    CHECK(fc_scene_slip_side(&scene, 0.0, bound) == 1.0 && fc_scene_slip_side(&scene, 0.0, -bound) == 0.0);
-    CHECK(fc_scene_slip_side(&scene, 0.0, 0.99 * bound) == 0.0);
-    CHECK(fc_scene_deflection_rate(&scene, 0.0, bound) == 0.0);
-    CHECK_NEAR(fc_scene_outputs(&scene, 0.0, 2.0 * bound).F_t, 55.0, 1e-15);
+    const double V = fc_drive_V(&scene.drive, 0.0);
+    const double kinetic = 55.0 / 2.5e6 * (1.0 + 0.5 * exp(-(V / 0.2) * (V / 0.2)));
+    const double beyond = 1.0001 * 1.5 * 55.0 / 2.5e6;
+    CHECK(V > 0.0 && fc_drive_V_rate(&scene.drive, 0.0) < 0.0); // the kinetic bound rises
+    for (int side = -1; side <= 1; side += 2) {
+        const FcBristle sticks = fc_reach(&scene, (FcBristle){side * 0.9999 * beyond, 0});
+        CHECK(sticks.delta == side * 0.9999 * beyond && sticks.slips == 0);
+        CHECK(fc_regime(&scene, sticks) == FC_FREE);
+        const FcBristle drops = fc_reach(&scene, (FcBristle){side * beyond, 0});
+        CHECK_NEAR(drops.delta, side * kinetic, 1e-14);
+        CHECK(drops.slips == (side > 0 ? 1 : 0)); // V pushes forward
+        CHECK(fc_regime(&scene, drops) == (FcRegime)drops.slips);
+        const FcBristle inside = fc_reach(&scene, (FcBristle){side * 0.5 * kinetic, side});
+        CHECK(inside.delta == side * 0.5 * kinetic && inside.slips == drops.slips);
+        CHECK(fc_regime(&scene, inside) == FC_FREE);
+    }
 }
 
 // Where the limit follows the load, a bristle of Dahl or LuGre beyond the bound lies on it, mu F_n or staticRatio mu F_n, and
@@ -82,14 +108,16 @@ static void a_bristle_slips_along_a_limit_that_follows_the_load(void) {
             const double free_rate =
                 1e-3 * (1.0 - (model == FC_LUGRE ? 1.5 / (1.0 + 0.5 * exp(-2.5e-5)) : 1.0));
             const bool slips = d_rate > 0.0;
-            CHECK(fc_scene_slip_side(&scene, 0.0, D) == (slips ? 1.0 : 0.0));
-            CHECK(fc_scene_slip_side(&scene, 0.0, -D) == 0.0 || slips);
-            CHECK(fc_scene_slip_side(&scene, 0.0, 0.99 * D) == 0.0);
+            CHECK(fc_regime(&scene, fc_reach(&scene, (FcBristle){2.0 * D, 0})) == (slips ? 1 : 0));
+            CHECK(fc_regime(&scene, fc_reach(&scene, (FcBristle){-2.0 * D, 0})) == (slips ? -1 : 0));
+            CHECK(fc_regime(&scene, (FcBristle){0.99 * D, 0}) == FC_FREE);
             const double rate = slips ? D_rate : free_rate;
-            CHECK_WITHIN(fc_scene_deflection_rate(&scene, 0.0, D), rate, 1e-11 * 1e-3);
-            CHECK_NEAR(fc_scene_outputs(&scene, 0.0, 2.0 * D).F_t, limit + 40.0 * rate, 1e-12);
+            const FcMotion motion = motion_of(&scene, (FcBristle){2.0 * D, 0});
+            CHECK_WITHIN(motion.rates.delta, rate, 1e-11 * 1e-3);
+            CHECK_NEAR(motion.F_t, limit + 40.0 * rate, 1e-12);
             friction.limit = FC_LIMIT_CONSTANT;
-            CHECK(fc_scene_slip_side(&scene, 0.0, 2.0 * D) == 0.0);
+            CHECK(fc_reach(&scene, (FcBristle){2.0 * D, 0}).delta == 2.0 * D);
+            CHECK(fc_regime(&scene, (FcBristle){2.0 * D, 0}) == FC_FREE);
         }
     }
 }
@@ -126,13 +154,7 @@ static double log_stiffness(const FcScene* scene, double t) {
     return log(fc_scene_coefficients(scene, t).sigma);
 }
 static double log_limit(const FcScene* scene, double t) { return log(fc_scene_coefficients(scene, t).limit); }
-// Of LuGre the bound is staticRatio times the limit without its curve.
-static double bound(const FcScene* scene, double t) {
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    const double ratio = at.V / 0.2;
-    const bool is_lugre = scene->friction->model == FC_LUGRE;
-    return at.limit / at.sigma * (is_lugre ? 1.5 / (1.0 + 0.5 * exp(-ratio * ratio)) : 1.0);
-}
+static double bound(const FcScene* scene, double t) { return fc_bound(scene, t); }
 
 static void rates_are_derivatives(void) {
     const double omega = TWO_PI * F;
@@ -144,10 +166,10 @@ static void rates_are_derivatives(void) {
             CHECK_WITHIN(rates.sigma, slope(log_stiffness, &scene, t), 1e-8 * omega);
             CHECK_WITHIN(rates.limit, slope(log_limit, &scene, t), 1e-8 * omega);
             CHECK_WITHIN(fc_scene_d_rate(&scene, t), slope(fc_scene_d, &scene, t), 1e-9 * omega * 1.1e-6);
-            if (one.friction.limit == FC_LIMIT_LOAD) {
-                CHECK_WITHIN(fc_scene_bound_rate(&scene, t), slope(bound, &scene, t),
-                             1e-7 * omega * bound(&scene, t));
-            }
+            FcFriction of_bound;
+            const FcScene bound_scene = fc_scene_of_bound(&scene, 0, &of_bound);
+            CHECK_WITHIN(fc_bound_rate(&bound_scene, t), slope(bound, &bound_scene, t),
+                         1e-7 * omega * fc_bound(&bound_scene, t));
         }
     }
 }
@@ -282,25 +304,25 @@ static void is_as_the_equations_say(const Random* one) {
         CHECK_NEAR(fc_scene_stiffness(scene, t), expected.sigma, 1e-11);
         CHECK_NEAR(fc_scene_contact(scene, t).F_n, there.F_n, 1e-11);
         const double delta = 0.1 * expected.limit / expected.sigma;
-        const FcOutputs outputs = fc_scene_outputs(scene, t, delta);
         const double rate = one->made.friction.model == FC_ELASTIC_PLASTIC
                                 ? expected.V
                                 : expected.V - expected.sigma * fabs(expected.V) * delta / expected.limit;
-        CHECK_NEAR(outputs.F_n, there.F_n, 1e-11);
-        CHECK_NEAR(outputs.A_r, there.A_r, 1e-11);
-        CHECK_NEAR(outputs.sigma, there.sigma, 1e-11);
-        CHECK_WITHIN(outputs.F_t, 0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
+        CHECK_NEAR(fc_scene_contact(scene, t).A_r, there.A_r, 1e-11);
+        CHECK_NEAR(fc_scene_contact(scene, t).sigma, there.sigma, 1e-11);
+        CHECK_WITHIN(free_motion(scene, t, delta).F_t, 0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
                      1e-10 * (expected.limit + 43.0 * fabs(expected.V)));
         const FcScene later = fc_scene_later(scene, PERIOD);
         CHECK_NEAR(later.drive.E.value, one->given.E.value + one->given.E.rate * PERIOD, 1e-14);
         CHECK_NEAR(later.at_E.load_0, surfaces(one, PERIOD).at_E.load_0, 1e-13);
     }
     // The mean of the limit without its curve, over a period of the vibration.
-    const Surfaces now = surfaces(one, 0.0);
-    const double mean = fc_contact_response(&now.at_E, now.rest).F_n *
-                        exp(log_mean_of_exponential(now.at_E.decay * one->given.vibration.a_d));
-    CHECK_NEAR(fc_scene_force_scale(scene), scene->friction->limit == FC_LIMIT_LOAD ? 0.176 * mean : 55.0,
-               1e-11);
+    for (double t = 0.0; t < 1.1 * PERIOD; t += PERIOD) {
+        const Surfaces now = surfaces(one, t);
+        const double mean = fc_contact_response(&now.at_E, now.rest).F_n *
+                            exp(log_mean_of_exponential(now.at_E.decay * one->given.vibration.a_d));
+        CHECK_NEAR(fc_scene_mean_limit(scene, t),
+                   scene->friction->limit == FC_LIMIT_LOAD ? 0.176 * mean : 55.0, 1e-11);
+    }
 }
 
 static double of_d(const FcScene* scene, double t) { return fc_scene_d(scene, t); }
@@ -310,7 +332,7 @@ static double of_d(const FcScene* scene, double t) { return fc_scene_d(scene, t)
 static void bounds_are_close(const Random* one) {
     const FcScene* scene = &one->scene;
     const double h = 0.9 * PERIOD;
-    double d = INFINITY, sigma = 0.0, limit = INFINITY, saturation = INFINITY;
+    double d = INFINITY, sigma = 0.0, limit = INFINITY, saturation = INFINITY, largest = 0.0;
     bool sigma_moves = false, limit_moves = false;
     const FcCoefficients start = coefficients(one, 0.0);
     for (int i = 0; i <= 200; i++) {
@@ -321,6 +343,7 @@ static void bounds_are_close(const Random* one) {
         sigma = fmax(sigma, at.sigma);
         limit = fmin(limit, at.limit);
         saturation = fmin(saturation, at.limit / at.sigma);
+        largest = fmax(largest, at.limit / at.sigma * fc_static_ratio(scene->friction));
         sigma_moves |= fabs(at.sigma / start.sigma - 1.0) > 1e-11;
         limit_moves |= fabs(at.limit * fc_stribeck(scene->friction, start.V) / start.limit - 1.0) > 1e-11;
     }
@@ -329,6 +352,7 @@ static void bounds_are_close(const Random* one) {
     CHECK(fc_scene_largest_stiffness(scene, h) * rounding >= sigma);
     CHECK(fc_scene_smallest_limit(scene, h) <= limit * rounding);
     CHECK(fc_scene_smallest_saturation(scene, h) <= saturation * rounding);
+    CHECK(fc_scene_largest_saturation(scene, h) * rounding >= largest);
     CHECK(fc_scene_stiffness_is_constant(scene) == !sigma_moves);
     const bool floats_on_a_load = scene->contact->input == FC_CONTACT_LOAD && one->given.E.rate != 0.0;
     CHECK(fc_scene_limit_is_constant(scene) == !limit_moves || floats_on_a_load);
@@ -341,6 +365,7 @@ static void bounds_are_close(const Random* one) {
             CHECK_NEAR(fc_scene_largest_stiffness(scene, h), sigma, 1e-11);
             CHECK_NEAR(fc_scene_smallest_limit(scene, h), limit, 1e-11);
             CHECK(fc_scene_smallest_saturation(scene, h) >= 0.3 * saturation);
+            CHECK_NEAR(fc_scene_largest_saturation(scene, h), largest, 1e-11);
         }
     }
 }
@@ -358,7 +383,7 @@ static void random_scenes(void) {
     }
 }
 
-// On its bound it slips while V pushes outwards faster than the bound recedes: g follows the load, V is held.
+// On its kinetic bound it slips while V pushes outwards faster than the bound recedes.
 static void it_slips_where_V_outruns_the_bound(void) {
     int slips = 0, sticks = 0;
     for (int k = 0; k < 20 * KINDS; k++) {
@@ -369,22 +394,24 @@ static void it_slips_where_V_outruns_the_bound(void) {
         one.made.friction.sigma_2 = 0.0;
         const FcCoefficients at = fc_scene_coefficients(&one.scene, 0.0);
         const double D = at.limit / at.sigma;
-        const double k_t = 1e-4 * PERIOD;
-        const double D_rate = (bound(&one.scene, k_t) - bound(&one.scene, -k_t)) / (2.0 * k_t);
-        for (double side = -1.0; side < 2.0; side += 2.0) {
+        const double D_rate = slope(bound, &one.scene, 0.0);
+        for (int side = -1; side <= 1; side += 2) {
             const double outruns = side * at.V - D_rate;
             if (fabs(outruns) < 1e-3 * (fabs(at.V) + fabs(D_rate))) {
                 continue;
             }
-            const double expected = outruns > 0.0 ? side : 0.0;
-            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * D) == expected);
-            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * 1.1 * D) == expected);
-            CHECK(fc_scene_slip_side(&one.scene, 0.0, side * (1.0 - 1e-9) * D) == 0.0);
-            CHECK_WITHIN(fc_scene_deflection_rate(&one.scene, 0.0, side * D),
-                         expected != 0.0 ? side * D_rate : at.V, 1e-4 * (fabs(at.V) + fabs(D_rate)));
-            CHECK_NEAR(fc_scene_outputs(&one.scene, 0.0, side * 2.0 * D).F_t, side * at.limit, 1e-13);
-            slips += expected != 0.0;
-            sticks += expected == 0.0;
+            const int expected = outruns > 0.0 ? side : 0;
+            const FcBristle reached = fc_reach(&one.scene, (FcBristle){side * 1.1 * D, side});
+            CHECK_NEAR(reached.delta, side * D, 1e-15);
+            CHECK(reached.slips == expected);
+            CHECK(fc_regime(&one.scene, reached) == (FcRegime)expected);
+            CHECK(fc_regime(&one.scene, (FcBristle){side * (1.0 - 1e-9) * D, side}) == FC_FREE);
+            const FcMotion motion = motion_of(&one.scene, reached);
+            CHECK_WITHIN(motion.rates.delta, expected != 0 ? side * D_rate : at.V,
+                         1e-7 * (fabs(at.V) + fabs(D_rate)));
+            CHECK_NEAR(motion.F_t, side * at.limit, 1e-13);
+            slips += expected != 0;
+            sticks += expected == 0;
         }
     }
     CHECK(slips > 100 && sticks > 100);
@@ -395,7 +422,7 @@ int main(void) {
     it_slips_where_V_outruns_the_bound();
     limits_of_the_laws();
     forces_of_the_laws();
-    an_elastic_plastic_bristle_slips();
+    an_elastic_plastic_bristle_breaks_away();
     a_bristle_slips_along_a_limit_that_follows_the_load();
     surfaces_float_on_the_load();
     rates_are_derivatives();

@@ -33,7 +33,8 @@ static void draw(Slider* slider) {
     const double end = fc_drive_next_event(&drive, start, 1e-4).time;
     const FcVelocity V[] = {fc_drive_velocity(&drive, start), fc_drive_velocity(&drive, end)};
     const FcCoefficients at[] = {fc_scene_coefficients(scene, start), fc_scene_coefficients(scene, end)};
-    slider->interval = fc_interval_make(scene, scene, end, 1e-3);
+    const FcSolverOptions options = {.tolerance = 1e-3, .force = LIMIT};
+    slider->interval = fc_interval_make(scene, scene, end, &options);
     slider->stretch = (FcStretch){.interval = &slider->interval,
                                   .start = start,
                                   .end = end,

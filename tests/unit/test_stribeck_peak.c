@@ -109,7 +109,8 @@ int main(void) {
     for (int i = 0; i < SCENES; i++) {
         const double h = random_log(0.05, 2.0) / F;
         const FcScene scene = random_scene(h);
-        const FcInterval interval = fc_interval_make(&scene, &scene, h, random_log(1e-12, 1e-3));
+        const FcSolverOptions options = {.tolerance = random_log(1e-12, 1e-3), .force = 55.0};
+        const FcInterval interval = fc_interval_make(&scene, &scene, h, &options);
         CHECK_NEAR(interval.saturation, 55.0 / contact.sigma * friction.staticRatio, 1e-15);
         double start = 0.0;
         while (start < h) {

@@ -91,7 +91,7 @@ def sampled(samples_per_period: int, sigma: float, linear: bool, periods: int = 
     kind = "linear" if linear else "held"
     return Case(
         f"sampled-{samples_per_period}-{kind}-{sigma:.0e}".replace("+", ""),
-        f"V, d sampled {samples_per_period} per period, {kind}, σ {sigma:.0e}".replace("e+", "e"),
+        f"{kind} samples, σ {sigma:.0e} N/m".replace("e+", "e"),
         {"contact.stiffnessScale": sigma / STIFFNESS_PRINTED},
         step=PERIOD / samples_per_period,
         count=count,
@@ -108,7 +108,7 @@ def cases() -> list[Case]:
         *(vibrating(sigma) for sigma in SIGMAS),
         Case(
             "vibrating-V",
-            "V vibrates, constant σ 2.5e6 N/m",
+            "V vibrates, σ 2.5e6 N/m",
             {"vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.5e6},
             step=VIBRATING_STEP,
             starts=(0.0, 0.23 * PERIOD, 0.27 * PERIOD),
@@ -123,7 +123,7 @@ def cases() -> list[Case]:
         Case("held", "no vibration, V and d held", {}, step=1e-6, count=16, inputs={"V": steps, "d": gaps}),
         Case(
             "linear",
-            "presliding hysteresis, V linear",
+            "presliding, V linear",
             {"contact.model": "Constant", "contact.sigma": 2.5e6},
             step=5e-6,
             count=40,

@@ -49,6 +49,7 @@ class Job:
     inputs: Mapping[str, np.ndarray] = field(default_factory=dict)  # count + 1 samples each
     linear: bool = False  # inputs move linearly between their samples; else held over a step
     budget: float = 0.02  # s of CPU time for repetitions
+    calls: bool = False  # steps of the length 0: what the calls of the FMU cost
 
 
 @dataclass(frozen=True)
@@ -140,6 +141,7 @@ def _steps(job: Job) -> list[str]:
         f"step {job.step!r}",
         f"count {job.count}",
         f"budget {job.budget!r}",
+        f"calls {int(job.calls)}",
         f"linear {int(job.linear)}",
     ]
 
@@ -204,7 +206,7 @@ def renew_docs(pictures: Sequence[Path]) -> list[Path]:
 
 
 def wide_console() -> Console:
-    """For tables: not cut to 80 columns where the output is no terminal."""
+    """For tables: not cut to 80 columns if the output is not a terminal."""
     console = Console()
     return console if console.is_terminal else Console(width=120)
 

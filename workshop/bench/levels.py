@@ -47,7 +47,9 @@ def largest_errors(
         period = 1.0 / scene.f
         starts = [phase * period for phase in phases] if scene.vibrates else [0.0]
         runs = [
-            (start, delta) for start in starts for delta in (0.0, float(settled(scene, MP.mpf(start), 0)))
+            (start, delta)
+            for start in starts
+            for delta in (0.0, float(settled(scene, MP.mpf(start), 0).delta))
         ]
     errors = np.zeros(2)
     for start, delta in runs:

@@ -1,40 +1,28 @@
-"""Solvers that the default is compared with: Radau IIA and ARKODE that stop at reversals, CVODE with its
-defaults, scipy, an FMU made with PythonFMU.
+"""Solvers that the default is compared with: Radau IIA of orders 5, 9 and 13 that stops at reversals, CVODE
+with its defaults, and scipy's Radau.
 
-All solve y = (sigma_ref delta / F_C, integral of F_t dt / F_C) or its equal. Those in Python and CVODE do not
-know where V reverses.
+All solve y = (sigma_ref delta / F_C, integral of F_t dt / F_C) or its equal. CVODE and scipy do not know when
+V reverses.
 """
 
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 import time
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
-from fmpy import extract, read_model_description
-from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave
 from scipy.integrate import solve_ivp
 
-from frictioncontact.errors import UserError
 from workshop.bench.cases import Case
 from workshop.bench.driver import Bench, Outcome, failed
-from workshop.project import ROOT
 from workshop.reference.solution import stiffness
 from workshop.reference.start_values import scene_of
 
-SCIPY = ("Radau", "BDF", "LSODA")
 PLAIN_PROGRAMS = {
-    "Radau IIA": "plain_radau",
-    "ARKODE implicit": "plain_arkode implicit",
-    "ARKODE explicit": "plain_arkode explicit",
+    "Radau 5": "plain_radau_5",
+    "Radau 9": "plain_radau_9",
+    "Radau 13": "plain_radau_13",
     "plain CVODE": "plain_cvode",
 }
 
@@ -96,8 +84,8 @@ class Equation:
         return (V - abs(V) * ratio) * v["sigma"] / v["F_C"], ratio
 
 
-def scipy_solver(case: Case, start: float, method: str, tolerance: float, most_evaluations: int) -> Outcome:
-    """solve_ivp over each communication step; started anew there only where inputs jump or bend."""
+def scipy_radau(case: Case, start: float, tolerance: float, most_evaluations: int) -> Outcome:
+    """solve_ivp with Radau over each communication step; started anew only if inputs jump or bend there."""
     equation = Equation(plain_values(case, tolerance), most_evaluations)
     ends = start + case.step * np.arange(1, case.count + 1)
     spans = [(start, ends[-1], ends)] if not case.inputs else [(e - case.step, e, [e]) for e in ends]
@@ -114,7 +102,9 @@ def scipy_solver(case: Case, start: float, method: str, tolerance: float, most_e
             atol = (tolerance, tolerance * case.step)
             with warnings.catch_warnings():  # its numerical Jacobian overflows where the contact is stiff
                 warnings.simplefilter("ignore", RuntimeWarning)
-                result = solve_ivp(equation.slope, (begin, end), y, method, points, rtol=tolerance, atol=atol)
+                result = solve_ivp(
+                    equation.slope, (begin, end), y, "Radau", points, rtol=tolerance, atol=atol
+                )
             if not result.success:
                 return failed(str(result.message))
             y = result.y[:, -1]
@@ -129,59 +119,3 @@ def scipy_solver(case: Case, start: float, method: str, tolerance: float, most_e
     F_mean = F_C * np.diff(impulse, prepend=0.0) / case.step
     per_step = np.array([wall, cpu, equation.evaluations]) / case.count
     return Outcome(F_C * ratio * scaled, F_mean, *map(float, per_step))
-
-
-class PythonFmu:
-    """bench/python_fmu.py, built with PythonFMU and unpacked."""
-
-    def __init__(self, folder: Path) -> None:
-        command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(ROOT / "bench" / "python_fmu.py")]
-        done = subprocess.run([*command, "-d", str(folder)], capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise UserError(f"PythonFMU can't build bench/python_fmu.py: {done.stderr[-1000:]}")
-        self.directory = extract(str(folder / "PythonFriction.fmu"), unzipdir=str(folder / "unzipped"))
-        self.description = read_model_description(self.directory, validate=False)
-        self.numbers = {v.name: v.valueReference for v in self.description.modelVariables}
-
-    def run(self, case: Case, start: float, tolerance: float) -> Outcome:
-        if case.linear:
-            return failed("has no input derivatives")
-        slave = FMU2Slave(
-            guid=self.description.guid,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            unzipDirectory=self.directory,
-            instanceName="python",
-        )
-        slave.instantiate()
-        try:
-            slave.setupExperiment(startTime=start)
-            for name, value in plain_values(case, tolerance).items():
-                slave.setReal([self.numbers[name]], [value])
-            slave.enterInitializationMode()
-            slave.exitInitializationMode()
-            return self._steps(case, start, slave)
-        except FMICallException:
-            return failed("LSODA failed in do_step")
-        finally:
-            slave.terminate()
-            slave.freeInstance()
-
-    def _steps(self, case: Case, start: float, slave: FMU2Slave) -> Outcome:
-        outputs = [self.numbers["F_t"], self.numbers["F_t_mean"]]
-        rows = []
-        cpu, wall = time.thread_time(), time.perf_counter()
-        for k in range(case.count):
-            for name, samples in case.inputs.items():
-                slave.setReal([self.numbers[name]], [float(samples[k])])
-            slave.doStep(start + k * case.step, case.step)
-            rows.append(slave.getReal(outputs))
-        wall, cpu = time.perf_counter() - wall, time.thread_time() - cpu
-        F, F_mean = np.array(rows).T
-        evaluations = slave.getReal([self.numbers["evaluations"]])[0]
-        return Outcome(F, F_mean, wall / case.count, cpu / case.count, evaluations / case.count)
-
-
-@contextmanager
-def python_fmu() -> Iterator[PythonFmu]:
-    with TemporaryDirectory(prefix="friction-python-fmu-") as folder:
-        yield PythonFmu(Path(folder))

@@ -28,7 +28,7 @@ def draw_map(
     rows: Sequence[Mapping[str, object]], edges: Sequence[Mapping[str, object]], folder: Path
 ) -> list[Path]:
     methods = list(dict.fromkeys(str(row["method"]) for row in rows))
-    figure, axes = style.subplots(size=(8.5, 3.8))
+    figure, axes = style.subplots(size=(6.4, 4.2))
     for i, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
         z = np.array([row["z"] for row in own], dtype=float)
@@ -52,7 +52,7 @@ def draw_map(
         Line2D([], [], color=style.BLACK, label="limit in theory"),
         Line2D([], [], color=style.BLACK, marker="x", linestyle="", label="measured"),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=7)
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return style.save_both(figure, folder, "stability")
 
 
@@ -63,13 +63,13 @@ def draw_coupled(
     belt: Belt,
     folder: Path,
 ) -> list[Path]:
-    figure, (motion, panel) = style.subplots(1, 2, size=(10.0, 4.0))
+    figure, (motion, panel) = style.subplots(2, 1, size=(6.4, 7.2))
     t = np.linspace(0.0, belt.end, 1000)
     x, _, F = reference(t)
     motion.plot(1e3 * t, F / belt.F_C, color=style.BLACK, label=r"$F_t / F_C$")
     motion.plot(1e3 * t, belt.k * x / belt.F_C, color=style.GREEN, label=r"$k x / F_C$")
     motion.set_xlabel("time [ms]")
-    motion.set_title("Mass on a belt that goes to and fro, solved as one system")
+    motion.set_title("Mass on a belt that moves to and fro, solved as one system")
     motion.legend()
     for coupling, colour in COUPLING.items():
         own = [row for row in errors if row["coupling"] == coupling]
@@ -93,6 +93,6 @@ def draw_coupled(
     panel.xaxis.set_minor_formatter(NullFormatter())
     panel.set_xlabel("communication step, or time per call in model exchange [s]")
     panel.set_ylabel("largest error of $F_t$ over $F_C$")
-    panel.set_title("Jacobi master; dashed: stable in stick up to here")
+    panel.set_title("Jacobi master; dashed: stable up to here while it sticks")
     panel.legend()
     return style.save_both(figure, folder, "coupled")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from rich.table import Table
 from frictioncontact.command import finish, progress_bar, say_written, write_csv
 from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, SEPARATION
-from workshop.bench import figures, periodic_means, releases
+from workshop.bench import figures, releases
 from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
 from workshop.bench.driver import (
     Bench,
@@ -27,19 +28,22 @@ from workshop.bench.driver import (
     write_machine,
 )
 from workshop.bench.grade import FIXED_STEP, Point, grade_point
-from workshop.bench.peers import PLAIN_PROGRAMS, SCIPY, PythonFmu, plain, python_fmu, scipy_solver
+from workshop.bench.peers import PLAIN_PROGRAMS, plain, scipy_radau
+from workshop.project import ROOT
 
 DESCRIPTION = """\
-Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of order 5
-and ARKODE that stop at reversals, CVODE with its defaults, scipy's Radau, BDF and LSODA, an FMU made with
-PythonFMU) over tolerances or steps: CPU and wall time, evaluations of the right-hand side, and the largest
-error of F_t and of its mean against an independent reference. Then what gives the mean of the periodic state
-(the default, harmonic balance, a closed form), the error against the communication step for held and linear
-inputs, and the cost of one step against the number of vibration periods in it."""
+Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
+5, 9 and 13 that stops at reversals, CVODE with its defaults, scipy's Radau) over tolerances or steps: CPU and
+wall time, evaluations of the right-hand side, and the largest error of F_t and of its mean against an
+independent reference. The peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is
+added to theirs. Then the error against the communication step for held and linear inputs, and the cost of
+one step against the number of vibration periods in it."""
 
-MATCHED_ERROR = 1e-9
-SLOW = 5e-4  # s per period: what takes longer is measured once
-ACCURACIES = tuple(10.0**-k for k in range(2, 13))
+PAGE = ROOT / "docs" / "numerics.md"
+MATCHED_ERRORS = (1e-6, 1e-9)
+DEFAULT, CALLS, BARE = "collocation", "calls", "best Radau without calls"
+RADAU = ("Radau 5", "Radau 9", "Radau 13")
+SLOW = 5e-4  # s per period: a slower setting is measured once
 
 
 @dataclass(frozen=True)
@@ -47,12 +51,11 @@ class Effort:
     """How much is measured."""
 
     tolerances: Sequence[float]  # of the default, cvode and the peers in C
-    slow_tolerances: Sequence[float]  # of what runs in Python
+    slow_tolerances: Sequence[float]  # of the peer in Python
     steps: Sequence[int]  # internal steps per communication step
     budget: float  # s of CPU time for one setting in one round
     rounds: int  # in which everything in C takes turns; the least time counts
-    most_evaluations: int  # of scipy's solvers in one run
-    scipy: Sequence[str]
+    most_evaluations: int  # of the peer in Python in one run
 
 
 FULL = Effort(
@@ -62,11 +65,8 @@ FULL = Effort(
     0.001,
     4,
     15_000,
-    SCIPY,
 )
-QUICK = Effort(
-    [1e-3, 1e-6, 1e-9, 1e-12], [1e-3, 1e-6], [1, 16, 256, 4096], 0.001, 2, 1500, ("Radau", "LSODA")
-)
+QUICK = Effort([1e-3, 1e-6, 1e-9, 1e-12], [1e-3, 1e-6], [1, 16, 256, 4096], 0.001, 2, 1500)
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Task:
     slow: bool = False  # it runs in Python: once, from one start
 
 
-def tasks(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iterator[Task]:
+def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[Task]:
     def fmu(**settings: Value) -> Callable[[float], Outcome]:
         return lambda start: bench.run(case.job(start, effort.budget, **settings))
 
@@ -98,30 +98,28 @@ def tasks(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> Iterat
         for method in FIXED_STEP:
             yield Task(method, steps, fmu(solver__method=method, solver__stepSize=case.step / steps))
     for tolerance in effort.slow_tolerances:
-        for method in effort.scipy:
-            yield Task(
-                f"scipy {method}",
-                tolerance,
-                lambda start, method=method, tolerance=tolerance: scipy_solver(
-                    case, start, method, tolerance, effort.most_evaluations
-                ),
-                slow=True,
-            )
         yield Task(
-            "PythonFMU",
+            "scipy Radau",
             tolerance,
-            lambda start, tolerance=tolerance: python.run(case, start, tolerance),
-            True,
+            lambda start, tolerance=tolerance: scipy_radau(case, start, tolerance, effort.most_evaluations),
+            slow=True,
         )
 
 
-def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> list[Point]:
-    """Every method at every setting, each with its least time of all rounds."""
+def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
+    """Every method at every setting, each with its least time of all rounds.
+
+    The first point is that of the calls, with no error: steps of length 0, whose time the peers' hold too.
+    """
     references = {start: expected(case, start) for start in case.starts}
     one = {case.starts[0]: references[case.starts[0]]}
-    planned = list(tasks(bench, python, case, effort))
+    planned = list(tasks(bench, case, effort))
     points: list[Point] = []
+    empty = replace(case.job(case.starts[0], effort.budget), calls=True)
+    calls = bench.run(empty)
     for turn in range(effort.rounds):
+        again = bench.run(empty)
+        calls = replace(again, cpu=min(again.cpu, calls.cpu), wall=min(again.wall, calls.wall))
         for k, task in enumerate(planned):
             if turn and (task.slow or points[k].failure or points[k].cpu > SLOW):
                 continue
@@ -133,7 +131,13 @@ def measure(bench: Bench, python: PythonFmu, case: Case, effort: Effort) -> list
                 points[k] = replace(
                     point, cpu=min(point.cpu, points[k].cpu), wall=min(point.wall, points[k].wall)
                 )
-    return points
+    scale = PERIOD / case.step
+    cpu, wall = scale * calls.cpu, scale * calls.wall
+    peers = (*PLAIN_PROGRAMS, "scipy Radau")
+    return [
+        Point(case.name, CALLS, 0.0, math.nan, math.nan, cpu, wall, 0.0),
+        *(replace(p, cpu=p.cpu + cpu, wall=p.wall + wall) if p.method in peers else p for p in points),
+    ]
 
 
 def cost_at(points: Sequence[Point], error: float) -> float:
@@ -150,35 +154,6 @@ def cost_at(points: Sequence[Point], error: float) -> float:
         return front[0].cpu
     errors = [-math.log(max(p.error, 1e-17)) for p in front]
     return math.exp(np.interp(-math.log(error), errors, [math.log(p.cpu) for p in front]))
-
-
-def price(points: Sequence[Point], accuracies: Sequence[float] = ACCURACIES) -> list[dict[str, object]]:
-    """What the default costs over the cheapest other method, in every scene at every accuracy.
-
-    A setting reaches an accuracy if its error does; a fixed step only if the next smaller one does too, so
-    that luck at one step does not count. Where nothing else reaches it, `ratio` is 0; where the default does
-    not, NaN.
-    """
-    rows: list[dict[str, object]] = []
-    for case in dict.fromkeys(p.case for p in points):
-        for accuracy in accuracies:
-            costs = {}
-            for method in dict.fromkeys(p.method for p in points):
-                own = sorted(
-                    (p for p in points if p.case == case and p.method == method and not p.failure),
-                    key=lambda p: p.setting,
-                )
-                errors = [p.error for p in own]
-                if method in FIXED_STEP:
-                    errors = [max(pair) for pair in zip(errors, [*errors, math.inf][1:], strict=True)]
-                reached = [p.cpu for p, error in zip(own, errors, strict=True) if error <= accuracy]
-                if reached:
-                    costs[method] = min(reached)
-            default = costs.pop("collocation", math.nan)
-            rival = min(costs, key=costs.__getitem__, default="")
-            ratio = default / costs[rival] if rival else 0.0 * default
-            rows.append({"case": case, "accuracy": accuracy, "cheapest_other": rival, "ratio": ratio})
-    return rows
 
 
 def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
@@ -252,51 +227,74 @@ def held_step(bench: Bench, quick: bool) -> Outcome:
 
 
 def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
-    """Cost of each method over that of collocation at the matched error."""
-    methods = [m for m in dict.fromkeys(p.method for p in points) if m != "collocation"]
-    rows = []
-    for case in dict.fromkeys(p.case for p in points):
-        own = {m: [p for p in points if p.case == case and p.method == m] for m in (*methods, "collocation")}
-        base = cost_at(own["collocation"], MATCHED_ERROR)
-        costs = {m: cost_at(own[m], MATCHED_ERROR) / base for m in methods}
-        rows.append({"case": case, "collocation_us_per_period": 1e6 * base, **costs})
+    """Cost of each method over that of collocation at each of the matched errors."""
+    methods = [m for m in dict.fromkeys(p.method for p in points) if m not in ("collocation", CALLS)]
+    rows: list[dict[str, object]] = []
+    for error in MATCHED_ERRORS:
+        for case in dict.fromkeys(p.case for p in points):
+            own = {
+                m: [p for p in points if p.case == case and p.method == m] for m in (*methods, DEFAULT, CALLS)
+            }
+            base = cost_at(own[DEFAULT], error)
+            calls = own[CALLS][0].cpu / base
+            row = {m: cost_at(own[m], error) / base for m in methods}
+            row |= {"calls": calls, BARE: min((row[m] for m in RADAU if m in row), default=math.nan) - calls}
+            rows.append({"error": error, "case": case, "collocation_us_per_period": 1e6 * base, **row})
     return rows
 
 
-COLUMNS: dict[str, Sequence[str]] = {  # of the table of ratios: the least of these methods
-    "Radau IIA": ("Radau IIA",),
-    "ARKODE": ("ARKODE implicit", "ARKODE explicit"),
-    "cvode": ("cvode",),
-    "plain CVODE": ("plain CVODE",),
+COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of these methods
+    **{name: (name,) for name in RADAU},
+    "best, bare": (BARE,),
+    "CVODE": ("plain CVODE",),
     "fixed step": FIXED_STEP,
-    "Python": (*(f"scipy {method}" for method in SCIPY), "PythonFMU"),
 }
 
 
-def ratio_table(rows: Sequence[dict[str, object]]) -> Table:
-    """The best peer of each scene, then the others; the CSV has them all."""
+def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[str]]:
+    """A line a scene: the calls' part of the default's time, and each peer's time over the default's."""
+    return [
+        [
+            str(row["case"]),
+            f"{100 * float(str(row['calls'])):.0f} %",
+            *(cheapest(row, names) for names in COLUMNS.values()),
+        ]
+        for row in rows
+        if row["error"] == error
+    ]
+
+
+def ratio_table(rows: Sequence[dict[str, object]], error: float) -> Table:
     table = Table(
-        title=f"CPU time over that of collocation, both with errors of {MATCHED_ERROR:.0e} F_C at most",
-        title_justify="left",
+        title=f"CPU time over the default's, errors of at most {error:.0e} F_C", title_justify="left"
     )
     table.add_column("scene", no_wrap=True)
-    for heading in ("collocation", "best peer", *COLUMNS):
+    for heading in ("calls", *COLUMNS):
         table.add_column(heading, justify="right")
-    for row in rows:
-        own = f"{row['collocation_us_per_period']:.2f} us"
-        best = cheapest(row, [name for names in COLUMNS.values() for name in names])
-        others = (cheapest(row, names)[0] for names in COLUMNS.values())
-        table.add_row(str(row["case"]), own, " ".join(best), *others)
+    for cells in ratio_cells(rows, error):
+        table.add_row(*cells)
     return table
 
 
-def cheapest(row: dict[str, object], names: Sequence[str]) -> tuple[str, str]:
-    """The least ratio of these methods, and whose it is."""
-    known = {name: float(row[name]) for name in names if not math.isnan(row.get(name, math.nan))}  # type: ignore[arg-type]
+def renew_tables(rows: Sequence[dict[str, object]], titles: Mapping[str, str]) -> Path:
+    """The tables of docs/numerics.md, each under the words that name its error."""
+    text = PAGE.read_text(encoding="utf-8")
+    for error in MATCHED_ERRORS:
+        lines = [["scene", "calls", *COLUMNS], ["---"] * (2 + len(COLUMNS))]
+        lines += [[titles[name], *cells] for name, *cells in ratio_cells(rows, error)]
+        table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+        head = f"errors of at most {error:.0e} `F_C`:\n\n".replace("e-0", "e-")
+        text = re.sub(rf"(?<={re.escape(head)})(?:\|.*\n)*", f"{table}\n", text)
+    PAGE.write_text(text, encoding="utf-8")
+    return PAGE
+
+
+def cheapest(row: dict[str, object], names: Sequence[str]) -> str:
+    """The least ratio of these methods."""
+    known = [float(str(row[name])) for name in names if name in row and not math.isnan(float(str(row[name])))]
     if not known:
-        return "not reached", ""
-    best = min(known, key=known.__getitem__)
-    return f"{known[best]:.3g}", best
+        return "not reached"
+    return f"{min(known):.3g}" if min(known) < 1000 else f"{min(known):.0f}"
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -315,22 +313,16 @@ def run(options: argparse.Namespace) -> None:
     effort = QUICK if quick else FULL
     chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
     output.mkdir(parents=True, exist_ok=True)
-    with (
-        progress_bar() as progress,
-        open_bench(options.build_dir, progress) as bench,
-        python_fmu() as python,
-    ):
-        task = progress.add_task("Measuring", total=len(chosen) + 5)
+    with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
+        task = progress.add_task("Measuring", total=len(chosen) + 4)
         points: list[Point] = []
         for case in chosen:
             progress.update(task, description=case.name)
-            points += measure(bench, python, case, effort)
+            points += measure(bench, case, effort)
             progress.advance(task)
         step_sizes = step_size_points(bench, quick)
         progress.advance(task)
         periods = period_points(bench, quick)
-        progress.advance(task)
-        means = periodic_means.periodic_means(bench)
         progress.advance(task)
         held = held_step(bench, quick)
         progress.update(task, description="the default against the tolerance")
@@ -342,26 +334,22 @@ def run(options: argparse.Namespace) -> None:
             effort.budget,
         )
     compared = ratios(points)
-    prices = price(points)
     written = [
         write_csv([p.row() for p in points], output / "work-precision.csv"),
         write_csv(compared, output / "work-precision-ratios.csv"),
-        write_csv(prices, output / "work-precision-price.csv"),
         write_csv([p.row() for p in against_tolerance], output / "work-tolerance.csv"),
         write_csv(step_sizes, output / "step-size.csv"),
         write_csv(periods, output / "periods.csv"),
-        write_csv(means, output / "periodic-means.csv"),
         write_machine(output / "machine.json"),
     ]
     titles = {case.name: case.title for case in chosen}
     written += figures.work_precision(points, titles, output)
-    written += figures.price(prices, titles, output)
     written += figures.step_sizes(step_sizes, output)
     written += figures.periods(periods, output)
     if options.docs:
-        written += renew_docs(written)
-    wide_console().print(ratio_table(compared))
-    wide_console().print(periodic_means.table(means))
+        written += [*renew_docs(written), renew_tables(compared, titles)]
+    for error in MATCHED_ERRORS:
+        wide_console().print(ratio_table(compared, error))
     if options.against:
         wide_console().print(releases.table(against_tolerance))
     one, many = (

@@ -47,13 +47,12 @@ class Extent:
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
-    advised: int  # scenes
-    seed: int = 0  # of the hunt and of the advice
+    seed: int = 0  # of the hunt
 
 
-FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, 40)
-QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, 4)
-CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2, 4)
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
+QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -179,13 +178,6 @@ def check_hunt(extent: Extent) -> None:
     )
 
 
-def check_advice(extent: Extent) -> None:
-    """Random scenes against the reference: what scripts/advise recommends holds its promise; its price."""
-    build_fmu()
-    words = [f"--scenes={extent.advised}", f"--seed={extent.seed}"]
-    _run([sys.executable, "-m", "workshop.check.advice", *words])
-
-
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
     valgrind = _tool("valgrind", "valgrind")
@@ -207,12 +199,6 @@ def check_coverage(extent: Extent) -> None:
     _run([*gcovr, "--print-summary", "--fail-under-line", str(LEAST_LINES)])
 
 
-def write_bad_input(extent: Extent) -> None:
-    """Writes docs/bad-input.md anew from the tests' bad calls."""
-    build_fmu()
-    _run([sys.executable, "tests/fmi2/bad_input_page.py"])
-
-
 CHECKS: dict[str, Callable[[Extent], None]] = {
     "sanitize": check_sanitize,
     "threads": check_threads,
@@ -220,10 +206,8 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "fuzz-many": check_fuzz_many,
     "soak": check_soak,
     "hunt": check_hunt,
-    "advice": check_advice,
     "leaks": check_leaks,
     "coverage": check_coverage,
-    "bad-input": write_bad_input,
 }
 IN_CI = ("sanitize", "leaks", "fuzz")
 
@@ -242,7 +226,7 @@ def main() -> None:
         "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
     )
     parser.add_argument("--minutes", type=float, help="of the hunt")
-    parser.add_argument("--seed", type=int, help="of the hunt and the advice; drawn anew when not given")
+    parser.add_argument("--seed", type=int, help="of the hunt; drawn anew when not given")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:

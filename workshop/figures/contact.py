@@ -1,19 +1,12 @@
-"""Figures of the height statistics: what the exponential density costs, and load against separation."""
+"""Figure of the height statistics: what the exponential density costs."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from frictioncontact.gap.heights import (
-    SMALLEST_SEPARATION,
-    area,
-    gaussian,
-    load,
-    separation,
-    stiffness,
-)
+from frictioncontact.gap.heights import area, gaussian
 from frictioncontact.parameters import SEPARATION, Surfaces
-from workshop.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel, Span
+from workshop.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel
 
 NAMES = {
     "exponential": "exponential, elastic-plastic (the FMU)",
@@ -22,7 +15,6 @@ NAMES = {
 }
 COLOURS = {"exponential": BLUE, "gaussian": GREEN, "elastic": ORANGE}
 DASHES = {"exponential": "solid", "gaussian": "dash", "elastic": "dot"}
-TESTED_LOADS = (40.0, 240.0)  # N, Dong and Dapino 2014
 
 
 def areas(points: int = 61) -> Figure:
@@ -73,29 +65,3 @@ def areas(points: int = 61) -> Figure:
         "here, which doubles the elastic area."
     )
     return Figure("heights", "What the exponential height density costs", caption, panels, 3, (14.0, 4.8))
-
-
-def loads(points: int = 61) -> Figure:
-    """Normal load over separation, and the stiffness over load."""
-    surfaces = Surfaces()
-    gaps = np.linspace(SMALLEST_SEPARATION + 0.25, 4.5, points) * surfaces.R_q
-    over_gap, over_load = [], []
-    for m in NAMES:
-        carried = np.array([load(surfaces, d, model=m) for d in gaps])
-        over_gap.append(Line(1e6 * gaps, carried, NAMES[m], COLOURS[m], DASHES[m], 2.2))
-        wanted = np.geomspace(1.0, 3000.0, points)
-        stiff = [stiffness(surfaces, separation(surfaces, P, model=m), model=m) for P in wanted]
-        over_load.append(Line(wanted, stiff, NAMES[m], COLOURS[m], DASHES[m], 2.2))
-    tested = Span(*TESTED_LOADS, "40–240 N, tested by Dong, Dapino 2014")
-    panels = [
-        Panel("Normal load", "separation d [µm]", "load [N]", [*over_gap, tested], y_log=True),
-        Panel("Stiffness of Eq. 3", "load [N]", "σ [N/m]", over_load, x_log=True, y_log=True),
-    ]
-    caption = (
-        "Eq. 9 below the critical interference and Eq. 16 above it, summed over the heights. scripts/gap "
-        "gives d for a load. Elastic asperities carry far more than yielding ones at the same gap, so for "
-        "the same load they stand 5 µm farther apart. Eq. 16 takes the peak pressure for the mean one when "
-        "yielding begins, so the load of a single asperity jumps there by a factor of 3/2; the critical "
-        "interference is so small here that the sum does not show it."
-    )
-    return Figure("load", "Load against separation", caption, panels, 2, (11.0, 4.8))

@@ -27,7 +27,7 @@ V_1 = TABLE_2[1].V_1
 
 def overview(fmu: FrictionFmu, path: Path) -> None:
     """What the vibration does within microseconds, and what a tool that steps at a millisecond sees of it."""
-    figure, (inside, coupled) = style.subplots(1, 2, size=(11.0, 4.2))
+    figure, (inside, coupled) = style.subplots(2, 1, size=(6.8, 6.0))
     _switched_on(inside, fmu)
     _ramped(coupled, fmu)
     style.save(figure, path)
@@ -93,6 +93,7 @@ def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
     axes.set_ylim(0.0, 82.0)
     axes.set_yticks([0, 20, 40, 60])
     axes.set_xlabel("time [ms]")
+    axes.set_ylabel("friction force [N]")
     axes.set_title("The same contact in a tool that steps at 1 ms")
     axes.legend(loc="upper center", ncols=2)
 
@@ -138,14 +139,16 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
         axes.fill_between(1e6 * steps, low, high, color=colour, alpha=strength, lw=0, label=name)
     exact = table2.mean_force(fmu, TABLE_2[1], IDENTIFIED)
     axes.axhline(exact, color=style.BLACK, lw=1.0, label=f"mean of the periodic state, {exact:.2f} N")
-    axes.axvline(0.5e6 * PERIOD, color=style.BLACK, lw=1.0, ls="--")
     axes.set_xscale("log")
+    for part, words in ((1 / 20, "1/20 of a period"), (1 / 2, "half a period")):
+        axes.axvline(1e6 * part * PERIOD, color=style.BLACK, lw=1.0, ls="--")
+        axes.text(1.07e6 * part * PERIOD, 62.5, words, fontsize=8.5, va="center")
     for place, text in (
-        (5.0, "resolves the vibration:\nuse $F_t$"),
-        (160.0, "too long for that:\nuse F_t_mean"),
+        (1.6, "use F_t"),
+        (7.9, "F_t or F_t_mean,\nas the plant needs"),
+        (160.0, "use F_t_mean"),
     ):
         axes.text(place, 55.0, text, ha="center", va="center", fontsize=10)
-    axes.text(0.5e6 * PERIOD * 1.07, 62.5, "half a period", fontsize=8.5, va="center")
     axes.set_ylim(0.0, 66.0)
     axes.set_xlim(1e6 * steps[0], 1e6 * steps[-1])
     axes.set_xticks([1, 10, 50, 100, 500, 1000], ["1", "10", "50", "100", "500", "1000"])

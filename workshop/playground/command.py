@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import statistics
 import sys
 from pathlib import Path
-
-from playwright.sync_api import Browser
 
 from frictioncontact.command import shown
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from workshop.browser import chromium
-from workshop.playground.browser import measure, take_pictures
+from workshop.playground.browser import take_pictures
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 
@@ -29,9 +26,6 @@ def main() -> None:
         "-o", "--output", type=Path, default=DEFAULT, metavar="HTML", help="default: build/playground.html"
     )
     parser.add_argument(
-        "--measure", action="store_true", help="open it in Chromium and tell how long pictures take"
-    )
-    parser.add_argument(
         "--pictures", type=Path, metavar="FOLDER", help="open it in Chromium and write four pictures of it"
     )
     options = parser.parse_args()
@@ -39,28 +33,14 @@ def main() -> None:
         text = page_text()
         write_whole(options.output, text)
         print(f"{shown(options.output)}, {len(text.encode()) / 1e3:.0f} kB: open it in a browser")
-        if options.measure or options.pictures:
+        if options.pictures:
             with chromium() as browser:
-                look(browser, options)
+                for path in take_pictures(browser, options.output, options.pictures):
+                    print(shown(path))
     except UserError as error:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {options.output} can't be written: {error.strerror}")
-
-
-def look(browser: Browser, options: argparse.Namespace) -> None:
-    """What needs a browser: measures and pictures."""
-    if options.measure:
-        for what, milliseconds in measure(browser, options.output).items():
-            print(f"{what}: {_spread(milliseconds)}")
-    if options.pictures:
-        for path in take_pictures(browser, options.output, options.pictures):
-            print(shown(path))
-
-
-def _spread(milliseconds: list[float]) -> str:
-    low, middle, high = min(milliseconds), statistics.median(milliseconds), max(milliseconds)
-    return f"median {middle:.1f} ms, from {low:.1f} to {high:.1f} ms in {len(milliseconds)}"
 
 
 if __name__ == "__main__":

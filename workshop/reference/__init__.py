@@ -1,8 +1,9 @@
-"""What a solver is graded against; shares no code with the FMU.
+"""What a solver is graded against: the laws from their formulas; shares no code with the FMU.
 
-- `solution`: quadratures, at 40 digits or in extended precision; grades the FMU and made most of tests/data.
+- `course`: a contact from step to step, whose inputs may jump between them; made tests/data.
+- `solution`: one step, by quadratures in extended precision or at 40 digits.
+- `settled`: the state and the mean force after infinitely many periods.
 - `constant`: closed forms of a constant stiffness; grades periodic means and sensitivities.
-- `collocation`, `stop_bisection`: other ways to the same results; grade `solution` alone (tests/reference).
-- hunt/reference.c: brute force in extended precision; grades the hunt's scenes and, from Python
-  (tests/reference/fast_reference.py), F_t_settled, model exchange and a part of tests/data.
+
+hunt/reference.c is independent of these: brute force in extended precision, which grades the hunt's scenes.
 """

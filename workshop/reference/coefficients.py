@@ -14,7 +14,7 @@ from workshop.reference.contact import Contact, critical_interference, hardness,
 
 
 class ContactCoefficients:
-    """E: about where it stays, within a factor of two [Pa]."""
+    """E: where it starts [Pa]; it stays within a factor of ten."""
 
     def __init__(self, contact: Contact, E: float, arithmetic: Arithmetic) -> None:
         real = arithmetic.real
@@ -25,7 +25,7 @@ class ContactCoefficients:
         # x = lambda omega_c / R_q goes with 1 / E^2
         x_E2 = lam * critical_interference(contact, 1) / R_q
         self.root_x_E = real(MP.sqrt(x_E2))
-        terms = _terms(4 * x_E2 / MP.mpf(E) ** 2, arithmetic)
+        terms = _terms(110 * x_E2 / MP.mpf(E) ** 2, arithmetic)
         # of each term of the series to the one before, over x
         self.ratios = {n: [real(MP.mpf(2) / (n + 2 * k)) for k in range(terms)] for n in (3, 5)}
         self.elastic = real(density * MP.mpf(4) / 3 * MP.sqrt(R * R_q**3 / lam**5))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from workshop.reference.arithmetic import EXTENDED, MP, MULTIPRECISION, gauss_rule
-from workshop.reference.mesh import longest_piece
+from workshop.reference.mesh import load_halvings, longest_piece
 from workshop.reference.scene import Drive, Scene, events
 
 
@@ -14,11 +14,10 @@ def coulomb(scene: Scene, t0: Any, h: Any, delta_0: Any) -> tuple[Any, Any, Any,
     """Deflection (as it was) [m], impulse [N s], work and heat [J]: all its work is heat."""
     h = MP.mpf(h)
     drive = Drive(scene, t0, MULTIPRECISION)
-    corners = [MP.mpf(0), *events(drive, h), h]
-    longest = longest_piece(scene, drive, MP.mpf(0), h)
+    corners = [MP.mpf(0), *sorted([*events(drive, h), *load_halvings(drive, h)]), h]
     begin, size, sign = [], [], []
     for left, right in zip(corners[:-1], corners[1:], strict=True):
-        count = max(1, int(MP.ceil((right - left) / longest)))
+        count = max(1, int(MP.ceil((right - left) / longest_piece(scene, drive, left, right))))
         begin += [left + (right - left) * k / count for k in range(count)]
         size += [(right - left) / count] * count
         sign += [MP.sign(drive.V((left + right) / 2))] * count
@@ -35,8 +34,15 @@ def coulomb(scene: Scene, t0: Any, h: Any, delta_0: Any) -> tuple[Any, Any, Any,
 
 def path(scene: Scene, t0: Any, h: Any) -> Any:
     """Integral of |V| [m]: the work against one newton."""
-    sliding = replace(scene, friction="Coulomb", limit="Constant", F_C=1.0, sigma_2=0.0)
-    return coulomb(sliding, t0, h, 0)[2]
+    return coulomb(replace(without_contact(scene, 1.0), sigma_2=0.0), t0, h, 0)[2]
+
+
+def without_contact(scene: Scene, limit: float) -> Scene:
+    """The same motion against a constant limit [N], whatever the load does."""
+    contact = replace(scene.contact, model="Constant")
+    return replace(
+        scene, friction="Coulomb", limit="Constant", F_C=limit, input="Separation", contact=contact
+    )
 
 
 def mean_limit(scene: Scene, t0: Any, h: Any) -> Any:

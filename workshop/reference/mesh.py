@@ -19,7 +19,7 @@ from workshop.reference.scene import Drive, Scene, events
 def graded_mesh(scene: Scene, t0: Any, h: Any, ratio: float = 2.0, layers: Iterable[Any] = ()) -> list:
     """Increasing local times from 0 to h, in multiprecision; near a layer neighbours differ by ratio."""
     drive, quick = Drive(scene, t0, MULTIPRECISION), Drive(scene, t0, EXTENDED)
-    layers = [MP.mpf(0), *sorted([*events(drive, h), *layers]), h]
+    layers = [MP.mpf(0), *sorted([*events(drive, h), *load_halvings(drive, h), *layers]), h]
     times = [MP.mpf(0)]
     for left, right in zip(layers[:-1], layers[1:], strict=True):
         if right - left <= MP.mpf(10) ** (8 - MP.dps) * (right + abs(left)):
@@ -36,6 +36,18 @@ def graded_mesh(scene: Scene, t0: Any, h: Any, ratio: float = 2.0, layers: Itera
     if drive.excess != 0:
         times = _resolve_stribeck_velocity(quick, times)
     return times
+
+
+def load_halvings(drive: Drive, h: Any) -> list:
+    """Local times in (0, h) at which a linear load is a half, a quarter ... of its largest value."""
+    if drive.scene.input != "Load" or drive.load_rate == 0:
+        return []
+    ends = drive.load(MP.mpf(0)), drive.load(MP.mpf(h))
+    load, times = max(ends) / 2, []
+    while load > min(ends):
+        times.append((load - drive.load_0) / drive.load_rate)
+        load /= 2
+    return sorted(time for time in times if 0 < time < h)
 
 
 def _resolve_stribeck_velocity(drive: Drive, times: list) -> list:

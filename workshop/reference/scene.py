@@ -58,6 +58,16 @@ class Scene:
         )
 
     @property
+    def drops(self) -> bool:
+        """Whether break-away is a drop, from the static to the kinetic bound."""
+        return self.friction == "ElasticPlastic" and self.staticRatio > 1.0
+
+    @property
+    def needs_load(self) -> bool:
+        """Whether an open contact has no bristle."""
+        return self.limit == "Load" or self.contact.model != "Constant"
+
+    @property
     def held(self) -> bool:
         return not any((self.V_rate, self.d_rate, self.E_rate, self.load_rate))
 
@@ -170,10 +180,14 @@ class Drive:
         return self.coulomb(tau) * self.curve(tau)
 
     def bound(self, tau: Any) -> Any:
-        """D [m] of |delta|: g / sigma in ElasticPlastic, else that with the largest g at any V."""
+        """D [m] of |delta|: g / sigma in ElasticPlastic (kinetic), else with the largest g at any V."""
         sticks = self.scene.friction == "ElasticPlastic"
         largest = self.curve(tau) if sticks else 1 + self.excess
         return self.coulomb(tau) * largest / self.sigma(tau)
+
+    def static_bound(self, tau: Any) -> Any:
+        """D_s [m], which a bristle that sticks breaks away at, whatever V is."""
+        return self.coulomb(tau) * (1 + self.excess) / self.sigma(tau)
 
     def bound_over_limit(self, tau: Any) -> Any:
         """k of a bristle on its bound, which relaxes by k |V| [m/s]: exactly 1 in Dahl, 0 where it sticks."""

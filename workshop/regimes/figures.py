@@ -24,7 +24,6 @@ from workshop.figure import (
     Span,
 )
 from workshop.regimes.mean import (
-    PARAMETERS,
     REGIMES,
     Probe,
     Regime,
@@ -83,33 +82,12 @@ def means(probe: Probe, quick: bool) -> Figure:
         Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)),
     ]
     caption = (
-        "Mean friction in the periodic state. Stiff contacts behave as Coulomb's, for κ above 100 with d "
-        "constant and above 3000 with d moving this much. Soft ones, below 0.1, hold a nearly constant "
-        "deflection and have a limit of their own: π²/4 times Coulomb's mean at small ζ. Beyond ζ = 1 "
-        "nothing reverses and, with d constant, the mean is F_C."
+        "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean: at κ = 100 within "
+        "0.001 F_C for ζ = 0.3, but not near ζ = 1; with d moving this much only above 3000. Soft ones, "
+        "below 0.1, keep a nearly constant deflection and have a limit of their own: π²/4 times Coulomb's "
+        "mean at small ζ. Beyond ζ = 1 nothing reverses and, with d constant, the mean is F_C."
     )
     return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
-
-
-def sensitivities(probe: Probe, quick: bool) -> Figure:
-    """A map per parameter."""
-    n = STEPS_QUICK if quick else 33
-    kappas, zetas = np.geomspace(1e-2, 1e4, n), np.geomspace(1e-2, 0.99, n)
-    panels = []
-    for name in PARAMETERS:
-        values = probe.sensitivity(on_map(kappas, zetas, ALPHA, PHASE), name)
-        top = 2.0 if name == "d" else 0.5
-        levels = (-1.0, -0.1, 0.1, 1.0) if name == "d" else (-0.2, -0.1, 0.0, 0.1, 0.2)
-        unit = "per rad" if name == "phase_d" else "per 100 %"
-        item = Map(kappas, zetas, values, f"of F_C, {unit}", -top, top, levels, True)
-        panels.append(Panel(f"To {SYMBOLS[name]}", KAPPA, ZETA, [item], True, True))
-    caption = (
-        "Change of the mean friction, in parts of F_C, per relative change of each quantity (the phase: "
-        "per rad), with a_d / R_q = 0.18 and a phase of 225° at d = 14 µm. Read 0.1 as: one percent more "
-        "of it changes the mean by 0.1 % of F_C. Note the wider scale of d: the stiffness follows its 17th "
-        "power here. E acts through the stiffness alone, so it shows minus a seventeenth of what d shows."
-    )
-    return Figure("sensitivity", "What the mean friction is sensitive to", caption, panels, 4, (18.0, 9.0))
 
 
 def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
@@ -145,26 +123,6 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
     return Figure("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
 
 
-def phases(probe: Probe, quick: bool) -> Figure:
-    """Mean friction over phase and amplitude of the separation."""
-    n = 25 if quick else 73
-    angles, alphas = np.linspace(0.0, 360.0, n), np.linspace(0.0, 0.5, n)
-    panels = []
-    for kappa, zeta in ((0.5, 0.35), (5.0, 0.1), (50.0, 0.02)):
-        values = probe.mean(Regime(kappa, zeta, alphas[:, None], np.radians(angles)))
-        top = max(0.1, round(float(np.max(np.abs(values))), 1))
-        item = Map(
-            angles, alphas, values, "mean F_t / F_C", -top, top, (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4), True
-        )
-        panels.append(Panel(f"κ = {kappa:g}, ζ = {zeta:g}", "phase of d [deg]", "a_d / R_q", [item]))
-    caption = (
-        "When the separation moves with the velocity, the phase decides: the contact is stiff on the way "
-        "in one direction and soft on the way back. Blue is negative mean friction: the vibration drives "
-        "the sliding, as in an ultrasonic motor."
-    )
-    return Figure("phase", "Phase and amplitude of the moving separation", caption, panels, 3, (15.0, 4.6))
-
-
 def regimes(probe: Probe, quick: bool) -> Figure:
     """Which model is enough, over kappa and zeta, for three amplitudes of the separation."""
     n = 21 if quick else 61
@@ -193,10 +151,11 @@ def _table_2_points() -> list[Line]:
     from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
 
     points = []
-    for parameters in (PRINTED, IDENTIFIED):
+    for parameters, colour in ((PRINTED, INK), (IDENTIFIED, ORANGE)):
         V_1 = TABLE_2[2].V_1
         kappa = parameters.stiffness * V_1 / (2.0 * math.pi * FREQUENCY * COULOMB_FORCE)
-        points.append(Line([kappa], [parameters.V / V_1], "", INK, markers=True))
+        label = f"row 3 of Table 2, {parameters.name}"
+        points.append(Line([kappa], [parameters.V / V_1], label, colour, markers=True))
     return points
 
 

@@ -19,7 +19,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PAGE = "playground.html"
-DATA = ("table2.csv", "dry.csv", "measurements")
+DATA = ("contacts.toml", "table2.csv", "dry.csv", "measurements")
 
 
 class BundleHook(BuildHookInterface):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import platform
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -12,11 +11,9 @@ from pathlib import Path
 from rich.progress import Progress
 
 from frictioncontact.command import add_fmu, add_output, command_line, finish, progress_bar
-from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.table2.rows import results
-from workshop.browser import find_browser
 from workshop.build import build_fmu
 from workshop.figure import Figure
 from workshop.figures import contact as contact_figures
@@ -25,7 +22,7 @@ from workshop.paper.claims import claims
 from workshop.project import ROOT
 from workshop.regimes import figures as regime_figures
 from workshop.regimes.mean import Probe
-from workshop.report import browser, images, recovery, text
+from workshop.report import images, recovery, text
 from workshop.report.page import Section, page
 
 DESCRIPTION = """\
@@ -40,18 +37,13 @@ IN_DOCS = ("fig-04", "fig-13", "heights", "mean", "regimes", "reduction", "sensi
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("scripts/report", DESCRIPTION)
-    parser.add_argument("--quick", action="store_true", help="coarser maps, the page without the image files")
+    parser.add_argument("--quick", action="store_true", help="coarser maps, no PNG")
     add_fmu(parser)
     add_output(parser, ROOT / "build" / "report")
     parser.add_argument(
         "--docs",
         action="store_true",
         help="also renew the figures that docs/ shows, docs/pictures/paper-*.png",
-    )
-    parser.add_argument(
-        "--screenshots",
-        action="store_true",
-        help="also check the page in headless Chromium and write screens/*.png: three widths, light and dark",
     )
     return parser.parse_args(argv)
 
@@ -69,29 +61,19 @@ def run(options: argparse.Namespace) -> None:
             sections = text.sections(list(results(fmu)), claims(fmu), figures)
         index = options.output / "index.html"
         _write(index, sections, options.quick)
-        written = [index]
-        if not options.quick or options.docs:
-            written += _draw(figures, options, progress)
-        if options.screenshots:
-            written += _screenshots(index, progress)
-    print(f"Written: {index} and {len(written) - 1} figures")
-    if find_browser() is None:
-        print("No Chromium on this machine: the page was not looked at in a browser.")
+        written = _draw(figures, options, progress)
+    print(f"Written: {index} and {len(written)} figures")
 
 
 def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Figure]]:
     for draw in paper_figures.FIGURES:
         yield lambda draw=draw: draw(fmu)
-    yield lambda: text.table_2_waves(fmu)
     yield contact_figures.areas
-    yield contact_figures.loads
     for draw in (
         regime_figures.means,
         regime_figures.regimes,
         regime_figures.reduction,
-        regime_figures.sensitivities,
         regime_figures.sensitivity_cuts,
-        regime_figures.phases,
     ):
         yield lambda draw=draw: draw(probe, quick)
     yield lambda: recovery.figure(fmu, 20 if quick else 100)
@@ -110,7 +92,7 @@ def _figures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Fig
 
 
 def _write(path: Path, sections: Sequence[Section], quick: bool) -> None:
-    made = ", ".join(f"{name} {version(name)}" for name in ("FMPy", "numpy", "scipy", "plotly"))
+    made = ", ".join(f"{name} {version(name)}" for name in ("FMPy", "numpy", "scipy", "matplotlib"))
     command = "scripts/report --quick" if quick else "scripts/report"
     footer = (
         f"Made by <code>{command}</code> with FrictionContact.fmu; Python {platform.python_version()}, "
@@ -123,34 +105,15 @@ def _draw(figures: dict[str, Figure], options: argparse.Namespace, progress: Pro
     task = progress.add_task("Drawing", total=len(figures))
     written = []
     for key, figure in figures.items():
-        paths = [options.output / f"{key}.svg", options.output / f"{key}.png"]
+        paths = [options.output / f"{key}.svg"]
+        if not options.quick:
+            paths.append(options.output / f"{key}.png")
+        if options.docs and key in IN_DOCS:
+            paths.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
         images.draw(figure, *paths)
         written += paths
-        if options.docs and key in IN_DOCS:
-            written.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
-            written[-1].parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(paths[1], written[-1])
         progress.advance(task)
     progress.remove_task(task)
-    return written
-
-
-def _screenshots(index: Path, progress: Progress) -> list[Path]:
-    task = progress.add_task("Looking at the page", total=2 * len(browser.WIDTHS))
-    written, problems = [], []
-    for name, width in browser.WIDTHS.items():
-        for theme in ("light", "dark"):
-            path = index.parent / "screens" / f"{name}-{theme}.png"
-            seen = browser.visit(index, width, theme == "dark", path)
-            written.append(path)
-            problems += [f"{name}, {theme}: {problem}" for problem in seen.problems]
-            if not seen.drawn:
-                problems.append(f"{name}, {theme}: not all figures are drawn")
-            if seen.scroll_width > width:
-                problems.append(f"{name}, {theme}: {seen.scroll_width} px wide, the window has {width}")
-            progress.advance(task)
-    if problems:
-        raise UserError("; ".join(problems))
     return written
 
 

@@ -56,7 +56,7 @@ def _panel(axes: Axes, panel: Panel) -> None:
     if panel.y_log:
         axes.set_yscale("log")
         axes.yaxis.set_minor_formatter(NullFormatter())
-    handles = [handle for item in panel.items if (handle := _item(axes, item)) is not None]
+    handles = [handle for item in panel.items for handle in _item(axes, item)]
     if panel.x_range:
         axes.set_xlim(*panel.x_range)
     if panel.y_range:
@@ -68,29 +68,28 @@ def _panel(axes: Axes, panel: Panel) -> None:
         )
 
 
-def _item(axes: Axes, item: Line | Level | Span | Map | Classes) -> Artist | None:
+def _item(axes: Axes, item: Line | Level | Span | Map | Classes) -> list[Artist]:
+    """Draws it; gives what the legend shows of it."""
     match item:
         case Line():
             marker = {"ls": "", "marker": "o", "ms": 5} if item.markers else {"ls": DASHES[item.dash]}
             (line,) = axes.plot(
                 item.x, item.y, color=COLOURS[item.colour], lw=item.width, label=text(item.label), **marker
             )
-            return line if item.label else None
+            return [line] if item.label else []
         case Level():
             line = axes.axhline(
                 item.y, color=COLOURS[item.colour], ls=DASHES[item.dash], lw=1.5, label=text(item.label)
             )
-            return line if item.label else None
+            return [line] if item.label else []
         case Span():
-            return axes.axhspan(
-                item.low, item.high, color=COLOURS[item.colour], alpha=0.15, lw=0, label=text(item.label)
-            )
+            colour = COLOURS[item.colour]
+            return [axes.axhspan(item.low, item.high, color=colour, alpha=0.15, lw=0, label=text(item.label))]
         case Map():
             _map(axes, item)
-            return None
+            return []
         case Classes():
-            _classes(axes, item)
-            return None
+            return _classes(axes, item)
 
 
 def _map(axes: Axes, item: Map) -> None:
@@ -115,7 +114,7 @@ def _map(axes: Axes, item: Map) -> None:
         axes.clabel(lines, fontsize=7.5, fmt="%g")
 
 
-def _classes(axes: Axes, item: Classes) -> None:
+def _classes(axes: Axes, item: Classes) -> list[Artist]:
     axes.grid(visible=False)
     colours = [COLOURS[name] for name in item.colours]
     axes.pcolormesh(
@@ -128,10 +127,5 @@ def _classes(axes: Axes, item: Classes) -> None:
         alpha=0.75,
         rasterized=True,
     )
-    axes.legend(
-        handles=[Patch(color=c, alpha=0.75, label=text(n)) for c, n in zip(colours, item.names, strict=True)],
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.17),
-        ncols=1,
-        fontsize=8.5,
-    )
+    names = map(text, item.names)
+    return [Patch(color=c, alpha=0.75, label=name) for c, name in zip(colours, names, strict=True)]

@@ -7,14 +7,13 @@ from collections.abc import Mapping, Sequence
 
 from markdown_it import MarkdownIt
 
-from frictioncontact.fmu import FrictionFmu
-from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2
-from frictioncontact.table2.rows import Result, conditions, reduction, waves
-from workshop.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
+from frictioncontact.parameters import IDENTIFIED
+from frictioncontact.table2.rows import Result, conditions, reduction
+from workshop.figure import Figure
 from workshop.paper.claims import Claim
 from workshop.project import ROOT
 from workshop.report.page import Section, Table
-from workshop.report.panels import text as as_html
+from workshop.report.page import text as as_html
 
 TITLE = "Friction under ultrasonic vibration: a paper reproduced and corrected"
 
@@ -39,25 +38,25 @@ def sections(table: Sequence[Result], made: Sequence[Claim], figures: Mapping[st
     """The report, top to bottom."""
     return [
         Section("claims", "The claims", CLAIMS_INTRO, [_claims(made)]),
-        Section("table-2", "Table 2", TABLE_2_INTRO, [_table_2(table), figures["table-2"]]),
+        Section("table-2", "Table 2", TABLE_2_INTRO, [_table_2(table)]),
         Section(
             "figures",
             "The figures",
             FIGURES_INTRO,
             [figure for key, figure in figures.items() if key.startswith("fig-")],
         ),
-        Section("heights-and-load", "Heights and load", HEIGHTS_INTRO, [figures["heights"], figures["load"]]),
+        Section("heights-and-load", "Heights and load", HEIGHTS_INTRO, [figures["heights"]]),
         Section(
             "regimes-and-limits",
             "Regimes",
             REGIMES_INTRO,
-            [figures[key] for key in ("regimes", "mean", "reduction", "phase")],
+            [figures[key] for key in ("regimes", "mean", "reduction")],
         ),
         Section(
             "sensitivities",
             "Sensitivities",
             SENSITIVITY_INTRO,
-            [figures["sensitivity-cuts"], figures["sensitivity"]],
+            [figures["sensitivity-cuts"]],
         ),
         Section("errata", "Errata", errata(), []),
         Section("identification", "Identification", IDENTIFY_INTRO, [figures["recovery"]]),
@@ -157,23 +156,3 @@ def _reduced(mean: float, without: float, digits: int) -> str:
 def _html_conditions(row: object) -> str:
     plain = conditions(row).replace("$", "")  # type: ignore[arg-type]
     return re.sub(r"_(\w)", r"<sub>\1</sub>", plain)
-
-
-def table_2_waves(fmu: FrictionFmu) -> Figure:
-    """F_t over two periods for each row, at the printed and at the identified parameters."""
-    panels = []
-    for row in TABLE_2:
-        items = []
-        for parameters, colour, label in ((PRINTED, BLUE, "exact"), (IDENTIFIED, ORANGE, "identified")):
-            run = waves(fmu, row, parameters, samples=160)
-            items.append(Line(1e6 * run["time"], run["F_t"], label, colour))
-        items.append(Level(row.paper_force, "paper's mean", INK, "dot"))
-        title = f"Row {row.number}: " + conditions(row).replace("$", "")
-        limits = (0.0, 150.0) if row.number == 4 else (-62.0, 62.0)
-        panels.append(Panel(title, "time in the periodic state [µs]", "F_t [N]", items, y_range=limits))
-    caption = (
-        "The friction force over two periods of the periodic state. In row 4 the force at the identified "
-        "stiffness passes 2 F_C: while the separation shrinks the contact stiffens faster than its "
-        "deflection can follow. Its mean is 55 N all the same."
-    )
-    return Figure("table-2", "Friction force of the six rows", caption, panels, 3, (15.0, 8.4))

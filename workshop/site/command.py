@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import shutil
+import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -38,13 +40,14 @@ def build(output: Path, older: Sequence[Path] = ()) -> None:
     if output.exists() and not (output / "searchindex.js").exists() and any(output.iterdir()):
         raise UserError(f"{shown(output)} holds something that is no site: give another folder")
     playground = page_text()
+    # the page of wrong calls, from the tests' own calls
+    subprocess.run([sys.executable, "tests/fmi2/bad_input_page.py"], cwd=ROOT, check=True)
     shutil.rmtree(output, ignore_errors=True)
     with tempfile.TemporaryDirectory(prefix="site-") as doctrees:
         names = " ".join(folder.name for folder in older)
         options = ["-q", "-W", "--keep-going", "-c", HERE, "-d", doctrees, "-D", f"older={names}"]
         if build_main([str(word) for word in (*options, ROOT, output)]):
             raise UserError("the site has faults: see above")
-    shutil.copy(output / "README.html", output / "index.html")
     write_whole(output / "playground.html", playground)
     for folder in older:
         shutil.copytree(folder, output / folder.name)

@@ -6,9 +6,11 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from docutils.nodes import Element
+from docutils.nodes import Element, SkipNode, math, math_block
+from latex2mathml.converter import convert
 from sphinx.addnodes import desc_annotation
 from sphinx.application import Sphinx
+from sphinx.writers.html5 import HTML5Translator
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -29,7 +31,9 @@ include_patterns = [
     "data/measurements/README.md",
 ]
 exclude_patterns = [".*", "build"]
+myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
+html_math_renderer = "mathml"
 smartquotes_action = "D"  # dashes only, which lists of parameters are written with
 highlight_language = "none"  # of what names no language
 default_role = "code"  # a name between single backticks, in Markdown as in docstrings
@@ -44,6 +48,8 @@ templates_path = ["templates"]
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = False
+html_additional_pages = {"index": "front.html"}
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_use_index = False  # the search finds names
 html_domain_indices = False
 html_context = {"default_mode": "auto"}  # light or dark, as the browser asks
@@ -59,23 +65,26 @@ SUMMARY = "if (location.protocol === 'file:') DOCUMENTATION_OPTIONS.SHOW_SEARCH_
 
 CONTENTS = {
     "Use": {
-        "In your tool": "docs/using",
+        "First simulation and variables": "docs/using",
+        "FMI tools": "docs/tools",
+        "Python": "docs/python",
+        "Python reference": "docs/api",
         "Model exchange": "docs/model-exchange",
         "Importers": "docs/compatibility",
         "Measured parameters": "docs/measured-parameters",
-        "Playground": "docs/playground",
-        "Python": "docs/api",
+        "The live page": "docs/playground",
     },
     "Examples": {
         "Overview": "examples/README",
         "A mass on a belt": "examples/stick-slip/README",
+        "A friction law": "examples/friction-law/README",
         "A slow plant": "examples/ultrasonic-slider/README",
         "Validation in CI": "examples/ci-validation/README",
         "A million scenarios": "examples/simulate-many/README",
         "Sweep": "examples/sweep/README",
     },
     "Model": {"Equations": "docs/physics", "Validation": "docs/validation", "Errata": "docs/errata"},
-    "Solver": {"Numerics": "docs/numerics", "How it works": "docs/solver"},
+    "Solver": {"Accuracy, speed, stability": "docs/numerics", "How it works": "docs/solver"},
     "Trust": {
         "Reliability": "docs/reliability",
         "Wrong calls and values": "docs/bad-input",
@@ -100,6 +109,18 @@ def toctree(pages: Mapping[str, str], caption: str) -> str:
     return "\n".join(["", "```{toctree}", ":hidden:", f":caption: {caption}", *entries, "```", ""])
 
 
+def with_index(page: str) -> str:
+    """Each table of variables after entries of the index, so that the search finds a name in its table."""
+    parts = re.split(r"^(?=###? )", page, flags=re.MULTILINE)
+    for k, part in enumerate(parts):
+        names = re.findall(r"^\| `([\w.()]+)` \|", part, re.MULTILINE)
+        if names and "| meaning |" in part:
+            title, _, rest = part.partition("\n")
+            entries = "".join(f"   ! single: {name}\n" for name in names)
+            parts[k] = f"{title}\n\n```{{eval-rst}}\n.. index::\n{entries}```\n{rest}"
+    return "".join(parts)
+
+
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
     """What the site adds to the pages, which other hosts of Markdown show as they are."""
     if page == root_doc:
@@ -108,6 +129,8 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
         for version in app.config.older.split():
             link = f'<p><a href="{version}/index.html">The pages of {version}</a></p>'
             source[0] = source[0].replace(f"## {version}\n", f"## {version}\n\n{link}\n")
+    elif page == "docs/using":
+        source[0] = with_index(source[0])
     elif page == "docs/playground":
         title, _, rest = source[0].partition("\n")
         source[0] = f"{title}\n{PLAYGROUND}{rest}"
@@ -125,6 +148,7 @@ def plain_text(app: Sphinx, what: str, name: str, thing: object, options: object
             written += ["::", ""] if begins and not code else []
             code = line.startswith("    ") and (code or begins)
         if not code:
+            line = re.sub(r"^(returns|raises|warns) {2,}(?=\S)", r":\1: ", line)
             line = re.sub(r"^(\w+) {2,}(?=\S)", r":param \1: ", line)
             line = re.sub(r"(`[^`]*`)|([*|]|_(?!\w))", lambda found: found[1] or "\\" + found[2], line)
         written.append(line)
@@ -138,7 +162,23 @@ def without_paths(app: Sphinx, domain: str, kind: str, content: Element) -> None
             annotation.parent.remove(annotation)
 
 
+def visit_math(writer: HTML5Translator, node: math | math_block) -> None:
+    """TeX as MathML, which browsers typeset themselves."""
+    display = "block" if isinstance(node, math_block) else "inline"
+    tight = '<mo lspace="0" rspace="0">&#x0007C;</mo>'  # a bar of |V| is no relation
+    formula = convert(node.astext(), display=display).replace("<mo>&#x0007C;</mo>", tight)
+    writer.body.append(f'<div class="formula">{formula}</div>' if display == "block" else formula)
+    raise SkipNode
+
+
+def to_front_page(app: Sphinx, page: str, template: str, context: dict, tree: Element | None) -> None:
+    """The name of the project at the top of every page leads to the front page."""
+    context["theme_logo_link"] = context["pathto"]("index")
+
+
 def setup(app: Sphinx) -> None:
+    app.add_html_math_renderer("mathml", (visit_math, None), (visit_math, None))
+    app.connect("html-page-context", to_front_page)
     app.add_config_value("older", "", "env")
     app.connect("object-description-transform", without_paths)
     app.connect("autodoc-process-docstring", plain_text)

@@ -21,6 +21,10 @@ static const double CURVE_MOVES = 0.5;
 // What a bristle that is beyond its bound by rounding may be beyond, over the bound: 450 eps.
 static const double ROUNDING_OF_BOUND = 1e-13;
 
+// A bristle that sticks is looked after, in one panel, for about the time in which V moves it by this many bounds. By hand: from one
+// bound to the other are two.
+static const double SOON = 3.0;
+
 // Regimes in a row that take no time before the next panel is taken whatever its push. By hand: a bristle that rounding
 // sends to and fro.
 enum { MOST_IDLE = 4 };
@@ -197,9 +201,7 @@ static double dip(const Slip* slip, int i, double* t) {
 }
 
 // A distance [m] that is seen neither by the force nor, over the path, by work and heat.
-static double unseen(const March* m, const FcPoints* at) {
-    const double sigma = fmax(at->sigma[0], at->sigma[at->count - 1]);
-    const double D = at->limit[0] / at->sigma[0];
+static double unseen(const March* m, double sigma, double D) {
     return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
 }
 
@@ -212,7 +214,7 @@ static double end_of_push(March* m, int side, const Slip* slip) {
         most = fmax(most, fabs(slip->push[i]));
     }
     // What a push that is left over moves the bristle by until it has gone, push^2 / (2 most / h), is not seen.
-    const double near = sqrt(2.0 * unseen(m, &slip->at) * most / slip->at.h);
+    const double near = sqrt(2.0 * unseen(m, slip->at.sigma[0], slip->D[0]) * most / slip->at.h);
     for (int i = 0; i + 1 < slip->at.count; i++) {
         if (slip->push[i + 1] <= 0.0) {
             return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1],
@@ -245,7 +247,10 @@ static void add_slip(March* m, const Slip* slip) {
     note_slip(m, slip->at.h);
     FcStepResult* result = m->result;
     const FcPoints* at = &slip->at;
-    double limit = 0.0, limit_V = 0.0, recedes = 0.0, V_recedes = 0.0;
+    double limit = 0.0;
+    double limit_V = 0.0;
+    double recedes = 0.0;
+    double V_recedes = 0.0;
     for (int i = 1; i <= at->n; i++) {
         const double w = at->rule->weight[i - 1] * at->h;
         limit += w * at->limit[i];
@@ -276,15 +281,31 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
 }
 
+// In ElasticPlastic a slip ends before V turns back, unless the bound falls: where it does, at `end` at the latest.
+static double end_before_reversal(March* m, double push_now, double end) {
+    const double event = relaxes(m->scene) ? end : fc_drive_next_event(&m->scene->drive, m->t, end).time;
+    Pushed of = {m, m->side};
+    const double at_event = event < end ? push(&of, event) : 1.0;
+    m->result->evaluations += 1.0;
+    if (at_event > 0.0) {
+        return end;
+    }
+    const double sigma = fc_scene_stiffness(m->scene, m->t);
+    const double near = sqrt(2.0 * unseen(m, sigma, fabs(m->result->delta)) * push_now / (event - m->t));
+    return fc_root_between(push, &of, m->t, push_now, event, at_event, near, &m->result->evaluations);
+}
+
 // Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.
 static void slip(March* m, double end, bool forced) {
     m->result->evaluations += 1.0;
-    if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) > 0.0)) {
+    const double push_now = forced ? 1.0 : fc_push(m->scene, bound_of_slip(m), m->t, m->side);
+    if (!(push_now > 0.0)) {
         end_slip(m);
         return;
     }
     plan(m);
-    find_cut(m, end);
+    const double slip_end = forced ? end : end_before_reversal(m, push_now, end);
+    find_cut(m, slip_end);
     int rule;
     double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
     for (int tries = 0;; tries++) {
@@ -301,7 +322,9 @@ static void slip(March* m, double end, bool forced) {
             return;
         }
         if (leaves > m->t) {
-            slip_points(m, leaves - m->t, rule, m->side, &panel);
+            if (leaves < m->t + h) {
+                slip_points(m, leaves - m->t, rule, m->side, &panel);
+            }
             add_slip(m, &panel);
             m->t = leaves;
         }
@@ -418,8 +441,14 @@ static void stick(March* m, double end, bool clear) {
         m->cut = end;
     }
     const double smooth_time = slips != 0 ? smooth_time_of_slip(m) : m->smooth_time;
+    double left = m->cut - m->t;
+    if (!clear) { // a stiff bristle is soon at its bound: no panel that is far longer
+        const FcVelocity now = fc_drive_velocity(&m->scene->drive, m->t);
+        const double soon = fc_time_to_move(fabs(now.V), fabs(now.rate), SOON * fc_bound(bound, m->t));
+        left = soon > 0.0 ? fmin(left, soon) : left;
+    }
     int rule;
-    double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time, &rule);
+    double h = fc_plan_panel(&m->planner, left, smooth_time, &rule);
     for (int tries = 0;; tries++) {
         FcPoints at;
         double x[FC_MOST_POINTS];
@@ -431,7 +460,8 @@ static void stick(March* m, double end, bool clear) {
         const FcCourse course = course_of(m, bound, &at, x);
         FcMeeting met = {0, INFINITY};
         if (!clear) {
-            const double close = fc_has_static_friction(m->scene->friction) ? 0.0 : unseen(m, &at);
+            const double close =
+                fc_has_static_friction(m->scene->friction) ? 0.0 : unseen(m, at.sigma[0], course.D[0]);
             met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0], close, &m->result->evaluations);
         }
         if (slips != 0) {
@@ -553,7 +583,12 @@ static void march_between_reversals(March* m, double D) {
         const double x = fc_drive_displacement(drive, sticks_to, end);
         m->result->evaluations += 1.0;
         const double way = D - side * delta;
-        if (!(side * x > way)) {
+        bool goes_on = !(side * x > way);
+        if (!goes_on && way <= ROUNDING_OF_BOUND * D && fc_has_static_friction(scene->friction)) {
+            // It sticks at the static bound if V comes to its reversal faster than it could slip: what is left of the way is rounding.
+            goes_on = !(fc_push(scene, scene, sticks_to, side) > 0.0);
+        }
+        if (goes_on) {
             sticks_to = end;
             delta += x;
             if (end >= m->duration) {

@@ -38,7 +38,7 @@ typedef struct {
 // bristle is within `over` of the bound and pushed, and has not just left it. Adds to *evaluations what it takes.
 FcMeeting fc_first_meeting(const FcCourse* course, double over, double close, double* evaluations);
 
-// p' [m/s] at a point.
-double fc_approach(const FcCourse* course, int side, int point);
+// p' [m/s] at point i.
+double fc_approach(const FcCourse* course, int side, int i);
 
 #endif

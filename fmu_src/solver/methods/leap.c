@@ -49,7 +49,14 @@ static FcBristle on_bound(const FcScene* scene, int side) {
     return (FcBristle){side * fc_bound(&bound, 0.0), fc_has_static_friction(scene->friction) ? side : 0};
 }
 
-// The map of period k of the block; false if it has pieces, or does not begin at the bound where it should.
+// Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k, but for what is not seen.
+static bool lies_on_bound(const Block* block, double k, double delta) {
+    const FcScene scene = scene_at(block, k);
+    const double allowed = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
+    return fabs(on_bound(&scene, block->side).delta - delta) * fc_scene_stiffness(&scene, 0.0) <= allowed;
+}
+
+// The map of period k of the block; false if it has pieces, or does not go from the bound to the bound where it should.
 static bool sample(const Block* block, double k, Numbers* numbers) {
     FcScene scene = scene_at(block, k);
     if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period ||
@@ -69,7 +76,7 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
     block->law->step(&scene, block->options, block->period, &result);
     *block->evaluations = result.evaluations;
     numbers->map = fc_map_of_one_start(&result);
-    return true;
+    return lies_on_bound(block, k + 1.0, result.delta);
 }
 
 // What an error of each number of a map may be, for a force of 1 N.
@@ -277,7 +284,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
             if (slipped) {
                 take_part(law, scene, options, k, 0.0, block.phase, total);
             }
-            taken = take_block(&block, total);
+            taken = (!slipped || lies_on_bound(&block, 0.0, total->delta)) && take_block(&block, total);
             if (taken && slipped) {
                 take_part(law, scene, options, k + block.count, block.phase, period, total);
             } else if (!taken) {

@@ -43,7 +43,7 @@ typedef struct {
         [2]; // m, the highest and the lowest start that meets no bound; infinite before they are asked for
     FcStepResult total;
     double done; // periods
-    // After the last period that met its bound.
+    // After a period that met its bound: the last one whose number is a power of 2.
     FcStepResult met;
     double met_at; // periods; negative for none
 } Walk;
@@ -119,11 +119,10 @@ static bool repeats(const Walk* walk) {
 }
 
 // Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
-// single free one repeats. If too many meetings do not repeat, met_at is the first of them.
+// single free one repeats. If too many meetings do not
+// repeat, met_at is about half of them ago.
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
-    FcStepResult first_met = *total;
-    double first_met_at = -1.0;
     walk->met_at = -1.0;
     int meetings = 0;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
@@ -142,11 +141,10 @@ static void walk_to_repetition(Walk* walk, double periods) {
             if (repeats(walk)) {
                 return;
             }
-            walk->met = *total;
-            walk->met_at = walk->done;
-            if (first_met_at < 0.0) {
-                first_met = *total;
-                first_met_at = walk->done;
+            // Kept ever longer, so that a cycle of any length comes back to it.
+            if ((meetings & (meetings - 1)) == 0) {
+                walk->met = *total;
+                walk->met_at = walk->done;
             }
             continue;
         }
@@ -160,10 +158,6 @@ static void walk_to_repetition(Walk* walk, double periods) {
         const FcMap map = fc_map_power(&walk->free_map, n);
         fc_map_apply(&map, total);
         walk->done += n;
-    }
-    if (isinf(periods)) {
-        walk->met = first_met;
-        walk->met_at = first_met_at;
     }
 }
 
@@ -189,7 +183,7 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
     while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
         walk_to_repetition(&walk, periods);
         const double cycle = walk.done - walk.met_at;
-        if (walk.done < periods && walk.met_at >= 0.0 && cycle > 0.0) {
+        if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
             repeat(&walk, floor((periods - walk.done) / cycle));
         } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
             const FcMap map = free_map_of(&walk);

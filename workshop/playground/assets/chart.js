@@ -11,14 +11,15 @@ function svg(name, attributes, parent) {
   return element;
 }
 
-// Steps of 1, 2 or 5 times a power of ten, at most about count of them.
+// Multiples of 1, 2 or 5 times a power of ten: at most count + 2, which leaves at least two.
 function linearTicks([low, high], count) {
-  const rough = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5].find((factor) => factor * power >= rough) ?? 10);
-  const first = Math.ceil(low / step - 1e-9);
-  const last = Math.floor(high / step + 1e-9);
-  return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
+  const power = 10 ** Math.floor(Math.log10((high - low) / count));
+  for (const factor of [1, 2, 5, 10, 20]) {
+    const step = factor * power;
+    const first = Math.ceil(low / step - 1e-9);
+    const ticks = Math.floor(high / step + 1e-9) - first + 1;
+    if (ticks <= count + 2) return Array.from({ length: ticks }, (_, k) => (first + k) * step);
+  }
 }
 
 function logTicks([low, high], count) {

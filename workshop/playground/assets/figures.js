@@ -43,6 +43,8 @@ function backwards({ time, velocity }) {
   return spans;
 }
 
+const LEAST_REDUCTION = 1e-3; // per cent; below, it is the error of two means
+
 class Figures {
   // dragged(kind, {x, y}): a person points at a place in a figure.
   constructor(dragged) {
@@ -131,7 +133,8 @@ class Figures {
   showNumbers(wave, regime, without) {
     setNumber("mean-force", wave.mean, "N");
     setNumber("without", without, "N");
-    setNumber("reduction", without > 0 ? 100 * (1 - wave.mean / without) : NaN, "%");
+    const reduction = without > 0 ? 100 * (1 - wave.mean / without) : NaN;
+    setNumber("reduction", Math.abs(reduction) < LEAST_REDUCTION ? 0 : reduction, "%");
     setNumber("work", wave.W_f, "J", ENERGY_UNITS);
     setNumber("heat", wave.Q_f, "J", ENERGY_UNITS);
     setNumber("stiffness", regime.sigma, "N/m", STIFFNESS_UNITS);

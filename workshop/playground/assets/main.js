@@ -32,7 +32,6 @@ class Page {
     addEventListener("hashchange", () => this.restore());
     document.querySelectorAll("#numbers, .figures").forEach(reachable);
     document.body.classList.add("ready");
-    performance.mark("ready");
   }
 
   startWorker(module) {
@@ -153,7 +152,6 @@ class Page {
 
   show() {
     this.frame = 0;
-    const begin = performance.now();
     for (const [name, control] of this.controls) {
       control.show(this.valueOf(name));
       control.root.hidden = !control.matters((other) => this.valueOf(other));
@@ -167,7 +165,6 @@ class Page {
       clearTimeout(this.settling);
       this.settling = setTimeout(() => this.showAddress(), PAUSE);
     }
-    performance.measure("frame", { start: begin });
     this.pictured = true;
   }
 

@@ -1,0 +1,1 @@
+"""The friction law of a contact under vibration, as a function."""

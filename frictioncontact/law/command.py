@@ -1,0 +1,84 @@
+"""The friction law of a contact as a table, a CSV file or a picture."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from frictioncontact.command import add_fmu, add_set, can_draw, command_line, finish, say_written
+from frictioncontact.errors import UserError
+from frictioncontact.files import write_whole
+from frictioncontact.fmu import opened
+from frictioncontact.law.law import FORCE, friction_law
+from frictioncontact.sweeps.scenarios import grid
+from frictioncontact.values import assignments
+
+DESCRIPTION = """\
+The friction law that a machine sees which is slower than the vibration: the mean force over a period, once
+settled, and its derivative by V, at every combination of the values that --vary gives to inputs.
+
+  %(prog)s --set vibration.V_1=1.44 --set contact.stiffnessScale=4.4e-7
+  %(prog)s --set vibration.V_1=1.44 --vary V=0.01:2:50:log --vary E=40e9,58e9 --output law.csv
+  %(prog)s --set vibration.V_1=1.44 --vary V=0:2:200 --picture law.png"""
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("frictioncontact law", DESCRIPTION)
+    add_set(parser, "of the scene")
+    parser.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help="a,b,c or low:high:count[:log] of an input",
+    )
+    parser.add_argument("--output", type=Path, metavar="CSV", help="write the table there")
+    parser.add_argument(
+        "--picture", type=Path, metavar="PNG", help="draw the law over V there (.png, .svg, .pdf)"
+    )
+    add_fmu(parser)
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    if options.picture and options.picture.suffix not in (".png", ".svg", ".pdf"):
+        raise UserError(f"--picture {options.picture}: must end in .png, .svg or .pdf")
+    known = opened(options.fmu).known
+    law = friction_law(known.assigned(options.set), fmu=options.fmu)
+    vary = assignments(options.vary, "--vary")
+    for name in vary:
+        known.find(name, "--vary", ("input",))
+    if "V" not in vary:
+        V_1 = float(law.start.get("vibration.V_1", 0.0))
+        vary["V"] = f"0:{1.5 * abs(V_1) or 0.1}:16"
+    made = grid(known, vary)
+    inputs = made.rows(0, made.count)
+    V = inputs.pop("V")
+    table = pd.DataFrame({"V": V, **inputs, FORCE: law(V, **inputs), "d/dV": law.derivative(V, **inputs)})
+    if options.output:
+        write_whole(options.output, table.to_csv(index=False))
+    else:
+        print(table.to_string(index=False, float_format="{:.6g}".format))
+    if options.picture and can_draw():
+        from frictioncontact import style
+
+        for name, values in inputs.items():
+            if len(np.unique(values)) > 1:
+                raise UserError(f"--picture draws the law over V alone: give one value of {name}")
+        style.save(
+            law.plot(np.unique(V), **{name: float(values[0]) for name, values in inputs.items()}),
+            options.picture,
+        )
+    say_written([path for path in (options.output, options.picture) if path])
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,130 @@
+"""`friction_law`: F_t_settled as a function of the inputs, for machines slower than the vibration."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from frictioncontact.doubts import warn_of
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import Value, opened
+from frictioncontact.values import numbers_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORCE = "F_t_settled"
+
+
+class FrictionLaw:
+    """The friction force [N] as a function of the inputs: its mean over a period of the vibration, settled.
+
+    `start` holds the scene. Made by `friction_law`; one law is for one thread.
+    """
+
+    def __init__(self, start: Mapping[str, Value] | None, fmu: str | Path | None) -> None:
+        self._fmu = opened(fmu)
+        self.start = self._fmu.known.values(start, "scene")
+        self._session = self._fmu.session(self.start)
+        weakref.finalize(self, self._session.close)
+        self._base = {name: self._session.get(name) for name in self._fmu.known.inputs}
+        self._seen: set[str] = set()  # inputs that were set
+        warn_of(self._fmu.known, self.start, self._session.warnings)
+
+    def __repr__(self) -> str:
+        return f"<friction law of {self.start}>"
+
+    def __call__(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
+        """The force at velocities.
+
+        V         velocity, m/s: a number, or an array of any shape
+        inputs    d [m], load [N], E [Pa] by name, of shapes that broadcast with V; the scene's if not given
+        returns   force, N: a float, or an array of the common shape
+        raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses it
+        """
+        return self._at(V, inputs, lambda: self._session.get(FORCE))
+
+    def derivative(self, V: npt.ArrayLike, by: str = "V", **inputs: npt.ArrayLike) -> float | np.ndarray:
+        """The derivative of the force by one of the inputs, at a kink that of one side.
+
+        V         velocity, m/s: a number, or an array of any shape
+        by        the input: V, d, load or E
+        inputs    as in a call
+        returns   N over the input's unit: a float, or an array of the common shape
+        raises    UserError, FrictionError: as in a call
+        """
+        self._fmu.known.find(by, "by", ("input",))
+        return self._at(V, inputs, lambda: self._session.slope(FORCE, by))
+
+    def _at(
+        self, V: npt.ArrayLike, inputs: Mapping[str, npt.ArrayLike], read: Callable[[], float]
+    ) -> float | np.ndarray:
+        given = {}
+        for name, value in {"V": V, **inputs}.items():
+            self._fmu.known.find(name, "inputs", ("input",))
+            given[name] = numbers_of(value, name)
+        if not given.keys() <= self._seen:
+            warn_of(self._fmu.known, self.start | given)
+        try:
+            arrays = dict(zip(given, np.broadcast_arrays(*given.values()), strict=True))
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in given.items())
+            raise UserError(f"the shapes do not go together: {shapes}") from None
+        points = self._points(arrays)
+        found = np.array([read() for _ in points]).reshape(arrays["V"].shape)
+        return found if found.ndim else float(found)
+
+    def _points(self, arrays: Mapping[str, np.ndarray]) -> Iterator[None]:
+        """Sets the inputs of one point after the other."""
+        for name in self._seen - arrays.keys():
+            self._session.set(name, self._base[name])
+        self._seen |= arrays.keys()
+        for values in zip(*(array.flat for array in arrays.values()), strict=True):
+            for name, value in zip(arrays, values, strict=True):
+                self._session.set(name, float(value))
+            yield
+
+    def plot(self, V: npt.ArrayLike | None = None, **inputs: float) -> Figure:
+        """A figure of the force and of its derivative over the velocity. Needs frictioncontact[plot].
+
+        V         velocities, m/s; if not given from 0 to 1.5 times the vibration's amplitude, or 10 times V_S
+        inputs    as in a call, numbers
+        returns   a figure of matplotlib, with `savefig`
+        """
+        import matplotlib
+
+        from frictioncontact import style
+
+        if V is None:
+            V_1, V_S = self._session.get("vibration.V_1"), self._session.get("friction.V_S")
+            V = np.linspace(0.0, 1.5 * V_1 or 10.0 * V_S, 201)[1:]
+        with matplotlib.rc_context():
+            figure, (force, slope) = style.subplots(1, 2, size=(9.0, 3.5))
+            force.plot(V, self(V, **inputs))
+            slope.plot(V, self.derivative(V, **inputs))
+        force.set(xlabel="V [m/s]", ylabel="mean friction [N]", title="F_t_settled")
+        slope.set(xlabel="V [m/s]", ylabel="[N s/m]", title="its derivative by V")
+        return figure
+
+
+def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | None = None) -> FrictionLaw:
+    """The friction law that a machine sees which is slower than the vibration: F_t_settled, as a function.
+
+    scene     name of an input or parameter -> value, SI units; of an enumeration an item or its number
+    fmu       another .fmu file of this model
+    returns   a `FrictionLaw`: call it with velocities; `derivative`, `plot`
+    raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses the scene
+    warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
+
+        import numpy as np
+        import frictioncontact as fc
+        law = fc.friction_law({"vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7})
+        print(law(0.5), law.derivative(0.5))
+        print(law(np.linspace(0.1, 2.0, 5), E=[[44.6e9], [58.6e9]]).shape)
+    """
+    return FrictionLaw(scene, fmu)

@@ -1,0 +1,1 @@
+"""Contacts that were measured, as data."""

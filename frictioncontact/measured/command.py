@@ -1,0 +1,33 @@
+"""Lists the measured contacts, or says all of one."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+from frictioncontact.command import command_line, finish
+from frictioncontact.measured.contacts import contacts
+
+DESCRIPTION = """\
+Contacts that were measured: without a name the list, with one its start values, where they hold, how
+uncertain they are, and their source.
+
+  %(prog)s steel-dry"""
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("frictioncontact contacts", DESCRIPTION)
+    parser.add_argument("name", nargs="?", help="of a contact")
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    print(contacts()[options.name] if options.name else contacts())
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()

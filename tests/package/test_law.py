@@ -1,0 +1,257 @@
+"""fc.friction_law, fc.variables, warnings and sessions: what a user of Python meets first."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+import textwrap
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import frictioncontact as fc
+from frictioncontact.doubts import LIKELY, USED
+from frictioncontact.fmu import FrictionFmu
+from workshop.project import ROOT
+
+COULOMB = {"friction.model": "Coulomb", "vibration.V_1": 1.44}
+SOFT = {"vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
+
+
+class TestLaw:
+    def test_coulomb_s_law_and_its_derivative(self, fmu_path: Path) -> None:
+        """(2 / pi) F_C asin(V / V_1), in the shape of the velocities."""
+        V = np.array([[0.1, 0.5], [1.0, -0.3]])
+        law = fc.friction_law(COULOMB, fmu=fmu_path)
+        np.testing.assert_allclose(law(V), 110 / np.pi * np.arcsin(V / 1.44), rtol=1e-9)
+        np.testing.assert_allclose(law.derivative(V), 110 / np.pi / np.sqrt(1.44**2 - V**2), rtol=1e-6)
+        assert isinstance(law(0.5), float) and isinstance(law.derivative(0.5), float)
+
+    def test_inputs_broadcast_and_are_forgotten(self, fmu_path: Path) -> None:
+        law = fc.friction_law({**COULOMB, "contact.input": "Load", "friction.limit": "Load"}, fmu=fmu_path)
+        before = law(0.5)
+        found = law([0.1, 0.5, 1.0], load=[[100.0], [300.0]])
+        assert found.shape == (2, 3)
+        np.testing.assert_allclose(found[1], 3.0 * found[0], rtol=1e-9)
+        assert law.derivative(0.5, "load", load=100.0) == pytest.approx(found[0, 1] / 100.0, rel=1e-6)
+        assert law(0.5) == before  # with the scene's load again
+
+    def test_it_is_the_mean_over_a_period(self, fmu_path: Path) -> None:
+        mean = fc.simulate_many(SOFT | {"V": 0.5}, ["F_t_mean"], fmu=fmu_path)["F_t_mean"]
+        assert fc.friction_law(SOFT, fmu=fmu_path)(0.5) == pytest.approx(float(mean), rel=1e-5)
+
+    def test_it_draws(self, fmu_path: Path) -> None:
+        assert len(fc.friction_law(SOFT, fmu=fmu_path).plot().axes) == 2
+
+    @pytest.mark.parametrize(
+        ("call", "message"),
+        [
+            (lambda law: law("fast"), "V: 'fast' is not a number"),
+            (lambda law: law(0.5, f=3.0), "inputs: f is no variable of the FMU"),
+            (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU and can't be set"),
+            (lambda law: law([1.0, 2.0], E=[1e9, 2e9, 3e9]), "the shapes do not go together: V (2,), E (3,)"),
+            (lambda law: law(0.5, d=-1e-6), "fmi2SetReal: d = -1e-06 m is below"),
+            (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU and can't be set"),
+        ],
+    )
+    def test_what_is_wrong_is_one_line(
+        self, fmu_path: Path, call: Callable[[fc.FrictionLaw], object], message: str
+    ) -> None:
+        law = fc.friction_law(SOFT, fmu=fmu_path)
+        with pytest.raises(fc.UserError, match="^" + re.escape(message)):
+            call(law)
+
+
+def warned(call: Callable[[], object]) -> list[str]:
+    """What a call warns of, at this file's lines."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    for one in caught:
+        assert one.category is fc.FrictionWarning and one.filename == __file__
+    return [str(one.message) for one in caught]
+
+
+def run(scene: dict, **options: object) -> Callable[[], object]:
+    return lambda: fc.simulate(scene, stop=1e-5, step=1e-5, **options)
+
+
+class TestWarnings:
+    @pytest.mark.parametrize(
+        ("scene", "says"),
+        [
+            ({"load": 10.0}, "load has no effect: contact.input = Separation; it is used with Load"),
+            ({"friction.staticRatio": 1.5}, "friction.staticRatio has no effect: friction.model = Dahl"),
+            ({"contact.sigma": 1e6}, "contact.sigma has no effect: contact.model = Asperities"),
+            ({"vibration.phase_d": 1.0}, "vibration.phase_d has no effect: vibration.a_d = 0"),
+            ({"V": 500.0}, "V = 500 m/s is an unlikely magnitude: 500 mm/s is 0.5 here"),
+            (
+                {"vibration.f": 20.0, "vibration.V_1": 0.1},
+                "vibration.f = 20 Hz is an unlikely magnitude: 20 kHz is",
+            ),
+            ({"d": 14.0}, "d = 14 m is an unlikely magnitude: 14 um is 1.4e-05 here"),
+            ({"E": 58.0}, "E = 58 Pa is an unlikely magnitude: 58 GPa is 5.8e+10 here"),
+            (
+                {"vibration.phase_d": 225.0, "vibration.a_d": 1e-6},
+                "vibration.phase_d = 225 rad is an unlikely",
+            ),
+        ],
+    )
+    def test_of_a_scene_that_was_hardly_meant(self, scene: dict, says: str) -> None:
+        (text,) = warned(run(scene))
+        assert text.startswith(says)
+
+    def test_of_nothing_else(self) -> None:
+        assert (
+            warned(run({"friction.model": "LuGre", "friction.staticRatio": 1.3, "friction.V_S": 1e-3})) == []
+        )
+        assert warned(run({"vibration.a_d": 0.0, "vibration.phase_d": 3.9})) == []  # switched off on purpose
+        assert (
+            warned(lambda: fc.simulate_many({"friction.model": ["Dahl", "LuGre"], "friction.staticRatio": 2}))
+            == []
+        )
+        for contact in fc.contacts.values():
+            assert warned(lambda contact=contact: fc.friction_law(contact.start)) == []
+
+    def test_of_the_fmu_s_log(self) -> None:
+        """A step of a period: F_t is a sample. Who does not read it needs no warning."""
+        (text,) = warned(lambda: fc.simulate(SOFT, stop=1e-4, step=5e-5))
+        assert "exceeds half a period" in text
+        assert warned(lambda: fc.simulate(SOFT, stop=1e-4, step=5e-5, outputs=["F_t_mean"])) == []
+
+    def test_from_every_call(self, tmp_path: Path) -> None:
+        scene = {"contact.sigma": 1e6}
+        data = fc.contacts["steel-dry"].data
+        for call in (
+            lambda: fc.simulate_many({"V": [0.1], **scene}),
+            lambda: fc.friction_law(scene),
+            lambda: fc.advise(scene),
+            lambda: fc.identify(data, "contact.stiffnessScale", start=scene),
+            lambda: fc.sweep(output=tmp_path, vary={"V": "0.1,0.2"}, set=scene),
+        ):
+            assert [text.split(":")[0] for text in warned(call)] == ["contact.sigma has no effect"]
+
+    def test_a_fit_of_what_has_no_effect_is_refused(self) -> None:
+        message = re.escape("contact.sigma can't be fitted: contact.sigma has no effect: ")
+        with pytest.raises(fc.UserError, match=message):
+            fc.identify(fc.contacts["steel-dry"].data, "contact.sigma")
+
+    def test_the_tables_name_variables_and_items(self, fmu: FrictionFmu) -> None:
+        later = {"V_y", "vibration.V_2", "vibration.phase_2"}
+        for setting, deciders, items in USED:
+            for name in (setting, *deciders.split()):
+                assert name in later | set(fmu.known.settable)
+            assert items is None or set(items) < set(fmu.known.items[deciders])
+        assert set(LIKELY) <= later | set(fmu.known.settable)
+
+    def test_commands_say_them_in_a_line(self) -> None:
+        command = [sys.executable, "-m", "frictioncontact", "simulate", "--stop", "1e-5", "--step", "1e-5"]
+        done = subprocess.run([*command, "--set", "load=10"], capture_output=True, text=True)
+        assert done.returncode == 0 and done.stdout.startswith(" time")
+        assert (
+            done.stderr == "warning: load has no effect: contact.input = Separation; it is used with Load\n"
+        )
+
+
+class TestSessions:
+    @pytest.mark.parametrize(
+        ("call", "message"),
+        [
+            (lambda session: session.set("v", 1.0), "set v: v is no variable of the FMU; did you mean V?"),
+            (lambda session: session.set("V", "fast"), "set V: 'fast' is not a number"),
+            (
+                lambda session: session.set("F_t", 1.0),
+                "fmi2SetReal: F_t is an output variable and can't",
+            ),
+            (
+                lambda session: session.set("friction.model", "Dal"),
+                "set friction.model: 'Dal' is not one of Dahl",
+            ),
+            (lambda session: session.get("F"), "read: F is no variable of the FMU; did you mean F_t?"),
+            (lambda session: session.step("1"), "h = '1' is not a number"),
+            (lambda session: session.step(-1.0), "fmi2DoStep: "),
+            (lambda session: session.slope("F_t", "vv"), "slope: vv is no variable of the FMU"),
+            (lambda session: session.fmu.session({"V": None}), "set V: 'None' is not a number"),
+            (lambda session: session.fmu.session(["V"]), "start_values = \"['V']\": must be a mapping"),
+            (lambda session: fc.FrictionFmu("nowhere.fmu"), "nowhere.fmu: No such file or directory"),
+        ],
+    )
+    def test_what_is_wrong_is_one_line(self, fmu: FrictionFmu, call: Callable, message: str) -> None:
+        with fmu.session() as session, pytest.raises(fc.UserError, match="^" + re.escape(message)):
+            call(session)
+        assert issubclass(fc.UserError, ValueError)
+
+
+def test_variables_are_a_table() -> None:
+    table = fc.variables()
+    assert table.loc["d", ["unit", "start", "min"]].to_list() == ["m", 14e-6, 1e-12]
+    assert (
+        table.loc["friction.model", "items"]["LuGre"] == 4 and table.loc["friction.model", "start"] == "Dahl"
+    )
+    assert len(table.loc["V", "meaning"]) > 20
+
+
+def test_reprs_are_a_line() -> None:
+    found = fc.identify(fc.contacts["steel-dry"].data, "contact.sigma", start={"contact.model": "Constant"})
+    for thing in (found, fc.advise({"V": 0.5}), fc.friction_law(SOFT), fc.contacts["steel-dry"]):
+        assert len(repr(thing)) < 120 and "\n" not in repr(thing)
+
+
+def test_half_precision_is_a_number(fmu_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        fc.simulate({"V": np.float16(0.5)}, stop=np.float16(1e-3), step=np.float16(1e-4), fmu=fmu_path)
+        fc.simulate_many({"V": np.array([0.1, 0.5], np.float16)}, fmu=fmu_path)
+
+
+@pytest.mark.parametrize(("separator", "kind"), [(";", "semicolons"), ("\t", "tabs")])
+def test_a_file_with_other_separators_is_told_so(tmp_path: Path, separator: str, kind: str) -> None:
+    path = tmp_path / "mine.csv"
+    path.write_text(separator.join(["V", "F_t_mean"]) + "\n" + separator.join(["0.1", "3"]) + "\n")
+    with pytest.raises(
+        fc.UserError, match=f"{re.escape(str(path))}: its columns are separated by {kind}; write"
+    ):
+        fc.identify(path, "F_C")
+
+
+def test_an_output_that_can_t_be_written_is_the_user_s(tmp_path: Path) -> None:
+    (tmp_path / "closed").mkdir()
+    target = tmp_path / "closed" / ("x" * 250)  # too long with what an unfinished file is called
+    command = [sys.executable, "-m", "frictioncontact", "simulate", "--stop", "1e-5", "--step", "1e-5"]
+    done = subprocess.run([*command, "--output", str(target)], capture_output=True, text=True)
+    assert done.returncode == 1 and f"error: {target}: " in done.stderr and ".part" not in done.stderr
+
+
+def examples() -> list:
+    """The indented code at the end of each docstring of the package, and of the package itself."""
+    found = []
+    for path in sorted((ROOT / "frictioncontact").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+                text = ast.get_docstring(node) or ""
+                code = re.search(r"\n\n((?:    .*\n?|\n)+)", text)
+                if code and ("fc." in code[1]):
+                    name = getattr(node, "name", path.stem)
+                    found.append(pytest.param(textwrap.dedent(code[1]), id=f"{path.parent.name}-{name}"))
+    return found
+
+
+@pytest.mark.parametrize("code", examples())
+def test_the_examples_of_the_docstrings_run(
+    code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", fc.FrictionWarning)
+        exec(compile(code, "example", "exec"), {"fc": fc, "pd": pd})
+
+
+def test_every_function_has_an_example() -> None:
+    names = {param.id.split("-")[-1] for param in examples()}
+    assert {"friction_law", "simulate", "simulate_many", "identify", "advise", "sweep", "variables"} <= names

@@ -1,0 +1,1 @@
+"""Holds every law of friction against measurements that others published."""

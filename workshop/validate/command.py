@@ -1,0 +1,191 @@
+"""Every law of friction against measurements that others published."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Sequence
+
+from rich.table import Table
+
+from frictioncontact import resources
+from frictioncontact.command import add_fmu, add_output, can_draw, command_line, finish, table_console
+from frictioncontact.fmu import FrictionFmu
+from workshop.build import build_fmu
+from workshop.validate import elements, longitudinal, measurements, normal, record
+
+DESCRIPTION = """\
+Holds every law of friction against measurements that others published: sliding under longitudinal
+vibration (dry, oil), a record of cycles and of an unloading, sliding under normal vibration. Says what
+was fixed, what was fitted on which rows, and what was predicted on the others, and draws a picture of each.
+What it means: docs/validation.md."""
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("scripts/validate", DESCRIPTION)
+    add_fmu(parser)
+    add_output(parser, resources.output("validation"))
+    parser.add_argument("--quick", action="store_true", help="without the record, which takes some 10 s")
+    return parser.parse_args(argv)
+
+
+def as_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    """The first column names the rows, the others are numbers."""
+    table = Table(title=title)
+    for k, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if k else "left", no_wrap=not k)
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[longitudinal.Fit]) -> Table:
+    def stiffness(fit: longitudinal.Fit) -> str:
+        if fit.law in ("Dahl", "LuGre"):
+            return "any"
+        return "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
+
+    return as_table(
+        f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]",
+        ["", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"],
+        [["measured", "", *(f"{force:.3f}" for force in data.vibrated), "", ""]]
+        + [
+            [
+                fit.law,
+                stiffness(fit),
+                *(f"{force:.4f}" for force in fit.model),
+                *(f"{longitudinal.rms(model, data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
+            ]
+            for fit in fits
+        ],
+    )
+
+
+def scatter_line(data: measurements.Record) -> str:
+    from_mean, from_last, work = record.scatter(data)
+    return (
+        f"A measured cycle differs from the mean one by {from_mean:.1%} (rms over the sliding friction), "
+        f"from the one before it over sqrt 2 by {from_last:.1%}; the work of cycles by {work:.1%}."
+    )
+
+
+def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
+    rows = [
+        [
+            fit.law,
+            "" if fit.stiffness is None else f"{1e-3 * fit.stiffness:.2f}",
+            *(f"{fit.mu:.3f}", f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}", f"{fit.work:.3f}"),
+        ]
+        for fit in fits
+    ]
+    same, later = record.repeated(data), record.predicted_cycles(data)
+    error = record.rms(same.friction - later.friction) / record.sliding_friction(data)
+    ratio = record.work(same.friction, later) / record.work(later.friction, later)
+    return as_table(
+        "The cycles: fitted on two, 47 predicted. Misfit over the measured friction",
+        ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"],
+        [*rows, ["no physics: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"]],
+    )
+
+
+def elements_table(fits: Sequence[elements.ElementFit]) -> Table:
+    names = (f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name for fit in fits)
+    return as_table(
+        "What would mend ElasticPlastic, fitted to the same two cycles",
+        ["", "rms fitted", "rms predicted"],
+        [[n, f"{f.rms_fitted:.1%}", f"{f.rms_predicted:.1%}"] for n, f in zip(names, fits, strict=True)],
+    )
+
+
+def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
+    part, by_law = data.between(*record.UNLOADING), {fit.law: fit for fit in fits}
+    dahl, elastic_plastic = by_law["Dahl"], by_law["ElasticPlastic"]
+    forces = {
+        "measured": part.friction,
+        "ElasticPlastic, limit mu F_n": elastic_plastic.unloading,
+        "mu F_n alone, mu of ElasticPlastic": -elastic_plastic.mu * part.load,
+        "Dahl, limit mu F_n, as the FMU has it": dahl.unloading,
+        "Dahl, limit mu F_n, Eq. 2 alone": record.without_bound(data, dahl),
+        "ElasticPlastic, constant limit": elastic_plastic.constant_limit,
+        "Dahl, constant limit": dahl.constant_limit,
+    }
+    return as_table(
+        "The unloading, predicted by what the two cycles gave: rms over the "
+        f"{record.friction_before_unloading(data):.2f} N before it, "
+        f"and |F| / F_n while F_n > {record.CARRYING} N",
+        ["", "rms", "least F / F_n", "largest"],
+        [
+            [
+                name,
+                "" if name == "measured" else f"{record.misfit_of_unloading(data, each):.1%}",
+                *(f"{ratio:.3f}" for ratio in record.over_the_load(data, each)),
+            ]
+            for name, each in forces.items()
+        ],
+    )
+
+
+def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.NormalFit]) -> Table:
+    rows = []
+    for fit in fits:
+        found = ["none reaches it", "", ""]
+        if fit.yielding is not None and fit.predicted is not None:
+            found = [f"{1e6 * fit.yielding:.3g}", f"{fit.between:.1%}", f"{fit.predicted:.1%}"]
+        rows.append([fit.law, f"{fit.swing:g}", *found])
+    at_second, between = normal.hyperbola(data)
+    rows.append(["no physics: 1 / (1 + V / V_0)", "", "", f"{between:.1%}", f"{at_second:.1%}"])
+    title = (
+        f"Normal vibration: fitted to {data.reduction[0]:.0%} at 20.3 mm/s; measured at 87 mm/s: "
+        f"{data.reduction[1]:.0%}. A constant limit gives 0"
+    )
+    headings = "limit mu F_n, law", "swing lambda a_d / R_q", "mu load / k [um]", "predicted at 40.6 mm/s"
+    return as_table(title, [*headings, "at 87 mm/s"], rows)
+
+
+def run(options: argparse.Namespace) -> None:
+    console = table_console()
+    path = options.fmu or build_fmu()
+    draws = can_draw()
+
+    sliding = {}
+    for name in ("dry", "oil"):
+        data = measurements.sliding(name)
+        fits = [longitudinal.fit(path, data, law) for law in longitudinal.LAWS]
+        fits += [longitudinal.constant_ratio(data), longitudinal.logarithm(data)]
+        sliding[name] = (data, fits)
+        console.print(longitudinal_table(name, data, fits))
+
+    vibration = measurements.normal_vibration()
+    normal_fits = [
+        normal.fit(path, vibration, law, float(swing)) for law in normal.LAWS for swing in normal.SWINGS
+    ]
+    console.print(normal_table(vibration, normal_fits))
+
+    whole, record_fits = measurements.record(), []
+    if not options.quick:
+        with FrictionFmu(path) as fmu:
+            record_fits = [record.fit(fmu, whole, law) for law in record.LAWS]
+        console.print(scatter_line(whole), cycles_table(whole, record_fits), sep="\n")
+        console.print(elements_table(elements.fits(whole)), unloading_table(whole, record_fits), sep="\n")
+
+    if draws:
+        from frictioncontact import style
+        from workshop.validate import figures
+
+        drawn = {
+            "validation-longitudinal": figures.longitudinal(sliding),
+            "validation-normal": figures.normal(path, vibration, normal_fits),
+        }
+        if record_fits:
+            drawn["validation-cycles"] = figures.cycles(whole, record_fits)
+            drawn["validation-unloading"] = figures.unloading(whole, record_fits)
+        for name, figure in drawn.items():
+            style.save(figure, options.output / f"{name}.png")
+        print(f"Written: {len(drawn)} pictures in {options.output}")
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    finish(run, arguments(argv))
+
+
+if __name__ == "__main__":
+    main()
