@@ -32,7 +32,7 @@ typedef struct {
     double tolerance[MOST_TOLERANCES];
     int tolerances, jobs, law;
     const char *replay, *file;
-    int brief;
+    bool brief;
     int minimize; // misses that a job makes plain, at the most, of each law and grade
 } Options;
 
@@ -312,60 +312,57 @@ static double number_of(const char* text) {
 }
 
 static Options read_options(int argc, char** argv) {
-    Options o = {.seed = 1, .scenes = 1000, .tolerances = 5, .jobs = 1, .seconds = INFINITY};
-    const double usual[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8};
-    memcpy(o.tolerance, usual, sizeof usual);
-    const struct option names[] = {
-        {"seed", 1, NULL, 's'},    {"scenes", 1, NULL, 'n'},    {"first", 1, NULL, 'i'},
-        {"minutes", 1, NULL, 'm'}, {"tolerance", 1, NULL, 't'}, {"law", 1, NULL, 'l'},
-        {"jobs", 1, NULL, 'j'},    {"minimize", 1, NULL, 'p'},  {"file", 1, NULL, 'f'},
-        {"brief", 0, &o.brief, 1}, {"replay", 1, NULL, 'r'},    {0}};
-    for (int name; (name = getopt_long(argc, argv, "", names, NULL)) != -1;) {
-        switch (name) {
-        case 's':
-            o.seed = strtoull(optarg, NULL, 10);
-            break;
-        case 'n':
-            o.scenes = (uint64_t)number_of(optarg);
-            break;
-        case 'i':
-            o.first = strtoull(optarg, NULL, 10);
-            break;
-        case 'm':
-            o.seconds = 60.0 * number_of(optarg), o.scenes = UINT64_MAX / 2;
-            break;
-        case 'j':
-            o.jobs = (int)fmin(MOST_JOBS, fmax(1.0, number_of(optarg)));
-            break;
-        case 'p':
-            o.minimize = (int)number_of(optarg);
-            break;
-        case 'f':
-            o.file = optarg;
-            break;
-        case 'r':
-            o.replay = optarg;
-            break;
-        case 't':
+    enum {
+        SEED,
+        SCENES,
+        FIRST,
+        MINUTES,
+        JOBS,
+        MINIMIZE,
+        NUMBERS,
+        BRIEF = NUMBERS,
+        TOLERANCE,
+        LAW,
+        FILE_NAME,
+        REPLAY
+    };
+    static const struct option NAMES[] = {
+        {"seed", 1, NULL, SEED},       {"scenes", 1, NULL, SCENES},       {"first", 1, NULL, FIRST},
+        {"minutes", 1, NULL, MINUTES}, {"jobs", 1, NULL, JOBS},           {"minimize", 1, NULL, MINIMIZE},
+        {"brief", 0, NULL, BRIEF},     {"tolerance", 1, NULL, TOLERANCE}, {"law", 1, NULL, LAW},
+        {"file", 1, NULL, FILE_NAME},  {"replay", 1, NULL, REPLAY},       {0}};
+    Options o = {.tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, .tolerances = 5};
+    double number[NUMBERS] = {1.0, NAN, 0.0, INFINITY, 1.0, 0.0};
+    for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
+        if (name < NUMBERS) {
+            number[name] = number_of(optarg);
+        } else if (name == BRIEF) {
+            o.brief = true;
+        } else if (name == FILE_NAME || name == REPLAY) {
+            *(name == REPLAY ? &o.replay : &o.file) = optarg;
+        } else if (name == TOLERANCE) {
             o.tolerances = 0;
             for (char* part = strtok(optarg, ","); part && o.tolerances < MOST_TOLERANCES;
                  part = strtok(NULL, ",")) {
                 o.tolerance[o.tolerances++] = number_of(part);
             }
-            break;
-        case 'l':
-            for (o.law = 1; o.law <= LAWS && strcmp(optarg, LAW_NAMES[o.law - 1]) != 0; o.law++) {
+        } else if (name == LAW) {
+            for (o.law = 1; o.law <= LAWS && strcmp(optarg, LAW_NAMES[o.law - 1]) != 0;) {
+                o.law++;
             }
-            break;
-        case 0:
-            break;
-        default:
+        } else {
             usage();
         }
     }
     if (optind < argc || o.tolerances == 0 || o.law > LAWS) {
         usage();
     }
+    o.seed = (uint64_t)number[SEED];
+    o.first = (uint64_t)number[FIRST];
+    o.seconds = 60.0 * number[MINUTES];
+    o.scenes = !isnan(number[SCENES]) ? (uint64_t)number[SCENES] : isinf(o.seconds) ? 1000 : UINT64_MAX / 2;
+    o.jobs = (int)fmin(MOST_JOBS, fmax(1.0, number[JOBS]));
+    o.minimize = (int)number[MINIMIZE];
     return o;
 }
 

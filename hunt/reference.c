@@ -1168,6 +1168,21 @@ static Real excess_length(const void* context, Real x) {
     return held->length - (held->sticks ? on.B : on.g) / on.sigma;
 }
 
+// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher there.
+static Real lowest(const Held* held, Real a, Real b) {
+    const Real near = 1e-6L * (b - a);
+    const Real at_a = excess_length(held, a), at_b = excess_length(held, b);
+    if (excess_length(held, a + near) > at_a && fmaxl(excess_length(held, b - near), at_a) > at_b) {
+        for (int k = 0; k < 45; k++) { // golden section
+            const Real x = a + 0.381966L * (b - a), y = b - 0.381966L * (b - a);
+            *(excess_length(held, x) > excess_length(held, y) ? &b : &a) =
+                excess_length(held, x) > excess_length(held, y) ? y : x;
+        }
+        return 0.5L * (a + b);
+    }
+    return at_a > at_b ? a : b;
+}
+
 // Moves the bristle along the ramp from before to the start of w; returns the heat.
 static Real ride(const World* before, const World* w, Real* delta, int* slip) {
     enum { CELLS = 64 };
@@ -1178,8 +1193,11 @@ static Real ride(const World* before, const World* w, Real* delta, int* slip) {
     Real heat = 0.0L;
     for (int k = 0; k < CELLS; k++) {
         Real from = (Real)k / CELLS;
-        const Real to = (Real)(k + 1) / CELLS;
-        while (excess_length(&held, to) > 0.0L) {
+        for (;;) {
+            const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
+            if (!(excess_length(&held, to) > 0.0L)) {
+                break;
+            }
             from = excess_length(&held, from) > 0.0L ? from : crossing(excess_length, &held, from, to);
             const OnRamp there = ramp_at(&ramp, from), end = ramp_at(&ramp, to);
             if (held.sticks) { // it breaks away
@@ -1191,6 +1209,7 @@ static Real ride(const World* before, const World* w, Real* delta, int* slip) {
             } else {
                 heat += heat_along(&ramp, from, to, 12);
                 held.length = end.g / end.sigma;
+                from = to;
             }
         }
     }
