@@ -1125,7 +1125,7 @@ static OnRamp ramp_at(const Ramp* ramp, Real x) {
 #undef LINEAR
 }
 
-// Integral of g |dD| over [a, b], D = g / sigma at first falls: D' by the rule's matrix, and by halves until they agree.
+// Integral of g |dD| over [a, b], where D = g / sigma falls: D' by the rule's matrix, and by halves until they agree.
 static Real heat_along(const Ramp* ramp, Real a, Real b, int depth) {
     const Rule* rule = ramp->w->rule;
     const Real half[3] = {a, 0.5L * (a + b), b};
@@ -1415,7 +1415,7 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
         sums.heat = jump(before, &w, &delta, &slip);
     }
     int slip_start = slip;
-    if (w.bounded && w.elastic <= (w.excess == 0.0L) && !is_open(&w, 0.0L)) {
+    if (w.bounded && !(w.elastic && w.excess != 0.0L) && !is_open(&w, 0.0L)) {
         const At at = scene_at(&w, 0.0L, false); // a state that was rounded may lie next to its bound
         slip_start = fabsl(delta) >= (1.0L - 1e-11L) * bound(&w, &at, true) ? sign_of(delta) : 0;
     }
