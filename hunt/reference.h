@@ -44,7 +44,7 @@ typedef struct {
     double F_t_start; // N, after that jump, the inputs held
     double S;         // N, what the errors of forces are relative to
     double path;      // m, time integral of |V|
-    bool known;       // false: it takes more panels or cycles than the reference goes through, and only S is known
+    bool known; // false: it takes more panels or cycles than the reference goes through, and only S is known
 } ReferenceStep;
 
 // Scenes with Table 1's surfaces and the start values of modelDescription.xml.
