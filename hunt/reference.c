@@ -1322,7 +1322,7 @@ static Real jump(const ReferenceScene* before, const World* w, Real* delta, int*
     }
     const At at = scene_at(w, 0.0L, false);
     const Real length = fabsl(*delta), lies = bound(w, &at, false);
-    if (length <= bound(w, &at, *slip == 0)) {
+    if (length <= (1.0L + 1e-11L) * bound(w, &at, *slip == 0)) {
         return 0.0L;
     }
     *slip = w->elastic ? sign_of(*delta) : 0;
