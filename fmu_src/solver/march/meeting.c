@@ -121,11 +121,16 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     double none = 0.0;
     const double top =
         fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, &none);
-    const double missed = MISSED_BY_CUBIC * moves(course, side, i);
-    if (!(of_cubic(&cubic, top) + missed > over)) {
+    const double p = of_cubic(&cubic, top);
+    const double at_middle =
+        16.0 * top * top * (1.0 - top) * (1.0 - top); // what a cubic misses, over that in the middle
+    double part = top;                                // it may be: a panel that is cut at the top says it
+    if (p > over) {
+        part = p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, &none) : 0.0;
+    } else if (!(p + MISSED_BY_CUBIC * at_middle * moves(course, side, i) > over)) {
         return false;
     }
-    *t = a + (b - a) * top; // it may be: a panel that is cut at the top says it
+    *t = a + (b - a) * part;
     return true;
 }
 
