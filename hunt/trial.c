@@ -8,7 +8,7 @@ const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f", "Q_f", "F_t_s
 
 static const double ROUNDING = 1e-11;            // of S, beside the tolerance
 static const double DIGITS = 32.0 * DBL_EPSILON; // of a deflection, as the state holds it
-static const double LEAST_S = 1e-20;             // N: S is 0 if nothing acts
+static const double LEAST_S = 1e-20;             // N, and J: S and the path are 0 if nothing acts
 
 // The values that are graded, but F_t_settled.
 typedef struct {
@@ -32,7 +32,8 @@ static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, 
                                const Values* largest, double tolerance) {
     const double S = fmax(truth->S, LEAST_S);
     const double path = truth->path + fabs(truth->delta - step->delta_start);
-    const double stored = DIGITS * S * (fabs(step->delta_start) + fabs(step->delta));
+    const double stored =
+        LEAST_S + DIGITS * S * (fabs(step->delta_start) + fabs(step->delta)); // over at least 1 m
     const Values found = of_fmu(step);
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < OF_SETTLED; k++) {
