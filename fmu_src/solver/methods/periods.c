@@ -161,9 +161,14 @@ static void walk_to_repetition(Walk* walk, double periods) {
             walk->met_at = -1.0;
             return;
         }
+        const double before = total->delta;
         const FcMap map = fc_map_power(&walk->free_map, n);
         fc_map_apply(&map, total);
         walk->done += n;
+        if (total->delta == before && isinf(periods)) { // what it moves by is rounding
+            walk->met_at = -1.0;
+            return;
+        }
     }
 }
 
