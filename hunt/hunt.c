@@ -1,5 +1,5 @@
 // Hunts for wrong answers: draws sequences of steps at random, takes them with the FMU's core, grades each step by the
-// reference, and prints each step that is not within the tolerance.
+// reference (trial.h has the rule), and prints each step that is not within the tolerance.
 //
 //     cmake --preset default && cmake --build --preset default --target hunt
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
@@ -7,8 +7,10 @@
 //
 // Each miss is one line: the tolerance, the error over it and of what, the number of the sequence, and the sequence as
 // name=value where it is not the start value, which --replay takes. A sequence is taken with one of the tolerances, in
-// turn. The last lines are tables by law and by kappa = sigma V / (2 pi f limit). Ends with 1 where something missed.
+// turn. The last lines are tables by law and by kappa = sigma V / (2 pi f limit), and what was hunted. Ends with 1 where
+// something missed.
 #include <errno.h>
+#include <getopt.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -19,65 +21,145 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "minimize.h"
 #include "scenes.h"
-#include "tally.h"
 #include "trial.h"
 
-enum { MOST_JOBS = 64 };
+enum { MOST_JOBS = 64, MOST_TOLERANCES = 12, LAWS = 4, KAPPAS = 7, ROWS = LAWS + KAPPAS };
 
 typedef struct {
     uint64_t seed, scenes, first;
-    double seconds; // 0: no end but the number of scenes
+    double seconds; // INFINITY: no end but the number of scenes
     double tolerance[MOST_TOLERANCES];
-    int tolerances, jobs;
+    int tolerances, jobs, law;
     const char *replay, *file;
-    bool brief, show;
-    int minimize; // misses that a job makes plain, at the most
-    Grammar grammar;
+    bool brief;
+    int minimize; // misses that a job makes plain, at the most, of each law and grade
 } Options;
 
-static double now(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+// ---------------------------------------------------------------------------------------------------------------------
+// Counts
+// ---------------------------------------------------------------------------------------------------------------------
+
+typedef struct {
+    long steps, misses;
+    double worst; // error over the tolerance
+} Cell;
+
+typedef struct {
+    Cell cell[ROWS][MOST_TOLERANCES]; // the laws, then the classes of kappa
+    long drawn, refused, unknown, is[KINDS];
+    int minimized[LAWS][GRADES];
+} Tally;
+
+static int kappa_class(const ReferenceScene* scene) {
+    const double kappa = scene_kappa(scene);
+    const bool vibrates = scene->V_1 != 0.0 || scene->a_d != 0.0;
+    return !vibrates ? KAPPAS - 1 : kappa <= 1.0 ? 0 : kappa >= 1e8 ? 5 : 1 + (int)(log10(kappa) / 2.0);
+}
+
+static void add_cell(Cell* sum, const Cell* part) {
+    sum->steps += part->steps;
+    sum->misses += part->misses;
+    sum->worst = fmax(sum->worst, part->worst);
+}
+
+static void count_step(Tally* tally, const TrialStep* taken, int column) {
+    const double ratio = taken->verdict.ratio;
+    const Cell cell = {1, !(ratio <= 1.0), ratio};
+    add_cell(&tally->cell[taken->scene.law - 1][column], &cell);
+    add_cell(&tally->cell[LAWS + kappa_class(&taken->scene)][column], &cell);
+    for (int k = 0; k < KINDS; k++) {
+        tally->is[k] += taken->is[k];
+    }
+}
+
+static void add_tally(Tally* sum, const Tally* part) {
+    for (int row = 0; row < ROWS; row++) {
+        for (int k = 0; k < MOST_TOLERANCES; k++) {
+            add_cell(&sum->cell[row][k], &part->cell[row][k]);
+        }
+    }
+    for (int k = 0; k < KINDS; k++) {
+        sum->is[k] += part->is[k];
+    }
+    sum->drawn += part->drawn;
+    sum->refused += part->refused;
+    sum->unknown += part->unknown;
+}
+
+// Tables with a column for each tolerance, "misses, worst error over the tolerance"; returns the misses.
+static long print_tally(const Tally* tally, const Options* options, double seconds) {
+    static const char* const KAPPA_NAMES[KAPPAS] = {"below 1",    "1 to 1e2",  "1e2 to 1e4",  "1e4 to 1e6",
+                                                    "1e6 to 1e8", "above 1e8", "no vibration"};
+    long misses = 0, steps = 0;
+    printf("\nMisses, and the worst error over the tolerance:\n");
+    for (int row = 0; row < ROWS; row++) {
+        if (row == 0 || row == LAWS) {
+            printf("\n| %s | steps |", row == 0 ? "law" : "kappa");
+            for (int k = 0; k < options->tolerances; k++) {
+                printf(" %g |", options->tolerance[k]);
+            }
+            printf("\n|---|---|");
+            for (int k = 0; k < options->tolerances; k++) {
+                printf("---|");
+            }
+            printf("\n");
+        }
+        Cell all = {0};
+        for (int k = 0; k < options->tolerances; k++) {
+            add_cell(&all, &tally->cell[row][k]);
+        }
+        misses += row < LAWS ? all.misses : 0;
+        steps += row < LAWS ? all.steps : 0;
+        printf("| %s | %ld |", row < LAWS ? LAW_NAMES[row] : KAPPA_NAMES[row - LAWS], all.steps);
+        for (int k = 0; k < options->tolerances; k++) {
+            printf(" %ld, %.2g |", tally->cell[row][k].misses, tally->cell[row][k].worst);
+        }
+        printf("\n");
+    }
+    printf("\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses\n", tally->drawn,
+           steps, tally->refused, tally->unknown, misses);
+    printf("%.0f steps a second; %ld with static friction, %ld open, %ld close, %ld after a jump, %ld move "
+           "through 10 "
+           "periods and more\n",
+           (double)steps / seconds, tally->is[IS_STATIC], tally->is[OPENS], tally->is[CLOSES],
+           tally->is[JUMPS], tally->is[LEAPS]);
+    return misses;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // One sequence
 // ---------------------------------------------------------------------------------------------------------------------
 
-static void report(const Sequence* sequence, const Trial* trial, int step, uint64_t number,
-                   double tolerance) {
+// Whether the sequence misses by half as much again as the tolerance, whatever of.
+static bool still_misses(const Sequence* sequence, double tolerance) {
+    static Trial trial;
+    trial_run(&trial, sequence, tolerance);
+    bool misses = false;
+    for (int k = 0; k < trial.steps; k++) {
+        misses = misses || !(trial.taken[k].verdict.ratio <= 1.5);
+    }
+    return misses;
+}
+
+static void report_miss(const Options* options, const Sequence* sequence, const Trial* trial, int step,
+                        uint64_t number, double tolerance, Tally* tally) {
     const TrialStep* taken = &trial->taken[step];
     char text[SEQUENCE_TEXT];
-    sequence_text(sequence, text, sizeof text);
-    printf("miss law=%s tolerance=%g ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
-           LAW_NAMES[taken->scene.law], tolerance, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of],
-           step + 1, scene_kappa(&taken->scene), (unsigned long long)number, text);
-    fflush(stdout);
-}
-
-// Whether the sequence misses by half as much again as the tolerance, whatever of.
-static bool still_misses(const Sequence* sequence, const void* context) {
-    static Trial trial;
-    trial_run(&trial, sequence, *(const double*)context);
-    const int worst = trial_worst(&trial);
-    return worst >= 0 && !(trial.taken[worst].verdict.ratio <= 1.5);
-}
-
-// So many misses of each law and grade are made plain, as lines that --file takes.
-static void make_plain(const Options* options, const Sequence* sequence, double tolerance,
-                       const Verdict* verdict, Tally* tally) {
-    int* done = &tally->minimized[sequence->step[0].law - 1][verdict->of];
-    if (*done >= options->minimize || !still_misses(sequence, &tolerance)) {
-        return;
+    if (!options->brief) {
+        sequence_text(sequence, text, sizeof text);
+        printf("miss law=%s tolerance=%g ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
+               LAW_NAMES[taken->scene.law - 1], tolerance, taken->verdict.ratio,
+               GRADE_NAMES[taken->verdict.of], step + 1, scene_kappa(&taken->scene),
+               (unsigned long long)number, text);
     }
-    (*done)++;
-    const Sequence plain = minimized(sequence, still_misses, &tolerance);
-    char text[SEQUENCE_TEXT];
-    sequence_text(&plain, text, sizeof text);
-    printf("plain: tolerance=%g %s\n", tolerance, text);
+    int* done = &tally->minimized[taken->scene.law - 1][taken->verdict.of];
+    if (*done < options->minimize && still_misses(sequence, tolerance)) {
+        (*done)++;
+        const Sequence plain = minimized(sequence, still_misses, tolerance);
+        sequence_text(&plain, text, sizeof text);
+        printf("plain: tolerance=%g %s\n", tolerance, text); // a line that --file takes
+    }
     fflush(stdout);
 }
 
@@ -111,87 +193,65 @@ static void try_at(const Options* options, const Sequence* sequence, uint64_t nu
                trial.message, text);
     }
     for (int k = 0; k < trial.steps; k++) {
-        const TrialStep* taken = &trial.taken[k];
-        const bool misses = !(taken->verdict.ratio <= 1.0);
-        tally_count(tally, taken, column);
-        if (misses && !options->brief) {
-            report(sequence, &trial, k, number, tolerance);
-        }
-        if (misses) {
-            make_plain(options, sequence, tolerance, &taken->verdict, tally);
+        count_step(tally, &trial.taken[k], column);
+        if (!(trial.taken[k].verdict.ratio <= 1.0)) {
+            report_miss(options, sequence, &trial, k, number, tolerance, tally);
         }
         if (options->replay) {
-            print_step(taken, k, tolerance);
-        }
-    }
-}
-
-static void try_sequence(const Options* options, const Sequence* sequence, uint64_t number, Tally* tally) {
-    tally->drawn++;
-    if (options->show) {
-        char text[SEQUENCE_TEXT];
-        sequence_text(sequence, text, sizeof text);
-        printf("%llu: %s\n", (unsigned long long)number, text);
-        fflush(stdout);
-    }
-    for (int k = 0; k < options->tolerances; k++) {
-        if (options->replay || number % (uint64_t)options->tolerances == (uint64_t)k) {
-            try_at(options, sequence, number, k, tally);
+            print_step(&trial.taken[k], k, tolerance);
         }
     }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Many scenes
+// Many sequences
 // ---------------------------------------------------------------------------------------------------------------------
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
 
 static void run_job(const Options* options, int job, Tally* tally) {
     const double begin = now();
-    for (uint64_t n = (uint64_t)job; n < options->scenes; n += (uint64_t)options->jobs) {
-        if (options->seconds > 0.0 && now() - begin > options->seconds) {
-            break;
-        }
+    for (uint64_t n = (uint64_t)job; n < options->scenes && now() - begin < options->seconds;
+         n += (uint64_t)options->jobs) {
         const uint64_t number = options->first + n;
-        const Sequence sequence = sequence_drawn(options->seed, number, &options->grammar);
-        try_sequence(options, &sequence, number, tally);
-        if (job == 0 && tally->drawn % 1000 == 0 && isatty(STDERR_FILENO)) {
-            fprintf(stderr, "\r%ld sequences, %.0f s", tally->drawn * options->jobs, now() - begin);
-        }
-    }
-    if (job == 0 && isatty(STDERR_FILENO)) {
-        fprintf(stderr, "\n");
+        const Sequence sequence = sequence_drawn(options->seed, number, options->law);
+        tally->drawn++;
+        try_at(options, &sequence, number, (int)(number % (uint64_t)options->tolerances), tally);
     }
 }
 
-static void run_all(const Options* options, Tally* total) {
-    Tally* tallies =
-        mmap(NULL, MOST_JOBS * sizeof *tallies, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (tallies == MAP_FAILED) {
-        perror("hunt: mmap");
+static void* or_end(void* found, const char* what) {
+    if (found == NULL || found == MAP_FAILED) {
+        perror(what);
         exit(2);
     }
+    return found;
+}
+
+static void run_all(const Options* options, Tally* total) {
+    Tally* tallies = or_end(
+        mmap(NULL, MOST_JOBS * sizeof *tallies, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0),
+        "mmap");
     for (int job = 1; job < options->jobs; job++) {
         const pid_t child = fork();
-        if (child < 0) {
-            perror("hunt: fork");
-            exit(2);
-        }
+        or_end(child < 0 ? NULL : tallies, "fork");
         if (child == 0) {
             run_job(options, job, &tallies[job]);
             _exit(0);
         }
     }
     run_job(options, 0, &tallies[0]);
-    for (int job = 1; job < options->jobs; job++) {
-        int status;
-        if (wait(&status) < 0 || status != 0) {
-            fprintf(stderr, "hunt: a job ended with status %d\n", status);
-            exit(2);
-        }
+    for (int job = 1, status; job < options->jobs; job++) {
+        or_end(wait(&status) < 0 || status != 0 ? NULL : tallies, "hunt: a job");
     }
     for (int job = 0; job < options->jobs; job++) {
-        tally_add(total, &tallies[job]);
+        add_tally(total, &tallies[job]);
     }
+    printf("\nseed %llu\n", (unsigned long long)options->seed);
 }
 
 static void replay(const Options* options, const char* text, uint64_t number, Tally* tally) {
@@ -201,16 +261,15 @@ static void replay(const Options* options, const char* text, uint64_t number, Ta
         fprintf(stderr, "hunt: %s is no name=value of a scene\n", wrong);
         exit(2);
     }
-    try_sequence(options, &sequence, number, tally);
+    tally->drawn++;
+    for (int k = 0; k < options->tolerances; k++) {
+        try_at(options, &sequence, number, k, tally);
+    }
 }
 
 // Each line is a sequence, with its tolerance first; # begins a comment.
 static void replay_file(const Options* options, Tally* tally) {
-    FILE* file = fopen(options->file, "r");
-    if (file == NULL) {
-        fprintf(stderr, "hunt: %s: %s\n", options->file, strerror(errno));
-        exit(2);
-    }
+    FILE* file = or_end(fopen(options->file, "r"), options->file);
     char line[SEQUENCE_TEXT];
     for (uint64_t number = 1; fgets(line, sizeof line, file) != NULL; number++) {
         int read = 0;
@@ -220,8 +279,7 @@ static void replay_file(const Options* options, Tally* tally) {
             continue;
         }
         if (sscanf(line, "tolerance=%lf%n", &mine.tolerance[0], &read) != 1) {
-            fprintf(stderr, "hunt: %s:%llu does not begin with a tolerance\n", options->file,
-                    (unsigned long long)number);
+            fprintf(stderr, "hunt: line %llu does not begin with a tolerance\n", (unsigned long long)number);
             exit(2);
         }
         replay(&mine, line + read, number, tally);
@@ -235,15 +293,12 @@ static void replay_file(const Options* options, Tally* tally) {
 
 static void usage(void) {
     fprintf(stderr,
-            "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--law NAME]\n"
-            "     [--limit Constant|Load] [--jobs J] [--minimize K] [--brief] [--show] [--replay "
-            "\"NAME=VALUE ..\"]\n"
-            "     [--file FILE]\n"
+            "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--law NAME] "
+            "[--jobs J]\n"
+            "     [--minimize K] [--brief] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--first: number of the first sequence; with --scenes 1 a single one. --minimize: makes K misses "
             "of each\n"
-            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables. "
-            "--show:\n"
-            "every sequence before it is tried.\n");
+            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables.\n");
     exit(2);
 }
 
@@ -251,82 +306,70 @@ static double number_of(const char* text) {
     char* end;
     const double value = strtod(text, &end);
     if (end == text || *end != '\0' || !(value >= 0.0)) {
-        fprintf(stderr, "hunt: %s is no number that is expected here\n", text);
         usage();
     }
     return value;
 }
 
-static int name_of(const char* text, const char* const* names, int first, int last) {
-    for (int k = first; k <= last; k++) {
-        if (strcmp(text, names[k]) == 0) {
-            return k;
-        }
-    }
-    fprintf(stderr, "hunt: unknown %s\n", text);
-    usage();
-    return 0;
-}
-
-static void read_tolerances(Options* options, const char* text) {
-    char copy[400];
-    snprintf(copy, sizeof copy, "%s", text);
-    options->tolerances = 0;
-    for (char* part = strtok(copy, ","); part != NULL; part = strtok(NULL, ",")) {
-        if (options->tolerances == MOST_TOLERANCES) {
-            usage();
-        }
-        options->tolerance[options->tolerances++] = number_of(part);
-    }
-}
-
-static void read_option(Options* options, const char* name, const char* value) {
-    static const char* const LIMITS[] = {"any", "Constant", "Load"};
-    if (strcmp(name, "--seed") == 0) {
-        options->seed = strtoull(value, NULL, 10);
-    } else if (strcmp(name, "--scenes") == 0) {
-        options->scenes = (uint64_t)number_of(value);
-    } else if (strcmp(name, "--first") == 0) {
-        options->first = strtoull(value, NULL, 10);
-    } else if (strcmp(name, "--minutes") == 0) {
-        options->seconds = 60.0 * number_of(value);
-        options->scenes = UINT64_MAX / 2;
-    } else if (strcmp(name, "--tolerance") == 0) {
-        read_tolerances(options, value);
-    } else if (strcmp(name, "--law") == 0) {
-        options->grammar.law = name_of(value, LAW_NAMES, 0, LAWS);
-    } else if (strcmp(name, "--limit") == 0) {
-        options->grammar.limit = name_of(value, LIMITS, 0, 2);
-    } else if (strcmp(name, "--jobs") == 0) {
-        options->jobs = (int)fmin(MOST_JOBS, fmax(1.0, number_of(value)));
-    } else if (strcmp(name, "--minimize") == 0) {
-        options->minimize = (int)number_of(value);
-    } else if (strcmp(name, "--file") == 0) {
-        options->file = value;
-    } else if (strcmp(name, "--replay") == 0) {
-        options->replay = value;
-    } else {
-        fprintf(stderr, "hunt: unknown option %s\n", name);
-        usage();
-    }
-}
-
-int main(int argc, char** argv) {
-    Options options = {
-        .seed = 1, .scenes = 1000, .tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, .tolerances = 5, .jobs = 1};
-    for (int k = 1; k < argc; k++) {
-        if (strcmp(argv[k], "--brief") == 0) {
-            options.brief = true;
-        } else if (strcmp(argv[k], "--show") == 0) {
-            options.show = true;
-        } else if (k + 1 < argc) {
-            read_option(&options, argv[k], argv[k + 1]);
-            k++;
+static Options read_options(int argc, char** argv) {
+    enum {
+        SEED,
+        SCENES,
+        FIRST,
+        MINUTES,
+        JOBS,
+        MINIMIZE,
+        NUMBERS,
+        BRIEF = NUMBERS,
+        TOLERANCE,
+        LAW,
+        FILE_NAME,
+        REPLAY
+    };
+    static const struct option NAMES[] = {
+        {"seed", 1, NULL, SEED},       {"scenes", 1, NULL, SCENES},       {"first", 1, NULL, FIRST},
+        {"minutes", 1, NULL, MINUTES}, {"jobs", 1, NULL, JOBS},           {"minimize", 1, NULL, MINIMIZE},
+        {"brief", 0, NULL, BRIEF},     {"tolerance", 1, NULL, TOLERANCE}, {"law", 1, NULL, LAW},
+        {"file", 1, NULL, FILE_NAME},  {"replay", 1, NULL, REPLAY},       {0}};
+    Options o = {.tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, .tolerances = 5};
+    double number[NUMBERS] = {1.0, NAN, 0.0, INFINITY, 1.0, 0.0};
+    for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
+        if (name < NUMBERS) {
+            number[name] = number_of(optarg);
+        } else if (name == BRIEF) {
+            o.brief = true;
+        } else if (name == FILE_NAME || name == REPLAY) {
+            *(name == REPLAY ? &o.replay : &o.file) = optarg;
+        } else if (name == TOLERANCE) {
+            o.tolerances = 0;
+            for (char* part = strtok(optarg, ","); part && o.tolerances < MOST_TOLERANCES;
+                 part = strtok(NULL, ",")) {
+                o.tolerance[o.tolerances++] = number_of(part);
+            }
+        } else if (name == LAW) {
+            for (o.law = 1; o.law <= LAWS && strcmp(optarg, LAW_NAMES[o.law - 1]) != 0;) {
+                o.law++;
+            }
         } else {
             usage();
         }
     }
+    if (optind < argc || o.tolerances == 0 || o.law > LAWS) {
+        usage();
+    }
+    o.seed = (uint64_t)number[SEED];
+    o.first = (uint64_t)number[FIRST];
+    o.seconds = 60.0 * number[MINUTES];
+    o.scenes = !isnan(number[SCENES]) ? (uint64_t)number[SCENES] : isinf(o.seconds) ? 1000 : UINT64_MAX / 2;
+    o.jobs = (int)fmin(MOST_JOBS, fmax(1.0, number[JOBS]));
+    o.minimize = (int)number[MINIMIZE];
+    return o;
+}
+
+int main(int argc, char** argv) {
     static Tally total;
+    const Options options = read_options(argc, argv);
+    const double begin = now();
     if (options.replay) {
         replay(&options, options.replay, 0, &total);
         return 0;
@@ -335,8 +378,7 @@ int main(int argc, char** argv) {
         replay_file(&options, &total);
     } else {
         run_all(&options, &total);
-        printf("\nseed %llu\n", (unsigned long long)options.seed);
     }
-    const long misses = tally_print(&total, options.tolerance, options.tolerances);
+    const long misses = print_tally(&total, &options, now() - begin);
     return misses > 0 || (options.file && total.refused > 0);
 }

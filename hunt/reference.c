@@ -4,17 +4,16 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef long double Real;
 
 static const Real PI = 3.141592653589793238462643383279502884L;
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Radau's right rule on [0, 1] and its collocation matrix
+// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
 // ---------------------------------------------------------------------------------------------------------------------
 
-enum { MOST_STAGES = 13 };
+enum { MOST_STAGES = 12 };
 
 typedef struct {
     int stages;
@@ -32,49 +31,22 @@ static void legendre(int n, Real x, Real* P) {
     }
 }
 
-// P_n - P_(n-1), whose roots are Radau's right nodes on [-1, 1].
-static Real radau_polynomial(int n, Real x) {
-    Real P[MOST_STAGES + 2];
-    legendre(n, x, P);
-    return P[n] - P[n - 1];
-}
-
-static Rule make_rule(int n);
-
-// Made once; the first call is not safe to be made by two threads at once.
-static const Rule* rule_of(int stages) {
-    static Rule rules[MOST_STAGES + 1];
-    if (rules[stages].stages == 0) {
-        rules[stages] = make_rule(stages);
-    }
-    return &rules[stages];
-}
-
 static Rule make_rule(int n) {
     Rule rule = {.stages = n};
-    Real x[MOST_STAGES];
-    int found = 0;
-    const int cells = 4000;
-    for (int k = 0; k < cells && found < n - 1; k++) {
-        Real low = -cosl(PI * (Real)k / (Real)cells);
-        Real high = -cosl(PI * (Real)(k + 1) / (Real)cells);
-        const Real at_low = radau_polynomial(n, low);
-        if (at_low * radau_polynomial(n, high) >= 0.0L) {
-            continue;
-        }
-        for (int i = 0; i < 80; i++) {
-            const Real middle = 0.5L * (low + high);
-            if (radau_polynomial(n, middle) * at_low > 0.0L) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        x[found++] = 0.5L * (low + high);
-    }
-    x[n - 1] = 1.0L;
-    Real P[MOST_STAGES][MOST_STAGES + 2];
+    Real x[MOST_STAGES], P[MOST_STAGES][MOST_STAGES + 1];
     for (int i = 0; i < n; i++) {
+        // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
+        x[i] = i == 0 ? -0.999999L : i == n - 1 ? 1.0L : x[i - 1] + 1e-6L;
+        for (int k = 0; k < 100 && i < n - 1; k++) {
+            legendre(n, x[i], P[i]);
+            const Real of_n = P[i][n - 1] - x[i] * P[i][n], of_less = P[i][n - 2] - x[i] * P[i][n - 1];
+            const Real value = P[i][n] - P[i][n - 1];
+            Real slope = ((Real)n * of_n - (Real)(n - 1) * of_less) / (1.0L - x[i] * x[i]);
+            for (int j = 0; j < i; j++) {
+                slope -= value / (x[i] - x[j]);
+            }
+            x[i] -= value / slope;
+        }
         legendre(n, x[i], P[i]);
         rule.node[i] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
@@ -91,6 +63,76 @@ static Rule make_rule(int n) {
         }
     }
     return rule;
+}
+
+// Made once; the first call is not safe to be made by two threads at once.
+static const Rule* rule_of(int stages) {
+    static Rule rules[MOST_STAGES + 1];
+    if (rules[stages].stages == 0) {
+        rules[stages] = make_rule(stages);
+    }
+    return &rules[stages];
+}
+
+static void swap(Real* a, Real* b) {
+    const Real kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+// Solves A x = b in place, pivoting by columns.
+static void solve(int n, Real A[MOST_STAGES][MOST_STAGES], Real* b) {
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k + 1; i < n; i++) {
+            best = fabsl(A[i][k]) > fabsl(A[best][k]) ? i : best;
+        }
+        for (int j = k; best != k && j < n; j++) {
+            swap(&A[k][j], &A[best][j]);
+        }
+        swap(&b[k], &b[best]);
+        for (int i = k + 1; i < n; i++) {
+            const Real factor = A[i][k] / A[k][k];
+            for (int j = k + 1; j < n; j++) {
+                A[i][j] -= factor * A[k][j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int j = i + 1; j < n; j++) {
+            b[i] -= A[i][j] * b[j];
+        }
+        b[i] /= A[i][i];
+    }
+}
+
+typedef Real Function(const void* context, Real x);
+
+// Where a function passes zero between low and high, on the side of high: regula falsi, by halves every third time.
+static Real crossing(Function* function, const void* context, Real low, Real high) {
+    Real at_low = function(context, low), at_high = function(context, high);
+    const bool rises = at_high > 0.0L;
+    for (int k = 0; k < 200; k++) {
+        const Real middle = 0.5L * (low + high), least = 2.0L * LDBL_EPSILON * fabsl(high);
+        Real x = high - at_high * (high - low) / (at_high - at_low);
+        x = k % 3 == 2 ? middle : fmaxl(low + least, fminl(high - least, x));
+        x = x > low && x < high ? x : middle;
+        if (!(x > low && x < high)) {
+            break;
+        }
+        const Real at = function(context, x);
+        if ((at > 0.0L) == rises) {
+            high = x;
+            at_high = at;
+            at_low *= 0.5L;
+        } else {
+            low = x;
+            at_low = at;
+            at_high *= 0.5L;
+        }
+    }
+    return high;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -180,10 +222,12 @@ typedef struct {
     Real h, omega, theta_0, decay, swell, excess;
     Real no_load;   // s, when a load that moves is 0
     AtModulus held; // at the modulus of the start
-    bool bounded;   // sigma |delta| of Dahl or LuGre has a bound B
+    bool elastic;   // the law is ElasticPlastic
+    bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
+    bool open;      // nothing touches
     bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
     Real S;         // N
-    Real path;      // m, integral of |V| over the step
+    Real top;       // m/s, the largest |V|
     const Rule* rule;
     int fineness;
     Real panels;
@@ -277,7 +321,7 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
     const ReferenceScene* s = &w->scene;
     *sigma = s->contact_sigma;
     *ratio_rate = *force = 0.0L;
-    if (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT) {
+    if (w->open || (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT)) {
         return;
     }
     const AtModulus at = modulus_at(w, t);
@@ -332,43 +376,29 @@ static At scene_at(const World* w, Real t, bool with_rates) {
 
 // -d(delta') / d(delta) [1/s] with |V| = side V, which holds between reversals.
 static Real relaxation(const World* w, const At* at, int side) {
-    return w->scene.law == LAW_ELASTIC_PLASTIC ? 0.0L : at->sigma * (Real)side * at->V / at->g;
+    return w->elastic ? 0.0L : at->sigma * (Real)side * at->V / at->g;
 }
 
-// Where a slipping bristle lies [m], and how fast that moves [m/s].
-static Real slip_bound(const World* w, const At* at) {
-    return (w->scene.law == LAW_ELASTIC_PLASTIC ? at->g : at->B) / at->sigma;
+// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
+static Real bound(const World* w, const At* at, bool sticks) {
+    return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
 }
-static Real slip_rate(const World* w, const At* at) {
-    return slip_bound(w, at) * (w->scene.law == LAW_ELASTIC_PLASTIC ? at->kinetic_rate : at->bound_rate);
+static Real bound_rate(const World* w, const At* at, bool sticks) {
+    return bound(w, at, sticks) * (sticks || !w->elastic ? at->bound_rate : at->kinetic_rate);
 }
 
 // How fast [m/s] the law alone would carry a bristle that lies on the bound of this side beyond it.
-static Real outward(const World* w, Real t, int side) {
+static Real outward(const World* w, Real t, int side, bool sticks) {
     const At at = scene_at(w, t, true);
     const Real forward = (Real)side * at.V;
-    if (w->scene.law == LAW_ELASTIC_PLASTIC) {
-        return forward - slip_rate(w, &at);
-    }
-    const Real over = at.B / at.g; // at least 1
-    const Real own = forward > 0.0L ? forward * (1.0L - over) : forward * (1.0L + over);
-    return own - slip_rate(w, &at);
+    const Real own = w->elastic ? forward : forward - fabsl(forward) * at.B / at.g;
+    return own - bound_rate(w, &at, sticks);
 }
 
-// The same on the bound of what sticks.
-static Real static_outward(const World* w, Real t, int side) {
-    const At at = scene_at(w, t, true);
-    return (Real)side * at.V - at.B / at.sigma * at.bound_rate;
-}
-
-// How far [m] the bristle is inside the bound of what does not slip, and of what slips.
-static Real gap(const World* w, Real t, Real delta, int side) {
+// How far [m] the bristle is inside its bound.
+static Real gap(const World* w, Real t, Real delta, int side, bool sticks) {
     const At at = scene_at(w, t, false);
-    return at.B / at.sigma - (Real)side * delta;
-}
-static Real kinetic_gap(const World* w, Real t, Real delta, int side) {
-    const At at = scene_at(w, t, false);
-    return at.g / at.sigma - (Real)side * delta;
+    return bound(w, &at, sticks) - (Real)side * delta;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -396,24 +426,20 @@ static bool is_open(const World* w, Real t) {
 }
 
 // The part of [0, h] in which the contact is closed; empty: from = to = h.
+// The part of [0, h] in which the contact is closed; empty: from = to = h.
 typedef struct {
     Real from, to;
 } Closed;
+
+static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
 
 static Closed closed_part(const World* w) {
     const bool at_start = is_open(w, 0.0L), at_end = is_open(w, w->h);
     if (at_start == at_end) {
         return (Closed){at_start ? w->h : 0.0L, w->h};
     }
-    Real low = 0.0L, high = w->h;
-    for (int k = 0; k < 200; k++) {
-        const Real middle = 0.5L * (low + high);
-        if (!(middle > low && middle < high)) {
-            break;
-        }
-        *(is_open(w, middle) == at_start ? &low : &high) = middle;
-    }
-    return at_start ? (Closed){high, w->h} : (Closed){0.0L, low};
+    const Real t = crossing(openness, w, 0.0L, w->h);
+    return at_start ? (Closed){t, w->h} : (Closed){0.0L, t};
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -426,72 +452,38 @@ typedef struct {
     Real impulse; // N s
     Real work;    // J
     Real heat;    // J
+    Real path;    // m, integral of |V|
     // What errors of these are measured by: the length is that at the end, or what is kept of a longer one.
     Real length, force, power;
     Real blur; // m, of delta at the end by the rounding of time
 } Sums;
 
+static void add_times(Sums* sums, const Sums* one, Real factor) {
+    sums->impulse += factor * one->impulse;
+    sums->work += factor * one->work;
+    sums->heat += factor * one->heat;
+    sums->path += factor * one->path;
+}
+
 static void add(Sums* sums, const Sums* part) {
+    add_times(sums, part, 1.0L);
     sums->end = part->end;
     sums->change += part->change;
-    sums->impulse += part->impulse;
-    sums->work += part->work;
-    sums->heat += part->heat;
     sums->length = part->length;
     sums->blur = part->blur;
     sums->force += part->force;
     sums->power += part->power;
 }
 
-// Solves A x = b in place for two right sides, pivoting by columns.
-static void solve(int n, Real A[MOST_STAGES][MOST_STAGES], Real b[MOST_STAGES][2]) {
-    for (int k = 0; k < n; k++) {
-        int best = k;
-        for (int i = k + 1; i < n; i++) {
-            if (fabsl(A[i][k]) > fabsl(A[best][k])) {
-                best = i;
-            }
-        }
-        for (int j = k; best != k && j < n; j++) {
-            const Real kept = A[k][j];
-            A[k][j] = A[best][j];
-            A[best][j] = kept;
-        }
-        for (int c = 0; best != k && c < 2; c++) {
-            const Real kept = b[k][c];
-            b[k][c] = b[best][c];
-            b[best][c] = kept;
-        }
-        for (int i = k + 1; i < n; i++) {
-            const Real factor = A[i][k] / A[k][k];
-            for (int j = k + 1; j < n; j++) {
-                A[i][j] -= factor * A[k][j];
-            }
-            b[i][0] -= factor * b[k][0];
-            b[i][1] -= factor * b[k][1];
-        }
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        for (int c = 0; c < 2; c++) {
-            for (int j = i + 1; j < n; j++) {
-                b[i][c] -= A[i][j] * b[j][c];
-            }
-            b[i][c] /= A[i][i];
-        }
-    }
-}
-
-static void account(const World* w, Sums* sums, const At* at, Real delta, Real rate, Real time) {
-    const ReferenceScene* s = &w->scene;
-    const Real spring = at->sigma * delta;
-    const Real damping = s->sigma_1 * rate, viscous = s->sigma_2 * at->V;
-    const Real force = spring + damping + viscous;
+// Of a time [s] in which the bristle has that force, deflection's rate and V.
+static void account(const World* w, Sums* sums, Real spring, Real rate, Real V, Real time) {
+    const Real damping = w->scene.sigma_1 * rate, viscous = w->scene.sigma_2 * V;
     sums->impulse += time * (spring + viscous);
-    sums->work += time * force * at->V;
-    sums->heat += time * (spring * (at->V - rate) + (damping + viscous) * at->V);
+    sums->work += time * (spring + damping + viscous) * V;
+    sums->heat += time * (spring * (V - rate) + (damping + viscous) * V);
     sums->force += time * (fabsl(spring) + fabsl(viscous) + w->S);
     sums->power += time * (fabsl(spring) + fabsl(damping) + fabsl(viscous) + w->S) *
-                   (fabsl(at->V) + (spring == 0.0L ? 0.0L : fabsl(rate)));
+                   (fabsl(V) + (spring == 0.0L ? 0.0L : fabsl(rate)));
 }
 
 // What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound of a side.
@@ -500,73 +492,69 @@ typedef struct {
     int slip; // 0, +1, -1
 } Motion;
 
-// The deflections at the nodes of a panel by the bristle's own law.
-static void collocate(const World* w, const At* at, const Real* r, Real size, Real delta, Real* at_delta,
-                      Real* change) {
-    // Both the change Y of delta, Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j), and delta itself,
-    // delta_i = delta + size sum_j to_ij (V_j - r_j delta_j): what is the smaller has the more digits.
+// The deflections at the nodes of a panel by the bristle's own law: delta + Y, Y_i = size sum_j to_ij (V_j - r_j delta -
+// r_j Y_j). Returns the change of delta.
+static Real collocate(const World* w, const At* at, const Real* r, Real size, Real delta, Real* at_delta) {
     const int n = w->rule->stages;
-    Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES][2];
+    Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES] = {0};
     for (int i = 0; i < n; i++) {
-        Y[i][0] = 0.0L;
-        Y[i][1] = delta;
         for (int j = 0; j < n; j++) {
             const Real weight = size * w->rule->to[i][j];
-            Y[i][0] += weight * (at[j].V - r[j] * delta);
-            Y[i][1] += weight * at[j].V;
+            Y[i] += weight * (at[j].V - r[j] * delta);
             A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r[j];
         }
     }
     solve(n, A, Y);
     for (int i = 0; i < n; i++) {
-        at_delta[i] = fabsl(Y[i][0]) < fabsl(Y[i][1]) ? delta + Y[i][0] : Y[i][1];
+        at_delta[i] = delta + Y[i];
     }
-    *change = Y[n - 1][0];
+    return Y[n - 1];
 }
 
 static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
     const Rule* rule = w->rule;
-    const int n = rule->stages;
+    const int n = rule->stages, last = n - 1;
     const Real size = b - a;
-    Sums sums = {0};
+    const bool bristle = !w->open && w->scene.law != LAW_COULOMB;
+    Sums sums = {.path = fabsl(travel(w, a, b)), .end = delta};
     At at[MOST_STAGES];
     Real r[MOST_STAGES] = {0}, rate[MOST_STAGES] = {0}, at_delta[MOST_STAGES] = {0};
     for (int i = 0; i < n; i++) {
-        at[i] = scene_at(w, a + size * rule->node[i], motion->slip != 0);
-    }
-    if (motion->slip) {
-        for (int i = 0; i < n; i++) {
-            at_delta[i] = (Real)motion->slip * slip_bound(w, &at[i]);
-            rate[i] = (Real)motion->slip * slip_rate(w, &at[i]);
-        }
-        sums.change = at_delta[n - 1] - delta;
-    } else if (w->scene.law == LAW_ELASTIC_PLASTIC) {
-        for (int i = 0; i < n; i++) {
-            at_delta[i] = delta + travel(w, a, a + size * rule->node[i]);
+        const Real t = a + size * rule->node[i];
+        at[i] = scene_at(w, t, motion->slip != 0);
+        if (motion->slip) {
+            at_delta[i] = (Real)motion->slip * bound(w, &at[i], false);
+            rate[i] = (Real)motion->slip * bound_rate(w, &at[i], false);
+        } else if (bristle && w->elastic) {
+            at_delta[i] = delta + travel(w, a, t);
             rate[i] = at[i].V;
-        }
-        sums.change = travel(w, a, b);
-    } else {
-        for (int i = 0; i < n; i++) {
+        } else if (bristle) {
             r[i] = relaxation(w, &at[i], motion->sign);
         }
-        collocate(w, at, r, size, delta, at_delta, &sums.change);
+    }
+    sums.change = motion->slip ? at_delta[last] - delta : bristle && w->elastic ? travel(w, a, b) : 0.0L;
+    if (bristle && !motion->slip && !w->elastic) {
+        sums.change = collocate(w, at, r, size, delta, at_delta);
         for (int i = 0; i < n; i++) {
             rate[i] = at[i].V - r[i] * at_delta[i];
         }
     }
-    sums.end = at_delta[n - 1];
-    Real relaxed = 0.0L, longest = fabsl(delta), fastest = 0.0L;
-    for (int i = 0; i < n; i++) {
-        relaxed += size * rule->weight[i] * r[i];
-        longest = fmaxl(longest, fabsl(at_delta[i]));
-        fastest = fmaxl(fastest, fabsl(rate[i]));
+    if (bristle) {
+        Real relaxed = 0.0L, longest = fabsl(delta), fastest = 0.0L;
+        for (int i = 0; i < n; i++) {
+            relaxed += size * rule->weight[i] * r[i];
+            longest = fmaxl(longest, fabsl(at_delta[i]));
+            fastest = fmaxl(fastest, fabsl(rate[i]));
+        }
+        sums.end = at_delta[last];
+        sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
+        sums.length = fmaxl(longest * expl(-relaxed), fmaxl(fabsl(sums.end), at[last].g / at[last].sigma));
     }
-    const Real kept = expl(-relaxed);
-    sums.blur = fastest * kept * 2.0L * LDBL_EPSILON * b;
-    sums.length = fmaxl(longest * kept, fmaxl(fabsl(sums.end), at[n - 1].g / at[n - 1].sigma));
     for (int i = 0; i < n; i++) {
-        account(w, &sums, &at[i], at_delta[i], rate[i], size * rule->weight[i]);
+        const Real spring = bristle                       ? at[i].sigma * at_delta[i]
+                            : w->scene.law == LAW_COULOMB ? (Real)motion->sign * at[i].coulomb
+                                                          : 0.0L;
+        account(w, &sums, spring, rate[i], at[i].V, size * rule->weight[i]);
     }
     sums.impulse += w->scene.sigma_1 * sums.change;
     sums.force += w->scene.sigma_1 * fabsl(sums.change);
@@ -582,12 +570,12 @@ static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not
 static const Real LEAST = 1e-16L;
 
 // Whether a panel of this size [s] and its halves give the same.
+// Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
-    const Real least = w->fineness == 1 ? LEAST : 0.01L * LEAST,
-               same = w->fineness == 1 ? AGREE : 0.01L * AGREE;
-    const Real force = least * two->force / size;
+    const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
+    const Real force = share * LEAST * two->force / size;
     const Real impulse = same * two->force + force * w->h,
-               energy = same * two->power + force * (w->path + two->length);
+               energy = same * two->power + force * (w->top * w->h + two->length);
     return fabsl(one->end - two->end) <= same * two->length + two->blur &&
            fabsl(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
            fabsl(one->heat - two->heat) <= energy;
@@ -605,15 +593,14 @@ typedef struct {
     Real delta;
     int slip;      // side along whose bound the bristle slips, or 0
     bool slipped;  // at any time
-    bool watch[2]; // whether the bound of the side +1, -1 may be met, by a bristle of Dahl or LuGre
+    bool watch[2]; // whether the bound of the side +1, -1 may be met
     int met;       // the side that was met, or 0
     Real met_at;   // when
 } March;
 
-static int side_met(const March* march, Real t, Real delta) {
-    for (int k = 0; k < 2; k++) {
-        const int side = k == 0 ? 1 : -1;
-        if (march->watch[k] && gap(march->w, t, delta, side) < 0.0L) {
+static int side_met(const March* march, const Motion* motion, Real t, Real delta) {
+    for (int side = 1; side >= -1 && !motion->slip; side -= 2) {
+        if (march->watch[side < 0] && gap(march->w, t, delta, side, march->slip == 0) < 0.0L) {
             return side;
         }
     }
@@ -625,54 +612,23 @@ static void commit(March* march, const Sums* part) {
     march->delta = part->end;
 }
 
-static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth);
+// A free bristle on its way to the bound of a side.
+typedef struct {
+    const March* march;
+    const Motion* motion;
+    Real from; // s
+    int side;
+} Way;
 
-static void go_over(March* march, const Motion* motion, Real a, Real b) {
-    const Sums one = panel(march->w, motion, a, b, march->delta);
-    go_on(march, motion, a, b, &one, 0);
+static Real beyond(const void* context, Real t) {
+    const Way* way = context;
+    World* w = way->march->w;
+    const Real start = way->march->delta;
+    const Real delta = t > way->from ? panel(w, way->motion, way->from, t, start).end : start;
+    return -gap(w, t, delta, way->side, way->march->slip == 0);
 }
 
-// The bristle is inside its bound at a and beyond it at b: goes on to where it meets it.
-static void go_to_bound(March* march, const Motion* motion, Real a, Real b, int side) {
-    World* w = march->w;
-    Real low = a, high = b;
-    Real gap_low = gap(w, a, march->delta, side);
-    Real gap_high = gap(w, b, panel(w, motion, a, b, march->delta).end, side);
-    if (gap_low <= 0.0L) {
-        high = a;
-    }
-    for (int k = 0; k < 200 && high > low; k++) {
-        Real t = k % 3 == 2 ? 0.5L * (low + high) : high - gap_high * (high - low) / (gap_high - gap_low);
-        if (!(t > low && t < high)) {
-            t = 0.5L * (low + high);
-        }
-        if (!(t > low && t < high)) {
-            break;
-        }
-        const Real found = gap(w, t, panel(w, motion, a, t, march->delta).end, side);
-        if (found == 0.0L) {
-            low = high = t;
-        } else if (found < 0.0L) {
-            high = t;
-            gap_high = found;
-            gap_low *= 0.5L;
-        } else {
-            low = t;
-            gap_low = found;
-            gap_high *= 0.5L;
-        }
-    }
-    const Real met_at = high;
-    if (met_at > a) {
-        const bool kept[2] = {march->watch[0], march->watch[1]};
-        march->watch[0] = march->watch[1] = false;
-        go_over(march, motion, a, met_at);
-        march->watch[0] = kept[0];
-        march->watch[1] = kept[1];
-    }
-    march->met = side;
-    march->met_at = met_at;
-}
+static void go_over(March* march, const Motion* motion, Real a, Real b);
 
 // Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a bristle that is free
 // stops where it meets a bound.
@@ -691,18 +647,31 @@ static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums
         }
         return;
     }
-    const int side_left = motion->slip ? 0 : side_met(march, middle, left.end);
-    if (side_left) {
-        go_to_bound(march, motion, a, middle, side_left);
-        return;
+    int side = side_met(march, motion, middle, left.end);
+    if (!side) {
+        commit(march, &left);
+        side = side_met(march, motion, b, right.end);
+        a = middle;
+        if (!side) {
+            commit(march, &right);
+            return;
+        }
+    } else {
+        b = middle;
     }
-    const int side_right = motion->slip ? 0 : side_met(march, b, two.end);
-    commit(march, &left);
-    if (side_right) {
-        go_to_bound(march, motion, middle, b, side_right);
-        return;
+    const Way way = {march, motion, a, side};
+    const Real met_at = beyond(&way, a) >= 0.0L ? a : crossing(beyond, &way, a, b);
+    march->watch[0] = march->watch[1] = false;
+    if (met_at > a) {
+        go_over(march, motion, a, met_at);
     }
-    commit(march, &right);
+    march->met = side;
+    march->met_at = met_at;
+}
+
+static void go_over(March* march, const Motion* motion, Real a, Real b) {
+    const Sums one = panel(march->w, motion, a, b, march->delta);
+    go_on(march, motion, a, b, &one, 0);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -714,14 +683,18 @@ typedef struct {
     size_t count, room;
 } Cuts;
 
+static void* memory(void* old, size_t size) {
+    void* found = realloc(old, size);
+    if (found == NULL) {
+        abort();
+    }
+    return found;
+}
+
 static void cut(Cuts* cuts, Real t) {
     if (cuts->count == cuts->room) {
         cuts->room = cuts->room ? 2 * cuts->room : 256;
-        Real* grown = realloc(cuts->time, cuts->room * sizeof *grown);
-        if (grown == NULL) {
-            abort();
-        }
-        cuts->time = grown;
+        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
     }
     cuts->time[cuts->count++] = t;
 }
@@ -744,33 +717,21 @@ static void tidy(Cuts* cuts, Closed part) {
     cuts->count = kept;
 }
 
-typedef Real Function(const World* w, Real t, Real shift, int side);
+typedef struct {
+    const World* w;
+    Real level; // m/s, of V
+    int side;   // of a bound
+    bool sticks;
+} Zero;
 
-static Real root(const World* w, Function* function, Real shift, int side, Real low, Real high) {
-    const bool rising = function(w, high, shift, side) > 0.0L;
-    for (int k = 0; k < 90; k++) {
-        const Real middle = 0.5L * (low + high);
-        if (!(middle > low && middle < high)) {
-            break;
-        }
-        if ((function(w, middle, shift, side) > 0.0L) == rising) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    return rising ? high : low;
+static Real velocity_less(const void* context, Real t) {
+    const Zero* zero = context;
+    return velocity(zero->w, t) - zero->level;
 }
 
-static Real velocity_less(const World* w, Real t, Real shift, int side) {
-    (void)side;
-    return velocity(w, t) - shift;
-}
-
-static Real outward_less(const World* w, Real t, Real shift, int side) { return outward(w, t, side) - shift; }
-
-static Real static_outward_less(const World* w, Real t, Real shift, int side) {
-    return static_outward(w, t, side) - shift;
+static Real outward_of(const void* context, Real t) {
+    const Zero* zero = context;
+    return outward(zero->w, t, zero->side, zero->sticks);
 }
 
 // Where dV/dt = 0, where the vibration turns, and equal pieces in between.
@@ -797,63 +758,50 @@ static void cut_at_bends(const World* w, Cuts* cuts) {
 
 // Where V is a multiple of V_S, and 0; V is monotone between the cuts so far.
 static void cut_at_velocities(const World* w, Cuts* cuts) {
-    static const Real MULTIPLES[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    const size_t count = cuts->count;
+    static const Real MULTIPLES[] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
+    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : sizeof MULTIPLES / sizeof *MULTIPLES;
     for (size_t k = 0; k + 1 < count; k++) {
         const Real a = cuts->time[k], b = cuts->time[k + 1];
-        const Real V_a = velocity(w, a), V_b = velocity(w, b);
-        if (V_a * V_b < 0.0L) {
-            cut(cuts, root(w, velocity_less, 0.0L, 0, a, b));
-        }
-        for (size_t m = 0; w->excess != 0.0L && m < sizeof MULTIPLES / sizeof *MULTIPLES; m++) {
-            for (int sign = -1; sign <= 1; sign += 2) {
-                const Real level = (Real)sign * MULTIPLES[m] * w->scene.V_S;
-                if ((V_a - level) * (V_b - level) < 0.0L) {
-                    cut(cuts, root(w, velocity_less, level, 0, a, b));
-                }
+        for (size_t m = 0; m < 2 * levels; m++) {
+            const Zero zero = {.w = w, .level = (m % 2 ? 1.0L : -1.0L) * MULTIPLES[m / 2] * w->scene.V_S};
+            if (velocity_less(&zero, a) * velocity_less(&zero, b) < 0.0L) {
+                cut(cuts, crossing(velocity_less, &zero, a, b));
             }
         }
     }
 }
 
-// Cuts at the zeros of a function between a and b that the samples at the ends of cells show, also where it only just
-// passes zero between two of them: the extreme next to a sample is searched.
-static void cut_at_zeros(const World* w, Cuts* cuts, Function* function, int side, Real a, Real b) {
-    const int cells = 12 * w->fineness;
-    Real before = 0.0L, t_before = a, here = function(w, a, 0.0L, side), t_here = a;
+// Cuts where a bristle may leave its bound between a and b, as the samples at the ends of cells show, also where it only
+// just passes zero between two of them: the extreme next to a sample is searched.
+static void cut_at_zeros(const Zero* zero, Cuts* cuts, Real a, Real b) {
+    const int cells = 12 * zero->w->fineness;
+    Real t[3] = {a, a, a}, value[3] = {0.0L, 0.0L, outward_of(zero, a)};
     for (int k = 1; k <= cells; k++) {
-        const Real t = k == cells ? b : 0.5L * (a + b) - 0.5L * (b - a) * cosl(PI * (Real)k / (Real)cells);
-        const Real next = function(w, t, 0.0L, side);
-        if (here * next < 0.0L) {
-            cut(cuts, root(w, function, 0.0L, side, t_here, t));
-        } else if (k >= 2 && here * before > 0.0L && fabsl(here) <= fabsl(before) &&
-                   fabsl(here) <= fabsl(next)) {
-            // a local least of |function| next to the middle sample: golden section
-            Real low = t_before, high = t;
-            for (int i = 0; i < 60; i++) {
-                const Real x = low + 0.381966L * (high - low), y = high - 0.381966L * (high - low);
-                const Real at_x = function(w, x, 0.0L, side), at_y = function(w, y, 0.0L, side);
-                if (at_x * here < 0.0L || at_y * here < 0.0L) {
-                    const Real inside = at_x * here < 0.0L ? x : y;
-                    cut(cuts, root(w, function, 0.0L, side, low, inside));
-                    cut(cuts, root(w, function, 0.0L, side, inside, high));
-                    break;
-                }
-                if (fabsl(at_x) < fabsl(at_y)) {
-                    high = y;
-                } else {
-                    low = x;
-                }
-            }
+        t[0] = t[1], t[1] = t[2], value[0] = value[1], value[1] = value[2];
+        t[2] = k == cells ? b : 0.5L * (a + b) - 0.5L * (b - a) * cosl(PI * (Real)k / (Real)cells);
+        value[2] = outward_of(zero, t[2]);
+        if (value[1] * value[2] < 0.0L) {
+            cut(cuts, crossing(outward_of, zero, t[1], t[2]));
+            continue;
         }
-        before = here;
-        t_before = t_here;
-        here = next;
-        t_here = t;
+        Real low = t[0], high = t[2];
+        const Real size = fabsl(value[1]);
+        const bool least = value[1] * value[0] > 0.0L && size <= fabsl(value[0]) && size <= fabsl(value[2]);
+        for (int i = 0; i < 60 && least; i++) { // golden section
+            const Real x = low + 0.381966L * (high - low), y = high - 0.381966L * (high - low);
+            const Real at_x = outward_of(zero, x), at_y = outward_of(zero, y);
+            if (at_x * value[1] < 0.0L || at_y * value[1] < 0.0L) {
+                const Real inside = at_x * value[1] < 0.0L ? x : y;
+                cut(cuts, crossing(outward_of, zero, low, inside));
+                cut(cuts, crossing(outward_of, zero, inside, high));
+                break;
+            }
+            *(fabsl(at_x) < fabsl(at_y) ? &high : &low) = fabsl(at_x) < fabsl(at_y) ? y : x;
+        }
     }
 }
 
-// Of [0, h], or of the part in which the contact is closed.
+// Of the part in which the contact is closed, or open.
 static Cuts all_cuts(const World* w, Closed part) {
     Cuts cuts = {0};
     const ReferenceScene* s = &w->scene;
@@ -861,7 +809,7 @@ static Cuts all_cuts(const World* w, Closed part) {
     cut(&cuts, part.from);
     cut(&cuts, part.to);
     cut_at_bends(w, &cuts);
-    if (s->load_rate != 0.0 || s->E_rate != 0.0 || s->d_rate != 0.0) {
+    if (!w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || s->d_rate != 0.0)) {
         // a load may fall by decades toward the end, or rise by as much from the start
         for (int k = 1; k <= 60; k += 2) {
             cut(&cuts, part.from + ldexpl(span, -k));
@@ -871,14 +819,12 @@ static Cuts all_cuts(const World* w, Closed part) {
     tidy(&cuts, part);
     cut_at_velocities(w, &cuts);
     tidy(&cuts, part);
-    const bool elastic = s->law == LAW_ELASTIC_PLASTIC;
     const size_t count = cuts.count;
-    for (size_t k = 0; (elastic || w->bounded) && k + 1 < count; k++) {
-        for (int side = -1; side <= 1; side += 2) {
-            cut_at_zeros(w, &cuts, outward_less, side, cuts.time[k], cuts.time[k + 1]);
-            if (elastic && w->excess != 0.0L) {
-                cut_at_zeros(w, &cuts, static_outward_less, side, cuts.time[k], cuts.time[k + 1]);
-            }
+    const int kinds = w->excess != 0.0L && w->elastic ? 4 : 2; // of both sides; what slips, then what sticks
+    for (size_t k = 0; w->bounded && !w->open && k + 1 < count; k++) {
+        for (int kind = 0; kind < kinds; kind++) {
+            const Zero zero = {.w = w, .side = kind % 2 ? 1 : -1, .sticks = kind >= 2};
+            cut_at_zeros(&zero, &cuts, cuts.time[k], cuts.time[k + 1]);
         }
     }
     tidy(&cuts, part);
@@ -886,200 +832,181 @@ static Cuts all_cuts(const World* w, Closed part) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// The march over the part of a step in which the contact is closed
+// The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-static void stretch_of_bounded(March* march, Real a, Real b) {
-    World* w = march->w;
-    const Real middle = 0.5L * (a + b);
-    Motion motion = {.sign = sign_of(velocity(w, middle))};
-    march->watch[0] = w->bounded && !w->open_ends && outward(w, middle, 1) > 0.0L;
-    march->watch[1] = w->bounded && !w->open_ends && outward(w, middle, -1) > 0.0L;
-    march->met = 0;
-    if (march->slip && !march->watch[march->slip == 1 ? 0 : 1]) {
-        march->slip = 0;
-    }
-    if (!march->slip) {
-        go_over(march, &motion, a, b);
-        march->slip = march->met;
-        a = march->met ? march->met_at : b;
-        march->met = 0;
-    }
-    if (march->slip) {
-        march->slipped = true;
-        if (a < b) {
-            motion.slip = march->slip;
-            go_over(march, &motion, a, b);
-        }
-    }
-}
-
-typedef Real Gap(const World* w, Real t, Real delta, int side);
-
-// When a bristle that moves with V, and is inside at a, comes to its bound; b if it does not. The gap is monotone.
-static Real arrival(const March* march, Gap* gap_of, int side, Real a, Real b) {
-    const World* w = march->w;
-    if (!(gap_of(w, b, march->delta + travel(w, a, b), side) < 0.0L)) {
-        return b;
-    }
-    Real low = a, high = b;
-    for (int k = 0; k < 120; k++) {
-        const Real middle = 0.5L * (low + high);
-        if (!(middle > low && middle < high)) {
-            break;
-        }
-        *(gap_of(w, middle, march->delta + travel(w, a, middle), side) < 0.0L ? &high : &low) = middle;
-    }
-    return high;
-}
-
-// The bristle drops to the bound of what slips, at a time: the limit of a fast motion, which the damping feels.
+// The bristle meets its bound. One that stuck drops to the bound of what slips: the limit of a fast motion, which the
+// damping feels.
 static void break_away(March* march, Real t, int side) {
     const At at = scene_at(march->w, t, false);
-    const Real from = march->delta, to = (Real)side * at.g / at.sigma;
+    const Real from = march->delta, to = (Real)side * bound(march->w, &at, false);
+    const Real damping = march->w->scene.sigma_1 * (to - from);
     march->delta = to;
     march->slip = side;
     march->slipped = true;
-    if (march->w->excess != 0.0L) {
-        const Real damping = march->w->scene.sigma_1 * (to - from);
-        march->sums.impulse += damping;
-        march->sums.work += damping * at.V;
-        march->sums.heat += damping * at.V + 0.5L * at.sigma * (from - to) * (from + to);
-    }
+    march->sums.impulse += damping;
+    march->sums.work += damping * at.V;
+    march->sums.heat += damping * at.V + 0.5L * at.sigma * (from - to) * (from + to);
 }
 
-static void stretch_of_elastic(March* march, Real a, Real b) {
+static void stretch(March* march, Real a, Real b) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
-    const bool leaves[2] = {outward(w, middle, 1) > 0.0L, outward(w, middle, -1) > 0.0L};
-    const Motion stuck = {.sign = sign_of(velocity(w, middle))};
+    Motion motion = {.sign = sign_of(velocity(w, middle))};
     while (a < b) {
-        const int side = march->slip;
-        if (side != 0 && !leaves[side == 1 ? 0 : 1]) {
-            march->slip = 0;
-        } else if (side != 0) {
-            march->slipped = true;
-            // on the bound, or catching up
-            const Real missing = kinetic_gap(w, a, march->delta, side);
-            Real until = missing > 1e-18L * fabsl(march->delta) ? arrival(march, kinetic_gap, side, a, b) : a;
-            if (until > a) {
-                go_over(march, &stuck, a, until);
-                a = until;
-            }
-            if (a < b) {
-                const Motion slip = {.sign = stuck.sign, .slip = side};
-                go_over(march, &slip, a, b);
-                a = b;
-            }
-        } else {
-            Real until = b;
-            int breaks = 0;
-            for (int k = -1; k <= 1 && !w->open_ends; k += 2) {
-                const Real when = arrival(march, gap, k, a, b);
-                if (when < until || (gap(w, b, march->delta + travel(w, a, b), k) < 0.0L && when <= until)) {
-                    until = when;
-                    breaks = k;
-                }
-            }
-            if (until > a) {
-                go_over(march, &stuck, a, until);
-            }
-            if (breaks) {
-                break_away(march, until, breaks);
-            }
-            a = until;
+        if (march->slip && !(outward(w, middle, march->slip, false) > 0.0L)) {
+            march->slip = 0; // it sticks, or leaves the bound
+        }
+        const int slip = march->slip;
+        march->slipped = march->slipped || slip;
+        march->met = 0;
+        for (int side = 1; side >= -1; side -= 2) {
+            march->watch[side < 0] = w->bounded && !w->open && !w->open_ends &&
+                                     (slip ? side == slip : outward(w, middle, side, true) > 0.0L);
+        }
+        // on the bound, or catching up
+        const bool lies = slip && gap(w, a, march->delta, slip, false) <= 1e-18L * fabsl(march->delta);
+        motion.slip = lies ? slip : 0;
+        go_over(march, &motion, a, b);
+        a = march->met ? march->met_at : b;
+        if (march->met && !slip) {
+            break_away(march, a, march->met);
         }
     }
 }
 
-// From a march's delta and slip through the closed part.
-static void march_over(March* march, Closed part) {
-    World* w = march->w;
-    Cuts cuts = all_cuts(w, part);
+static void march_part(March* march, Closed part, bool open) {
+    if (!(part.to > part.from)) {
+        return;
+    }
+    march->w->open = open;
+    Cuts cuts = all_cuts(march->w, part);
     for (size_t k = 0; k + 1 < cuts.count; k++) {
-        if (w->scene.law == LAW_ELASTIC_PLASTIC) {
-            stretch_of_elastic(march, cuts.time[k], cuts.time[k + 1]);
-        } else {
-            stretch_of_bounded(march, cuts.time[k], cuts.time[k + 1]);
-        }
+        stretch(march, cuts.time[k], cuts.time[k + 1]);
     }
     free(cuts.time);
+}
+
+static void march_over(March* march) {
+    World* w = march->w;
+    const Closed part = closed_part(w);
+    march_part(march, (Closed){0.0L, part.from}, true);
+    // what has no load has no rate: the last 1e-18 of the way to it is left out
+    const Real edge = ldexpl(part.to - part.from, -58);
+    march_part(
+        march,
+        (Closed){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
+        false);
+    if (part.to < w->h) {
+        const bool slides = w->scene.contact == CONTACT_CONSTANT && w->scene.law != LAW_COULOMB;
+        march->sums.heat += slides ? 0.5L * w->scene.contact_sigma * march->delta * march->delta : 0.0L;
+        march->delta = 0.0L;
+        march->slip = 0;
+    }
+    march_part(march, (Closed){part.to, w->h}, true);
+    w->open = false;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Many equal periods
 // ---------------------------------------------------------------------------------------------------------------------
 
-// A period maps delta in a monotone way, and as long as it touches no bound in an affine one: delta - fixed to kept (delta -
-// fixed), or delta to delta + shift. Its sums are then polynomials of degree 2 in delta, of degree 1 without relaxation.
-typedef struct {
-    World world;
-    bool drifts;                // kept is 1
-    Real shift, fixed, relaxed; // relaxed: 1 - kept
-} Period;
-
-static March one_period(Period* p, Real delta, int slip, bool open_ends) {
-    March march = {.w = &p->world, .delta = delta, .slip = slip};
-    p->world.open_ends = open_ends;
-    march_over(&march, (Closed){0.0L, p->world.h});
-    p->world.open_ends = false;
+static March one_period(World* w, Real delta, int slip, bool open_ends) {
+    March march = {.w = w, .delta = delta, .slip = slip};
+    w->open_ends = open_ends;
+    march_over(&march);
+    w->open_ends = false;
     return march;
 }
 
-static void find_map(Period* p, Real delta) {
-    const ReferenceScene* s = &p->world.scene;
-    const At at = scene_at(&p->world, 0.0L, false);
-    p->drifts = s->law == LAW_ELASTIC_PLASTIC || (s->V == 0.0 && s->V_1 == 0.0);
-    p->shift = p->drifts ? travel(&p->world, 0.0L, p->world.h) : 0.0L;
-    if (s->V_1 != 0.0 && s->V == 0.0) {
-        p->shift = 0.0L;
+// As long as it touches no bound, a period maps delta in an affine way, and its sums are polynomials of degree 2 in delta:
+// it multiplies (1, x, x^2, impulse, work, heat, path) by a matrix, x = delta / unit.
+enum { ROWS = 7, POWERS = 50 };
+typedef struct {
+    Real m[ROWS][ROWS];
+} Map;
+
+static Map find_map(World* w, Real unit) {
+    const bool drifts_not = w->elastic && w->scene.V == 0.0;
+    Map map = {0};
+    Real way[3], of[3][4];
+    for (int k = 0; k < 3; k++) {
+        const Sums sums = one_period(w, (Real)(k - 1) * unit, 0, true).sums;
+        way[k] = drifts_not ? 0.0L : sums.change / unit;
+        of[k][0] = sums.impulse, of[k][1] = sums.work, of[k][2] = sums.heat, of[k][3] = sums.path;
     }
-    Real x = delta;
-    for (int k = 0; k < 3 && !p->drifts; k++) { // once would do but for rounding
-        const Real y = x + at.g / at.sigma;
-        const Real change_x = one_period(p, x, 0, true).sums.change;
-        p->relaxed = (change_x - one_period(p, y, 0, true).sums.change) / (y - x);
-        p->fixed = x = x + change_x / p->relaxed;
+    const Real shift = way[1], kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[2] - way[0]));
+    map.m[0][0] = 1.0L;
+    map.m[1][0] = shift, map.m[1][1] = kept;
+    map.m[2][0] = shift * shift, map.m[2][1] = 2.0L * shift * kept, map.m[2][2] = kept * kept;
+    for (int i = 0; i < 4; i++) {
+        map.m[3 + i][0] = of[1][i];
+        map.m[3 + i][1] = 0.5L * (of[2][i] - of[0][i]);
+        map.m[3 + i][2] = 0.5L * (of[2][i] + of[0][i]) - of[1][i];
+        map.m[3 + i][3 + i] = 1.0L;
     }
+    return map;
 }
 
-static Real after_periods(const Period* p, Real delta, Real n) {
-    if (p->drifts) {
-        return delta + n * p->shift;
+static Map twice(const Map* map) {
+    Map two = {0};
+    for (int i = 0; i < ROWS; i++) {
+        for (int j = 0; j < ROWS; j++) {
+            for (int k = 0; k < ROWS; k++) {
+                two.m[i][j] += map->m[i][k] * map->m[k][j];
+            }
+        }
     }
-    return p->fixed + (delta - p->fixed) * (p->relaxed < 1.0L ? expl(n * log1pl(-p->relaxed)) : 0.0L);
+    return two;
 }
 
-static bool touches(Period* p, Real delta) { return one_period(p, delta, 0, false).slipped; }
+// A period, and its map's powers of 1, 2, 4 ..
+typedef struct {
+    World world;
+    Real unit; // m, of x
+    Map power[POWERS];
+} Period;
 
-// 1 + x + .. + x^(n - 1), x = 1 - relaxed.
-static Real geometric(Real relaxed, Real n) {
-    return relaxed >= 1.0L ? 1.0L : relaxed == 0.0L ? n : -expm1l(n * log1pl(-relaxed)) / relaxed;
-}
-
-static void add_times(Sums* sums, const Sums* one, Real factor) {
-    sums->impulse += factor * one->impulse;
-    sums->work += factor * one->work;
-    sums->heat += factor * one->heat;
-}
-
-// The sums of n periods from delta, none of which touches a bound.
-static void add_untouched(Period* p, Real delta, Real n, Sums* sums) {
-    if (p->drifts) {
-        const Real far =
-            n > 1.0L ? (n - 1.0L) * p->shift : 0.0L; // linear in delta: the mean of the first and the last
-        const March first = one_period(p, delta, 0, true), last = one_period(p, delta + far, 0, true);
-        add_times(sums, &first.sums, 0.5L * n);
-        add_times(sums, &last.sums, 0.5L * n);
-        return;
+// delta after n periods that touch no bound; adds their sums.
+static Real after_untouched(const Period* p, Real delta, Real n, Sums* sums) {
+    Real x = delta / p->unit;
+    for (int k = 0; k < POWERS; k++) {
+        if (fmodl(floorl(ldexpl(n, -k)), 2.0L) == 0.0L) {
+            continue;
+        }
+        Real of[ROWS];
+        for (int i = 0; i < ROWS; i++) {
+            const Real* row = p->power[k].m[i];
+            of[i] = row[0] + x * (row[1] + x * row[2]);
+        }
+        const Sums part = {.impulse = of[3], .work = of[4], .heat = of[5], .path = of[6]};
+        add_times(sums, &part, 1.0L);
+        x = of[1];
     }
-    const Real off = delta - p->fixed, first = geometric(p->relaxed, n);
-    const Real second = geometric(p->relaxed * (2.0L - p->relaxed), n);
-    const March at = one_period(p, p->fixed, 0, true), above = one_period(p, p->fixed + off, 0, true);
-    const March below = one_period(p, p->fixed - off, 0, true);
-    add_times(sums, &at.sums, n - second);
-    add_times(sums, &above.sums, 0.5L * (second + first));
-    add_times(sums, &below.sums, 0.5L * (second - first));
+    return x * p->unit;
+}
+
+// Whether period number n from delta on touches a bound, if none before it does.
+static bool touches(Period* p, Real delta, Real n) {
+    Sums unused = {0};
+    return one_period(&p->world, after_untouched(p, delta, n - 1.0L, &unused), 0, false).slipped;
+}
+
+// How many periods from delta touch no bound, at the most n, or 2^(POWERS - 1); the first one touches none.
+static Real count_untouched(Period* p, Real delta, Real n) {
+    Real low = 1.0L, high = fminl(n, ldexpl(1.0L, POWERS - 1));
+    if (!touches(p, delta, high)) {
+        return high;
+    }
+    while (2.0L * low < high && !touches(p, delta, 2.0L * low)) {
+        low *= 2.0L;
+    }
+    high = fminl(high, 2.0L * low);
+    while (high - low > 1.0L) {
+        const Real middle = floorl(0.5L * (low + high));
+        *(touches(p, delta, middle) ? &high : &low) = middle;
+    }
+    return low;
 }
 
 enum { MOST_CYCLE = 4096 };
@@ -1091,81 +1018,58 @@ typedef struct {
     Sums sums;  // up to it
 } Mark;
 
-// How many periods from delta touch no bound, at the most n, at least 1: the first one touches none.
-static Real untouched(Period* p, Real delta, Real n) {
-    Real low = 1.0L, high = 2.0L;
-    if (p->drifts ? p->shift == 0.0L : !touches(p, p->fixed)) {
-        return n;
-    }
-    while (high < n &&
-           !touches(p, after_periods(p, delta, high - 1.0L))) { // the period number high touches none
-        low = high;
-        high *= 2.0L;
-        if (high > 1e30L) {
-            return n;
-        }
-    }
-    high = fminl(high, n + 1.0L); // number n + 1 is not asked of
-    while (high - low > 1.0L) {
-        const Real middle = floorl(0.5L * (low + high));
-        *(touches(p, after_periods(p, delta, middle - 1.0L)) ? &high : &low) = middle;
-    }
-    return low;
-}
-
 // Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
 // the state that at the end of the first of them. False where none repeat.
-static bool go_periods(Period* p, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle, Real* length) {
-    Mark* marks = malloc(MOST_CYCLE * sizeof *marks);
-    Real done = 0.0L;
-    int count = 0;
-    if (marks == NULL) {
-        abort();
+static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle,
+                       Real* length) {
+    Period p = {.world = *of, .unit = 1.0L};
+    World* w = &p.world;
+    if (w->scene.law != LAW_COULOMB && !is_open(w, 0.0L)) {
+        const At at = scene_at(w, 0.0L, false);
+        p.unit = bound(w, &at, true);
     }
-    find_map(p, *delta);
+    Mark* marks = memory(NULL, MOST_CYCLE * sizeof *marks);
+    int count = 0;
     bool known = true;
-    while (done < n) {
-        const March march = one_period(p, *delta, *slip, false);
+    for (int k = 0; k < POWERS; k++) {
+        p.power[k] = k == 0 ? find_map(w, p.unit) : twice(&p.power[k - 1]);
+    }
+    for (Real done = 0.0L; done < n && known;) {
+        const March march = one_period(w, *delta, *slip, false);
         if (!march.slipped) {
-            const Real many = untouched(p, *delta, n - done);
-            if (isinf(many)) {
-                const Real settles = p->drifts ? *delta : p->fixed;
-                *cycle = one_period(p, settles, 0, true).sums;
+            const Real many = count_untouched(&p, *delta, n - done);
+            *delta = after_untouched(&p, *delta, many, sums);
+            *slip = march.slip;
+            done += many;
+            if (isinf(n) && many == ldexpl(1.0L, POWERS - 1)) {
+                *cycle = one_period(w, *delta, 0, false).sums;
                 *length = 1.0L;
-                *delta = settles;
                 break;
             }
-            add_untouched(p, *delta, many, sums);
-            *delta = after_periods(p, *delta, many);
-            done += many;
             continue;
         }
         add_times(sums, &march.sums, 1.0L);
         *delta = march.delta;
         *slip = march.slip;
         done += 1.0L;
-        const Real size = scene_at(&p->world, 0.0L, false).B / scene_at(&p->world, 0.0L, false).sigma;
         int k = count - 1;
         while (k >= 0 && !(marks[k].slip == *slip &&
-                           fabsl(marks[k].delta - *delta) <= 1e-16L * (size + fabsl(*delta)))) {
+                           fabsl(marks[k].delta - *delta) <= 1e-16L * (p.unit + fabsl(*delta)))) {
             k--;
         }
         if (k >= 0) {
-            Sums between = *sums;
-            add_times(&between, &marks[k].sums, -1.0L);
-            const Real periods = done - marks[k].count;
-            *cycle = between;
-            *length = periods;
+            *cycle = *sums;
+            add_times(cycle, &marks[k].sums, -1.0L);
+            *length = done - marks[k].count;
             if (isinf(n)) {
                 break;
             }
-            const Real times = floorl((n - done) / periods);
-            add_times(sums, &between, times);
-            done += times * periods;
+            const Real times = floorl((n - done) / *length);
+            add_times(sums, cycle, times);
+            done += times * *length;
             count = 0;
-        } else if (count == MOST_CYCLE || p->world.panels > MOST_PANELS) {
+        } else if (count == MOST_CYCLE || w->panels > MOST_PANELS) {
             known = false;
-            break;
         } else {
             marks[count++] = (Mark){*delta, *slip, done, *sums};
         }
@@ -1216,103 +1120,107 @@ static OnRamp ramp_at(const Ramp* ramp, Real x) {
     const Real ratio = expl(LINEAR(ln_ratio)), slow = LINEAR(V) / expl(LINEAR(ln_V_S));
     const Real coulomb = expl(LINEAR(ln_limit)) * (s.limit == LIMIT_LOAD ? force : 1.0L);
     OnRamp on = {.sigma = expl(LINEAR(ln_scale)) * stiffness_at(&s, &at, force, d), .B = ratio * coulomb};
-    on.g = s.law == LAW_ELASTIC_PLASTIC ? coulomb * (1.0L + (ratio - 1.0L) * expl(-slow * slow)) : on.B;
+    on.g = ramp->w->elastic ? coulomb * (1.0L + (ratio - 1.0L) * expl(-slow * slow)) : on.B;
     return on;
 #undef LINEAR
 }
 
-// Integral of g |dD| over [a, b], D = g / sigma: the trapezoidal rule, extrapolated.
-static Real heat_along(const Ramp* ramp, Real a, Real b) {
-    enum { LEVELS = 9 };
-    Real table[LEVELS];
-    for (int level = 0; level < LEVELS; level++) {
-        const int cells = 1 << level;
-        Real sum = 0.0L;
-        OnRamp left = ramp_at(ramp, a);
-        for (int k = 1; k <= cells; k++) {
-            const OnRamp right = ramp_at(ramp, a + (b - a) * (Real)k / (Real)cells);
-            sum += 0.5L * (left.g + right.g) * (left.g / left.sigma - right.g / right.sigma);
-            left = right;
+// Integral of g |dD| over [a, b], where D = g / sigma falls: D' by the rule's matrix, and by halves until they agree.
+static Real heat_along(const Ramp* ramp, Real a, Real b, int depth) {
+    const Rule* rule = ramp->w->rule;
+    const Real half[3] = {a, 0.5L * (a + b), b};
+    Real sum[3] = {0}; // of the halves, of the whole
+    for (int part = 0; part < 3; part++) {
+        const Real from = half[part % 2], to = part == 2 ? b : half[part + 1];
+        const OnRamp first = ramp_at(ramp, from);
+        Real A[MOST_STAGES][MOST_STAGES], D[MOST_STAGES], g[MOST_STAGES];
+        for (int i = 0; i < rule->stages; i++) {
+            const OnRamp on = ramp_at(ramp, from + (to - from) * rule->node[i]);
+            g[i] = on.g;
+            D[i] = on.g / on.sigma - first.g / first.sigma;
+            for (int j = 0; j < rule->stages; j++) {
+                A[i][j] = rule->to[i][j];
+            }
         }
-        Real last = level > 0 ? table[level - 1] : 0.0L, power = 1.0L;
-        for (int k = 0; k < level; k++) { // Romberg's row, in place from the coarsest on
-            power *= 4.0L;
-            const Real kept = table[k];
-            table[k] = sum;
-            sum += (sum - kept) / (power - 1.0L);
-        }
-        table[level] = sum;
-        if (level > 2 && fabsl(sum - last) <= 1e-16L * fabsl(sum)) {
-            return sum;
+        solve(rule->stages, A, D);
+        for (int i = 0; i < rule->stages; i++) {
+            sum[part] -= rule->weight[i] * g[i] * D[i];
         }
     }
-    return table[LEVELS - 1];
+    const OnRamp on = ramp_at(ramp, a);
+    const Real least = 1e-17L * on.g * on.g / on.sigma;
+    const bool agree = fabsl(sum[0] + sum[1] - sum[2]) <= 1e-14L * fabsl(sum[2]) + least;
+    return agree || depth == 0
+               ? sum[0] + sum[1]
+               : heat_along(ramp, a, half[1], depth - 1) + heat_along(ramp, half[1], b, depth - 1);
 }
 
-static bool is_beyond(const Ramp* ramp, Real x, Real length, bool sticks) {
-    const OnRamp on = ramp_at(ramp, x);
-    return (sticks ? on.B : on.g) / on.sigma < length;
+// A length [m] and the bound on the ramp that it is to hold.
+typedef struct {
+    const Ramp* ramp;
+    Real length;
+    bool sticks;
+} Held;
+
+static Real excess_length(const void* context, Real x) {
+    const Held* held = context;
+    const OnRamp on = ramp_at(held->ramp, x);
+    return held->length - (held->sticks ? on.B : on.g) / on.sigma;
+}
+
+// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher there.
+static Real lowest(const Held* held, Real a, Real b) {
+    const Real near = 1e-6L * (b - a);
+    const Real at_a = excess_length(held, a), at_b = excess_length(held, b);
+    if (excess_length(held, a + near) > at_a && fmaxl(excess_length(held, b - near), at_a) > at_b) {
+        for (int k = 0; k < 45; k++) { // golden section
+            const Real x = a + 0.381966L * (b - a), y = b - 0.381966L * (b - a);
+            *(excess_length(held, x) > excess_length(held, y) ? &b : &a) =
+                excess_length(held, x) > excess_length(held, y) ? y : x;
+        }
+        return 0.5L * (a + b);
+    }
+    return at_a > at_b ? a : b;
 }
 
 // Moves the bristle along the ramp from before to the start of w; returns the heat.
 static Real ride(const World* before, const World* w, Real* delta, int* slip) {
     enum { CELLS = 64 };
     const Ramp ramp = {w, corner_of(before), corner_of(w)};
-    Real heat = 0.0L, length = fabsl(*delta);
     const int side = sign_of(*delta);
-    bool sticks = w->scene.law == LAW_ELASTIC_PLASTIC && w->excess + before->excess > 0.0L && *slip == 0;
+    const bool sticks = w->elastic && w->excess + before->excess > 0.0L && *slip == 0;
+    Held held = {&ramp, fabsl(*delta), sticks};
+    Real heat = 0.0L;
     for (int k = 0; k < CELLS; k++) {
         Real from = (Real)k / CELLS;
-        const Real to = (Real)(k + 1) / CELLS;
-        while (is_beyond(&ramp, to, length, sticks)) {
-            Real low = from, high = to;
-            for (int i = 0; i < 100 && is_beyond(&ramp, from, length, sticks) == false; i++) {
-                const Real middle = 0.5L * (low + high);
-                if (!(middle > low && middle < high)) {
-                    break;
-                }
-                *(is_beyond(&ramp, middle, length, sticks) ? &high : &low) = middle;
+        for (;;) {
+            const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
+            // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
+            if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
+                break;
             }
-            from = is_beyond(&ramp, from, length, sticks) ? from : high;
-            const OnRamp there = ramp_at(&ramp, from);
-            const Real bound = there.g / there.sigma;
-            if (sticks) {
-                heat += 0.5L * there.sigma * (length - bound) * (length + bound);
-                length = bound;
-                sticks = false;
+            from = excess_length(&held, from) > 0.0L ? from : crossing(excess_length, &held, from, to);
+            const OnRamp there = ramp_at(&ramp, from), end = ramp_at(&ramp, to);
+            if (held.sticks) { // it breaks away
+                const Real kinetic = there.g / there.sigma;
+                heat += 0.5L * there.sigma * (held.length - kinetic) * (held.length + kinetic);
+                held.length = kinetic;
+                held.sticks = false;
                 *slip = side;
-                continue;
+            } else {
+                heat += heat_along(&ramp, from, to, 12);
+                held.length = end.g / end.sigma;
+                from = to;
             }
-            heat += heat_along(&ramp, from, to);
-            const OnRamp end = ramp_at(&ramp, to);
-            length = end.g / end.sigma;
         }
     }
-    *delta = (Real)side * length;
+    *delta = (Real)side * held.length;
     return heat;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The step
 // ---------------------------------------------------------------------------------------------------------------------
-
-static Real whole_path(const World* w) {
-    World still = *w; // Stribeck's curve and the bound ask for cuts that the path needs not
-    still.excess = 0.0L;
-    still.bounded = false;
-    still.scene.law = LAW_COULOMB;
-    still.scene.d_rate = still.scene.E_rate = still.scene.load_rate = 0.0;
-    if (still.scene.V_1 == 0.0) {
-        still.scene.a_d = 0.0;
-    }
-    Cuts cuts = all_cuts(&still, (Closed){0.0L, w->h});
-    Real path = 0.0L;
-    for (size_t k = 0; k + 1 < cuts.count; k++) {
-        path += fabsl(travel(w, cuts.time[k], cuts.time[k + 1]));
-    }
-    free(cuts.time);
-    return path;
-}
 
 // Mean of the limit over a period of the vibration with the inputs of a time [N].
 static Real mean_limit(const World* w, Real t) {
@@ -1332,13 +1240,12 @@ static Real mean_limit(const World* w, Real t) {
 
 static Real largest_force(const World* w, Real delta) {
     const ReferenceScene* s = &w->scene;
-    const Real V_end = (Real)s->V + s->V_rate * w->h;
-    const Real top = fmaxl(fabsl((Real)s->V), fabsl(V_end)) + fabsl((Real)s->V_1);
+    const bool bristle = s->law != LAW_COULOMB;
     Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
-    if (s->law != LAW_COULOMB && !is_open(w, 0.0L)) {
+    if (bristle && !is_open(w, 0.0L)) {
         S = fmaxl(S, scene_at(w, 0.0L, false).sigma * fabsl(delta));
     }
-    return fmaxl(S, ((s->law == LAW_COULOMB ? 0.0L : (Real)s->sigma_1) + s->sigma_2) * top);
+    return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
 }
 
 // The same with its inputs held.
@@ -1353,11 +1260,10 @@ static World held_world(const World* w, Real h) {
 static bool has_many_periods(const World* w) {
     return is_held(&w->scene) && vibrates(&w->scene) && w->h * w->scene.f > 4.0L;
 }
-
 static World make_world(const ReferenceScene* scene, Real h, int fineness) {
-    World w = {.scene = *scene, .h = h, .fineness = fineness};
-    const bool bristle = scene->law == LAW_DAHL || scene->law == LAW_LUGRE;
-    w.bounded = bristle && scene->limit == LIMIT_LOAD;
+    World w = {.scene = *scene, .h = h, .fineness = fineness, .elastic = scene->law == LAW_ELASTIC_PLASTIC};
+    w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
+    w.top = fmaxl(fabsl((Real)scene->V), fabsl((Real)scene->V + scene->V_rate * h)) + fabsl((Real)scene->V_1);
     w.excess =
         scene->law == LAW_LUGRE || scene->law == LAW_ELASTIC_PLASTIC ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
@@ -1377,95 +1283,29 @@ static World make_world(const ReferenceScene* scene, Real h, int fineness) {
     return w;
 }
 
-static void find_path(World* w) {
-    if (!has_many_periods(w)) {
-        w->path = whole_path(w);
-        return;
-    }
-    World part = *w;
-    const Real n = floorl(w->h * w->scene.f);
-    part.h = 1.0L / w->scene.f;
-    w->path = n * whole_path(&part);
-    part.h = w->h - n * part.h;
-    w->path += part.h > 0.0L ? whole_path(&part) : 0.0L;
-}
-
-// Over [a, b], open: viscous friction, and Coulomb's if its limit is constant; Coulomb's law also while closed.
-static void without_bristle(const World* w, Real a, Real b, Sums* sums) {
-    if (!(b > a)) {
-        return;
-    }
-    World still = *w;
-    still.excess = 0.0L;
-    still.bounded = false;
-    still.scene.law = LAW_COULOMB;
-    const bool open = is_open(w, 0.5L * (a + b));
-    Cuts cuts = all_cuts(&still, (Closed){a, b});
-    for (size_t k = 0; k + 1 < cuts.count; k++) {
-        const int pieces = 4 * w->fineness;
-        const Real sign = (Real)sign_of(velocity(w, 0.5L * (cuts.time[k] + cuts.time[k + 1])));
-        const Real size = (cuts.time[k + 1] - cuts.time[k]) / (Real)pieces;
-        for (int i = 0; i < pieces * w->rule->stages; i++) {
-            const Real at_piece = (Real)(i / w->rule->stages);
-            const Real t = cuts.time[k] + size * (at_piece + w->rule->node[i % w->rule->stages]);
-            const Real time = size * w->rule->weight[i % w->rule->stages], V = velocity(w, t);
-            Real limit = 0.0L;
-            if (w->scene.law == LAW_COULOMB) {
-                limit = w->scene.limit == LIMIT_CONSTANT ? w->scene.F_C
-                        : open                           ? 0.0L
-                                                         : scene_at(w, t, false).coulomb;
-            }
-            const Real force = sign * limit + w->scene.sigma_2 * V;
-            sums->impulse += time * force;
-            sums->work += time * force * V;
-            sums->heat += time * force * V;
-        }
-    }
-    free(cuts.time);
-}
-
-// Open and closed parts alike; for many equal periods of all that has no bristle.
-static void coulomb_over(const World* w, Sums* sums) {
-    if (has_many_periods(w)) {
-        Sums one = {0};
-        const Real n = floorl(w->h * w->scene.f), T = 1.0L / w->scene.f;
-        without_bristle(w, 0.0L, T, &one);
-        add_times(sums, &one, n);
-        without_bristle(w, 0.0L, w->h - n * T, sums);
-        return;
-    }
-    const Closed part = closed_part(w);
-    without_bristle(w, 0.0L, part.from, sums);
-    without_bristle(w, part.from, part.to, sums);
-    without_bristle(w, part.to, w->h, sums);
-}
-
 // F_t [N] at a time.
-static Real force_at(const World* w, Real t, Real delta, int slip, bool open) {
+static Real force_at(const World* w, Real t, Real delta, int slip) {
     const ReferenceScene* s = &w->scene;
-    const Real V = velocity(w, t);
+    World there = *w;
+    there.open = is_open(w, t);
+    const At at = scene_at(&there, t, true);
     if (s->law == LAW_COULOMB) {
-        const Real limit = s->limit == LIMIT_CONSTANT ? s->F_C : open ? 0.0L : scene_at(w, t, false).coulomb;
-        return (Real)sign_of(V) * limit + s->sigma_2 * V;
+        return (Real)sign_of(at.V) * at.coulomb + s->sigma_2 * at.V;
     }
-    if (open) {
-        return s->sigma_2 * V;
+    if (there.open) {
+        return s->sigma_2 * at.V;
     }
-    const At at = scene_at(w, t, true);
-    Real rate = at.V - relaxation(w, &at, sign_of(at.V)) * delta;
-    const bool on_bound = slip &&
-                          fabsl((Real)slip * slip_bound(w, &at) - delta) <= 1e-11L * slip_bound(w, &at) &&
-                          outward(w, t, slip) > 0.0L;
-    if (on_bound) {
-        rate = (Real)slip * slip_rate(w, &at);
-    }
+    const Real lies = bound(w, &at, false);
+    const bool slips =
+        slip && fabsl((Real)slip * lies - delta) <= 1e-11L * lies && outward(w, t, slip, false) > 0.0L;
+    const Real rate =
+        slips ? (Real)slip * bound_rate(w, &at, false) : at.V - relaxation(w, &at, sign_of(at.V)) * delta;
     return at.sigma * delta + s->sigma_1 * rate + s->sigma_2 * at.V;
 }
 
 // What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
 static Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
     const ReferenceScene* s = &w->scene;
-    const bool elastic = s->law == LAW_ELASTIC_PLASTIC;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
     if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
         const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
@@ -1474,94 +1314,59 @@ static Real jump(const ReferenceScene* before, const World* w, Real* delta, int*
         *slip = 0;
         return heat;
     }
-    if (!elastic && !w->bounded) {
+    if (!w->bounded) {
         return 0.0L;
     }
-    const At at = scene_at(w, 0.0L, false);
-    const bool sticks = elastic && *slip == 0;
-    const Real length = fabsl(*delta), bound = (elastic ? at.g : at.B) / at.sigma;
-    if (before == NULL) {
-        if (length <= (sticks ? at.B / at.sigma : bound)) {
-            return 0.0L;
-        }
-        const int side = sign_of(*delta);
-        *delta = (Real)side * bound;
-        *slip = elastic ? side : 0;
-        return 0.5L * at.sigma * (length - bound) * (length + bound);
+    if (before != NULL) {
+        return ride(&past, w, delta, slip);
     }
-    return ride(&past, w, delta, slip);
+    const At at = scene_at(w, 0.0L, false);
+    const Real length = fabsl(*delta), lies = bound(w, &at, false);
+    if (length <= (1.0L + 1e-11L) * bound(w, &at, *slip == 0)) {
+        return 0.0L;
+    }
+    *slip = w->elastic ? sign_of(*delta) : 0;
+    *delta = (Real)sign_of(*delta) * lies;
+    return 0.5L * at.sigma * (length - lies) * (length + lies);
 }
 
 // The deflection at the start that the periodic state of held inputs has, without vibration the one of sliding for ever.
 static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* length) {
     const ReferenceScene* s = &w->scene;
-    Period period = {.world = held_world(w, 1.0L / s->f)};
-    World* held = &period.world;
+    World held = held_world(w, 1.0L / s->f);
+    if (vibrates(s) || is_open(&held, 0.0L) || s->law == LAW_COULOMB) {
+        Sums sums = {0};
+        return go_periods(&held, delta, slip, INFINITY, &sums, cycle, length);
+    }
+    const At at = scene_at(&held, 0.0L, false);
+    const int side = sign_of(s->V);
+    *delta = side ? (Real)side * at.g / at.sigma : *delta;
+    *slip = w->elastic ? side : 0;
+    cycle->impulse = held.h * (at.sigma * *delta + s->sigma_2 * at.V);
     *length = 1.0L;
-    if (is_open(held, 0.0L)) {
-        *delta = 0.0L;
-        *slip = 0;
-        coulomb_over(held, cycle);
-        return true;
-    }
-    if (!vibrates(s)) {
-        const At at = scene_at(held, 0.0L, false);
-        const int side = sign_of(s->V);
-        if (side != 0) {
-            *delta = (Real)side * at.g / at.sigma;
-        }
-        *slip = s->law == LAW_ELASTIC_PLASTIC ? side : 0;
-        cycle->impulse = held->h * (at.sigma * *delta + s->sigma_2 * at.V);
-        return true;
-    }
-    held->path = whole_path(held);
-    Sums sums = {0};
-    return go_periods(&period, delta, slip, INFINITY, &sums, cycle, length);
+    return true;
 }
 
-static void step_of_bristle(World* w, Real* delta, int* slip, ReferenceStep* result, Sums* sums) {
-    if (has_many_periods(w) && !is_open(w, 0.0L)) {
+// Goes over the step; false where it is more than the reference takes.
+static bool advance(World* w, Real* delta, int* slip, Sums* sums) {
+    bool known = true;
+    World rest = *w;
+    if (has_many_periods(w)) {
         const Real n = floorl(w->h * w->scene.f);
-        Period period = {.world = *w};
-        period.world.h = 1.0L / w->scene.f;
-        period.world.path = whole_path(&period.world);
+        World period = *w;
         Sums cycle = {0};
         Real length = 0.0L;
-        result->known = go_periods(&period, delta, slip, n, sums, &cycle, &length);
-        World rest = *w;
+        period.h = 1.0L / w->scene.f;
+        known = go_periods(&period, delta, slip, n, sums, &cycle, &length);
         rest.h = w->h - n / w->scene.f;
-        March march = {.w = &rest, .delta = *delta, .slip = *slip};
-        if (rest.h > 0.0L) {
-            march_over(&march, (Closed){0.0L, rest.h});
-        }
+    }
+    if (rest.h > 0.0L) {
+        const March march = one_period(&rest, *delta, *slip, false);
         add_times(sums, &march.sums, 1.0L);
         *delta = march.delta;
         *slip = march.slip;
-        return;
     }
-    const Closed part = closed_part(w);
-    without_bristle(w, 0.0L, part.from, sums);
-    if (part.to > part.from) {
-        // what has no load has no rate: the last 1e-18 of the way to it is left out
-        Closed inner = part;
-        const Real edge = ldexpl(part.to - part.from, -58);
-        inner.from += part.from > 0.0L ? edge : 0.0L;
-        inner.to -= part.to < w->h ? edge : 0.0L;
-        March march = {.w = w, .delta = part.from > 0.0L ? 0.0L : *delta, .slip = *slip};
-        march_over(&march, inner);
-        add_times(sums, &march.sums, 1.0L);
-        *delta = march.delta;
-        *slip = march.slip;
-        result->known = w->panels <= MOST_PANELS;
-    }
-    if (part.to < w->h) {
-        if (w->scene.contact == CONTACT_CONSTANT) {
-            sums->heat += 0.5L * w->scene.contact_sigma * *delta * *delta;
-        }
-        *delta = 0.0L;
-        *slip = 0;
-    }
-    without_bristle(w, part.to, w->h, sums);
+    return known && rest.panels <= MOST_PANELS;
 }
 
 ReferenceScene reference_scene(void) {
@@ -1595,43 +1400,40 @@ ReferenceScene reference_scene(void) {
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result) {
     World w = make_world(scene, scene->h, fineness);
-    const World held = held_world(&w, w.h);
     w.S = largest_force(&w, scene->delta_0);
-    find_path(&w);
-    *result = (ReferenceStep){.path = (double)w.path, .S = (double)w.S, .known = true};
+    const World held = held_world(&w, w.h);
+    *result = (ReferenceStep){.S = (double)w.S, .known = true};
     Sums sums = {0};
-    Real delta = scene->delta_0;
+    Real delta = scene->law == LAW_COULOMB ? 0.0L : scene->delta_0;
     int slip = scene->slips;
-    const bool bristle = scene->law != LAW_COULOMB;
-    if (bristle) {
+    if (scene->law != LAW_COULOMB && scene->initial == START_SETTLED) {
         Sums cycle = {0};
         Real length;
-        if (scene->initial == START_SETTLED) {
-            jump(NULL, &held, &delta, &slip);
-            slip = 0;
-            result->known = settle(&w, &delta, &slip, &cycle, &length);
-        } else {
-            sums.heat = jump(before, &w, &delta, &slip);
-        }
+        jump(NULL, &held, &delta, &slip);
+        slip = 0;
+        result->known = settle(&w, &delta, &slip, &cycle, &length);
+    } else if (scene->law != LAW_COULOMB) {
+        sums.heat = jump(before, &w, &delta, &slip);
     }
-    const bool open = is_open(&w, 0.0L);
     int slip_start = slip;
-    if (!open && (w.bounded || (scene->law == LAW_ELASTIC_PLASTIC && w.excess == 0.0L))) {
+    if (w.bounded && !(w.elastic && w.excess != 0.0L) && !is_open(&w, 0.0L)) {
         const At at = scene_at(&w, 0.0L, false); // a state that was rounded may lie next to its bound
-        slip_start = fabsl(delta) >= (1.0L - 1e-11L) * at.B / at.sigma ? sign_of(delta) : 0;
+        slip_start = fabsl(delta) >= (1.0L - 1e-11L) * bound(&w, &at, true) ? sign_of(delta) : 0;
     }
-    result->F_t_start = (double)force_at(&held, 0.0L, delta, slip_start, open);
-    if (bristle) {
-        step_of_bristle(&w, &delta, &slip, result, &sums);
-    } else {
-        coulomb_over(&w, &sums);
-    }
+    result->F_t_start = (double)force_at(&held, 0.0L, delta, slip_start);
+    result->known = advance(&w, &delta, &slip, &sums) && result->known;
     result->delta = (double)delta;
-    result->slips = scene->law == LAW_ELASTIC_PLASTIC && w.excess != 0.0L ? slip : 0;
-    result->F_t = (double)force_at(&w, w.h, delta, slip, is_open(&w, w.h));
+    result->slips = w.elastic && w.excess != 0.0L ? slip : 0;
+    result->F_t = (double)force_at(&w, w.h, delta, slip);
     result->F_t_mean = (double)(sums.impulse / w.h);
     result->work = (double)sums.work;
     result->heat = (double)sums.heat;
+    result->path = (double)sums.path;
+}
+
+bool reference_is_open(const ReferenceScene* scene) {
+    const World w = make_world(scene, 0.0L, 1);
+    return is_open(&w, 0.0L);
 }
 
 bool reference_settled_force(const ReferenceScene* scene, double* force, double* S) {
@@ -1642,16 +1444,11 @@ bool reference_settled_force(const ReferenceScene* scene, double* force, double*
     w.S = largest_force(&w, still.delta_0);
     *S = (double)w.S;
     Sums cycle = {0};
-    Real length = 1.0L, delta = still.delta_0;
+    Real length = 1.0L, delta = still.law == LAW_COULOMB ? 0.0L : still.delta_0;
     int slip = 0;
-    bool known = true;
-    if (still.law == LAW_COULOMB) {
-        coulomb_over(&w, &cycle);
-    } else {
-        jump(NULL, &w, &delta, &slip);
-        slip = 0;
-        known = settle(&w, &delta, &slip, &cycle, &length);
-    }
+    jump(NULL, &w, &delta, &slip);
+    slip = 0;
+    const bool known = settle(&w, &delta, &slip, &cycle, &length);
     *force = (double)(cycle.impulse / (length / still.f));
     return known;
 }

@@ -44,7 +44,7 @@ typedef struct {
     double F_t_start; // N, after that jump, the inputs held
     double S;         // N, what the errors of forces are relative to
     double path;      // m, time integral of |V|
-    bool known;       // false: more periods than the reference takes, and nothing but S and path is known
+    bool known; // false: it takes more panels or cycles than the reference goes through, and only S is known
 } ReferenceStep;
 
 // Scenes with Table 1's surfaces and the start values of modelDescription.xml.
@@ -54,6 +54,9 @@ ReferenceScene reference_scene(void);
 // panels with more stages: for checks of the result itself.
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result);
+
+// Whether the contact is open at the start of a scene.
+bool reference_is_open(const ReferenceScene* scene);
 
 // F_t_settled [N] of the scene's inputs, held, from delta_0; false where no cycle of periods was found. S is that of a step
 // of no length.

@@ -4,32 +4,22 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "names.h"
-
 static const double TURN = 6.283185307179586;
 // The domain of docs/numerics.md.
 static const double LEAST_KAPPA = 1e-3, MOST_KAPPA = 1e8;
-static const double SHORTEST = 1e-9;    // s, of a step
-static const double MOST_PERIODS = 1e6; // of a step
+static const double SHORTEST = 1e-9;      // s, of a step
+static const double MOST_PERIODS = 1e6;   // of a step
+static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Random numbers: splitmix64, or bytes that a fuzzer chose, four for each number and zeros where they end
+// Random numbers: splitmix64
 // ---------------------------------------------------------------------------------------------------------------------
 
 typedef struct {
     uint64_t state;
-    const uint8_t* bytes; // NULL: splitmix64
-    size_t left;
 } Draw;
 
 static uint64_t next(Draw* draw) {
-    if (draw->bytes != NULL) {
-        uint64_t value = 0;
-        for (int k = 0; k < 4 && draw->left > 0; k++, draw->left--) {
-            value = value << 8 | *draw->bytes++;
-        }
-        return value << 32;
-    }
     uint64_t z = draw->state += 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -119,9 +109,9 @@ double scene_kappa(const ReferenceScene* s) {
     return stiffness_now(s) * top_speed(s) / (TURN * s->f * fmax(limit_now(s), 1e-250));
 }
 
-static void friction(Draw* draw, const Grammar* grammar, ReferenceScene* s) {
-    s->law = grammar->law ? grammar->law : 1 + pick(draw, 4);
-    s->limit = grammar->limit ? grammar->limit : chance(draw, 0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;
+static void friction(Draw* draw, int law, ReferenceScene* s) {
+    s->law = law ? law : 1 + pick(draw, 4);
+    s->limit = chance(draw, 0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;
     s->F_C = log_between(draw, 1e-2, 1e4);
     s->mu = log_between(draw, 0.03, 1.0);
     s->contact = 1 + pick(draw, 3);
@@ -154,23 +144,23 @@ static double deflection(Draw* draw, const ReferenceScene* s) {
                                 : between(draw, -1.0, 1.0));
 }
 
-// A length of a step [s]; with moving inputs the reference takes each period by itself.
-static double length(Draw* draw, const ReferenceScene* s, bool linear) {
+// A length of a step [s]. With inputs that move the reference goes through each period: they are fewer.
+static double length(Draw* draw, const ReferenceScene* s, double most_periods) {
     const double kind = unit(draw);
-    const double periods = kind < 0.1              ? log_between(draw, 1e-6, 1e-3)
-                           : kind < 0.9            ? log_between(draw, 1e-3, 4.0)
-                           : linear || kind < 0.96 ? log_between(draw, 4.0, 30.0)
-                                                   : log_between(draw, 30.0, MOST_PERIODS);
+    const double periods = kind < 0.1    ? log_between(draw, 1e-6, 1e-3)
+                           : kind < 0.9  ? log_between(draw, 1e-3, 4.0)
+                           : kind < 0.96 ? log_between(draw, 4.0, 30.0)
+                                         : log_between(draw, 30.0, most_periods);
     return fmax(SHORTEST, periods / s->f);
 }
 
-static ReferenceScene contact_drawn(Draw* draw, const Grammar* grammar) {
+static ReferenceScene contact_drawn(Draw* draw, int law) {
     ReferenceScene s = reference_scene();
     s.f = log_between(draw, 1e2, 1e5);
     s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
     s.V = velocity(draw, s.V_1);
     surfaces(draw, &s);
-    friction(draw, grammar, &s);
+    friction(draw, law, &s);
     if (chance(draw, 0.6)) {
         s.start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e6 : 1e3) / s.f;
     }
@@ -243,7 +233,7 @@ static void step_at_random(Draw* draw, ReferenceScene* s) {
         s->phase_d = between(draw, -TURN, TURN);
     }
     const bool linear = chance(draw, 0.4);
-    s->h = length(draw, s, linear);
+    s->h = length(draw, s, linear ? MOST_MOVING : MOST_PERIODS);
     if (linear) {
         rates(draw, s);
     }
@@ -322,13 +312,14 @@ static bool is_in_domain(const ReferenceScene* s) {
            (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }
 
-static Sequence sequence_of(Draw draw, const Grammar* grammar) {
+static Sequence sequence_of(Draw draw, int law) {
     Sequence sequence = {.method = 1};
-    const ReferenceScene full = contact_drawn(&draw, grammar);
+    const ReferenceScene full = contact_drawn(&draw, law);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
-    const double usual_h = length(&draw, &full, linear);
+    const double most = !linear ? MOST_PERIODS : of_user ? MOST_MOVING / MOST_STEPS : MOST_MOVING;
+    const double usual_h = length(&draw, &full, most);
     ReferenceScene before = full;
     for (int k = 0; k < wanted; k++) {
         ReferenceScene usual = k == 0 ? full : scene_after(&before), s = usual;
@@ -354,29 +345,16 @@ static Sequence sequence_of(Draw draw, const Grammar* grammar) {
         if (!is_in_domain(&s)) {
             break;
         }
-        sequence.step[sequence.steps] = s;
-        if (k > 0) {
-            ReferenceScene changes = no_change();
-            for (int i = 0; i < REFERENCE_DOUBLES; i++) {
-                if (*scene_value(&s, i) != *scene_value(&usual, i)) {
-                    *scene_value(&changes, i) = *scene_value(&s, i);
-                }
-            }
-            sequence.step[sequence.steps] = changes;
-        }
+        sequence.step[sequence.steps] = k == 0 ? s : changes_between(&usual, &s);
         sequence.steps++;
         before = s;
     }
     return sequence;
 }
 
-Sequence sequence_drawn(uint64_t seed, uint64_t number, const Grammar* grammar) {
+Sequence sequence_drawn(uint64_t seed, uint64_t number, int law) {
     Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
     next(&draw);
     draw.state ^= next(&draw);
-    return sequence_of(draw, grammar);
-}
-
-Sequence sequence_from_bytes(const uint8_t* bytes, size_t size, const Grammar* grammar) {
-    return sequence_of((Draw){.bytes = bytes, .left = size}, grammar);
+    return sequence_of(draw, law);
 }

@@ -6,15 +6,8 @@
 
 #include "sequence.h"
 
-typedef struct {
-    int law, limit; // 0: any
-} Grammar;
-
-// The same for the same seed and number, whatever is drawn besides.
-Sequence sequence_drawn(uint64_t seed, uint64_t number, const Grammar* grammar);
-
-// From bytes that a fuzzer chose.
-Sequence sequence_from_bytes(const uint8_t* bytes, size_t size, const Grammar* grammar);
+// The same for the same seed and number, whatever is drawn besides. law 0: any.
+Sequence sequence_drawn(uint64_t seed, uint64_t number, int law);
 
 // sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
 double scene_kappa(const ReferenceScene* scene);

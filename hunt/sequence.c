@@ -2,9 +2,60 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "names.h"
+// ---------------------------------------------------------------------------------------------------------------------
+// Fields of a scene
+// ---------------------------------------------------------------------------------------------------------------------
+
+const char* const LAW_NAMES[] = {"Dahl", "Coulomb", "ElasticPlastic", "LuGre", NULL};
+static const char* const LIMITS[] = {"Constant", "Load", NULL};
+static const char* const CONTACTS[] = {"Asperities", "Constant", "Mindlin", NULL};
+static const char* const INPUTS[] = {"Separation", "Load", NULL};
+static const char* const STARTS[] = {"Given", "Settled", NULL};
+
+typedef struct {
+    const char* name;
+    size_t offset;
+    const char* const* choices; // of the numbers 1, 2, ..; NULL for a double
+} Field;
+
+#define NUMBER(name) {#name, offsetof(ReferenceScene, name), NULL}
+// clang-format off
+static const Field TABLE[FIELDS] = {
+    NUMBER(start), NUMBER(h), NUMBER(V), NUMBER(d), NUMBER(E), NUMBER(load), NUMBER(V_rate), NUMBER(d_rate),
+    NUMBER(E_rate), NUMBER(load_rate), NUMBER(f), NUMBER(V_1), NUMBER(a_d), NUMBER(phase_d), NUMBER(F_C), NUMBER(mu),
+    NUMBER(staticRatio), NUMBER(V_S), NUMBER(sigma_1), NUMBER(sigma_2), NUMBER(delta_0), NUMBER(contact_sigma),
+    NUMBER(stiffnessScale), NUMBER(R_q), NUMBER(R), NUMBER(eta), NUMBER(A_n), NUMBER(nu), NUMBER(Y), NUMBER(c),
+    NUMBER(lambda),
+    {"law", offsetof(ReferenceScene, law), LAW_NAMES}, {"limit", offsetof(ReferenceScene, limit), LIMITS},
+    {"contact", offsetof(ReferenceScene, contact), CONTACTS}, {"input", offsetof(ReferenceScene, input), INPUTS},
+    {"initial", offsetof(ReferenceScene, initial), STARTS},
+};
+// clang-format on
+#undef NUMBER
+
+double scene_get(const ReferenceScene* scene, int field) {
+    const void* place = (const char*)scene + TABLE[field].offset;
+    return TABLE[field].choices ? (double)*(const int*)place : *(const double*)place;
+}
+
+void scene_set(ReferenceScene* scene, int field, double value) {
+    void* place = (char*)scene + TABLE[field].offset;
+    if (TABLE[field].choices) {
+        *(int*)place = (int)value;
+    } else {
+        *(double*)place = value;
+    }
+}
+
+// The same number, or both none.
+static bool are_same(double a, double b) { return a == b || (isnan(a) && isnan(b)); }
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Steps
+// ---------------------------------------------------------------------------------------------------------------------
 
 ReferenceScene scene_after(const ReferenceScene* before) {
     ReferenceScene s = *before;
@@ -18,54 +69,87 @@ ReferenceScene scene_after(const ReferenceScene* before) {
     return s;
 }
 
-ReferenceScene no_change(void) {
-    ReferenceScene none = {0};
+ReferenceScene changes_between(const ReferenceScene* left, const ReferenceScene* scene) {
+    ReferenceScene changes = {0};
     for (int k = 0; k < REFERENCE_DOUBLES; k++) {
-        *scene_value(&none, k) = NAN;
+        const double value = scene_get(scene, k);
+        scene_set(&changes, k, are_same(value, scene_get(left, k)) ? NAN : value);
     }
-    return none;
+    return changes;
+}
+
+static ReferenceScene no_change(void) {
+    const ReferenceScene any = {0};
+    return changes_between(&any, &any);
 }
 
 ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before) {
     if (k == 0) {
         return sequence->step[0];
     }
-    ReferenceScene scene = scene_after(before), changes = sequence->step[k];
+    ReferenceScene scene = scene_after(before);
     for (int i = 0; i < REFERENCE_DOUBLES; i++) {
-        const double value = *scene_value(&changes, i);
-        if (!isnan(value)) {
-            *scene_value(&scene, i) = value;
-        }
+        const double value = scene_get(&sequence->step[k], i);
+        scene_set(&scene, i, isnan(value) ? scene_get(&scene, i) : value);
     }
     return scene;
 }
 
-// By their numbers from 1 on.
-static const char* const METHODS[] = {"collocation", "cvode", "backwardEuler",
-                                      "trapezoid",   "rk4",   "explicitEuler"};
-enum { METHOD_COUNT = sizeof METHODS / sizeof *METHODS };
+static ReferenceScene usual_step(int step) { return step == 0 ? reference_scene() : no_change(); }
 
-static bool read_method(const char* word, int* method) {
-    for (int k = 0; strncmp(word, "method=", 7) == 0 && k < METHOD_COUNT; k++) {
-        if (strcmp(word + 7, METHODS[k]) == 0) {
-            *method = k + 1;
-            return true;
-        }
-    }
-    return false;
-}
+// ---------------------------------------------------------------------------------------------------------------------
+// Text
+// ---------------------------------------------------------------------------------------------------------------------
 
 void sequence_text(const Sequence* sequence, char* text, size_t size) {
-    size_t length = 0;
-    if (sequence->method != 1) {
-        length = (size_t)snprintf(text, size, "method=%s ", METHODS[sequence->method - 1]);
+    size_t length = (size_t)snprintf(text, size, sequence->method == 1 ? "" : "method=%d ", sequence->method);
+    for (int step = 0; step < sequence->steps; step++) {
+        const ReferenceScene usual = usual_step(step);
+        length += (size_t)snprintf(text + length, size - length, step == 0 ? "" : "then ");
+        for (int k = 0; k < FIELDS && length + 100 < size; k++) {
+            const int field = (k + LAW_FIELD) % FIELDS; // the enumerations first
+            const double value = scene_get(&sequence->step[step], field);
+            if (are_same(value, scene_get(&usual, field))) {
+                continue;
+            }
+            char word[40];
+            for (int digits = 6; digits <= 17; digits++) { // as few as give the same number again
+                snprintf(word, sizeof word, "%.*g", digits, value);
+                if (strtod(word, NULL) == value) {
+                    break;
+                }
+            }
+            const char* const* choices = TABLE[field].choices;
+            length += (size_t)snprintf(text + length, size - length, "%s=%s ", TABLE[field].name,
+                                       choices ? choices[(int)value - 1] : word);
+        }
     }
-    for (int k = 0; k < sequence->steps && length + 10 < size; k++) {
-        const ReferenceScene usual = k == 0 ? reference_scene() : no_change();
-        length += (size_t)snprintf(text + length, size - length, k == 0 ? "" : "then ");
-        scene_text(&sequence->step[k], &usual, text + length, size - length);
-        length += strlen(text + length);
+}
+
+// Sets the field that the word name=value names.
+static bool read_field(ReferenceScene* scene, const char* word) {
+    const size_t name = strcspn(word, "=");
+    const char* value = word + name + (word[name] == '=');
+    for (int k = 0; k < FIELDS; k++) {
+        if (strlen(TABLE[k].name) != name || strncmp(word, TABLE[k].name, name) != 0) {
+            continue;
+        }
+        char* end;
+        const char* const* choices = TABLE[k].choices;
+        for (int j = 0; choices && choices[j]; j++) {
+            if (strcmp(value, choices[j]) == 0) {
+                scene_set(scene, k, j + 1);
+                return true;
+            }
+        }
+        const double number = strtod(value, &end);
+        if (choices || end == value || *end) {
+            return false;
+        }
+        scene_set(scene, k, number);
+        return true;
     }
+    return false;
 }
 
 bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t size) {
@@ -76,10 +160,58 @@ bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t siz
         snprintf(wrong, size, "%s", word);
         if (strcmp(word, "then") == 0 && sequence->steps < MOST_STEPS) {
             sequence->step[sequence->steps++] = no_change();
-        } else if (!read_method(word, &sequence->method) &&
-                   !scene_read(word, &sequence->step[sequence->steps - 1])) {
+        } else if (sscanf(word, "method=%d", &sequence->method) != 1 &&
+                   !read_field(&sequence->step[sequence->steps - 1], word)) {
             return false;
         }
     }
     return true;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Plainer
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Takes the plainer sequence if it still shows what it is to show.
+static bool keep(Sequence* plain, const Sequence* plainer, StillShows* shows, double tolerance) {
+    const bool kept = shows(plainer, tolerance);
+    *plain = kept ? *plainer : *plain;
+    return kept;
+}
+
+// Tries the start value, then ever more digits.
+static bool simplify_field(Sequence* plain, int step, int field, StillShows* shows, double tolerance) {
+    static const int DIGITS[] = {0, 1, 2, 3, 5, 8, 12};
+    const ReferenceScene base = usual_step(step);
+    const double value = scene_get(&plain->step[step], field), usual = scene_get(&base, field);
+    const int tries = field < REFERENCE_DOUBLES ? sizeof DIGITS / sizeof *DIGITS : 1;
+    for (int k = 0; k < tries && !are_same(value, usual); k++) {
+        char text[40];
+        snprintf(text, sizeof text, "%.*g", DIGITS[k], value);
+        const double plainer = k == 0 ? usual : strtod(text, NULL);
+        Sequence changed = *plain;
+        scene_set(&changed.step[step], field, plainer);
+        if (plainer == value) { // it has so few digits already
+            return false;
+        }
+        if (keep(plain, &changed, shows, tolerance)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+Sequence minimized(const Sequence* sequence, StillShows* shows, double tolerance) {
+    Sequence plain = *sequence;
+    for (bool changed = true; changed;) {
+        Sequence fewer = plain;
+        fewer.steps--;
+        changed = fewer.steps > 0 && keep(&plain, &fewer, shows, tolerance);
+        for (int step = 0; step < plain.steps; step++) {
+            for (int k = 0; k < (step == 0 ? FIELDS : LAW_FIELD); k++) {
+                changed = (k != LAW_FIELD && simplify_field(&plain, step, k, shows, tolerance)) || changed;
+            }
+        }
+    }
+    return plain;
 }

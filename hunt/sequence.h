@@ -11,23 +11,35 @@
 enum { MOST_STEPS = 10, SEQUENCE_TEXT = 8000 };
 
 typedef struct {
-    int method; // one of solver.method's numbers
+    int method; // number of solver.method
     int steps;
-    // The first scene is whole. Of those after it a number is NaN where it goes on as the step before left it; their
+    // The first scene is whole. In those after it a number is NaN if it stays as the step before left it; their
     // enumerations, start and delta_0 are not used.
     ReferenceScene step[MOST_STEPS];
 } Sequence;
 
-// What a step leaves to the next one: inputs where they end and then held, and the parameters.
+// The numbers of a scene by their index, its enumerations after them, the law first.
+enum { LAW_FIELD = REFERENCE_DOUBLES, FIELDS = LAW_FIELD + 5 };
+double scene_get(const ReferenceScene* scene, int field);
+void scene_set(ReferenceScene* scene, int field, double value);
+
+extern const char* const LAW_NAMES[]; // of the numbers from 1 on; NULL ends them
+
+// The scene that a step leaves: inputs at their ends and then held, and the parameters.
 ReferenceScene scene_after(const ReferenceScene* before);
 
 // The scene after that one, with all that the sequence's step k changes.
 ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before);
 
-// A later step that changes nothing.
-ReferenceScene no_change(void);
+// A step's changes, all of them NaN (0 for an enumeration), or those that make a scene of the one that was left.
+ReferenceScene changes_between(const ReferenceScene* left, const ReferenceScene* scene);
 
-// As name=value of what is not the start value; "then" stands before each later step, of which the changes are named.
+// A sequence with as few steps, as many start values, and numbers of as few digits, as still show it: greedily, one after
+// the other, until nothing changes any more.
+typedef bool StillShows(const Sequence* sequence, double tolerance);
+Sequence minimized(const Sequence* sequence, StillShows* shows, double tolerance);
+
+// As name=value where it is not the start value; "then" stands before each later step, whose changes are named.
 void sequence_text(const Sequence* sequence, char* text, size_t size);
 
 // Returns false where the text names something unknown, which goes into wrong.

@@ -8,9 +8,9 @@ const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f", "Q_f", "F_t_s
 
 static const double ROUNDING = 1e-11;            // of S, beside the tolerance
 static const double DIGITS = 32.0 * DBL_EPSILON; // of a deflection, as the state holds it
-static const double LEAST_S = 1e-20;             // N: where nothing acts, S is 0
+static const double LEAST_S = 1e-20;             // N, and J: S and the path are 0 if nothing acts
 
-// Values of what is graded but F_t_settled, and what their errors are relative to.
+// The values that are graded, but F_t_settled.
 typedef struct {
     double value[OF_SETTLED];
 } Values;
@@ -30,17 +30,19 @@ static double over(double error, double tolerance, double scale, double rounding
 // The worst error of a step between the least and the largest that the reference says.
 static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, const Values* least,
                                const Values* largest, double tolerance) {
-    const double S = fmax(truth->S, LEAST_S), energy = S * truth->path;
-    const double stored = DIGITS * S * (fabs(step->delta_start) + fabs(step->delta));
-    const double scale[OF_SETTLED] = {S, S, energy, energy, S, 1.0};
-    const double rounding[OF_SETTLED] = {0.0, 0.0, stored, stored, 0.0, 0.0};
+    const double S = fmax(truth->S, LEAST_S);
+    const double path = truth->path + fabs(truth->delta - step->delta_start);
+    const double stored =
+        LEAST_S + DIGITS * S * (fabs(step->delta_start) + fabs(step->delta)); // over at least 1 m
     const Values found = of_fmu(step);
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < OF_SETTLED; k++) {
         const double x = found.value[k];
         const double off = x - fmin(fmax(x, least->value[k]), largest->value[k]);
-        const double ratio =
-            k == OF_SIDE ? (off == 0.0 ? 0.0 : INFINITY) : over(off, tolerance, scale[k], rounding[k]);
+        const bool energy = k == OF_WORK || k == OF_HEAT;
+        const double ratio = k == OF_SIDE
+                                 ? (off == 0.0 ? 0.0 : INFINITY)
+                                 : over(off, tolerance, energy ? S * path : S, energy ? stored : 0.0);
         if (ratio > worst.ratio) {
             worst = (Verdict){ratio, k};
         }
@@ -64,7 +66,7 @@ static void step_of_reference(const ReferenceScene* before, const ReferenceScene
     }
 }
 
-// The same where the rounding of the step's own times may tell: with start and h moved by two units in their last place.
+// The same if the rounding of the step's own times may tell: with start and h moved by two units in their last place.
 static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
     Values least = of_reference(&taken->truth), largest = least;
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
@@ -86,17 +88,17 @@ static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* t
     return verdict_between(&taken->truth, &taken->step, &least, &largest, tolerance);
 }
 
+// The error of F_t_settled over the tolerance, -1 if the reference does not say.
 static double settled_ratio(TrialStep* taken, int method, double tolerance) {
     ReferenceScene still = taken->scene;
-    double force = NAN, truth = NAN, S, ratio = -1.0;
+    double *found = taken->settled, S, ratio = -1.0;
+    found[0] = found[1] = NAN;
     still.initial = START_GIVEN;
     FmuRun* run = fmu_open(&still, method, tolerance);
-    if (fmu_settled_force(run, &force) && reference_settled_force(&still, &truth, &S)) {
-        ratio = over(force - truth, tolerance, fmax(S, LEAST_S), 0.0);
+    if (fmu_settled_force(run, &found[0]) && reference_settled_force(&still, &found[1], &S)) {
+        ratio = over(found[0] - found[1], tolerance, fmax(S, LEAST_S), 0.0);
     }
     fmu_close(run);
-    taken->settled[0] = force;
-    taken->settled[1] = truth;
     return ratio;
 }
 
@@ -119,6 +121,25 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
     }
 }
 
+static void look_at(TrialStep* taken, const ReferenceScene* before) {
+    ReferenceScene now = taken->scene;
+    const ReferenceScene end = scene_after(&now);
+    const bool ends_open = reference_is_open(&end), was_open = reference_is_open(before ? before : &now);
+    const bool moves = now.V_rate != 0.0 || now.d_rate != 0.0 || now.E_rate != 0.0 || now.load_rate != 0.0;
+    const bool vibrates = now.V_1 != 0.0 || now.a_d != 0.0;
+    taken->is[IS_STATIC] = now.staticRatio > 1.0 && (now.law == LAW_ELASTIC_PLASTIC || now.law == LAW_LUGRE);
+    taken->is[OPENS] = ends_open && !was_open;
+    taken->is[CLOSES] = was_open && !ends_open;
+    taken->is[LEAPS] = moves && vibrates && now.h * now.f >= 10.0 && now.law != LAW_COULOMB;
+    now.h = now.V_rate = now.d_rate = now.E_rate = now.load_rate = 0.0;
+    for (int k = 0; before && k < REFERENCE_DOUBLES; k++) {
+        ReferenceScene past = *before;
+        past.h = 0.0;
+        past.delta_0 = now.delta_0;
+        taken->is[JUMPS] = taken->is[JUMPS] || scene_get(&past, k) != scene_get(&now, k);
+    }
+}
+
 void trial_run(Trial* trial, const Sequence* sequence, double tolerance) {
     *trial = (Trial){0};
     FmuRun* run = fmu_open(&sequence->step[0], sequence->method, tolerance);
@@ -136,19 +157,10 @@ void trial_run(Trial* trial, const Sequence* sequence, double tolerance) {
             taken->scene.slips = taken->step.slips_start;
         }
         grade(trial, taken, k == 0 ? NULL : &before, sequence->method, tolerance);
+        look_at(taken, k == 0 ? NULL : &before);
         trial->steps++;
         before = taken->scene;
     }
     snprintf(trial->message, sizeof trial->message, "%s", fmu_message(run));
     fmu_close(run);
-}
-
-int trial_worst(const Trial* trial) {
-    int worst = trial->steps > 0 ? 0 : -1;
-    for (int k = 1; k < trial->steps; k++) {
-        if (!(trial->taken[k].verdict.ratio <= trial->taken[worst].verdict.ratio)) {
-            worst = k;
-        }
-    }
-    return worst;
 }

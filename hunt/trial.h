@@ -1,12 +1,22 @@
 // A sequence of steps taken by the FMU, each of them graded by the reference from where the FMU stood before it.
+//
+// The rule: with S, the largest force of the step (reference.h), and path, the way of the surfaces and of the bristle
+// (integral of |V| dt + |delta_end - delta_start|),
+// - F_t and F_t_mean are within tolerance S; F_t_start, the force after a jump or a settled start, too;
+// - the W_f and Q_f of the step are within tolerance S path;
+// - the side along which a bristle with static friction slips is the same at the end;
+// - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
+// Granted is rounding alone: 1e-11 S, or S path; to W_f and Q_f 32 eps S |delta| of both ends, as the state has no more
+// digits of delta; what the step's own start and length, moved by two units in their last place, make of the reference; at
+// the start, what lies within 1e-11 of its bound lies on it. S is at least 1e-20 N, and what an energy may miss 1e-20 J. A step is judged from the FMU's own state
+// before it, a settled start by F_t_start and from its own state. A step of more panels or cycles than the reference takes is
+// counted, and not judged.
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 
 #include "fmu_step.h"
 #include "sequence.h"
 
-// What is graded: within the tolerance of S, of work and heat of S times the path; F_t_start is that of a jump or of a
-// settled start. The side of the slip is graded as it is.
 enum { OF_FORCE, OF_MEAN, OF_WORK, OF_HEAT, OF_START, OF_SIDE, OF_SETTLED, GRADES };
 extern const char* const GRADE_NAMES[GRADES];
 
@@ -15,24 +25,26 @@ typedef struct {
     int of;       // the grade that is the worst
 } Verdict;
 
+// What a step is or does: it has static friction; its contact opens or closes in it or just before it; an input or parameter
+// jumps before it; inputs move through ten periods of a vibration.
+enum { IS_STATIC, OPENS, CLOSES, JUMPS, LEAPS, KINDS };
+
 typedef struct {
     ReferenceScene scene; // from where the FMU stood
     FmuStep step;
     ReferenceStep truth;
     double settled[2]; // N, F_t_settled of the FMU and of the reference, at the first step
     Verdict verdict;
+    bool is[KINDS];
 } TrialStep;
 
 typedef struct {
-    int steps, unknown; // that were taken; of which the reference knows nothing
+    int steps, unknown; // that were taken; that the reference does not take
     bool refused;       // whether the one after them was refused
     char message[320];  // why
     TrialStep taken[MOST_STEPS];
 } Trial;
 
 void trial_run(Trial* trial, const Sequence* sequence, double tolerance);
-
-// The number of the worst step from 0 on, -1 where there is none.
-int trial_worst(const Trial* trial);
 
 #endif

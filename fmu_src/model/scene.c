@@ -71,17 +71,17 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     if (!fc_scene_has_pieces(scene)) {
         return rest;
     }
-    // Time to where the contact opens or closes; behind if negative.
+    // Time to where the contact opens or closes: behind, if negative, of one that comes from there.
+    const bool opens = by_load ? rate < 0.0 : rate > 0.0;
     const bool is_far = by_load || scene->is_open ||
                         scene->at_E.decay * fmax(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
     const double to_edge = by_load  ? -drive->load.value / rate
                            : is_far ? (open_separation(&scene->at_E) - drive->d.value) / rate
-                                    : -1.0;
+                                    : HUGE_VAL;
     const double room = NEARLY_OPEN * whole;
-    scene->is_open = scene->is_open || (to_edge > 0.0 && to_edge <= room);
+    scene->is_open = scene->is_open || (opens && to_edge <= room);
     if (scene->is_open) {
-        const bool closes = by_load ? rate > 0.0 : rate < 0.0;
-        return closes ? fmin(rest, to_edge + room) : rest;
+        return opens ? rest : fmin(rest, to_edge + room);
     }
     if (by_load) {
         const double part = rate > 0.0 ? 1.0 - LOAD_OF_PIECE : 1.0 - 1.0 / LOAD_OF_PIECE;

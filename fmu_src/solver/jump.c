@@ -168,11 +168,12 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
         const double next = next_place(ramp, s, step);
         const double rate = at_place(ramp, s).rate;
         const double rate_next = at_place(ramp, next).rate;
-        double lowest = next;
-        if (rate < 0.0 && rate_next > 0.0) {
-            lowest = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, &none);
+        double turn = next; // where D goes the other way
+        if (rate * rate_next < 0.0) {
+            turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, &none);
         }
-        delta = follow(ramp, s, lowest, delta, heat);
+        delta = follow(ramp, s, turn, delta, heat);
+        delta = turn < next ? follow(ramp, turn, next, delta, heat) : delta;
         s = next;
     }
     return delta;

@@ -11,7 +11,16 @@ import pytest
 from workshop.bench import work_precision
 from workshop.bench.driver import Bench
 from workshop.bench.grade import Point
-from workshop.bench.work_precision import cheapest, cost_at, ratios, renew_tables, step_size_points
+from workshop.bench.work_precision import (
+    cheapest,
+    cost_at,
+    period_cells,
+    period_points,
+    ratios,
+    renew_periods,
+    renew_tables,
+    step_size_points,
+)
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:
@@ -75,3 +84,32 @@ def test_held_inputs_are_of_order_1_and_linear_ones_of_order_2(bench: Bench) -> 
         for key in ("error_F_t", "error_F_t_mean"):
             slope = math.log(coarse[key] / fine[key]) / math.log(5)  # type: ignore[operator]
             assert slope == pytest.approx(order, abs=0.15)
+
+
+def test_the_page_has_what_long_steps_cost(bench: Bench) -> None:
+    """Evaluations over those of one held period; they differ a little between compilers."""
+    page = work_precision.PAGE.read_text(encoding="utf-8")
+    for law, limit, *costs, _ in period_cells(period_points(bench)):
+        (line,) = (line for line in page.splitlines() if line.startswith(f"| {law} | {limit} |"))
+        printed = [float(cell) for cell in line.split(" | ")[2:4]]
+        assert printed == pytest.approx([float(cost) for cost in costs], rel=0.2), line
+
+
+def test_the_table_of_long_steps_is_renewed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    page = tmp_path / "numerics.md"
+    page.write_text("of one period with held inputs:\n\n| old |\n| 1 |\n\nmore\n")
+    monkeypatch.setattr(work_precision, "PAGE", page)
+    rows = [
+        {
+            "law": "Dahl",
+            "limit": "Load",
+            "inputs": kind,
+            "periods": 10**6,
+            "ratio": ratio,
+            "cpu_ratio": 1640.0,
+        }
+        for kind, ratio in (("held", 2.0), ("moving", 16.0))
+    ]
+    renew_periods(rows)
+    assert "| Dahl | Load | 2.00 | 16.0 | 1600 |\n\nmore" in page.read_text()
+    assert "old" not in page.read_text()

@@ -14,7 +14,7 @@ from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
 from frictioncontact.parameters import COULOMB_FORCE, IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import rows as table2
 from frictioncontact.table2.command import percent
-from workshop.fmu_docs import tutorial
+from workshop.fmu_docs import laws, tutorial
 from workshop.fmu_docs.readme import SCENE
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -106,6 +106,18 @@ def test_the_force_beyond_the_limit_is_what_the_guide_says(fmu: FrictionFmu) -> 
     period = simulate(fmu, row_4, PERIOD / 1000, 1000)
     most = np.max(period["F_t"]) / COULOMB_FORCE
     assert f"it reaches {most:.2f} `F_C` in each period" in " ".join(USING.split())
+
+
+def test_static_friction_under_vibration_is_what_the_page_says(fmu: FrictionFmu) -> None:
+    """77 N and a swing of sigma V_1 / omega break away at 82.5 N; so does a constant V, whatever it is."""
+    page = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
+    (left,) = laws.bound_with_total_velocity(np.array([0.02]))
+    assert f"would leave {left:.1f} N at V_1 = 20 mm/s" in page
+    breaks = 5.5 * 2.0 * np.pi * 20e3 / 2.5e6  # m/s
+    assert laws.vibrated(fmu, 0.999 * breaks) == pytest.approx(77.0)
+    assert laws.vibrated(fmu, 1.001 * breaks) < 60.0
+    for V in (1e-5, 0.01, 1.0):
+        assert laws.break_away(fmu, V) == pytest.approx(82.5, rel=1e-3)
 
 
 def test_what_the_page_of_the_solver_names_is_there() -> None:

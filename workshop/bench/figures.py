@@ -84,13 +84,25 @@ def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]
 
 
 def periods(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]:
-    figure, axes = style.subplots(size=(5.5, 4.0))
-    for method in dict.fromkeys(str(row["method"]) for row in rows):
-        own = [row for row in rows if row["method"] == method and not row["failure"]]
-        times = [1e6 * float(row["cpu_s_per_step"]) for row in own]  # type: ignore[arg-type]
-        axes.loglog([row["periods"] for row in own], times, "o-", color=COLOUR[method], label=method)
-    axes.set_title("One communication step over many periods")
-    axes.set_xlabel("vibration periods in the step")
-    axes.set_ylabel("CPU time of the step [µs]")
-    axes.legend()
+    """A panel a law: evaluations of a step over those of one period with held inputs."""
+    laws = list(dict.fromkeys(str(row["law"]) for row in rows))
+    figure, axes = style.subplots(2, 2, size=(5.2, 5.4), sharex=True, sharey=True)
+    for panel, law in zip(axes.flat, laws, strict=True):
+        for kind, colour in (("held", style.BLUE), ("moving", style.ORANGE)):
+            for limit, dash in (("Constant", "o-"), ("Load", "s--")):
+                own = [row for row in rows if (row["law"], row["limit"], row["inputs"]) == (law, limit, kind)]
+                panel.loglog(
+                    [row["periods"] for row in own],
+                    [row["ratio"] for row in own],
+                    dash,
+                    color=colour,
+                    markersize=4,
+                    label=f"{kind}, limit {limit}",
+                )
+        panel.set_title(law)
+        panel.set_xticks([1, 1e2, 1e4, 1e6])
+    for panel in axes[-1]:
+        panel.set_xlabel("periods in the step")
+    figure.supylabel("evaluations over those of one period, held", fontsize=10)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return style.save_both(figure, folder, "periods")

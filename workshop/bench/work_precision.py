@@ -7,14 +7,16 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.table import Table
 
 from frictioncontact.command import finish, progress_bar, say_written, write_csv
 from frictioncontact.fmu import Value
-from frictioncontact.parameters import PERIOD, SEPARATION
+from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from workshop.bench import figures, releases
 from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
 from workshop.bench.driver import (
@@ -43,6 +45,8 @@ PAGE = ROOT / "docs" / "numerics.md"
 MATCHED_ERRORS = (1e-6, 1e-9)
 DEFAULT, CALLS, BARE = "collocation", "calls", "best Radau without calls"
 RADAU = ("Radau 5", "Radau 9", "Radau 13")
+LAWS = ("Coulomb", "ElasticPlastic", "Dahl", "LuGre")
+PERIODS = tuple(10**k for k in range(7))  # in one communication step
 SLOW = 5e-4  # s per period: a slower setting is measured once
 
 
@@ -188,27 +192,40 @@ def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
     return rows
 
 
-def period_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
-    """CPU time of one communication step against the number of vibration periods in it."""
-    rows = []
-    most = {"collocation": 1e9, "cvode": 1e3, "backwardEuler": 1e4}
-    for method in most:
-        for periods in (1, 10, 1e2, 1e3, 1e4, 1e6, 1e9):
-            if periods > most[method] * (0.1 if quick else 1.0):
-                continue
-            values = {
-                **vibrating(6e8).start_values,
-                "solver.method": method,
-                "solver.stepSize": PERIOD / 1000,
-            }
-            outcome = bench.run(Job(values, periods * PERIOD, 2, budget=0.004 if quick else 0.05))
+def period_points(bench: Bench) -> list[dict[str, object]]:
+    """Cost of one step from rest over ever more vibration periods, in every law.
+
+    V rises from 0.3 to 0.7 V_1 and the load falls by half within a moving step; in a held one they keep
+    their means. Ratios are over one period with held inputs.
+    """
+    rows: list[dict[str, object]] = []
+    samples = {"V": np.array([0.432, 1.008]), "load": np.array([300.0, 150.0])}
+    for law, limit in product(LAWS, ("Constant", "Load")):
+        values = {
+            "friction.model": law,
+            "friction.limit": limit,
+            "friction.staticRatio": 1.5 if law in ("ElasticPlastic", "LuGre") else 1.0,
+            "friction.V_S": 0.1,
+            "contact.input": "Load",
+            "contact.stiffnessScale": 6e6 / STIFFNESS_PRINTED,
+            "vibration.V_1": 1.44,
+            "vibration.a_d": 1.1e-6,
+        }
+        one: Outcome | None = None
+        for kind, periods in product(("held", "moving"), PERIODS):
+            moves = kind == "moving"
+            inputs = {name: ends if moves else np.full(2, ends.mean()) for name, ends in samples.items()}
+            outcome = bench.run(Job(values, periods * PERIOD, inputs=inputs, linear=moves, budget=0.005))
+            one = one or outcome
             rows.append(
                 {
-                    "method": method,
+                    "law": law,
+                    "limit": limit,
+                    "inputs": kind,
                     "periods": periods,
-                    "cpu_s_per_step": outcome.cpu,
-                    "wall_s_per_step": outcome.wall,
-                    "evaluations_per_step": outcome.evaluations,
+                    "evaluations": outcome.evaluations,
+                    "ratio": outcome.evaluations / one.evaluations,
+                    "cpu_ratio": outcome.cpu / one.cpu,
                     "failure": outcome.failure,
                 }
             )
@@ -282,9 +299,35 @@ def renew_tables(rows: Sequence[dict[str, object]], titles: Mapping[str, str]) -
     for error in MATCHED_ERRORS:
         lines = [["scene", "calls", *COLUMNS], ["---"] * (2 + len(COLUMNS))]
         lines += [[titles[name], *cells] for name, *cells in ratio_cells(rows, error)]
-        table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-        head = f"errors of at most {error:.0e} `F_C`:\n\n".replace("e-0", "e-")
-        text = re.sub(rf"(?<={re.escape(head)})(?:\|.*\n)*", f"{table}\n", text)
+        text = with_table(text, f"errors of at most {error:.0e} `F_C`:".replace("e-0", "e-"), lines)
+    PAGE.write_text(text, encoding="utf-8")
+    return PAGE
+
+
+def with_table(text: str, head: str, lines: Sequence[Sequence[str]]) -> str:
+    """The text with these lines for the table under the words head."""
+    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return re.sub(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)*", table, text)
+
+
+def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """A line a law and limit: evaluations of the longest step, held and moving, and the latter's CPU time."""
+    longest = {
+        (row["law"], row["limit"], row["inputs"]): row for row in rows if row["periods"] == PERIODS[-1]
+    }
+    cells = []
+    for law, limit in dict.fromkeys(key[:2] for key in longest):
+        held, moving = (longest[law, limit, kind] for kind in ("held", "moving"))
+        costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (held, moving)]
+        cells.append([law, limit, *costs, f"{float(format(moving['cpu_ratio'], '.2g')):.0f}"])
+    return cells
+
+
+def renew_periods(rows: Sequence[Mapping[str, Any]]) -> Path:
+    """The table of docs/numerics.md on long steps."""
+    heading = ["law", "limit", "held", "moving", "moving, CPU time"]
+    lines = [heading, ["---"] * len(heading), *period_cells(rows)]
+    text = with_table(PAGE.read_text(encoding="utf-8"), "period with held inputs:", lines)
     PAGE.write_text(text, encoding="utf-8")
     return PAGE
 
@@ -322,7 +365,7 @@ def run(options: argparse.Namespace) -> None:
             progress.advance(task)
         step_sizes = step_size_points(bench, quick)
         progress.advance(task)
-        periods = period_points(bench, quick)
+        periods = period_points(bench)
         progress.advance(task)
         held = held_step(bench, quick)
         progress.update(task, description="the default against the tolerance")
@@ -348,16 +391,16 @@ def run(options: argparse.Namespace) -> None:
     written += figures.periods(periods, output)
     if options.docs:
         written += [*renew_docs(written), renew_tables(compared, titles)]
+        renew_periods(periods)
     for error in MATCHED_ERRORS:
         wide_console().print(ratio_table(compared, error))
     if options.against:
         wide_console().print(releases.table(against_tolerance))
-    one, many = (
-        row["cpu_s_per_step"]
-        for row in periods
-        if row["method"] == "collocation" and row["periods"] in (1, 1e6)
-    )
-    print(f"One step over 1e6 periods costs {many / one:.2f} times one over 1 period.")
+    for law, limit, when_held, when_moving, time in period_cells(periods):
+        print(
+            f"{law}, limit {limit}: a step over 1e6 periods costs {when_held} times the evaluations of one, "
+            f"{when_moving} times with moving inputs ({time} times the CPU time)."
+        )
     print(f"Held inputs, no vibration: {1e9 * held.cpu:.0f} ns to set 3 inputs, step and get 2 outputs.")
     say_written(written)
 

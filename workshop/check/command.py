@@ -17,7 +17,6 @@ import random
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -33,12 +32,6 @@ FUZZERS = {"call_sequence": 100, "model_exchange": 160, "state_bytes": 900}  # n
 # or start something of their own; times; and the references, which load no FMU.
 OF_LIBRARY = ("tests/fmi2", "tests/solver", "tests/physics", "tests/batch", "tests/package", "tests/paper")
 LEAST_LINES = 95.0  # percent of the lines of fmu_src that the suite executes
-LEAST_BRANCHES = 95.0  # percent of the branches of fmu_src/solver that the hunt's corpus takes
-# What no sequence leads to: failures of CVODE and of memory, numbers that overflow, the limit of evaluations.
-FAILURES = (
-    r".*(assert|FC_MOST_EVALUATIONS|CV\w*_SUCCESS|isfinite\((y|sum)\."
-    r"|!?solver->(y|dense|matrix|linear_solver|cvode)\b).*"
-)
 
 
 class Skipped(Exception):
@@ -54,7 +47,7 @@ class Extent:
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
-    seed: int = 0  # of the hunt and of the advice
+    seed: int = 0  # of the hunt
 
 
 FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
@@ -185,35 +178,6 @@ def check_hunt(extent: Extent) -> None:
     )
 
 
-def write_hunt_corpus(folder: Path) -> list[str]:
-    """The inputs of tests/hunt/corpus.txt, a line of hexadecimal digits each, as files; their paths."""
-    paths = []
-    for number, line in enumerate((ROOT / "tests/hunt/corpus.txt").read_text().split()):
-        paths.append(folder / f"seed-{number}")
-        paths[-1].write_bytes(bytes.fromhex(line))
-    return [str(path) for path in paths]
-
-
-def check_hunt_guided(extent: Extent) -> None:
-    """The same with scenes that libFuzzer draws, led on by new ways through the solver."""
-    with _clang():
-        folder = build_targets("fuzz-fast", ["fuzz_hunt"])
-    found = folder / "corpus-hunt"
-    found.mkdir(exist_ok=True)
-    write_hunt_corpus(found)
-    options = [
-        f"-seed={extent.seed}",
-        f"-max_total_time={round(60 * extent.hunt_minutes)}",
-        "-max_len=700",
-        "-timeout=100",
-        "-verbosity=0",
-        "-print_funcs=0",
-        "-print_final_stats=1",
-        f"-artifact_prefix={folder}/hunt-",
-    ]
-    _run([str(folder / "hunt/fuzz_hunt"), *options, str(found)])
-
-
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
     valgrind = _tool("valgrind", "valgrind")
@@ -235,18 +199,6 @@ def check_coverage(extent: Extent) -> None:
     _run([*gcovr, "--print-summary", "--fail-under-line", str(LEAST_LINES)])
 
 
-def check_hunt_coverage(extent: Extent) -> None:
-    """Branches of fmu_src/solver that the corpus of the guided hunt takes by itself, failures left out."""
-    folder = build_targets("coverage", ["replay_hunt"])
-    for counts in folder.rglob("*.gcda"):
-        counts.unlink()
-    with tempfile.TemporaryDirectory() as inputs:
-        _run([str(folder / "hunt/replay_hunt"), *write_hunt_corpus(Path(inputs))])
-    gcovr = [sys.executable, "-m", "gcovr", "--root", ".", "--filter", "fmu_src/solver/", str(folder)]
-    options = ["--txt-metric=branch", "--print-summary", f"--exclude-branches-by-pattern={FAILURES}"]
-    _run([*gcovr, *options, "--fail-under-branch", str(LEAST_BRANCHES)])
-
-
 CHECKS: dict[str, Callable[[Extent], None]] = {
     "sanitize": check_sanitize,
     "threads": check_threads,
@@ -254,8 +206,6 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "fuzz-many": check_fuzz_many,
     "soak": check_soak,
     "hunt": check_hunt,
-    "hunt-guided": check_hunt_guided,
-    "hunt-coverage": check_hunt_coverage,
     "leaks": check_leaks,
     "coverage": check_coverage,
 }
@@ -276,7 +226,7 @@ def main() -> None:
         "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
     )
     parser.add_argument("--minutes", type=float, help="of the hunt")
-    parser.add_argument("--seed", type=int, help="of the hunt and the advice; drawn anew when not given")
+    parser.add_argument("--seed", type=int, help="of the hunt; drawn anew when not given")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:

@@ -1,4 +1,4 @@
-"""The pictures of README.md, docs/using.md, docs/solver.md and docs/tutorial/, drawn into docs/pictures/."""
+"""The pictures of README.md, the tutorial and the pages on use, equations and solver, into docs/pictures/."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
 from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
-from workshop.fmu_docs import stretch
+from workshop.fmu_docs import laws, stretch
 from workshop.fmu_docs.tutorial import PAGES, blocks
 from workshop.project import ROOT
 
@@ -178,8 +178,13 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     table2_figure.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
     for drawing in (overview, fmpy_example, step_sizes):
         drawing(fmu, folder / f"{drawing.__name__}.png")
+    laws.open_contact(fmu, folder / "physics-open-contact.png")
+    laws.static_friction(fmu, folder / "physics-static-friction.png")
     stretch.draw(folder / "solver-stretch.png")
-    names = ("table2", "overview", "fmpy_example", "step_sizes", "solver-stretch")
+    names = (
+        "table2", "overview", "fmpy_example", "step_sizes",
+        "physics-open-contact", "physics-static-friction", "solver-stretch",
+    )  # fmt: skip
     return sorted(folder / f"{name}.png" for name in names)
 
 

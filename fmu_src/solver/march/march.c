@@ -21,6 +21,9 @@ static const double CURVE_MOVES = 0.5;
 // What a bristle that is beyond its bound by rounding may be beyond, over the bound: 450 eps.
 static const double ROUNDING_OF_BOUND = 1e-13;
 
+// What such a bristle still moves by until V turns back, over the bound, if it is at its static bound but for rounding.
+static const double ROUNDING_AT_REVERSAL = 1e-9;
+
 // A bristle that sticks is looked after, in one panel, for about the time in which V moves it by this many bounds. By hand: from one
 // bound to the other are two.
 static const double SOON = 3.0;
@@ -584,7 +587,8 @@ static void march_between_reversals(March* m, double D) {
         m->result->evaluations += 1.0;
         const double way = D - side * delta;
         bool goes_on = !(side * x > way);
-        if (!goes_on && way <= ROUNDING_OF_BOUND * D && fc_has_static_friction(scene->friction)) {
+        if (!goes_on && way <= ROUNDING_OF_BOUND * D && side * x <= ROUNDING_AT_REVERSAL * D &&
+            fc_has_static_friction(scene->friction)) {
             // It sticks at the static bound if V comes to its reversal faster than it could slip: what is left of the way is rounding.
             goes_on = !(fc_push(scene, scene, sticks_to, side) > 0.0);
         }

@@ -9,6 +9,10 @@
 // whose points are a radian apart an eighth would do.
 static const double HIDDEN = 0.5;
 
+// What a cubic may miss of the top between two points, over what p moves by near by. By hand: of a sine whose points are a radian
+// apart 1/384.
+static const double MISSED_BY_CUBIC = 0.01;
+
 static double beyond_at(const FcCourse* course, int side, int i) {
     return side * course->delta[i] - course->D[i];
 }
@@ -87,7 +91,7 @@ static double moves(const FcCourse* course, int side, int i) {
     return most;
 }
 
-// Whether p goes above `over` inside the cell, being below at both ends; *t is where it crosses 0.
+// Whether p goes, or may go, above `over` inside the cell, being below at both ends; *t is where it crosses 0, or where its top is.
 static bool crosses_unseen(const FcCourse* course, int side, int i, double over, double close, double* t,
                            double* evaluations) {
     const double p_a = beyond_at(course, side, i);
@@ -118,10 +122,15 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     const double top =
         fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, &none);
     const double p = of_cubic(&cubic, top);
-    if (!(p > over)) {
+    const double at_middle =
+        16.0 * top * top * (1.0 - top) * (1.0 - top); // what a cubic misses, over that in the middle
+    double part = top;                                // it may be: a panel that is cut at the top says it
+    if (p > over) {
+        part = p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, &none) : 0.0;
+    } else if (!(p + MISSED_BY_CUBIC * at_middle * moves(course, side, i) > over)) {
         return false;
     }
-    *t = a + (b - a) * (p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, &none) : 0.0);
+    *t = a + (b - a) * part;
     return true;
 }
 

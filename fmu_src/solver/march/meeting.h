@@ -30,7 +30,7 @@ typedef struct {
 
 typedef struct {
     int side; // 1 or -1; 0 for no meeting
-    double t; // s; by the cubic where the course is not exact
+    double t; // s; of a course that is not exact by the cubic, and only what may be a meeting
 } FcMeeting;
 
 // The first meeting of the course with its bound, of which it goes beyond by more than `over` [m]; told to within `close` [m] of the

@@ -10,9 +10,11 @@
 // More periods than this with moving inputs are refused. By hand: they would take minutes.
 static const double MOST_CHANGING_PERIODS = 1e6;
 
-// Two ends of periods that differ by less than this, over the bound, are the same. By hand: less costs a period, more takes an end
-// that still changes.
+// Two ends of periods that differ by less than this, over the deflection, are the same. By hand: less costs a period, more takes an
+// end that still changes. A bristle that relaxes by a small part of its way in each period has that many times farther to go;
+// LEAST_PART is for ElasticPlastic, whose ends are the same but for rounding.
 static const double SAME_END = 1e-10;
+static const double LEAST_PART = 1e-4;
 
 // Periods that meet the bound are followed up to this number for a repetition. With static friction where the bristle sticks again may
 // depend on where it broke away: then periods need not repeat, and the mean over so many meetings is taken. By hand.
@@ -112,10 +114,14 @@ static void repeat(Walk* walk, double times) {
 }
 
 // Whether the bristle is where it was after the last period that met its bound.
-static bool repeats(const Walk* walk) {
+static bool repeats(Walk* walk) {
     const double delta = walk->total.delta;
-    return walk->met_at >= 0.0 && walk->total.slips == walk->met.slips &&
-           fabs(delta - walk->met.delta) <= SAME_END * fabs(delta);
+    const double changed = fabs(delta - walk->met.delta);
+    if (walk->met_at < 0.0 || walk->total.slips != walk->met.slips || !(changed <= SAME_END * fabs(delta))) {
+        return false;
+    }
+    const double part = fmax(LEAST_PART, fmin(1.0, free_map_of(walk).relaxation));
+    return changed <= SAME_END * part * fabs(delta);
 }
 
 // Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
@@ -209,7 +215,7 @@ bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMess
         return fc_message_set(
             message,
             "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
-            "at most %.9g periods are computed one by one: the largest step is %.9g s",
+            "at most %.9g of them are computed: the largest step is %.9g s",
             h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
     }
     if (evaluations > FC_MOST_EVALUATIONS) {

@@ -137,12 +137,13 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
         set_end(watch, at->scene, at->t + cut, deflection(&panel->map, from->delta_0), last, &course);
         *evaluations += 1.0;
         const double beyond = met.side * course.delta[last] - course.D[last];
-        if (fabs(beyond) <= fc_most(1e-12 * course.D[last], FC_SHARE_OF_CUT * may) || tries == MOST_CUTS) {
+        if (fabs(beyond) <= fc_most(1e-12 * course.D[last], FC_SHARE_OF_CUT * may) ||
+            (tries >= MOST_CUTS && beyond > 0.0)) {
             break;
         }
         const double rate = fc_approach(&course, met.side, last);
         *evaluations += 1.0;
-        if (beyond < 0.0 && !(rate > 0.0)) { // it has turned back: freely so far
+        if (beyond < 0.0 && (!(rate > 0.0) || tries >= MOST_CUTS)) { // it has turned back: freely so far
             *h = cut;
             return FC_MEETS_NONE;
         }
