@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 
 from frictioncontact import resources
+from workshop.fmu_docs import tutorial
 from workshop.project import ROOT
 
 pytest.importorskip("lief", reason="the release's packages are not installed: scripts/setup release")
@@ -78,7 +79,14 @@ def user(wheel: Path) -> Iterator[User]:
         yield installed(wheel, Path(temporary))
 
 
-def installed(wheel: Path, folder: Path) -> User:
+@pytest.fixture(scope="module")
+def newcomer(wheel: Path) -> Iterator[User]:
+    """With what page 1 of the tutorial installs."""
+    with tempfile.TemporaryDirectory(prefix="frictioncontact-newcomer-") as temporary:
+        yield installed(wheel, Path(temporary), "matplotlib")
+
+
+def installed(wheel: Path, folder: Path, besides: str = "libcosimpy") -> User:
     folder.chmod(0o755)  # pytest's own folders are closed to others
     user, found = User(folder / "home"), folder / "found"
     pins = [
@@ -90,10 +98,10 @@ def installed(wheel: Path, folder: Path) -> User:
     constraints = folder / "constraints.txt"
     constraints.write_text("\n".join(pins) + "\n")
     pip = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "-d", str(found), "-c", str(constraints), str(wheel), "libcosimpy"], check=True)
+    subprocess.run([*pip, "-d", str(found), "-c", str(constraints), str(wheel), besides], check=True)
     user.run(
         "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index",
-        "--no-compile", "--find-links", str(found), str(found / wheel.name), "libcosimpy",
+        "--no-compile", "--find-links", str(found), str(found / wheel.name), besides,
     )  # fmt: skip
     return user
 
@@ -187,6 +195,15 @@ def test_every_line_of_the_pages_runs(user: User, line: str) -> None:
     rows = "V [mm/s],vibration.V_1 [m/s],F_t_mean [N]", "100,1.44,5.5", "500,1.44,26.4", "1000,1.44,46.6"
     (user.work / "mine.csv").write_text("\n".join([*rows, "1400,1.44,54.6"]), encoding="utf-8")
     user.run(*shlex.split(line, comments=True))
+
+
+@pytest.mark.parametrize("page", tutorial.PAGES, ids=lambda page: page.stem)
+def test_a_page_of_the_tutorial_prints_and_draws_what_it_shows(newcomer: User, page: Path) -> None:
+    code, printed = tutorial.blocks(page)
+    (newcomer.work / "page.py").write_text(code, encoding="utf-8")
+    assert newcomer.run("python", "-W", "error::UserWarning:__main__", "page.py") == printed
+    assert (newcomer.work / f"{page.stem}.png").is_file()
+    assert len(page.read_text(encoding="utf-8").split()) <= 500
 
 
 def test_what_needs_an_extra_is_there_and_says_so(user: User) -> None:

@@ -50,7 +50,7 @@ def page(browser: Browser, site: Path, request: pytest.FixtureRequest) -> Iterat
 
 
 def test_every_page_is_there(site: Path) -> None:
-    documents = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/**/README.md")]
+    documents = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/README.md")]
     assert len(documents) > 15
     for document in documents:
         made = (site / document.relative_to(ROOT)).with_suffix(".html")

@@ -1,8 +1,12 @@
-"""The pictures of README.md and of the pages on use, the equations and the solver, into docs/pictures/."""
+"""The pictures of README.md, the tutorial and the pages on use, equations and solver, into docs/pictures/."""
 
 from __future__ import annotations
 
 import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +22,7 @@ from frictioncontact.table2 import figure as table2_figure
 from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
 from workshop.fmu_docs import laws, stretch
+from workshop.fmu_docs.tutorial import PAGES, blocks
 from workshop.project import ROOT
 
 FOLDER = ROOT / "docs" / "pictures"
@@ -158,6 +163,16 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
     style.save(figure, path)
 
 
+def draw_tutorial(folder: Path) -> list[Path]:
+    """The pictures that the pages of the tutorial save, by their own blocks, with the package's FMU."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="tutorial-") as temporary:
+        for page in PAGES:
+            code, _ = blocks(page)
+            subprocess.run([sys.executable, "-c", code], cwd=temporary, check=True, stdout=subprocess.DEVNULL)
+        return [Path(shutil.copy(path, folder)) for path in sorted(Path(temporary).glob("*.png"))]
+
+
 def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     """All pictures; gives their paths."""
     table2_figure.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
@@ -184,6 +199,8 @@ def run(options: argparse.Namespace) -> None:
     with FrictionFmu(options.fmu or build_fmu()) as fmu:
         for path in draw(fmu, options.output):
             print(path)
+    for path in draw_tutorial(options.output / "tutorial"):
+        print(path)
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -26,6 +26,7 @@ root_doc = "README"
 include_patterns = [
     "*.md",
     "docs/*.md",
+    "docs/tutorial/*.md",
     "examples/README.md",
     "examples/*/README.md",
     "data/measurements/README.md",
@@ -64,6 +65,13 @@ html_theme_options = {
 SUMMARY = "if (location.protocol === 'file:') DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;"
 
 CONTENTS = {
+    "Tutorial": {
+        "1. First force": "docs/tutorial/first-force",
+        "2. Your surface": "docs/tutorial/your-surface",
+        "3. Your machine": "docs/tutorial/your-machine",
+        "4. Your sweep": "docs/tutorial/your-sweep",
+        "5. What to trust": "docs/tutorial/what-to-trust",
+    },
     "Use": {
         "First simulation and variables": "docs/using",
         "FMI tools": "docs/tools",
