@@ -16,6 +16,9 @@ static const double MOST_CHANGING_PERIODS = 1e6;
 static const double SAME_END = 1e-10;
 static const double LEAST_PART = 1e-4;
 
+// This near to the edge of the free starts, over it, a start is at the edge. Rounding: 450 eps.
+static const double ROUNDING_OF_EDGE = 1e-13;
+
 // Periods that meet the bound are followed up to this number for a repetition. With static friction where the bristle sticks again may
 // depend on where it broke away: then periods need not repeat, and the mean over so many meetings is taken. By hand.
 enum { MOST_MEETINGS = 1000 };
@@ -92,11 +95,12 @@ static double free_periods(Walk* walk, double left) {
     }
     const int side = s > 0.0 ? 1 : -1;
     const double relaxation = fmin(1.0, map.relaxation); // which rounding may exceed
-    const double room = side * (edge_of(walk, side) - delta) / fabs(s);
+    const double edge = edge_of(walk, side);
+    const double room = side * (edge - delta) / fabs(s);
     if (!(room * relaxation < 1.0)) { // never
         return left;
     }
-    if (!(room >= 0.0)) {
+    if (!(side * (edge - delta) > ROUNDING_OF_EDGE * fabs(edge))) {
         return 0.0;
     }
     const double n = relaxation > 0.0 ? log1p(-relaxation * room) / log1p(-relaxation) : room;
@@ -161,14 +165,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
             walk->met_at = -1.0;
             return;
         }
-        const double before = total->delta;
         const FcMap map = fc_map_power(&walk->free_map, n);
         fc_map_apply(&map, total);
         walk->done += n;
-        if (total->delta == before && isinf(periods)) { // what it moves by is rounding
-            walk->met_at = -1.0;
-            return;
-        }
     }
 }
 
