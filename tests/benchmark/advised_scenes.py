@@ -58,12 +58,12 @@ class Run:
 def runs_of(scene: Mapping[str, Value], step: float) -> list[Run]:
     truth, runs = scene_of(scene), []
     for phase in np.arange(PHASES) * T / PHASES:
-        for delta_0 in (0.0, float(settled(truth, MP.mpf(phase), 0))):
-            now, delta, rows = MP.mpf(phase), delta_0, []
+        for delta_0 in (0.0, float(settled(truth, MP.mpf(phase), 0).delta)):
+            now, delta, slips, rows = MP.mpf(phase), delta_0, 0, []
             for h in steps_of(step):
-                delta, impulse = reference.advance(truth, now, h, delta)[:2]
+                delta, impulse, _, _, slips = reference.advance(truth, now, h, delta, slips=slips)
                 now += MP.mpf(h)
-                rows.append((float(reference.force(truth, now, delta)), float(impulse) / h))
+                rows.append((float(reference.force(truth, now, delta, slips)), float(impulse) / h))
             runs.append(Run(float(phase), delta_0, np.array(rows)))
     return runs
 
@@ -85,6 +85,6 @@ def missed(
 def allowed(scene: Mapping[str, Value], accuracy: float) -> float:
     """The largest error [N] that the promise grants: of F_C, and of a mean friction that is not nearly 0."""
     truth = scene_of(scene)
-    impulse = reference.advance(truth, 0, T, settled(truth, 0, 0))[1]
+    impulse = reference.advance(truth, 0, T, settled(truth, 0, 0).delta)[1]
     mean = abs(float(impulse)) / T if truth.vibrates else F_C
     return accuracy * (min(F_C, mean) if mean > 1e-4 else F_C)

@@ -271,15 +271,20 @@ static void add_slip(March* m, const Slip* slip) {
 static bool is_slip_accurate(const March* m, const Slip* slip) {
     double f[FC_MOST_POINTS];
     double fastest = m->speed;
+    double least = slip->D[0];
+    double most = slip->D[0];
     for (int i = 0; i < slip->at.count; i++) {
         fastest = fmax(fastest, fabs(slip->rate[i]));
+        least = fmin(least, slip->D[i]);
+        most = fmax(most, slip->D[i]);
     }
     for (int i = 0; i < slip->at.count; i++) {
         const double part = fastest > 0.0 ? (slip->at.V[i] - m->side * slip->rate[i]) / fastest : 0.0;
         f[i] = slip->at.limit[i] * (1.0 + part);
     }
-    // The heat g (V - D') may miss its part of the path alone, which may be much less than what the bound moves by.
-    const double of_path = fastest > 0.0 ? m->speed / fastest : 1.0;
+    // The heat g (V - D') may miss its part of the path, of the surfaces and of the bristle, alone: D' may be fast for a short time.
+    const double path = m->speed * m->duration + (most - least);
+    const double of_path = fastest > 0.0 ? fmin(1.0, path / (fastest * m->duration)) : 1.0;
     return fc_error_at_points(&slip->at, f) * slip->at.h <=
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
 }
