@@ -105,8 +105,7 @@ def test_recovery_is_what_the_documents_say(
     said = re.search(
         r"in (\d+) %, (\d+) % and (\d+) % of 100 seeds; .* in (\d+) %, (\d+) % and (\d+) % of 100.*"
         r"in (\d+) % and (\d+) % of 100 seeds.*hold the phase in (\d+) %",
-        PHYSICS,
-        re.DOTALL,
+        " ".join(PHYSICS.split()),
     )
     recovered = (from_kind("scatter estimated"), noisy, from_law("Dahl", True))
     held = [100.0 * np.mean(one.holds(name)) for one in recovered for name in one.truth]
