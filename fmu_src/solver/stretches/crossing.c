@@ -78,6 +78,9 @@ static PanelKind kind_of_panel(const Crossing* crossing) {
 static bool take_bounded_gauss(Crossing* crossing) {
     FcCrossed* crossed = crossing->crossed;
     const FcSection* section = crossing->section;
+    if (crossing->t > section->start) { // it was cut, where the bristle had come near to its bound
+        return false;
+    }
     const double X = fc_stretch_displacement(crossing->stretch, section->start, section->end);
     const FcTrajectories from = fc_crossed_trajectories(crossing->crossed);
     if (!fc_bounded_panel(crossed->interval, section->scene, section->start, section->end - section->start, X,
