@@ -285,16 +285,6 @@ bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_
     return true;
 }
 
-typedef struct {
-    const View* view;
-    int side;
-} Pushed;
-
-static double push(void* context, double t) {
-    const Pushed* of = context;
-    return fc_push(&of->view->scene, &of->view->bound, t, of->side);
-}
-
 // The time [s] from t on within which the push turns once at the most.
 static double part_of_period(const View* view, double t, double period) {
     const FcFriction* friction = view->scene.friction;
@@ -309,15 +299,15 @@ static double part_of_period(const View* view, double t, double period) {
 
 // The first local time within the period at which the bristle is pushed towards the bound of that side no more; else its end.
 static double first_turn(const View* view, int side, double start, double period) {
-    Pushed of = {view, side};
+    FcPushed of = {&view->scene, &view->bound, side};
     double evaluations = 0.0;
-    double before = push(&of, start);
+    double before = fc_push_at(&of, start);
     double t = start;
     while (t < period) {
         const double next = fmin(period, t + part_of_period(view, t, period));
-        const double after = push(&of, next);
+        const double after = fc_push_at(&of, next);
         if (before > 0.0 && after <= 0.0) {
-            return fc_root_between(push, &of, t, before, next, after, 0.0, &evaluations);
+            return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, &evaluations);
         }
         before = after;
         t = next;

@@ -29,13 +29,11 @@ USED = (
     ("delta_0", "friction.model", BRISTLES),
     ("solver.stepSize", "solver.method", FIXED_STEPS),
     ("vibration.phase_d", "vibration.a_d", None),
-    ("vibration.phase_2", "vibration.V_2", None),
-    ("vibration.f", "vibration.V_1 vibration.a_d vibration.V_2", None),
+    ("vibration.f", "vibration.V_1 vibration.a_d", None),
 )
 # Magnitudes [SI] from which to which a value is a likely one; 0 always is.
 LIKELY = {
     "V": (0.0, 100.0),
-    "V_y": (0.0, 100.0),
     "d": (1e-9, 1e-3),
     "E": (1e5, 1e13),
     "delta_0": (0.0, 1e-2),
@@ -47,10 +45,8 @@ LIKELY = {
     "friction.V_S": (0.0, 10.0),
     "vibration.f": (100.0, 1e8),
     "vibration.V_1": (0.0, 100.0),
-    "vibration.V_2": (0.0, 100.0),
     "vibration.a_d": (0.0, 1e-3),
     "vibration.phase_d": (0.0, 15.0),
-    "vibration.phase_2": (0.0, 15.0),
 }
 
 
@@ -60,8 +56,8 @@ def unused(known: Variables, given: Mapping[str, np.ndarray]) -> dict[str, str]:
     for setting, deciders, items in USED:
         if setting not in given or (given[setting] == float(known.all[setting].start)).all():
             continue
-        names = [name for name in deciders.split() if name in known.all]
         if items is None:
+            names = deciders.split()
             if not any(name in given for name in names):
                 starts = " and ".join(f"{name} = {known.all[name].start}" for name in names)
                 found[setting] = f"{setting} has no effect: {starts}"

@@ -91,6 +91,12 @@ static void transfer_real(Cursor* cursor, double* value) {
     memcpy(value, &bits, sizeof bits);
 }
 
+static void transfer_inputs(Cursor* cursor, double of[FC_INPUT_COUNT]) {
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        transfer_real(cursor, &of[input]);
+    }
+}
+
 static void transfer_past(Cursor* cursor, FcPast* past) {
     transfer_real(cursor, &past->d);
     transfer_real(cursor, &past->V);
@@ -105,12 +111,8 @@ static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
     transfer_integer(cursor, &hybrid->regime);
     transfer_integer(cursor, &hybrid->changed);
     transfer_real(cursor, &hybrid->seen_time);
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        transfer_real(cursor, &hybrid->seen[input]);
-    }
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        transfer_real(cursor, &hybrid->speed[input]);
-    }
+    transfer_inputs(cursor, hybrid->seen);
+    transfer_inputs(cursor, hybrid->speed);
     transfer_real(cursor, &hybrid->nominal_delta);
     transfer_real(cursor, &hybrid->nominal_energy);
     transfer_real(cursor, &hybrid->lag);
@@ -132,12 +134,8 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
     transfer_real(cursor, &friction->time_rest);
     transfer_real(cursor, &friction->W_f_rest);
     transfer_real(cursor, &friction->Q_f_rest);
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        transfer_real(cursor, &friction->rate[input]);
-    }
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        transfer_real(cursor, &friction->next_rate[input]);
-    }
+    transfer_inputs(cursor, friction->rate);
+    transfer_inputs(cursor, friction->next_rate);
     transfer_integer(cursor, &friction->next_rate_set);
     transfer_integer(cursor, &friction->slips);
     transfer_past(cursor, &friction->past);

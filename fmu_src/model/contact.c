@@ -97,10 +97,6 @@ FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d) {
     return (FcContactLogSlope){.sigma = sigma, .A_r = -c->decay, .F_n = -c->decay};
 }
 
-double fc_contact_stiffness_bend(const FcContactAtModulus* c, double d) {
-    return c->model == FC_CONTACT_ASPERITIES ? 3.0 / (d * d) : 0.0;
-}
-
 // x ~ E^-2, so dx/dE = -2 x / E.
 FcContactLogSlope fc_contact_slope_by_E(const FcContactParameters* p, double E) {
     const double x = relative_critical_interference(p, E);

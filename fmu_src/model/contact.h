@@ -74,8 +74,6 @@ double fc_contact_stiffness(const FcContactAtModulus* c, double d);
 
 // Exact, at d [m] > 0 and E [Pa] > 0.
 FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d);
-double fc_contact_stiffness_bend(const FcContactAtModulus* c,
-                                 double d); // 1/m2, second derivative of ln(sigma) by d
 FcContactLogSlope fc_contact_slope_by_E(const FcContactParameters* p, double E);
 
 // ln of the factor by which a vibration of the separation by a_d [m] >= 0 raises the mean of F_n: ln I_0(decay a_d).

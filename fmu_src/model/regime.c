@@ -33,6 +33,11 @@ double fc_push(const FcScene* scene, const FcScene* bound, double t, int side) {
     return side * fc_free_rate(scene, &at, side * fc_bound(bound, t)) - fc_bound_rate(bound, t);
 }
 
+double fc_push_at(void* context, double t) {
+    const FcPushed* of = context;
+    return fc_push(of->scene, of->bound, t, of->side);
+}
+
 // That of the side at the start of the scene.
 static double push(const FcScene* scene, int slips, int side) {
     FcFriction friction;

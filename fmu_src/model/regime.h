@@ -34,6 +34,14 @@ static inline double fc_free_rate(const FcScene* scene, const FcCoefficients* at
 // free, less the motion of the bound. It slips while this is positive.
 double fc_push(const FcScene* scene, const FcScene* bound, double t, int side);
 
+// The push as a function of time, for fc_root_between: context is an FcPushed.
+typedef struct {
+    const FcScene* scene;
+    const FcScene* bound;
+    int side;
+} FcPushed;
+double fc_push_at(void* context, double t);
+
 // What the state is at the start of the scene: one beyond its bound is taken onto it, one that has lost its contact is 0, one
 // that slips sticks if it is not pushed.
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle);

@@ -186,8 +186,9 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
     double s = 0.0;
     double at_s = above_bound(&of, s);
     const double moves = 1.0 + fmin(fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG, MOST_STEPS);
+    const double step = 1.0 / ceil(moves);
     while (s < 1.0 && at_s <= 0.0) {
-        const double next = s + 1.0 / ceil(moves) < 1.0 - 1e-9 ? s + 1.0 / ceil(moves) : 1.0;
+        const double next = s + step < 1.0 - 1e-9 ? s + step : 1.0;
         const double at_next = above_bound(&of, next);
         if (at_next > 0.0) {
             return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, &none) : s;

@@ -124,10 +124,7 @@ static double smooth_time_of_slip(const March* m) {
                                                      : m->smooth_time;
 }
 
-static void advance(March* m, double h) {
-    const double t = m->t + h;
-    m->t = m->cut - t < 1e-3 * h || !(t > m->t) ? m->cut : t;
-}
+static void advance(March* m, double h) { m->t = fc_panel_end(m->t, h, m->cut); }
 
 // Moves the bristle at once to delta: what it stores less is heat.
 static void move_to(March* m, double delta, double sigma) {
@@ -156,17 +153,6 @@ static void end_slip(March* m) {
     m->side = 0;
     m->result->slips = 0;
     m->cut = 0.0;
-}
-
-// The push at a time.
-typedef struct {
-    const March* m;
-    int side;
-} Pushed;
-
-static double push(void* context, double t) {
-    const Pushed* of = context;
-    return fc_push(of->m->scene, bound_of_slip(of->m), t, of->side);
 }
 
 typedef struct {
@@ -210,7 +196,7 @@ static double unseen(const March* m, double sigma, double D) {
 
 // Where in the panel the push comes to 0; infinite if nowhere. At the start it is known to be above.
 static double end_of_push(March* m, int side, const Slip* slip) {
-    Pushed of = {m, side};
+    FcPushed of = {m->scene, bound_of_slip(m), side};
     double* evaluations = &m->result->evaluations;
     double most = 0.0;
     for (int i = 0; i < slip->at.count; i++) {
@@ -220,16 +206,16 @@ static double end_of_push(March* m, int side, const Slip* slip) {
     const double near = sqrt(2.0 * unseen(m, slip->at.sigma[0], slip->D[0]) * most / slip->at.h);
     for (int i = 0; i + 1 < slip->at.count; i++) {
         if (slip->push[i + 1] <= 0.0) {
-            return fc_root_between(push, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1],
+            return fc_root_between(fc_push_at, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1],
                                    slip->push[i + 1], near, evaluations);
         }
         double t;
         const bool lowest = i > 0 && slip->push[i] < slip->push[i - 1] && slip->push[i] <= slip->push[i + 1];
         if (lowest && dip(slip, i, &t) <= 0.5 * slip->push[i]) { // it may dip below 0 unseen
-            const double at_dip = push(&of, t);
+            const double at_dip = fc_push_at(&of, t);
             *evaluations += 1.0;
             if (at_dip <= 0.0) {
-                return fc_root_between(push, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, near,
+                return fc_root_between(fc_push_at, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, near,
                                        evaluations);
             }
         }
@@ -292,15 +278,15 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
 // In ElasticPlastic a slip ends before V turns back, unless the bound falls: where it does, at `end` at the latest.
 static double end_before_reversal(March* m, double push_now, double end) {
     const double event = relaxes(m->scene) ? end : fc_drive_next_event(&m->scene->drive, m->t, end).time;
-    Pushed of = {m, m->side};
-    const double at_event = event < end ? push(&of, event) : 1.0;
+    FcPushed of = {m->scene, bound_of_slip(m), m->side};
+    const double at_event = event < end ? fc_push_at(&of, event) : 1.0;
     m->result->evaluations += 1.0;
     if (at_event > 0.0) {
         return end;
     }
     const double sigma = fc_scene_stiffness(m->scene, m->t);
     const double near = sqrt(2.0 * unseen(m, sigma, fabs(m->result->delta)) * push_now / (event - m->t));
-    return fc_root_between(push, &of, m->t, push_now, event, at_event, near, &m->result->evaluations);
+    return fc_root_between(fc_push_at, &of, m->t, push_now, event, at_event, near, &m->result->evaluations);
 }
 
 // Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.

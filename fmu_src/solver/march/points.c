@@ -35,6 +35,11 @@ double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, 
     return h;
 }
 
+double fc_panel_end(double t, double h, double end) {
+    const double next = t + h;
+    return end - next < 1e-3 * h || !(next > t) ? end : next;
+}
+
 bool fc_refine_panel(double* h, int* rule, int tries) {
     if (*rule < FC_RULES - 1) {
         ++*rule;

@@ -46,8 +46,7 @@ static void add_limit(const FcScene* scene, const FcSolverOptions* options, doub
             result->impulse += force;
             result->work += force * at.V[i];
         }
-        const double next = t + h;
-        t = end - next < 1e-3 * h || !(next > t) ? end : next;
+        t = fc_panel_end(t, h, end);
     }
 }
 

@@ -129,8 +129,7 @@ static bool repeats(Walk* walk) {
 }
 
 // Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
-// single free one repeats. If too many meetings do not
-// repeat, met_at is about half of them ago.
+// single free one repeats. If too many meetings do not repeat, met_at is about half of them ago.
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
     walk->met_at = -1.0;

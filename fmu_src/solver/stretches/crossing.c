@@ -62,10 +62,12 @@ bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajecto
                                              &crossed->evaluations) != FC_UNRESOLVED;
 }
 
-// The kinds that are not refused yet, in their order. Gauss panels serve soft sections alone.
+// The kinds that are not refused yet, in their order. Gauss panels serve soft sections alone, a bounded one the whole section: not if
+// it was cut, where the bristle came near to its bound.
 static PanelKind kind_of_panel(const Crossing* crossing) {
     const FcSection* section = crossing->section;
-    if (crossing->first <= BOUNDED_GAUSS && section->soft && !section->in_peak) {
+    if (crossing->first <= BOUNDED_GAUSS && section->soft && !section->in_peak &&
+        crossing->t == section->start) {
         return BOUNDED_GAUSS;
     }
     if (crossing->first <= JUDGED_GAUSS && section->soft) {
@@ -78,9 +80,6 @@ static PanelKind kind_of_panel(const Crossing* crossing) {
 static bool take_bounded_gauss(Crossing* crossing) {
     FcCrossed* crossed = crossing->crossed;
     const FcSection* section = crossing->section;
-    if (crossing->t > section->start) { // it was cut, where the bristle had come near to its bound
-        return false;
-    }
     const double X = fc_stretch_displacement(crossing->stretch, section->start, section->end);
     const FcTrajectories from = fc_crossed_trajectories(crossing->crossed);
     if (!fc_bounded_panel(crossed->interval, section->scene, section->start, section->end - section->start, X,
