@@ -61,7 +61,7 @@ static FcScene scene_of(Case c) {
     memset(&asked, 0, sizeof asked);
     const FcDrive drive = fc_drive_make((FcLinearInput){2.0, c.V_rate}, (FcLinearInput){1.0, 0.5 * c.V_rate},
                                         (FcLinearInput){8.0, 0.25 * c.V_rate}, (FcLinearInput){1.0, 0.0},
-                                        (FcVibration){F, c.V_1, 0.0, 0.0}, 0.0, 0.0);
+                                        (FcVibration){.f = F, .V_1 = c.V_1}, 0.0, 0.0);
     static const FcFriction friction = {.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT};
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, drive.E.value);
     return fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
@@ -185,7 +185,7 @@ static void draw(Slider* slider) {
     const FcDrive drive =
         fc_drive_make((FcLinearInput){V, 0.0}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
                       (FcLinearInput){LIMIT / 0.176, 0.0},
-                      (FcVibration){F, slider->V_1, slider->a_d, 6.28 * random_01()}, random_01() / F, 0.0);
+                      (FcVibration){F, slider->V_1, slider->a_d, 6.28 * random_01(), 0.0, 0.0}, random_01() / F, 0.0);
     FcContactAtModulus at_E = fc_contact_at_modulus(&slider->contact, 58e9);
     slider->scene = fc_scene_make(&slider->contact, &at_E, &slider->friction, LIMIT, &drive);
     const double sigma = random_log(1e-2, 1e2) * LIMIT * omega / slider->V_1;
@@ -252,7 +252,7 @@ static void stick_slip_over_several_periods_is_a_cycle(void) {
     const double D = LIMIT / slider.contact.sigma;
     const FcDrive drive = fc_drive_make((FcLinearInput){0.16 * D * F, 0.0}, (FcLinearInput){14e-6, 0.0},
                                         (FcLinearInput){58e9, 0.0}, (FcLinearInput){1.0, 0.0},
-                                        (FcVibration){F, 0.3 * D * 6.28 * F, 0.0, 0.0}, 0.0, 0.0);
+                                        (FcVibration){.f = F, .V_1 = 0.3 * D * 6.28 * F}, 0.0, 0.0);
     const FcContactAtModulus at_E = fc_contact_at_modulus(&slider.contact, 58e9);
     slider.scene = fc_scene_make(&slider.contact, &at_E, &slider.friction, LIMIT, &drive);
     const FcScene* scene = &slider.scene;
