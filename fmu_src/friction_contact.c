@@ -154,9 +154,9 @@ static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outpu
     *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
     if (!isfinite(bristle.delta) || !isfinite(bristle.delta_y)) {
         const FcFastest of = fc_fastest(&scene->drive);
-        return fc_message_set(
-            message, "%s is beyond the largest number: %s = %.9g m/s with %s = %.9g m/s",
-            isfinite(bristle.delta) ? "delta_y" : "delta", of.name, of.V, of.vibration, of.amplitude);
+        return fc_message_set(message, "%s is beyond the largest number: %s = %.9g m/s with %s = %.9g m/s",
+                              isfinite(bristle.delta) ? "delta_y" : "delta", of.name, of.V, of.vibration,
+                              of.amplitude);
     }
     if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
@@ -238,10 +238,11 @@ bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* me
     const FcStateRates rates = fc_motion(&scene, fc_regime(&scene, bristle), bristle).rates;
     if (!isfinite(rates.delta) || !isfinite(rates.delta_y) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
         const FcFastest of = fc_fastest(&scene.drive);
-        return fc_message_set(message,
-                              "the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = %.9g "
-                              "m/s with %s = %.9g m/s, F_t = %.9g N, F_y = %.9g N",
-                              of.name, of.V, of.vibration, of.amplitude, v->F_t, v->F_y);
+        return fc_message_set(
+            message,
+            "the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = %.9g "
+            "m/s with %s = %.9g m/s, F_t = %.9g N, F_y = %.9g N",
+            of.name, of.V, of.vibration, of.amplitude, v->F_t, v->F_y);
     }
     v->der = rates;
     return true;
@@ -451,10 +452,9 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     if (!find_outputs(&end, reached, &now, message)) {
         return false;
     }
-    const FcVector mean =
-        h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : now.force;
-    if (!isfinite(mean.x) || !isfinite(mean.y) || !isfinite(result.delta) || !isfinite(result.delta_y) || !isfinite(v->W_f + result.work) ||
-        !isfinite(v->Q_f + result.heat)) {
+    const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : now.force;
+    if (!isfinite(mean.x) || !isfinite(mean.y) || !isfinite(result.delta) || !isfinite(result.delta_y) ||
+        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat)) {
         const FcFastest of = fc_fastest(&scene.drive);
         return fc_message_set(
             message,

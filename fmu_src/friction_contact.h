@@ -62,9 +62,9 @@ typedef struct {
     double speed[FC_INPUT_COUNT]; // 1/s times their units: how fast they move
     double nominal_delta;         // m
     double nominal_energy;        // J
-    double lag;                   // m, of delta behind the bound along which the bristle slips; in the plane of |delta|
-    double lag_force;             // N, the bristle's force there
-    double lag_heat;              // J, what Q_f lags behind by
+    double lag;       // m, of delta behind the bound along which the bristle slips; in the plane of |delta|
+    double lag_force; // N, the bristle's force there
+    double lag_heat;  // J, what Q_f lags behind by
 } FcHybrid;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.

@@ -81,10 +81,11 @@ static void look(FcFrictionContact* contact, View* view) {
 
 static bool fail_rates(const FcScene* scene, const FcVariables* v, FcMessage* message) {
     const FcFastest of = fc_fastest(&scene->drive);
-    return fc_message_set(message,
-                          "F_t, F_y or the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = "
-                          "%.9g m/s with %s = %.9g m/s, delta = %.9g m, delta_y = %.9g m",
-                          of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
+    return fc_message_set(
+        message,
+        "F_t, F_y or the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = "
+        "%.9g m/s with %s = %.9g m/s, delta = %.9g m, delta_y = %.9g m",
+        of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
 }
 
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {

@@ -52,11 +52,11 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
         .tolerance = tolerance, .force = fmax(scale, DBL_MIN), .step_size = v->solver.stepSize};
     fc_method_settled(&scene, &options, start, force, evaluations);
     if (*evaluations > FC_MOST_EVALUATIONS) {
-        return fc_message_set(
-            message,
-            "F_t_settled, F_y_settled or a derivative of them needs more than %.0e evaluations: vibration.a_d = %.9g m at "
-            "d = %.9g m moves the contact over too many orders of magnitude",
-            FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
+        return fc_message_set(message,
+                              "F_t_settled, F_y_settled or a derivative of them needs more than %.0e "
+                              "evaluations: vibration.a_d = %.9g m at "
+                              "d = %.9g m moves the contact over too many orders of magnitude",
+                              FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
     }
     return true;
 }
@@ -96,8 +96,8 @@ static double first_range_of_V(const FcVariables* v, const FcScene* scene, doubl
     if (amplitude == 0.0) {
         const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
         const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
-        scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V)
-                                                             : v->friction.V_S);
+        scale =
+            fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V) : v->friction.V_S);
     }
     const double room = speed >= amplitude ? speed - amplitude : speed; // towards 0
     return copysign(PART_OF_SCALE * scale, room > PART_OF_SCALE * scale ? -V : V);

@@ -138,8 +138,7 @@ static Moment moment(const FcScene* scene, const FcContactResponse* contact) {
     if (fc_drive_is_planar(&scene->drive)) {
         FcPlane plane;
         fc_plane_make(&plane, scene);
-        const FcPlaneCoefficients at =
-            fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
+        const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
         return (Moment){at.V, at.speed, at.sigma, at.limit};
     }
     const FcCoefficients at = fc_scene_coefficients_of(scene, contact);
@@ -183,8 +182,7 @@ static Parts slipping_parts(const FcScene* scene, const Moment* at, FcRegime reg
     if (fc_is_planar(scene, bristle)) {
         const FcVector turning = perpendicular(at->V, n);
         parts.delta_rate = plus(parts.delta_rate, 1.0, turning);
-        parts.state_rate =
-            plus(parts.state_rate, hypot(bristle.delta, bristle.delta_y) / bound.D, turning);
+        parts.state_rate = plus(parts.state_rate, hypot(bristle.delta, bristle.delta_y) / bound.D, turning);
     }
     return parts;
 }
@@ -207,9 +205,8 @@ static Parts parts_of(const FcScene* scene, const FcContactResponse* contact, Fc
         return slipping_parts(scene, &at, regime, bristle);
     }
     const FcVector delta = {bristle.delta, bristle.delta_y};
-    const FcVector rate = scene->friction->model == FC_ELASTIC_PLASTIC
-                              ? at.V
-                              : plus(at.V, -relaxation_rate(scene, &at), delta);
+    const FcVector rate =
+        scene->friction->model == FC_ELASTIC_PLASTIC ? at.V : plus(at.V, -relaxation_rate(scene, &at), delta);
     return (Parts){.V = at.V, .force = times(at.sigma, delta), .delta_rate = rate, .state_rate = rate};
 }
 
@@ -264,8 +261,8 @@ static FcVector free_rate_along(const FcScene* scene, const Moment* at, FcVector
         return V_along;
     }
     const double r = relaxation_rate(scene, at);
-    const double r_along = r * (log_sigma - log_limit) +
-                           at->sigma / at->limit * product(V_along, direction(at->V.x, at->V.y));
+    const double r_along =
+        r * (log_sigma - log_limit) + at->sigma / at->limit * product(V_along, direction(at->V.x, at->V.y));
     return plus(plus(V_along, -r_along, delta), -r, (FcVector){along->delta, along->delta_y});
 }
 
@@ -298,9 +295,8 @@ static double bound_rate_along(const FcScene* bound, const FcDirection* along) {
 }
 
 // D_rate_along is that of D'.
-static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcRegime regime,
-                            FcBristle bristle, const ContactAlong* contact, const FcDirection* along,
-                            double D_rate_along) {
+static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcRegime regime, FcBristle bristle,
+                            const ContactAlong* contact, const FcDirection* along, double D_rate_along) {
     const FcBound bound = fc_bound_in_plane(of_bound, 0.0);
     const FcContactResponse now = fc_scene_contact(scene, 0.0);
     const FcVector V = moment(scene, &now).V;
@@ -317,8 +313,7 @@ static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcReg
     turning_along = plus(turning_along, -product(V, n), n_along);
     const FcVector with_D = plus(times(D_rate_along, n), bound.rate, n_along);
     const double lag = size / bound.D;
-    const double lag_along =
-        product(delta_along, n) / bound.D - lag * (log_limit - contact->log_sigma);
+    const double lag_along = product(delta_along, n) / bound.D - lag * (log_limit - contact->log_sigma);
     return (Parts){.V = V_along,
                    .force = plus(times(bound.limit * log_limit, n), bound.limit, n_along),
                    .delta_rate = plus(with_D, 1.0, turning_along),
@@ -333,8 +328,7 @@ static Parts free_along(const FcScene* scene, FcBristle bristle, const ContactAl
     const FcVector V_along = {along->V, along->V_y};
     if (scene->friction->model == FC_COULOMB) {
         const FcVector n = direction(at.V.x, at.V.y);
-        const FcVector turning =
-            at.speed > 0.0 ? times(at.limit / at.speed, perpendicular(V_along, n)) : n;
+        const FcVector turning = at.speed > 0.0 ? times(at.limit / at.speed, perpendicular(V_along, n)) : n;
         return (Parts){.V = V_along, .force = plus(turning, at.limit * log_limit, n)};
     }
     const FcVector delta = {bristle.delta, bristle.delta_y};
@@ -407,7 +401,9 @@ static double bound_acceleration(const FcScene* bound) {
     if (fc_scene_d(bound, -tau) > 0.0) {
         return (apart - fc_bound_in_plane(bound, -tau).rate) / (2.0 * tau);
     }
-    return (4.0 * apart - 3.0 * fc_bound_in_plane(bound, 0.0).rate - fc_bound_in_plane(bound, 2.0 * tau).rate) / (2.0 * tau);
+    return (4.0 * apart - 3.0 * fc_bound_in_plane(bound, 0.0).rate -
+            fc_bound_in_plane(bound, 2.0 * tau).rate) /
+           (2.0 * tau);
 }
 
 FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {

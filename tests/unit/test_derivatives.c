@@ -199,9 +199,10 @@ static void at_a_reversal(void) {
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 9e9);
     const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
     const FcDirection by_V = {.V = 1.0};
-    CHECK_NEAR(fc_force_rate(&scene, (FcBristle){.delta = 1e-6}).x, (friction.sigma_1 + friction.sigma_2) * 7.0,
-               1e-14);
-    CHECK_NEAR(fc_motion_along(&scene, FC_FREE, (FcBristle){.delta = 1e-6}, &by_V).force.x, friction.sigma_1 + friction.sigma_2, 1e-14);
+    CHECK_NEAR(fc_force_rate(&scene, (FcBristle){.delta = 1e-6}).x,
+               (friction.sigma_1 + friction.sigma_2) * 7.0, 1e-14);
+    CHECK_NEAR(fc_motion_along(&scene, FC_FREE, (FcBristle){.delta = 1e-6}, &by_V).force.x,
+               friction.sigma_1 + friction.sigma_2, 1e-14);
 }
 
 // A contact that is open has viscous friction alone.

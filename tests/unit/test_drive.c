@@ -36,7 +36,7 @@ static void phase_is_exact_after_many_years(void) {
 }
 
 static void rest_of_the_time_counts(void) {
-    const FcVibration vibration = {F, 1.0, 0.0, 0.0};
+    const FcVibration vibration = {.f = F, .V_1 = 1.0};
     const FcLinearInput held = {1.0, 0.0};
     const double rest = 4e-8; // s, below the rounding of 1e9 s
     const FcDrive with = fc_drive_make(held, held, held, held, vibration, 1e9, rest);
@@ -479,8 +479,7 @@ static void what_is_left_of_E_and_load_has_its_digits(void) {
         const uint64_t ticks = (start << 40) / rate;
         const double left = (double)((start << 40) - rate * ticks) * 0x1p-40;
         const FcLinearInput falls = {(double)start, -(double)rate};
-        const FcDrive drive =
-            fc_drive_make(held, held, falls, falls, (FcVibration){.f = F}, 0.0, 0.0);
+        const FcDrive drive = fc_drive_make(held, held, falls, falls, (FcVibration){.f = F}, 0.0, 0.0);
         CHECK_NEAR(fc_drive_E(&drive, (double)ticks * 0x1p-40), left, 1e-15);
         CHECK_NEAR(fc_drive_load(&drive, (double)ticks * 0x1p-40), left, 1e-15);
     }

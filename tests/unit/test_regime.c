@@ -51,7 +51,8 @@ static void closed_forms(void) {
     make(&one, FC_ELASTIC_PLASTIC, V);
     FcMotion at = fc_motion(&one.scene, FC_FREE, (FcBristle){.delta = delta});
     check_motion(&at, SIGMA * delta, V, V);
-    at = fc_motion(&one.scene, FC_SLIPS_BACK, (FcBristle){.delta = -1.1 * D}); // the force is that of the bound, whatever delta is
+    at = fc_motion(&one.scene, FC_SLIPS_BACK,
+                   (FcBristle){.delta = -1.1 * D}); // the force is that of the bound, whatever delta is
     check_motion(&at, -F_C, 0.0, V);
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(&one.scene, 0, &friction);
@@ -110,7 +111,8 @@ static void derivatives(void) {
     CHECK_NEAR(slope.force.x, 3.0 * (1.0 - delta / D) + 7.0, 1e-14);
     make(&one, FC_ELASTIC_PLASTIC, V);
     slope = fc_motion_along(&one.scene, FC_SLIPS_FORWARD, (FcBristle){.delta = delta}, &by_delta);
-    CHECK(slope.force.x == 0.0 && slope.rates.delta == 0.0 && slope.rates.W_f == 0.0 && slope.rates.Q_f == 0.0);
+    CHECK(slope.force.x == 0.0 && slope.rates.delta == 0.0 && slope.rates.W_f == 0.0 &&
+          slope.rates.Q_f == 0.0);
 }
 
 // While V, d, E and the load, given by this, move and the surfaces vibrate.

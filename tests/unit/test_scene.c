@@ -309,7 +309,8 @@ static void is_as_the_equations_say(const Random* one) {
                                 : expected.V - expected.sigma * fabs(expected.V) * delta / expected.limit;
         CHECK_NEAR(fc_scene_contact(scene, t).A_r, there.A_r, 1e-11);
         CHECK_NEAR(fc_scene_contact(scene, t).sigma, there.sigma, 1e-11);
-        CHECK_WITHIN(free_motion(scene, t, delta).force.x, 0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
+        CHECK_WITHIN(free_motion(scene, t, delta).force.x,
+                     0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
                      1e-10 * (expected.limit + 43.0 * fabs(expected.V)));
         const FcScene later = fc_scene_later(scene, PERIOD);
         CHECK_NEAR(later.drive.E.value, one->given.E.value + one->given.E.rate * PERIOD, 1e-14);
