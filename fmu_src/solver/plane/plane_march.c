@@ -23,13 +23,15 @@ typedef struct {
     double path_after; // m, at least, from the end of the half to that of the interval
     double h;          // of the next panel, in u; 0 before the first of a half
     FcMap along, across;
-    double scale; // m, of the starts that the maps are for, beside the one they have
-    double heat;  // J, of break-away
+    double transient; // N, by which the start is behind what it tends to, as far as it has not relaxed
+    double scale;     // m, of the starts that the maps are for, beside the one they have
+    double heat;      // J, of break-away
     bool is_bounded;
     int slips; // FcBristle
     Motion motion;
     int meetings;
-    int halted; // how often the bristle went from one motion to the other at the same place
+    double least; // of a panel, in u, that counts as one
+    int halted;   // how often the bristle went from one motion to the other at the same place
     double evaluations;
 } March;
 
@@ -45,15 +47,45 @@ enum { MOST_TRIES = 12 };
 // miss rho^-17, sinh(ln rho) = pi over the panel's length. And of a decaying exponential, by hand: costs tries, not accuracy.
 static const double ORDER = 17.0;
 static const double LAYERS = 6.3;
+// Radii of the disc that a bristle which sticks may go in a panel: its points tell then where it comes to the bound. By hand.
+static const double MOST_OF_DISC = 4.0;
 // A panel may last so many times the time over which the contact moves by 1. By hand: costs tries, not accuracy.
 static const double SMOOTH = 7.0;
 
-// The force [N] by which the bristle is behind what it tends to.
-static double lag(const March* march, const FcPlaneCoefficients* at) {
+// A bristle that would go from one motion to the other where it is is taken on by shorter panels, since it dips inside its bound between
+// the points, and if that is of no use along its bound: there is no push then but for rounding. By hand.
+static const double SHORTENED_BY = 1.0 / 32.0;
+enum { MOST_HALTS = 6 };
+
+// The force [N] of Coulomb's law.
+static FcVector coulomb(const FcPlaneCoefficients* at) {
+    const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+    return (FcVector){over_speed * at->V.x, over_speed * at->V.y};
+}
+
+static FcPlaneCoefficients coefficients_at(const March* march, double t) {
+    return fc_plane_coefficients(march->plane, t, fc_drive_phase(&march->interval->scene->drive, t));
+}
+
+// The force [N] by which the bristle at the start is behind what it tends to: Coulomb's force, less by how far that moves in the time
+// 1 / r.
+static double first_transient(const March* march) {
     const FcPlaneFrom from = from_of(march);
-    const double settled = at->speed > 0.0 ? at->limit / at->speed : 0.0;
-    return hypot(at->sigma * from.delta.x - settled * at->V.x, at->sigma * from.delta.y - settled * at->V.y) +
-           at->sigma * fabs(from.scale);
+    const FcPlaneCoefficients at = coefficients_at(march, 0.0);
+    const FcVector now = coulomb(&at);
+    const double r = at.sigma * at.speed / at.limit;
+    FcVector next = now;
+    if (r * march->interval->duration > 1.0) {
+        const FcPlaneCoefficients after = coefficients_at(march, 1.0 / r);
+        next = coulomb(&after);
+    }
+    return hypot(at.sigma * from.delta.x - (2.0 * now.x - next.x),
+                 at.sigma * from.delta.y - (2.0 * now.y - next.y)) +
+           at.sigma * fabs(from.scale);
+}
+
+static bool is_stuck(const March* march) {
+    return march->motion == FREE && march->plane->scene->friction->model == FC_ELASTIC_PLASTIC;
 }
 
 // The length in u of the next panel.
@@ -64,16 +96,13 @@ static double planned(const March* march) {
     const double t = fc_straight_time(in, march->u);
     const double resolves = pow(interval->tolerance, 1.0 / ORDER);     // 1 / rho
     double span = SMOOTH * resolves * fc_smooth_time(&interval->pace); // s
-    if (march->motion == FREE && march->plane->scene->friction->model != FC_ELASTIC_PLASTIC) {
-        const FcPlaneCoefficients at =
-            fc_plane_coefficients(march->plane, t, fc_drive_phase(&interval->scene->drive, t));
-        const double behind = lag(march, &at) / (interval->tolerance * interval->force);
-        const double r = at.sigma * at.speed / at.limit;
-        if (behind > 1.0 && r > 0.0) {
-            // |V| may rise from 0 within the layer of L
-            const double layer = LAYERS * pow(behind, -1.0 / ORDER) / r;
-            span = fmin(span, layer);
-        }
+    const FcPlaneCoefficients at = coefficients_at(march, t);
+    const double layer = at.limit / (at.sigma * at.speed); // s, 1 / r; infinite if V is 0
+    const double behind = march->transient / (interval->tolerance * interval->force);
+    if (is_stuck(march)) {
+        span = march->is_bounded ? fmin(span, MOST_OF_DISC * layer) : span;
+    } else if (march->motion != NO_BRISTLE && behind > 1.0) {
+        span = fmin(span, LAYERS * pow(behind, -1.0 / ORDER) * layer);
     }
     double h = fmin(left, fc_straight_place(in, t + span) - march->u);
     if (isfinite(in->length)) {
@@ -83,7 +112,7 @@ static double planned(const March* march) {
         h = fmin(h, march->h);
     }
     h = h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
-    return h;
+    return h * pow(SHORTENED_BY, march->halted);
 }
 
 // How many times the panel's errors are too large.
@@ -130,7 +159,7 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
         const bool is_solved = make_panel(march, nodes, panel);
         const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= MOST_TRIES) {
-            march->h = h * fmin(2.0, 0.9 * pow(excess + 1e-30, -1.0 / ORDER));
+            march->h = tries > 0 || !(excess < 1.0) ? h * fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 0.0;
             return h;
         }
         h *= is_solved ? fmax(0.3, fmin(0.9, 0.85 * pow(excess, -1.0 / 12.0))) : 0.4;
@@ -140,6 +169,7 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
 static void append(March* march, const FcPlanePanel* panel, double h) {
     fc_map_append(&march->along, &panel->along.map);
     fc_map_append(&march->across, &panel->across);
+    march->transient *= exp(-fmax(0.0, panel->along.z));
     const double next = march->u + h;
     march->u = march->end - next < 1e-12 * h ? march->end : next;
 }
@@ -228,7 +258,8 @@ typedef struct {
     FcPhase phase;
     FcPlaneCoefficients at;
     FcPlaneBound bound; // of a bristle that slips
-    FcVector n;
+    double size;        // m, |delta|
+    FcVector n;         // its direction
     double push;
 } Place;
 
@@ -238,8 +269,9 @@ static Place place_of(const March* march) {
     place.at = fc_plane_coefficients(march->plane, place.t, place.phase);
     place.bound = fc_plane_bound(march->plane, &place.at, 1, place.t, place.phase);
     const FcVector delta = from_of(march).delta;
-    const double size = hypot(delta.x, delta.y);
-    place.n = size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
+    place.size = hypot(delta.x, delta.y);
+    place.n =
+        place.size > 0.0 ? (FcVector){delta.x / place.size, delta.y / place.size} : (FcVector){1.0, 0.0};
     place.push = fc_plane_push(march->plane, &place.at, &place.bound, place.n);
     return place;
 }
@@ -249,14 +281,17 @@ static void meet(March* march) {
     const FcFriction* friction = march->plane->scene->friction;
     const Place place = place_of(march);
     march->meetings++;
-    if (fc_has_static_friction(friction) && march->slips == 0) {
-        const double D = place.at.static_limit / place.at.sigma;
-        march->heat += 0.5 * place.at.sigma * (D - place.bound.D) * (D + place.bound.D);
-        march->slips = 1;
+    const bool breaks_away = fc_has_static_friction(friction) && march->slips == 0;
+    if (breaks_away ||
+        place.push > 0.0) { // what it stores less is heat, also of the little that it went too far
+        march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
+        set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
     }
-    set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
+    march->slips = 1;
     if (place.push > 0.0) {
         march->motion = SLIPS;
+        march->transient = place.at.sigma * place.bound.D *
+                           fabs(place.n.x * place.at.V.y - place.n.y * place.at.V.x) / place.at.speed;
     } else {
         march->slips = 0;
     }
@@ -290,20 +325,15 @@ static void free_panel(March* march, double h) {
         march->halted = 0;
         return;
     }
-    march->halted = meets * h < 1e-9 ? march->halted + 1 : 0;
+    march->halted = meets * h < march->least ? march->halted + 1 : 0;
     // The panel is taken again up to where it meets the bound, which its own points tell better.
-    for (int tries = 0; tries < 3 && meets > 0.0 && meets <= 1.0; tries++) {
+    for (int tries = 0; tries < MOST_TRIES && meets > 0.0 && meets < 1.0; tries++) {
         h *= meets;
         fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
         march->evaluations += STAGES;
         make_panel(march, &nodes, &panel);
         find_to_bound(march, &nodes, &panel);
-        if (fabs(panel.to_bound[STAGES - 1]) <= over) {
-            break;
-        }
-        const double slope = fmax(0.0, panel.to_bound[STAGES - 1] - panel.to_bound[STAGES - 2]) /
-                             (FC_RADAU_9.node[STAGES - 1] - FC_RADAU_9.node[STAGES - 2]);
-        meets = slope > 0.0 ? fmin(1.0, fmax(0.5, 1.0 - panel.to_bound[STAGES - 1] / slope)) : 1.0;
+        meets = first_rise(panel.to_bound, over);
     }
     if (meets > 0.0) {
         append(march, &panel, h);
@@ -320,10 +350,11 @@ static void slip_panel(March* march, double h) {
         back[i] = -panel.to_bound[i];
     }
     const double over = 1e-13 * march->interval->speed;
-    const double ends = back[STAGES] > over ? 0.0 : first_rise(back, over);
-    march->halted = ends * h < 1e-9 ? march->halted + 1 : 0;
+    const double ends = march->halted > MOST_HALTS ? 2.0 : back[STAGES] > over ? 0.0 : first_rise(back, over);
+    march->halted = ends * h < march->least ? march->halted + 1 : 0;
     if (ends > 1.0) {
         append(march, &panel, h);
+        march->halted = 0;
         return;
     }
     if (ends > 0.0) {
@@ -342,12 +373,12 @@ static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlane
     *panel = (FcPlanePanel){.along = {.z = 1.0, .sigma = march->interval->stiffness}};
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients* at = &nodes->at[i];
-        const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+        const FcVector F = coulomb(at);
         const double weight = FC_RADAU_9.weight[i] * nodes->tau[i];
         V_x[i] = at->V.x;
         V_y[i] = at->V.y;
-        F_x[i] = over_speed * at->V.x;
-        F_y[i] = over_speed * at->V.y;
+        F_x[i] = F.x;
+        F_y[i] = F.y;
         map->impulse_offset += weight * F_x[i];
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * at->limit * at->speed;
@@ -361,17 +392,17 @@ static void cross_half(March* march) {
     march->u = fc_straight_place(&march->half->in, march->half->start);
     march->end = fc_straight_place(&march->half->in, march->half->end);
     march->h = 0.0;
+    march->least = 1e-13 * (march->end - march->u);
     while (march->u < march->end && march->evaluations <= FC_MOST_EVALUATIONS &&
            !isnan(march->along.offset)) {
         const double h = planned(march);
+        if (march->halted > MOST_HALTS) {
+            march->motion = SLIPS;
+        }
         if (march->motion == SLIPS) {
             slip_panel(march, h);
         } else {
             free_panel(march, h);
-        }
-        if (march->halted > 3) { // rounding tells neither motion from the other: on by the least
-            march->u = fmin(march->end, march->u + 1e-9);
-            march->halted = 0;
         }
     }
 }
@@ -383,6 +414,7 @@ static double straight_way(const FcDrive* along, const FcDrive* across, double s
 
 static void cross(March* march) {
     const FcInterval* interval = march->interval;
+    march->transient = first_transient(march);
     FcHalf halves[FC_MOST_HALVES];
     const int count = fc_halves(march->plane, interval->duration, interval->tolerance, halves);
     const FcDrive across = fc_drive_across(&interval->scene->drive);
@@ -422,8 +454,7 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     march.half = &whole;
     if (march.is_bounded) {
         const Place place = place_of(&march);
-        const FcVector delta = from_of(&march).delta;
-        const bool is_on = hypot(delta.x, delta.y) >= (1.0 - 1e-10) * place.bound.D;
+        const bool is_on = place.size >= (1.0 - 1e-10) * place.bound.D;
         const bool may_slip = march.slips != 0 || !fc_has_static_friction(scene->friction);
         march.motion = is_on && may_slip && place.push > 0.0 ? SLIPS : FREE;
         march.meetings = march.motion == SLIPS;
