@@ -11,8 +11,8 @@ import pytest
 
 from workshop.build import build_targets
 
-NUMBERS = """start h V d E load V_rate d_rate E_rate load_rate f V_1 a_d phase_d F_C mu staticRatio V_S
-    sigma_1 sigma_2 delta_0 contact_sigma stiffnessScale R_q R eta A_n nu Y c lambda""".split()
+NUMBERS = """start h V d E load V_rate d_rate E_rate load_rate V_y V_y_rate f V_1 a_d phase_d V_2 phase_2
+    F_C mu staticRatio V_S sigma_1 sigma_2 delta_0 delta_y_0 contact_sigma stiffnessScale R_q R eta A_n nu Y c lambda""".split()
 CHOICES = {
     "law": ("Dahl", "Coulomb", "ElasticPlastic", "LuGre"),
     "limit": ("Constant", "Load"),
@@ -20,7 +20,7 @@ CHOICES = {
     "input": ("Separation", "Load"),
     "initial": ("Given", "Settled"),
 }
-RESULTS = "delta slips F_t F_t_mean work heat F_t_start S path".split()
+RESULTS = "delta slips F_t F_t_mean work heat F_t_start S path delta_y F_y F_y_mean F_y_start error".split()
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 
 
