@@ -168,7 +168,7 @@ static void set_outputs(FcVariables* v, const Outputs* now) {
 }
 
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
-    return (FcBristle){contact->state.variables.delta, contact->state.slips};
+    return (FcBristle){.delta = contact->state.variables.delta, .slips = contact->state.slips};
 }
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
@@ -283,16 +283,16 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
 static FcBristle first_bristle(FcFrictionContact* contact) {
     FcVariables* v = &contact->state.variables;
     if (v->friction.model == FC_COULOMB) {
-        return (FcBristle){0.0, 0};
+        return (FcBristle){0};
     }
     if (v->initialState == FC_STATE_GIVEN) {
-        return (FcBristle){v->delta_0, 0};
+        return (FcBristle){.delta = v->delta_0};
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const FcBristle start = fc_reach(&scene, (FcBristle){v->delta_0, 0});
+    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0});
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
     const FcSolverOptions options = solver_options(v, &scene, period, start.delta);
-    double force;
+    FcVector force;
     return fc_method_settled(&scene, &options, start, &force, &v->solver.evaluations);
 }
 
@@ -419,7 +419,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
     Outputs now;
-    if (!find_outputs(&end, (FcBristle){result.delta, result.slips}, &now, message)) {
+    if (!find_outputs(&end, (FcBristle){.delta = result.delta, .slips = result.slips}, &now, message)) {
         return false;
     }
     const double F_t_mean = h > 0.0 ? result.impulse / h : now.F_t;

@@ -43,9 +43,15 @@ typedef struct {
         double evaluations; // 1, evaluations of the coefficients of the bristle's equation since the start
     } solver;
     double F_t_settled; // N  output, computed when asked for and kept nowhere: 0 here (settled_force.h)
+    double V_y;         // m/s  input, across V
+    double F_y;         // N    output
+    double F_y_mean;    // N    output
+    double F_y_settled; // N    output, as F_t_settled
+    double delta_y;     // m    output, the state across
+    double delta_y_0;   // m
 } FcVariables;
 
-typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_COUNT } FcInput;
+typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_V_Y, FC_INPUT_COUNT } FcInput;
 
 // What model exchange keeps beside the variables (hybrid.h).
 typedef struct {

@@ -45,11 +45,13 @@ static bool dry_force(FcFrictionContact* held, double tolerance, double* force, 
     }
     const FcVariables* v = &held->state.variables;
     const FcScene scene = fc_friction_contact_scene(held);
-    const FcBristle start = fc_reach(&scene, (FcBristle){v->delta_0, 0});
+    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0});
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
         .tolerance = tolerance, .force = fmax(scale, DBL_MIN), .step_size = v->solver.stepSize};
-    fc_method_settled(&scene, &options, start, force, evaluations);
+    FcVector settled;
+    fc_method_settled(&scene, &options, start, &settled, evaluations);
+    *force = settled.x;
     if (*evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(
             message,

@@ -25,17 +25,25 @@ FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinea
         drive.omega = FC_TWO_PI * vibration.f;
         drive.cos_phase_d = cos(vibration.phase_d);
         drive.sin_phase_d = sin(vibration.phase_d);
+        drive.cos_phase_2 = cos(vibration.phase_2);
+        drive.sin_phase_2 = sin(vibration.phase_2);
         drive.theta_0 = FC_TWO_PI * (phase_in_cycles(vibration.f, start) + vibration.f * rest);
     }
     return drive;
 }
 
 bool fc_drive_vibrates(const FcDrive* drive) {
-    return drive->vibration.V_1 != 0.0 || drive->vibration.a_d != 0.0;
+    const FcVibration* vibration = &drive->vibration;
+    return vibration->V_1 != 0.0 || vibration->a_d != 0.0 || vibration->V_2 != 0.0;
 }
 
 bool fc_drive_is_linear(const FcDrive* drive) {
-    return drive->V.rate != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0 || drive->load.rate != 0.0;
+    return drive->V.rate != 0.0 || drive->d.rate != 0.0 || drive->E.rate != 0.0 || drive->load.rate != 0.0 ||
+           drive->V_y.rate != 0.0;
+}
+
+bool fc_drive_is_planar(const FcDrive* drive) {
+    return drive->V_y.value != 0.0 || drive->V_y.rate != 0.0 || drive->vibration.V_2 != 0.0;
 }
 
 bool fc_drive_is_constant(const FcDrive* drive) {
@@ -60,6 +68,7 @@ FcDrive fc_drive_later(const FcDrive* drive, double t) {
     later.d.value = linear(drive->d, t);
     later.E.value = fc_input_after(drive->E, t);
     later.load.value = fc_input_after(drive->load, t);
+    later.V_y.value = linear(drive->V_y, t);
     return later;
 }
 
@@ -80,6 +89,24 @@ double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
     const double turn = copysign(V_1, cosine);
     return (drive->V.value + turn) +
            (drive->V.rate * t - turn * (at_t.sine * at_t.sine / (1.0 + fabs(cosine))));
+}
+
+double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
+    return linear(drive->V_y, t) +
+           drive->vibration.V_2 * (at_t.cosine * drive->cos_phase_2 - at_t.sine * drive->sin_phase_2);
+}
+
+FcDrive fc_drive_across(const FcDrive* drive) {
+    FcDrive across = *drive;
+    across.V = drive->V_y;
+    across.vibration.V_1 = drive->vibration.V_2;
+    across.theta_0 += drive->vibration.phase_2;
+    across.vibration.phase_d -= drive->vibration.phase_2;
+    across.cos_phase_d = cos(across.vibration.phase_d);
+    across.sin_phase_d = sin(across.vibration.phase_d);
+    across.V_y = (FcLinearInput){0.0, 0.0};
+    across.vibration.V_2 = 0.0;
+    return across;
 }
 
 FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
@@ -158,7 +185,11 @@ double fc_drive_largest_E(const FcDrive* drive, double h) {
 }
 
 double fc_drive_largest_speed(const FcDrive* drive, double h) {
-    return fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
+    const double along = fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
+    if (!fc_drive_is_planar(drive)) {
+        return along;
+    }
+    return hypot(along, fmax(fabs(drive->V_y.value), fabs(linear(drive->V_y, h))) + drive->vibration.V_2);
 }
 
 // Half an angle [rad] up to which the displacement is taken from a series. Derived: what that leaves out is then under 1e-16.

@@ -3,6 +3,7 @@
 //     V(t) = V + V' t + V_1 cos(2 pi f t + theta_0)                (Eq. 24)
 //     d(t) = d + d' t + a_d cos(2 pi f t + theta_0 + phase_d)      (section 3.2)
 //     E(t) = E + E' t              load(t) = load + load' t
+//     V_y(t) = V_y + V_y' t + V_2 cos(2 pi f t + theta_0 + phase_2), across V, in the plane of the contact
 //
 // t is local: 0 at the start of the step; theta_0 is the phase of the vibration there. The rates are zero when
 // the inputs are held. Local time keeps a step at 1e9 s as accurate as one at 0.
@@ -17,6 +18,8 @@ typedef struct {
     double V_1;     // m/s  amplitude of the velocity
     double a_d;     // m    amplitude of the separation
     double phase_d; // rad  lead of the separation over the velocity
+    double V_2;     // m/s  amplitude of the velocity across
+    double phase_2; // rad  lead of the velocity across over that along
 } FcVibration;
 
 typedef struct {
@@ -33,13 +36,16 @@ typedef struct {
     FcLinearInput d;    // m
     FcLinearInput E;    // Pa
     FcLinearInput load; // N
+    FcLinearInput V_y;  // m/s
     FcVibration vibration;
     double cos_phase_d, sin_phase_d;
+    double cos_phase_2, sin_phase_2;
     double omega;   // rad/s
     double theta_0; // rad, phase at local time 0
 } FcDrive;
 
-// The drive of a step that starts at the absolute time start + rest [s], rest being what rounding cut off start.
+// The drive of a step that starts at the absolute time start + rest [s], rest being what rounding cut off start. It does not slide
+// across: V_y is 0 until it is set.
 FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
                       FcVibration vibration, double start, double rest);
 
@@ -49,6 +55,7 @@ FcDrive fc_drive_later(const FcDrive* drive, double t);
 bool fc_drive_vibrates(const FcDrive* drive);  // an amplitude is not zero
 bool fc_drive_is_linear(const FcDrive* drive); // a rate is not zero
 bool fc_drive_is_constant(const FcDrive* drive);
+bool fc_drive_is_planar(const FcDrive* drive); // it moves across
 bool fc_drive_V_is_constant(const FcDrive* drive);
 
 // Of the vibration's angle 2 pi f t + theta_0. The sine comes first: the other way round gcc reads both at once as soon as
@@ -66,7 +73,11 @@ typedef struct {
 FcDriveValues fc_drive_values(const FcDrive* drive, double t);
 FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
-double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m/s
+double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t);   // m/s
+double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m/s
+
+// The drive whose V is V_y of this one, for what is asked of V alone below.
+FcDrive fc_drive_across(const FcDrive* drive);
 
 double fc_drive_V(const FcDrive* drive, double t);           // m/s
 double fc_drive_d(const FcDrive* drive, double t);           // m
@@ -81,7 +92,7 @@ double fc_drive_smallest_d(const FcDrive* drive, double h);    // lower bound of
 double fc_drive_largest_d(const FcDrive* drive, double h);     // upper bound of d over [0, h]
 double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of E over [0, h]
 double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
-double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h]
+double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h], in the plane
 
 // Time [s] in which what moves at a rate and with a curvature, neither negative, moves by that: the root of
 // rate x + curvature x^2 / 2 = change.

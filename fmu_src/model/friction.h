@@ -36,6 +36,7 @@ typedef struct {
 typedef struct {
     double delta; // m
     int slips;
+    double delta_y; // m, across; in the plane slips says only whether it slips
 } FcBristle;
 
 static inline bool fc_limit_follows_load(const FcFriction* friction) {

@@ -52,7 +52,7 @@ static double bound_of(const FcScene* scene, const FcCoefficients* at, int slips
 
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     if (fc_scene_is_loose(scene)) {
-        return (FcBristle){0.0, 0};
+        return (FcBristle){0};
     }
     if (!fc_is_bounded(scene->friction)) {
         return bristle;

@@ -87,7 +87,7 @@ static Place at_place(const Ramp* ramp, double s) {
 // Of the bound of a bristle that slips or not.
 static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
     const FcPast now = fc_past(scene);
-    Ramp ramp = {.scene = scene, .past = *past, .slips = 0};
+    Ramp ramp = {.scene = scene, .past = *past};
     ramp.d = now.d - past->d;
     ramp.V = now.V - past->V;
     ramp.E = now.E - past->E;
@@ -232,5 +232,5 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     } else {
         reached = follow_from(&ramp, 0.0, delta, heat);
     }
-    return fc_reach(scene, (FcBristle){side * reached, bristle.slips});
+    return fc_reach(scene, (FcBristle){.delta = side * reached, .slips = bristle.slips});
 }

@@ -35,6 +35,9 @@ typedef struct {
     double heat;        // J     integral of F (V - delta') dt
     double drag;        // m2/s  integral of delta' V dt, the work of the damping over sigma_1
     double evaluations; // 1     evaluations of the coefficients of the equation of the bristle
+    double delta_y;     // m     across, as delta, lost and impulse are along; work, heat and drag are of both
+    double lost_y;      // m
+    double impulse_y;   // N s
 } FcStepResult;
 
 // Evaluations in one communication step. By hand, up to 40 s of computing: a step that needs more is refused, so that none

@@ -223,7 +223,10 @@ static void scenes_that_were_missed(void) {
     FcDrive drive = fc_drive_make(
         (FcLinearInput){0.00237772013659301, 0.0}, (FcLinearInput){15.8659568471204e-6, -0.00461960698538},
         (FcLinearInput){54899954410.6809, 0.0}, (FcLinearInput){31.8822928812436, -38613.734786242},
-        (FcVibration){2496.23465318981, 0.00237772016241585, 523.299970610228e-9, -4.53138382491704},
+        (FcVibration){.f = 2496.23465318981,
+                      .V_1 = 0.00237772016241585,
+                      .a_d = 523.299970610228e-9,
+                      .phase_d = -4.53138382491704},
         0.000520764158600057, 0.0);
     FcScene scene = fc_scene_make(&contact, &at_E, &friction, 26.5532010690317, &drive);
     evaluations_from(&scene, -4.01786565107939e-9, 26.55, 9.0295586881159e-05, 1e-6);
@@ -235,23 +238,29 @@ static void scenes_that_were_missed(void) {
                             .staticRatio = 2.50906157661579,
                             .V_S = 0.0628526225177643};
     at_E = fc_contact_at_modulus(&contact, 56901921633.1293);
-    drive = fc_drive_make(
-        (FcLinearInput){0.128421916824392, -1104.76997386133},
-        (FcLinearInput){14.9463568933177e-6, -0.00503759626039422},
-        (FcLinearInput){56901921633.1293, 45677405730530.6}, (FcLinearInput){32.7827536913491, 0.0},
-        (FcVibration){2470.23697455273, 0.208741432034017, 229.017091902958e-9, -1.11190675997351},
-        9.6954078922892, 0.0);
+    drive = fc_drive_make((FcLinearInput){0.128421916824392, -1104.76997386133},
+                          (FcLinearInput){14.9463568933177e-6, -0.00503759626039422},
+                          (FcLinearInput){56901921633.1293, 45677405730530.6},
+                          (FcLinearInput){32.7827536913491, 0.0},
+                          (FcVibration){.f = 2470.23697455273,
+                                        .V_1 = 0.208741432034017,
+                                        .a_d = 229.017091902958e-9,
+                                        .phase_d = -1.11190675997351},
+                          9.6954078922892, 0.0);
     scene = fc_scene_make(&contact, &at_E, &friction, 78.2240509454452, &drive);
     evaluations_from(&scene, 4.05399419248311e-16, 78.2, 0.000131105147873922, 1e-4);
 
     contact.stiffnessScale = 0.00039609680496757488;
     friction = (FcFriction){.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT, .staticRatio = 1.0, .V_S = 1e-3};
     at_E = fc_contact_at_modulus(&contact, 51722776413.6138);
-    drive = fc_drive_make(
-        (FcLinearInput){0.48663037796141534, 0.0}, (FcLinearInput){1.6979916851677056e-05, 0.0},
-        (FcLinearInput){51722776413.6138, 0.0}, (FcLinearInput){65.8, 0.0},
-        (FcVibration){26635.464256725201, 0.7925766010706119, 1.064204700700531e-06, -2.285409652952048}, 0.0,
-        0.0);
+    drive =
+        fc_drive_make((FcLinearInput){0.48663037796141534, 0.0}, (FcLinearInput){1.6979916851677056e-05, 0.0},
+                      (FcLinearInput){51722776413.6138, 0.0}, (FcLinearInput){65.8, 0.0},
+                      (FcVibration){.f = 26635.464256725201,
+                                    .V_1 = 0.7925766010706119,
+                                    .a_d = 1.064204700700531e-06,
+                                    .phase_d = -2.285409652952048},
+                      0.0, 0.0);
     scene = fc_scene_make(&contact, &at_E, &friction, 431.34765404792137, &drive);
     evaluations_from(&scene, -2.3130923650514184e-06, 431.3, 4.4775622246944188e-05, 1e-4);
 }

@@ -17,7 +17,7 @@ int main(void) {
     const FcFriction friction = {
         .model = FC_DAHL, .limit = FC_LIMIT_CONSTANT, .mu = 0.18, .staticRatio = 1.0, .V_S = 0.01};
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 58e9);
-    const FcVibration vibration = {20e3, 1.44, 1.1e-6, 0.7};
+    const FcVibration vibration = {.f = 20e3, .V_1 = 1.44, .a_d = 1.1e-6, .phase_d = 0.7};
     const FcDrive drive =
         fc_drive_make((FcLinearInput){0.5, 0.0}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
                       (FcLinearInput){100.0, 0.0}, vibration, 0.0, 0.0);

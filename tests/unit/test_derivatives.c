@@ -112,7 +112,7 @@ static double force_scale(const FcScene* scene, double delta) {
 }
 
 static void slope_in_time(const FcScene* scene, double delta, int side) {
-    const double got = fc_force_rate(scene, (FcBristle){delta, side});
+    const double got = fc_force_rate(scene, (FcBristle){.delta = delta, .slips = side});
     const double rate = fastest(scene);
     if (rate == 0.0) {
         CHECK(got == 0.0);
@@ -199,7 +199,7 @@ static void at_a_reversal(void) {
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 9e9);
     const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
     const FcDirection by_V = {.V = 1.0};
-    CHECK_NEAR(fc_force_rate(&scene, (FcBristle){1e-6, 0}), (friction.sigma_1 + friction.sigma_2) * 7.0,
+    CHECK_NEAR(fc_force_rate(&scene, (FcBristle){.delta = 1e-6}), (friction.sigma_1 + friction.sigma_2) * 7.0,
                1e-14);
     CHECK_NEAR(fc_motion_along(&scene, FC_FREE, 1e-6, &by_V).F_t, friction.sigma_1 + friction.sigma_2, 1e-14);
 }
@@ -216,8 +216,7 @@ static void open_contacts(void) {
         const FcDirection along = {1.0, 1.0, 1.0, 1.0, 1.0};
         const FcMotion change = fc_motion_along(&scene, FC_FREE, 0.0, &along);
         CHECK(change.F_t == 3.0 && change.rates.delta == 0.0);
-        CHECK_NEAR(fc_force_rate(&scene, (FcBristle){0.0, 0}), 3.0 * fc_drive_V_rate(&scene.drive, 0.0),
-                   1e-14);
+        CHECK_NEAR(fc_force_rate(&scene, (FcBristle){0}), 3.0 * fc_drive_V_rate(&scene.drive, 0.0), 1e-14);
         CHECK(fc_log_slopes(&scene).by_d.sigma == 0.0 && fc_log_slopes(&scene).by_load.F_n == 0.0);
     }
 }
@@ -239,8 +238,8 @@ static void slipping_while_the_surfaces_move(double d, double d_rate) {
     const double delta = bound_at(&scene, 0, 0.0);
     const double moves = at_E.decay * d_rate; // 1/s
     const double expected = friction.sigma_1 * moves * moves * delta;
-    const double found = fc_force_rate(&scene, (FcBristle){delta, 0});
-    CHECK(fc_regime(&scene, (FcBristle){delta, 0}) == FC_SLIPS_FORWARD);
+    const double found = fc_force_rate(&scene, (FcBristle){.delta = delta});
+    CHECK(fc_regime(&scene, (FcBristle){.delta = delta}) == FC_SLIPS_FORWARD);
     CHECK(fabs(found - expected) <= 1e-6 * expected);
 }
 
@@ -269,7 +268,7 @@ int main(void) {
         if (fc_is_bounded(&one.friction) && random_01() < 0.6) {
             side = V < 0.0 ? -1 : 1;
             delta = side * bound_at(&one.scene, side, 0.0);
-            if (fc_regime(&one.scene, (FcBristle){delta, side}) != (FcRegime)side) {
+            if (fc_regime(&one.scene, (FcBristle){.delta = delta, .slips = side}) != (FcRegime)side) {
                 continue; // the bound recedes faster than V
             }
             slipped++;

@@ -68,7 +68,7 @@ static void with_a_constant_limit_the_heat_is_that_of_sliding(void) {
         for (int side = -1; side <= 1; side += 2) {
             const double delta = 0.7 * side * bound(&before);
             double heat = 0.0;
-            const FcBristle reached = jump(&before, &after, (FcBristle){delta, 0}, &heat);
+            const FcBristle reached = jump(&before, &after, (FcBristle){.delta = delta}, &heat);
             const double D = bound(&after);
             CHECK(D < fabs(delta));
             CHECK_NEAR(reached.delta, copysign(D, delta), 1e-15);
@@ -87,13 +87,13 @@ static void with_a_constant_stiffness_the_heat_is_the_stored_energy(void) {
         after.friction.mu = 0.15;
         const double delta = -0.8 * bound(&before);
         double heat = 0.0;
-        const FcBristle reached = jump(&before, &after, (FcBristle){delta, 0}, &heat);
+        const FcBristle reached = jump(&before, &after, (FcBristle){.delta = delta}, &heat);
         CHECK_NEAR(reached.delta, -0.15 * 20.0 / 2.5e6, 1e-14);
         CHECK_NEAR(heat, 0.5 * 2.5e6 * (delta * delta - reached.delta * reached.delta), 1e-12);
         heat = 0.0;
-        CHECK(jump(&before, &before, (FcBristle){delta, 0}, &heat).delta == delta && heat == 0.0);
+        CHECK(jump(&before, &before, (FcBristle){.delta = delta}, &heat).delta == delta && heat == 0.0);
         after.load = 1e4; // a bound that rises moves no bristle
-        CHECK(jump(&before, &after, (FcBristle){delta, 0}, &heat).delta == delta && heat == 0.0);
+        CHECK(jump(&before, &after, (FcBristle){.delta = delta}, &heat).delta == delta && heat == 0.0);
     }
 }
 
@@ -106,7 +106,7 @@ static void asperities_under_a_load_that_jumps(void) {
     const FcScene end = scene_of(&after);
     const double delta = bound(&before);
     double heat = 0.0;
-    const FcBristle reached = jump(&before, &after, (FcBristle){delta, 0}, &heat);
+    const FcBristle reached = jump(&before, &after, (FcBristle){.delta = delta}, &heat);
     CHECK_NEAR(reached.delta, bound(&after), 1e-15);
     const double decay = start.at_E.decay;
     const double a = start.drive.d.value;
@@ -171,7 +171,7 @@ static void without_a_past_the_stiffness_was_the_same(void) {
         const FcPast none = {.sigma = 0.0};
         const double delta = -3.0 * bound(&c);
         double heat;
-        const FcBristle reached = fc_jump(&scene, &none, (FcBristle){delta, 0}, &heat);
+        const FcBristle reached = fc_jump(&scene, &none, (FcBristle){.delta = delta}, &heat);
         const double D = bound(&c); // the kinetic one
         CHECK_NEAR(reached.delta, -D, 1e-15);
         CHECK_NEAR(heat, 0.5 * stiffness(&c) * (delta * delta - D * D), 1e-13);
@@ -190,10 +190,10 @@ static void static_friction_breaks_away_on_the_ramp(void) {
     const double D = 0.1 * 300.0 / 2.5e6;
     for (int side = -1; side <= 1; side += 2) {
         double heat = 0.0;
-        const FcBristle holds = jump(&before, &after, (FcBristle){side * 1.59 * D, 0}, &heat);
+        const FcBristle holds = jump(&before, &after, (FcBristle){.delta = side * 1.59 * D}, &heat);
         CHECK(holds.delta == side * 1.59 * D && holds.slips == 0 && heat == 0.0);
         const double delta = 1.61 * D;
-        const FcBristle slides = jump(&before, &after, (FcBristle){side * delta, 0}, &heat);
+        const FcBristle slides = jump(&before, &after, (FcBristle){.delta = side * delta}, &heat);
         CHECK_NEAR(slides.delta, side * kinetic * D, 1e-14);
         CHECK(slides.slips == (side > 0 ? 1 : 0)); // V pushes forward alone
         CHECK_NEAR(heat, 0.5 * 2.5e6 * (delta * delta - slides.delta * slides.delta), 1e-12);
@@ -225,7 +225,7 @@ static void the_drop_is_at_the_stiffness_of_the_ramp(void) {
     const double delta = 0.9 * bound(&before);
     const double sigma = 1.5 * 55.0 / delta; // there
     double heat = 0.0;
-    const FcBristle reached = jump(&before, &after, (FcBristle){delta, 0}, &heat);
+    const FcBristle reached = jump(&before, &after, (FcBristle){.delta = delta}, &heat);
     CHECK_NEAR(reached.delta, bound(&after), 1e-14);
     const double dropped = 55.0 / sigma;
     const double drop = 0.5 * sigma * (delta * delta - dropped * dropped);
@@ -241,7 +241,7 @@ static void contacts_that_open(void) {
         open.load = 0.0;
         const double delta = 0.7 * bound(&closed);
         double heat = 0.0;
-        const FcBristle lost = jump(&closed, &open, (FcBristle){delta, 0}, &heat);
+        const FcBristle lost = jump(&closed, &open, (FcBristle){.delta = delta}, &heat);
         CHECK(lost.delta == 0.0 && lost.slips == 0);
         CHECK_WITHIN(heat, i == 0 ? 0.5 * 2.5e6 * delta * delta : 0.0, 1e-25);
         heat = 0.0;

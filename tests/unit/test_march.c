@@ -242,7 +242,8 @@ static void work_is_stored_or_heat(void) {
         one.contact.model = FC_CONTACT_CONSTANT;
         const FcContactAtModulus at_E = fc_contact_at_modulus(&one.contact, 58e9);
         one.scene = fc_scene_make(&one.contact, &at_E, &one.friction, 60.0, &one.scene.drive);
-        const FcBristle reached = fc_reach(&one.scene, (FcBristle){one.start.delta, one.start.slips});
+        const FcBristle reached =
+            fc_reach(&one.scene, (FcBristle){.delta = one.start.delta, .slips = one.start.slips});
         FcStepResult got = {.delta = reached.delta, .slips = reached.slips};
         fc_march_step(&one.scene, &one.options, one.h, &got);
         const double stored =
@@ -289,7 +290,7 @@ static void a_step_may_be_cut(void) {
         FcStepResult parts = one.start;
         fc_march_step(&one.scene, &one.options, cut, &parts);
         const FcScene rest = fc_scene_from(&one.scene, cut);
-        const FcBristle reached = fc_reach(&rest, (FcBristle){parts.delta, parts.slips});
+        const FcBristle reached = fc_reach(&rest, (FcBristle){.delta = parts.delta, .slips = parts.slips});
         parts.delta = reached.delta;
         parts.slips = reached.slips;
         fc_march_step(&rest, &one.options, one.h - cut, &parts);

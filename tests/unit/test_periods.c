@@ -209,7 +209,8 @@ static FcStepResult take(const FcScene* scene, double tolerance, double h, FcBri
 static FcStepResult one_by_one(const FcScene* scene, double tolerance, double n, FcBristle from) {
     FcStepResult sum = {.delta = from.delta, .slips = from.slips};
     for (double k = 0.0; k < n; k += 1.0) {
-        const FcStepResult one = take(scene, tolerance, PERIOD, (FcBristle){sum.delta, sum.slips});
+        const FcStepResult one =
+            take(scene, tolerance, PERIOD, (FcBristle){.delta = sum.delta, .slips = sum.slips});
         sum.delta = one.delta;
         sum.slips = one.slips;
         sum.impulse += one.impulse;
@@ -227,7 +228,7 @@ static void many_at_once_are_the_same_as_one_by_one(void) {
         draw(&slider);
         const FcScene* scene = &slider.scene;
         const double n = floor(random_log(2.0, 200.0));
-        const FcBristle start = fc_reach(scene, (FcBristle){slider.D * (2.0 * random_01() - 1.0), 0});
+        const FcBristle start = fc_reach(scene, (FcBristle){.delta = slider.D * (2.0 * random_01() - 1.0)});
         const FcStepResult all = take(scene, tolerance, n * PERIOD, start);
         const FcStepResult sum = one_by_one(scene, tolerance, n, start);
         const double force = 2.0 * tolerance * fc_static_ratio(scene->friction) * LIMIT;
@@ -260,32 +261,32 @@ static void stick_slip_over_several_periods_is_a_cycle(void) {
     for (int k = 0; k < 60; k++) {
         const FcStepResult one = take(scene, 1e-8, PERIOD, bristle);
         periods_of_slip += one.meetings > 0;
-        bristle = (FcBristle){one.delta, one.slips};
+        bristle = (FcBristle){.delta = one.delta, .slips = one.slips};
     }
     CHECK(periods_of_slip > 10 && periods_of_slip < 30); // so that it is about cycles of several periods
     for (double n = 2.0; n < 60.0; n += 1.0) {
-        const FcStepResult all = take(scene, 1e-8, n * PERIOD, (FcBristle){0.0, 0});
-        const FcStepResult sum = one_by_one(scene, 1e-8, n, (FcBristle){0.0, 0});
+        const FcStepResult all = take(scene, 1e-8, n * PERIOD, (FcBristle){0});
+        const FcStepResult sum = one_by_one(scene, 1e-8, n, (FcBristle){0});
         CHECK_WITHIN(all.delta, sum.delta, 1e-9 * D);
         CHECK_WITHIN(all.impulse, sum.impulse, 1e-9 * LIMIT * n * PERIOD);
         CHECK_WITHIN(all.heat, sum.heat, 1e-9 * LIMIT * D * n);
     }
-    const FcStepResult hundred = take(scene, 1e-8, 100.0 * PERIOD, (FcBristle){0.0, 0});
-    const FcStepResult million = take(scene, 1e-8, 1e6 * PERIOD, (FcBristle){0.0, 0});
+    const FcStepResult hundred = take(scene, 1e-8, 100.0 * PERIOD, (FcBristle){0});
+    const FcStepResult million = take(scene, 1e-8, 1e6 * PERIOD, (FcBristle){0});
     CHECK(million.evaluations < 1.5 * hundred.evaluations);
     // The mean of the cycle is that of the million.
     const FcSolverOptions of = {.tolerance = 1e-8, .force = LIMIT, .step_size = 1e-3};
-    double force;
+    FcVector force;
     double evaluations = 0.0;
-    fc_method_settled(scene, &of, (FcBristle){0.0, 0}, &force, &evaluations);
-    CHECK_WITHIN(force, million.impulse / (1e6 * PERIOD), 1e-5 * LIMIT);
+    fc_method_settled(scene, &of, (FcBristle){0}, &force, &evaluations);
+    CHECK_WITHIN(force.x, million.impulse / (1e6 * PERIOD), 1e-5 * LIMIT);
 }
 
 static void a_million_periods_cost_what_a_hundred_cost(void) {
     for (int i = 0; i < 300; i++) {
         Slider slider;
         draw(&slider);
-        const FcBristle start = fc_reach(&slider.scene, (FcBristle){0.0, 0});
+        const FcBristle start = fc_reach(&slider.scene, (FcBristle){0});
         const double hundred = take(&slider.scene, 1e-6, 100.0 * PERIOD, start).evaluations;
         const double million = take(&slider.scene, 1e-6, 1e6 * PERIOD, start).evaluations;
         CHECK(million <= 3.0 * hundred + 1000.0);

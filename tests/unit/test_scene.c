@@ -76,14 +76,14 @@ static void an_elastic_plastic_bristle_breaks_away(void) {
     const double beyond = 1.0001 * 1.5 * 55.0 / 2.5e6;
     CHECK(V > 0.0 && fc_drive_V_rate(&scene.drive, 0.0) < 0.0); // the kinetic bound rises
     for (int side = -1; side <= 1; side += 2) {
-        const FcBristle sticks = fc_reach(&scene, (FcBristle){side * 0.9999 * beyond, 0});
+        const FcBristle sticks = fc_reach(&scene, (FcBristle){.delta = side * 0.9999 * beyond});
         CHECK(sticks.delta == side * 0.9999 * beyond && sticks.slips == 0);
         CHECK(fc_regime(&scene, sticks) == FC_FREE);
-        const FcBristle drops = fc_reach(&scene, (FcBristle){side * beyond, 0});
+        const FcBristle drops = fc_reach(&scene, (FcBristle){.delta = side * beyond});
         CHECK_NEAR(drops.delta, side * kinetic, 1e-14);
         CHECK(drops.slips == (side > 0 ? 1 : 0)); // V pushes forward
         CHECK(fc_regime(&scene, drops) == (FcRegime)drops.slips);
-        const FcBristle inside = fc_reach(&scene, (FcBristle){side * 0.5 * kinetic, side});
+        const FcBristle inside = fc_reach(&scene, (FcBristle){.delta = side * 0.5 * kinetic, .slips = side});
         CHECK(inside.delta == side * 0.5 * kinetic && inside.slips == drops.slips);
         CHECK(fc_regime(&scene, inside) == FC_FREE);
     }
@@ -108,16 +108,16 @@ static void a_bristle_slips_along_a_limit_that_follows_the_load(void) {
             const double free_rate =
                 1e-3 * (1.0 - (model == FC_LUGRE ? 1.5 / (1.0 + 0.5 * exp(-2.5e-5)) : 1.0));
             const bool slips = d_rate > 0.0;
-            CHECK(fc_regime(&scene, fc_reach(&scene, (FcBristle){2.0 * D, 0})) == (slips ? 1 : 0));
-            CHECK(fc_regime(&scene, fc_reach(&scene, (FcBristle){-2.0 * D, 0})) == (slips ? -1 : 0));
-            CHECK(fc_regime(&scene, (FcBristle){0.99 * D, 0}) == FC_FREE);
+            CHECK(fc_regime(&scene, fc_reach(&scene, (FcBristle){.delta = 2.0 * D})) == (slips ? 1 : 0));
+            CHECK(fc_regime(&scene, fc_reach(&scene, (FcBristle){.delta = -2.0 * D})) == (slips ? -1 : 0));
+            CHECK(fc_regime(&scene, (FcBristle){.delta = 0.99 * D}) == FC_FREE);
             const double rate = slips ? D_rate : free_rate;
-            const FcMotion motion = motion_of(&scene, (FcBristle){2.0 * D, 0});
+            const FcMotion motion = motion_of(&scene, (FcBristle){.delta = 2.0 * D});
             CHECK_WITHIN(motion.rates.delta, rate, 1e-11 * 1e-3);
             CHECK_NEAR(motion.F_t, limit + 40.0 * rate, 1e-12);
             friction.limit = FC_LIMIT_CONSTANT;
-            CHECK(fc_reach(&scene, (FcBristle){2.0 * D, 0}).delta == 2.0 * D);
-            CHECK(fc_regime(&scene, (FcBristle){2.0 * D, 0}) == FC_FREE);
+            CHECK(fc_reach(&scene, (FcBristle){.delta = 2.0 * D}).delta == 2.0 * D);
+            CHECK(fc_regime(&scene, (FcBristle){.delta = 2.0 * D}) == FC_FREE);
         }
     }
 }
@@ -401,11 +401,13 @@ static void it_slips_where_V_outruns_the_bound(void) {
                 continue;
             }
             const int expected = outruns > 0.0 ? side : 0;
-            const FcBristle reached = fc_reach(&one.scene, (FcBristle){side * 1.1 * D, side});
+            const FcBristle reached =
+                fc_reach(&one.scene, (FcBristle){.delta = side * 1.1 * D, .slips = side});
             CHECK_NEAR(reached.delta, side * D, 1e-15);
             CHECK(reached.slips == expected);
             CHECK(fc_regime(&one.scene, reached) == (FcRegime)expected);
-            CHECK(fc_regime(&one.scene, (FcBristle){side * (1.0 - 1e-9) * D, side}) == FC_FREE);
+            CHECK(fc_regime(&one.scene, (FcBristle){.delta = side * (1.0 - 1e-9) * D, .slips = side}) ==
+                  FC_FREE);
             const FcMotion motion = motion_of(&one.scene, reached);
             CHECK_WITHIN(motion.rates.delta, expected != 0 ? side * D_rate : at.V,
                          1e-7 * (fabs(at.V) + fabs(D_rate)));

@@ -46,7 +46,8 @@ static FcScene scene_at(const Block* block, double k) {
 static FcBristle on_bound(const FcScene* scene, int side) {
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, side, &friction);
-    return (FcBristle){side * fc_bound(&bound, 0.0), fc_has_static_friction(scene->friction) ? side : 0};
+    return (FcBristle){.delta = side * fc_bound(&bound, 0.0),
+                       .slips = fc_has_static_friction(scene->friction) ? side : 0};
 }
 
 // Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k, but for what is not seen.
@@ -186,7 +187,7 @@ static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
 // Whether a bristle that has a bound would meet it in period k, from that deflection.
 static bool meets(const Block* block, double k, double delta) {
     const FcScene scene = scene_at(block, k);
-    const FcBristle start = {delta, 0};
+    const FcBristle start = {.delta = delta};
     if (fc_reach(&scene, start).delta != delta) {
         return true;
     }

@@ -77,30 +77,30 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
 }
 
 FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
-                            double* force, double* evaluations) {
+                            FcVector* force, double* evaluations) {
+    *force = (FcVector){0.0, 0.0};
     assert(!fc_drive_is_linear(&scene->drive));
     if (fc_scene_is_loose(scene)) {
-        *force = 0.0;
-        return (FcBristle){0.0, 0};
+        return (FcBristle){0};
     }
     if (fc_drive_vibrates(&scene->drive)) {
         FcStepResult end = {.delta = from.delta, .slips = from.slips, .evaluations = *evaluations};
-        *force = fc_periods_settled(integration(scene), scene, options, &end);
+        force->x = fc_periods_settled(integration(scene), scene, options, &end);
         *evaluations = end.evaluations;
         // What rounding leaves beyond a bound would be heat of the first step.
-        return fc_reach(scene, (FcBristle){end.delta, end.slips});
+        return fc_reach(scene, (FcBristle){.delta = end.delta, .slips = end.slips});
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     const double bound = at.limit / at.sigma;
     const int side = at.V < 0.0 ? -1 : 1;
     if (scene->friction->model == FC_COULOMB) {
-        *force = fc_sign(at.V) * at.limit;
+        force->x = fc_sign(at.V) * at.limit;
         return from;
     }
     if (at.V == 0.0 || !isfinite(bound)) {
-        *force = at.sigma * from.delta;
+        force->x = at.sigma * from.delta;
         return from;
     }
-    *force = side * at.limit;
-    return (FcBristle){side * bound, fc_has_static_friction(scene->friction) ? side : 0};
+    force->x = side * at.limit;
+    return (FcBristle){.delta = side * bound, .slips = fc_has_static_friction(scene->friction) ? side : 0};
 }

@@ -2,7 +2,7 @@
 #ifndef FC_SOLVER_METHOD_H
 #define FC_SOLVER_METHOD_H
 
-#include "model/friction.h"
+#include "model/plane.h"
 #include "solver/methods/methods.h"
 #include "solver/solver.h"
 
@@ -18,6 +18,6 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
 // a period of the vibration, or over those that repeat; without vibration the force of sliding for ever. Adds what it spends
 // to *evaluations.
 FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
-                            double* force, double* evaluations);
+                            FcVector* force, double* evaluations);
 
 #endif

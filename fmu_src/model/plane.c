@@ -1,0 +1,83 @@
+#include "model/plane.h"
+
+#include <math.h>
+
+#include "model/regime.h"
+
+void fc_plane_make(FcPlane* plane, const FcScene* scene) {
+    plane->scene = scene;
+    plane->of_static_limit = fc_scene_of_bound(scene, 0, &plane->static_friction);
+}
+
+FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhase at_t) {
+    const FcFriction* friction = plane->scene->friction;
+    const FcCoefficients at = fc_scene_coefficients_at_phase(&plane->of_static_limit, t, at_t);
+    const FcVector V = {at.V, fc_drive_V_y_at_phase(&plane->scene->drive, t, at_t)};
+    const double speed = hypot(V.x, V.y);
+    return (FcPlaneCoefficients){.V = V,
+                                 .speed = speed,
+                                 .sigma = at.sigma,
+                                 .limit = at.limit / fc_static_over_limit(friction, speed),
+                                 .static_limit = at.limit};
+}
+
+// Rate of ln s(|V|), Stribeck's curve: s' / s times the rate of |V|.
+static double log_curve_rate(const FcPlane* plane, const FcPlaneCoefficients* at, FcPhase at_t) {
+    const FcFriction* friction = plane->scene->friction;
+    const FcDrive* drive = &plane->scene->drive;
+    if (at->speed == 0.0) {
+        return 0.0;
+    }
+    const FcVibration* v = &drive->vibration;
+    const double sine_across = at_t.sine * drive->cos_phase_2 + at_t.cosine * drive->sin_phase_2;
+    const FcVector V_rate = {drive->V.rate - v->V_1 * drive->omega * at_t.sine,
+                             drive->V_y.rate - v->V_2 * drive->omega * sine_across};
+    const double speed_rate = fc_product(at->V, V_rate) / at->speed;
+    return fc_stribeck_slope(friction, at->speed) / fc_stribeck(friction, at->speed) * speed_rate;
+}
+
+FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
+                            FcPhase at_t) {
+    double log_rate = fc_scene_log_rates_at_phase(&plane->of_static_limit, t, at_t).ratio;
+    if (slips == 0 || !fc_has_static_friction(plane->scene->friction)) {
+        const double D = at->static_limit / at->sigma;
+        return (FcPlaneBound){D, D * log_rate};
+    }
+    const double D = at->limit / at->sigma;
+    return (FcPlaneBound){D, D * (log_rate + log_curve_rate(plane, at, at_t))};
+}
+
+double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
+                     FcVector n) {
+    const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
+    const double relaxed = relaxes ? at->sigma * at->speed / at->limit * bound->D : 0.0;
+    return fc_product(n, at->V) - relaxed - bound->rate;
+}
+
+FcBristle fc_plane_reach(const FcScene* scene, FcBristle bristle) {
+    if (fc_scene_is_loose(scene)) {
+        return (FcBristle){0};
+    }
+    const double size = hypot(bristle.delta, bristle.delta_y);
+    if (!fc_is_bounded(scene->friction) || size == 0.0) {
+        return bristle;
+    }
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcPhase phase = fc_drive_phase(&scene->drive, 0.0);
+    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, phase);
+    FcPlaneBound bound = fc_plane_bound(&plane, &at, bristle.slips, 0.0, phase);
+    const FcVector n = {bristle.delta / size, bristle.delta_y / size};
+    if (size > bound.D) {
+        if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
+            bristle.slips = 1;
+            bound = fc_plane_bound(&plane, &at, 1, 0.0, phase);
+        }
+        bristle.delta = bound.D * n.x;
+        bristle.delta_y = bound.D * n.y;
+    }
+    if (bristle.slips != 0 && !(fc_plane_push(&plane, &at, &bound, n) > 0.0)) {
+        bristle.slips = 0;
+    }
+    return bristle;
+}

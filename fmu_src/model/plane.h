@@ -1,0 +1,59 @@
+// The contact in the plane: V = (V, V_y), and the bristle's deflection and force are vectors too. With r = sigma |V| / g,
+//
+//     Coulomb         F = g V / |V|
+//     Dahl, LuGre     delta' = V - r delta, g with Stribeck's curve of |V|
+//     ElasticPlastic  it sticks, delta' = V, inside the disc |delta| < D of the static bound, and slips on the circle of the kinetic one,
+//                     delta = D n, for as long as it is pushed outwards, n V > D'; n turns with the part of V across it,
+//                     D n' = V - (n V) n
+//
+// If g follows the load, |sigma delta| of Dahl and LuGre has the bound that it has along a line (friction.h).
+#ifndef FC_MODEL_PLANE_H
+#define FC_MODEL_PLANE_H
+
+#include "model/scene.h"
+
+typedef struct {
+    double x, y;
+} FcVector;
+
+static inline double fc_product(FcVector a, FcVector b) { return a.x * b.x + a.y * b.y; }
+
+// Whether the contact moves, or is deflected, across.
+static inline bool fc_is_planar(const FcScene* scene, FcBristle bristle) {
+    return bristle.delta_y != 0.0 || fc_drive_is_planar(&scene->drive);
+}
+
+// A scene, and the same with its static limit, which V does not move. It points into itself.
+typedef struct {
+    const FcScene* scene;
+    FcFriction static_friction;
+    FcScene of_static_limit;
+} FcPlane;
+void fc_plane_make(FcPlane* plane, const FcScene* scene); // keeps the pointer
+
+// What the equations above need at one moment.
+typedef struct {
+    FcVector V;          // m/s
+    double speed;        // m/s, |V|
+    double sigma;        // N/m
+    double limit;        // N, g at |V|
+    double static_limit; // N
+} FcPlaneCoefficients;
+FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhase at_t);
+
+// The radius [m] of the bound of a bristle that slips or does not, and its rate [m/s].
+typedef struct {
+    double D, rate;
+} FcPlaneBound;
+FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
+                            FcPhase at_t);
+
+// Velocity [m/s] by which a bristle on its bound, in the direction n (|n| = 1), is pushed outwards beyond it. It slips while this
+// is positive.
+double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
+                     FcVector n);
+
+// fc_reach in the plane.
+FcBristle fc_plane_reach(const FcScene* scene, FcBristle bristle);
+
+#endif
