@@ -384,6 +384,7 @@ static void go_on(March* march, Real a, Real b, const Panel* one, int depth) {
 typedef struct {
     const World* w;
     Real level; // m2/s2
+    int order;
 } Zero;
 
 static Real square_less(const void* context, Real t) {
@@ -392,10 +393,20 @@ static Real square_less(const void* context, Real t) {
     return V * V + V_y * V_y - zero->level;
 }
 
-static Real square_rate(const void* context, Real t) {
-    const World* w = ((const Zero*)context)->w;
-    return velocity(w, &w->along, t) * velocity_rate(w, &w->along, t) +
-           velocity(w, &w->transverse, t) * velocity_rate(w, &w->transverse, t);
+// The derivative of half of V^2 of one component, of order 1, 2 or 3.
+static Real change_of_square(const World* w, const Drive* drive, Real t, int order) {
+    const Real V = velocity(w, drive, t), V_1 = velocity_rate(w, drive, t);
+    const Real swing = drive->swing * w->omega * w->omega, theta = drive->theta + w->omega * t;
+    const Real V_2 = -swing * sine(theta, 1);
+    return order == 1   ? V * V_1
+           : order == 2 ? V_1 * V_1 + V * V_2
+                        : 3.0L * V_1 * V_2 + V * w->omega * swing * sine(theta, 0);
+}
+
+static Real change_of_speed(const void* context, Real t) {
+    const Zero* zero = context;
+    return change_of_square(zero->w, &zero->w->along, t, zero->order) +
+           change_of_square(zero->w, &zero->w->transverse, t, zero->order);
 }
 
 static void cut_where(Cuts* cuts, Function* function, const Zero* zero) {
@@ -427,12 +438,14 @@ static Cuts all_cuts(const World* w, Closed part) {
         cut(&cuts, part.to - ldexpl(span, -k));
     }
     tidy(&cuts, part);
-    const Zero still = {.w = w};
-    cut_where(&cuts, square_rate, &still);
-    tidy(&cuts, part);
+    for (int order = 3; order >= 1; order--) { // between the zeros of one there is but one of the next
+        const Zero zero = {.w = w, .order = order};
+        cut_where(&cuts, change_of_speed, &zero);
+        tidy(&cuts, part);
+    }
     for (size_t m = 0; w->excess != 0.0L && m < sizeof MULTIPLES / sizeof *MULTIPLES; m++) {
         const Real level = MULTIPLES[m] * s->V_S;
-        const Zero zero = {w, level * level};
+        const Zero zero = {.w = w, .level = level * level};
         cut_where(&cuts, square_less, &zero);
         tidy(&cuts, part);
     }
@@ -588,8 +601,8 @@ static Real skip_untouched(World* w, State state, Vector shift) {
     return low;
 }
 
-// ElasticPlastic: periods until one that slips ends where one has ended before, or nothing slips nor drifts.
-static bool settle_elastic(World* w, State* state, Vector* mean) {
+// With static friction: periods until one that slips ends where one has ended before, or nothing slips nor drifts.
+static bool settle_by_cycle(World* w, State* state, Vector* mean) {
     typedef struct {
         State state;
         Vector impulse; // of all periods so far,
@@ -630,25 +643,52 @@ static bool settle_elastic(World* w, State* state, Vector* mean) {
     return known;
 }
 
-// Dahl, LuGre: the fixed point of a period's map by Newton, exact at once where no bound is met.
+// Newton's step to the fixed point of a period's map, which from a state misses it so.
+static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
+    const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
+    const Vector by_x = times(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
+    const Vector by_y = times(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).delta));
+    const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
+    return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
+}
+
+// The periodic state where a period's map is smooth enough for Newton: at once where no bound is met, soon where slips are so
+// small that each forgets little; after some steps by shorter ones, for kinks. A bristle that only drifts goes to where it
+// slips.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Real unit = unit_of(w), step = 1e-3L * unit;
-    for (int k = 0; k < 60 && w->panels <= MOST_PANELS; k++) {
+    const Vector shift = {w->along.V / w->scene.f, w->transverse.V / w->scene.f};
+    const Real unit = unit_of(w), drift = w->elastic ? length_of(shift) : 0.0L;
+    const Real step = 1e-3L * (drift > 0.0L ? fminl(drift, unit) : unit);
+    Real part = 1.0L, missed = INFINITY;
+    Vector from = state->delta, way_to = {0};
+    for (int k = 0; k < 400 && w->panels <= MOST_PANELS; k++) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
         *mean = times(w->scene.f, march.sums.impulse);
-        if (length_of(miss) <= 1e-15L * unit) {
+        if (w->elastic && !march.slipped && drift == 0.0L) {
             return true;
         }
-        const Vector x = {state->delta.x - step, state->delta.y}, y = {state->delta.x, state->delta.y - step};
-        const Vector by_x =
-            times(1.0L / step, plus(march.delta, -1.0L, march_from(w, (State){x, false}).delta));
-        const Vector by_y =
-            times(1.0L / step, plus(march.delta, -1.0L, march_from(w, (State){y, false}).delta));
-        const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
-        const Vector newton = {(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
-        const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit);
-        state->delta = plus(state->delta, 1.0L, plain ? miss : newton);
+        if (k > 60 && !(length_of(miss) < missed) && part > 1e-3L) {
+            part *= 0.25L;
+            state->delta = plus(from, part, way_to);
+            continue;
+        }
+        if (w->elastic && !march.slipped) {
+            state->delta = plus(march.delta, skip_untouched(w, state_of(&march), shift), shift);
+            missed = INFINITY;
+            continue;
+        }
+        way_to = newton_step(w, *state, march.delta, miss, step);
+        if (length_of(miss) <= 1e-15L * unit && !(length_of(way_to) > 1e-12L * unit)) {
+            return true;
+        }
+        from = state->delta;
+        if ((k > 60 ? part <= 1e-3L : k % 4 == 3) || !(length_of(way_to) < 10.0L * unit)) { // a plain period
+            way_to = miss;
+        }
+        missed = way_to.x == miss.x && way_to.y == miss.y ? INFINITY : length_of(miss);
+        part = 1.0L;
+        state->delta = plus(from, 1.0L, way_to);
     }
     return false;
 }
@@ -661,7 +701,8 @@ static bool settle(World* w, State* state, Vector* mean) {
         return true;
     }
     if (vibrates(s)) {
-        return w->elastic ? settle_elastic(w, state, mean) : settle_by_newton(w, state, mean);
+        return w->elastic && w->excess != 0.0L ? settle_by_cycle(w, state, mean)
+                                               : settle_by_newton(w, state, mean);
     }
     const At at = scene_at(w, 0.0L, false);
     const Vector V = velocity_at(&at);
