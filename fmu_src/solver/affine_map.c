@@ -56,6 +56,16 @@ void fc_map_apply(const FcMap* map, FcStepResult* result) {
     result->heat += (map->heat_square * delta_0 + map->heat_slope) * delta_0 + map->heat_offset;
 }
 
+void fc_map_apply_across(const FcMap* map, FcStepResult* result) {
+    FcStepResult part = {.delta = result->delta_y};
+    fc_map_apply(map, &part);
+    result->delta_y = part.delta;
+    result->impulse_y += part.impulse;
+    result->work += part.work;
+    result->drag += part.drag;
+    result->heat += part.heat;
+}
+
 // (1/2 - (z - 1 + e^-z) / z^2) / z, which tends to 1/6, for z in [0, 1]: 1/3! - z/4! + z^2/5! - ... TERMS are 1/3! to 1/17!,
 // below which all is rounding.
 static double phi_3(double z) {

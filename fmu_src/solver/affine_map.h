@@ -31,6 +31,7 @@ FcMap fc_map_of_one_start(const FcStepResult* result);
 
 // Takes result->delta over the interval and adds what the interval gives.
 void fc_map_apply(const FcMap* map, FcStepResult* result);
+void fc_map_apply_across(const FcMap* map, FcStepResult* result); // to delta_y
 
 // One interval of constant coefficients: exact for any duration h [s] >= 0.
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h);

@@ -2,8 +2,20 @@
 
 #include <math.h>
 
+#include "model/plane.h"
 #include "model/root.h"
 #include "solver/panels/panel_tables.h"
+
+// V, or |V| in the plane, which Stribeck's curve is one of.
+static double velocity(const FcScene* scene, double V) {
+    const FcDrive* drive = &scene->drive;
+    return fc_drive_is_planar(drive) ? hypot(V, fc_drive_V_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)))
+                                     : V;
+}
+
+static FcBristle reach(const FcScene* scene, FcBristle bristle) {
+    return fc_is_planar(scene, bristle) ? fc_plane_reach(scene, bristle) : fc_reach(scene, bristle);
+}
 
 FcPast fc_past(const FcScene* scene) {
     if (fc_scene_is_loose(scene)) {
@@ -11,7 +23,7 @@ FcPast fc_past(const FcScene* scene) {
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     return (FcPast){.d = fc_scene_depends_on_d(scene) ? fc_scene_d(scene, 0.0) : 0.0,
-                    .V = at.V,
+                    .V = velocity(scene, at.V),
                     .E = scene->drive.E.value,
                     .limit = at.limit / fc_stribeck(scene->friction, at.V),
                     .ratio = fc_static_ratio(scene->friction),
@@ -200,22 +212,24 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
 }
 
 FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat) {
-    const double delta = fabs(bristle.delta);
+    const double delta = bristle.delta_y == 0.0 ? fabs(bristle.delta) : hypot(bristle.delta, bristle.delta_y);
     *heat = 0.0;
     if (!fc_is_bounded(scene->friction) && !fc_scene_is_loose(scene)) {
         return bristle;
     }
     if (past->sigma == 0.0 ||
         fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
-        const FcBristle reached = fc_reach(scene, bristle);
+        const FcBristle reached = reach(scene, bristle);
         const double sigma = fc_scene_contact(scene, 0.0).sigma;
-        *heat = 0.5 * sigma * (delta - fabs(reached.delta)) * (delta + fabs(reached.delta));
+        const double end =
+            reached.delta_y == 0.0 ? fabs(reached.delta) : hypot(reached.delta, reached.delta_y);
+        *heat = 0.5 * sigma * (delta - end) * (delta + end);
         return reached;
     }
     const FcPast now = fc_past(scene);
     if (now.d == past->d && now.V == past->V && now.E == past->E && now.sigma == past->sigma &&
         now.limit == past->limit && now.ratio == past->ratio && now.V_S == past->V_S) {
-        return fc_reach(scene, bristle);
+        return reach(scene, bristle);
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;
     Ramp ramp = ramp_from(scene, past, bristle.slips);
@@ -232,5 +246,11 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     } else {
         reached = follow_from(&ramp, 0.0, delta, heat);
     }
-    return fc_reach(scene, (FcBristle){.delta = side * reached, .slips = bristle.slips});
+    if (bristle.delta_y == 0.0) {
+        bristle.delta = side * reached;
+    } else {
+        bristle.delta *= reached / delta;
+        bristle.delta_y *= reached / delta;
+    }
+    return reach(scene, bristle);
 }

@@ -32,11 +32,12 @@ bool fc_next_piece(FcPieces* pieces) {
 }
 
 void fc_loose_step(const FcScene* scene, FcStepResult* result) {
-    if (result->delta != 0.0) {
-        const double sigma = fc_scene_contact(scene, 0.0).sigma;
-        result->heat += 0.5 * sigma * result->delta * result->delta;
+    const double square = result->delta * result->delta + result->delta_y * result->delta_y;
+    if (square != 0.0) {
+        result->heat += 0.5 * fc_scene_contact(scene, 0.0).sigma * square;
         result->lost += result->delta;
-        result->delta = 0.0;
+        result->lost_y += result->delta_y;
+        result->delta = result->delta_y = 0.0;
     }
     result->slips = 0;
 }

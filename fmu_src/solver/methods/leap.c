@@ -15,10 +15,12 @@ enum { FEWEST_POINTS = 4, MOST_POINTS = 13 };
 // Fewer periods are gone through one by one. By hand: a block costs about as many.
 static const double FEWEST = 9.0;
 
-// The numbers of a map.
-enum { NUMBERS = sizeof(FcMap) / sizeof(double) };
+// The numbers of a map, and of the one across.
+enum { OF_MAP = sizeof(FcMap) / sizeof(double), NUMBERS = 2 * OF_MAP };
 typedef union {
-    FcMap map;
+    struct {
+        FcMap map, across;
+    };
     double of[NUMBERS];
 } Numbers;
 
@@ -33,6 +35,7 @@ typedef struct {
     int side;            // of the bound at which they begin, 0 for any start
     double delta;        // m, size of the start
     double* evaluations;
+    int numbers;                // of a map, or of two in the plane
     Numbers point[MOST_POINTS]; // at the Chebyshev points, then their coefficients
     int points;
 } Block;
@@ -65,8 +68,8 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
         return false;
     }
     if (block->side == 0) {
-        numbers->map =
-            block->law->free_map(&scene, block->options, block->period, block->delta, block->evaluations);
+        numbers->map = block->law->free_map(&scene, block->options, block->period, block->delta,
+                                            &numbers->across, block->evaluations);
         return true;
     }
     const FcBristle start = on_bound(&scene, block->side);
@@ -91,24 +94,25 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const double damping = block->scene->friction->sigma_1;
     // Errors of the deflection add up until they are forgotten.
     const double lives = fmin(block->count, 1.0 / fmax(typical->map.relaxation, 1.0 / block->count));
-    return (Numbers){.map = {
-                         .relaxation = sigma * delta * lives,
-                         .offset = sigma * lives,
-                         .impulse_slope = delta / block->period,
-                         .impulse_offset = 1.0 / block->period,
-                         .work_slope = delta / path,
-                         .work_offset = 1.0 / path,
-                         .drag_slope = damping * delta / path,
-                         .drag_offset = damping / path,
-                         .heat_square = delta * delta / path,
-                         .heat_slope = delta / path,
-                         .heat_offset = 1.0 / path,
-                     }};
+    const FcMap of_map = {
+        .relaxation = sigma * delta * lives,
+        .offset = sigma * lives,
+        .impulse_slope = delta / block->period,
+        .impulse_offset = 1.0 / block->period,
+        .work_slope = delta / path,
+        .work_offset = 1.0 / path,
+        .drag_slope = damping * delta / path,
+        .drag_offset = damping / path,
+        .heat_square = delta * delta / path,
+        .heat_slope = delta / path,
+        .heat_offset = 1.0 / path,
+    };
+    return (Numbers){.map = of_map, .across = of_map};
 }
 
-static double largest_error(const Numbers* weight, const double* error) {
+static double largest_error(int count, const Numbers* weight, const double* error) {
     double largest = 0.0;
-    for (int i = 0; i < NUMBERS; i++) {
+    for (int i = 0; i < count; i++) {
         const double seen = weight->of[i] != 0.0 ? weight->of[i] * fabs(error[i]) : 0.0;
         largest = seen <= largest ? largest : seen; // also if it is not a number
     }
@@ -116,10 +120,10 @@ static double largest_error(const Numbers* weight, const double* error) {
 }
 
 // Chebyshev coefficients from the values at the points.
-static void find_coefficients(const Numbers* point, int points, Numbers* coefficient) {
+static void find_coefficients(int count, const Numbers* point, int points, Numbers* coefficient) {
     const int last = points - 1;
     for (int c = 0; c <= last; c++) {
-        for (int i = 0; i < NUMBERS; i++) {
+        for (int i = 0; i < count; i++) {
             double sum = 0.0;
             for (int j = 0; j <= last; j++) {
                 const double part = j == 0 || j == last ? 0.5 : 1.0;
@@ -131,18 +135,19 @@ static void find_coefficients(const Numbers* point, int points, Numbers* coeffic
 }
 
 // The interpolated map of period k, by Clenshaw's rule.
-static FcMap map_at(const Block* block, double k) {
+static Numbers map_at(const Block* block, double k) {
+    const int count = block->numbers;
     const double x = block->count > 1.0 ? 2.0 * k / (block->count - 1.0) - 1.0 : 0.0;
     Numbers b = block->point[block->points - 1];
     Numbers before = {.of = {0.0}};
     for (int c = block->points - 2; c >= 0; c--) {
-        for (int i = 0; i < NUMBERS; i++) {
+        for (int i = 0; i < count; i++) {
             const double next = block->point[c].of[i] + (c > 0 ? 2.0 : 1.0) * x * b.of[i] - before.of[i];
             before.of[i] = b.of[i];
             b.of[i] = next;
         }
     }
-    return b.map;
+    return b;
 }
 
 static double place_of(const Block* block, int j, int points) {
@@ -163,11 +168,11 @@ static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
             return NO_MAP;
         }
     }
-    find_coefficients(sampled, points, block->point);
+    find_coefficients(block->numbers, sampled, points, block->point);
     block->points = points;
     const Numbers weight = weights(block, &sampled[points / 2]);
     const double may = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
-    if (!(largest_error(&weight, block->point[points - 1].of) <= may)) {
+    if (!(largest_error(block->numbers, &weight, block->point[points - 1].of) <= may)) {
         return ROUGH;
     }
     // A period between two points, off the middle, where even and odd errors are seen.
@@ -177,11 +182,11 @@ static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
     if (!sample(block, k, &between)) {
         return NO_MAP;
     }
-    Numbers found = {.map = map_at(block, k)};
-    for (int i = 0; i < NUMBERS; i++) {
+    Numbers found = map_at(block, k);
+    for (int i = 0; i < block->numbers; i++) {
         found.of[i] -= between.of[i];
     }
-    return largest_error(&weight, found.of) <= may ? SMOOTH : ROUGH;
+    return largest_error(block->numbers, &weight, found.of) <= may ? SMOOTH : ROUGH;
 }
 
 // Whether a bristle that has a bound would meet it in period k, from that deflection.
@@ -220,8 +225,11 @@ static bool take_block(Block* block, FcStepResult* total) {
             }
             next += each;
         }
-        const FcMap map = map_at(block, k);
-        fc_map_apply(&map, &result);
+        const Numbers at = map_at(block, k);
+        fc_map_apply(&at.map, &result);
+        if (block->law->is_planar) {
+            fc_map_apply_across(&at.across, &result);
+        }
     }
     result.evaluations = *block->evaluations;
     if (block->side != 0) {
@@ -277,10 +285,11 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                        .count = floor(count),
                        .phase = slipped ? total->slip_time : 0.0,
                        .side = slipped ? total->slip_side : 0,
-                       .delta = fabs(total->delta),
+                       .delta = hypot(total->delta, total->delta_y),
+                       .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};
         bool taken = false;
-        if (block.count >= FEWEST && (total->slips == 0 || slipped)) {
+        if (block.count >= FEWEST && (total->slips == 0 || slipped) && !(law.is_planar && law.is_bounded)) {
             FcStepResult before = *total;
             if (slipped) {
                 take_part(law, scene, options, k, 0.0, block.phase, total);

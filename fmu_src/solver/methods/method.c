@@ -7,9 +7,11 @@
 #include "solver/march/march.h"
 #include "solver/methods/methods.h"
 #include "solver/pieces.h"
+#include "solver/plane/plane_march.h"
 
 static FcMap coulomb_map(const FcScene* scene, const FcSolverOptions* options, double duration,
-                         double delta_0, double* evaluations) {
+                         double delta_0, FcMap* across, double* evaluations) {
+    (void)across;
     FcStepResult part = {.delta = delta_0, .evaluations = *evaluations};
     fc_coulomb_step(scene, options, duration, &part);
     *evaluations = part.evaluations;
@@ -24,7 +26,8 @@ static void free_step(const FcScene* scene, const FcSolverOptions* options, doub
 }
 
 static FcMap free_map(const FcScene* scene, const FcSolverOptions* options, double duration, double delta_0,
-                      double* evaluations) {
+                      FcMap* across, double* evaluations) {
+    (void)across;
     return scene->friction->model == FC_ELASTIC_PLASTIC
                ? fc_march_stuck(scene, options, duration, evaluations)
                : fc_collocation_interval(scene, options, duration, delta_0, FC_MAP_ANY_START, evaluations);
@@ -35,12 +38,15 @@ static bool may_touch_bound(const FcScene* scene) {
 }
 
 // How the default method integrates the law.
-static FcIntegration integration(const FcScene* scene) {
+static FcIntegration integration(const FcScene* scene, bool is_planar) {
+    if (is_planar) {
+        return (FcIntegration){fc_plane_step, fc_plane_map, may_touch_bound(scene), true};
+    }
     if (scene->friction->model == FC_COULOMB) {
-        return (FcIntegration){fc_coulomb_step, coulomb_map, false};
+        return (FcIntegration){fc_coulomb_step, coulomb_map, false, false};
     }
     const bool bounded = may_touch_bound(scene);
-    return (FcIntegration){bounded ? fc_march_step : free_step, free_map, bounded};
+    return (FcIntegration){bounded ? fc_march_step : free_step, free_map, bounded, false};
 }
 
 // By cvode or a fixed step, piece by piece.
@@ -63,17 +69,30 @@ static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, co
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, FcBristle from, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
-    *result = (FcStepResult){.delta = from.delta, .slips = from.slips};
+    *result = (FcStepResult){.delta = from.delta, .slips = from.slips, .delta_y = from.delta_y};
+    const bool is_planar = fc_is_planar(scene, from);
     const bool is_affine = scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
     if (is_affine && method != FC_METHOD_COLLOCATION &&
         !(method == FC_METHOD_CVODE && may_touch_bound(scene))) {
+        if (is_planar) {
+            return fc_message_set(
+                message,
+                "solver.method = %d knows no motion across: V_y = %.9g m/s, vibration.V_2 = %.9g m/s, "
+                "delta_y = %.9g m; use collocation, which is %d",
+                (int)method, scene->drive.V_y.value, scene->drive.vibration.V_2, from.delta_y,
+                (int)FC_METHOD_COLLOCATION);
+        }
         return other_step(scene, method, cvode, options, h, result, message);
     }
     if (is_affine && fc_drive_is_constant(&scene->drive) && !fc_scene_is_loose(scene)) {
-        fc_collocation_constant(scene, h, from.delta, result);
+        if (is_planar) {
+            fc_plane_constant(scene, h, result);
+        } else {
+            fc_collocation_constant(scene, h, from.delta, result);
+        }
         return true;
     }
-    return fc_periods_step(integration(scene), scene, options, h, result, message);
+    return fc_periods_step(integration(scene, is_planar), scene, options, h, result, message);
 }
 
 FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
@@ -83,12 +102,18 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     if (fc_scene_is_loose(scene)) {
         return (FcBristle){0};
     }
+    const bool is_planar = fc_is_planar(scene, from);
     if (fc_drive_vibrates(&scene->drive)) {
-        FcStepResult end = {.delta = from.delta, .slips = from.slips, .evaluations = *evaluations};
-        force->x = fc_periods_settled(integration(scene), scene, options, &end);
+        FcStepResult end = {
+            .delta = from.delta, .slips = from.slips, .evaluations = *evaluations, .delta_y = from.delta_y};
+        *force = fc_periods_settled(integration(scene, is_planar), scene, options, &end);
         *evaluations = end.evaluations;
         // What rounding leaves beyond a bound would be heat of the first step.
-        return fc_reach(scene, (FcBristle){.delta = end.delta, .slips = end.slips});
+        const FcBristle bristle = {.delta = end.delta, .slips = end.slips, .delta_y = end.delta_y};
+        return is_planar ? fc_plane_reach(scene, bristle) : fc_reach(scene, bristle);
+    }
+    if (is_planar) {
+        return fc_plane_slides_for_ever(scene, from, force);
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     const double bound = at.limit / at.sigma;

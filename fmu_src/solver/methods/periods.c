@@ -43,7 +43,7 @@ typedef struct {
     const FcSolverOptions* options;
     double period; // s
     bool has_free_map;
-    FcMap free_map;
+    FcMap free_map, free_map_across;
     double edge
         [2]; // m, the highest and the lowest start that meets no bound; infinite before they are asked for
     FcStepResult total;
@@ -53,10 +53,14 @@ typedef struct {
     double met_at; // periods; negative for none
 } Walk;
 
+static double size_of(const FcStepResult* result) {
+    return result->delta_y == 0.0 ? fabs(result->delta) : hypot(result->delta, result->delta_y);
+}
+
 static FcMap free_map_of(Walk* walk) {
     if (!walk->has_free_map) {
-        walk->free_map = walk->law.free_map(walk->scene, walk->options, walk->period, walk->total.delta,
-                                            &walk->total.evaluations);
+        walk->free_map = walk->law.free_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
+                                            &walk->free_map_across, &walk->total.evaluations);
         walk->has_free_map = true;
         walk->edge[0] = walk->edge[1] = INFINITY;
     }
@@ -84,9 +88,79 @@ static double edge_of(Walk* walk, int side) {
     return *edge;
 }
 
+// Takes *total over n free periods.
+static void take_free(const Walk* walk, double n, FcStepResult* total) {
+    const FcMap map = fc_map_power(&walk->free_map, n);
+    fc_map_apply(&map, total);
+    if (walk->law.is_planar) {
+        const FcMap across = fc_map_power(&walk->free_map_across, n);
+        fc_map_apply_across(&across, total);
+    }
+}
+
+// To where infinitely many free periods lead.
+static void settle(const Walk* walk, FcStepResult* total) {
+    const FcMap* map = &walk->free_map;
+    const FcMap* across = &walk->free_map_across;
+    const double target = map->offset / map->relaxation;
+    const double target_y = across->offset / map->relaxation;
+    total->delta = isfinite(target) ? target : total->delta;
+    total->delta_y = walk->law.is_planar && isfinite(target_y) ? target_y : total->delta_y;
+}
+
+// Whether the period after n free ones meets the bound; n may be infinite.
+static bool meets_after(Walk* walk, double n) {
+    FcStepResult end = walk->total;
+    if (isinf(n)) {
+        settle(walk, &end);
+    } else {
+        take_free(walk, n, &end);
+    }
+    const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
+    const FcBristle reached = fc_plane_reach(walk->scene, bristle);
+    if (reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) {
+        return true;
+    }
+    end.meetings = 0;
+    end.evaluations = walk->total.evaluations;
+    walk->law.step(walk->scene, walk->options, walk->period, &end);
+    walk->total.evaluations = end.evaluations;
+    return end.meetings > 0;
+}
+
+// free_periods in the plane. The starts of free periods lie on a straight line, along which |delta| is convex at each of their times:
+// those that meet no bound are all up to a last one.
+static double free_periods_in_plane(Walk* walk, double left) {
+    const FcMap map = free_map_of(walk);
+    const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
+                               walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
+    if (moved <= ROUNDING_OF_EDGE * size_of(&walk->total) ||
+        (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0))) {
+        return left;
+    }
+    double free = 0.0; // that many are, and
+    double more = 1.0; // that many are not, once it is found
+    while (free < left && !meets_after(walk, more - 1.0)) {
+        free = more;
+        more *= 2.0;
+    }
+    while (free < left && more - free > 1.0) {
+        const double middle = floor(0.5 * (free + more));
+        if (meets_after(walk, middle - 1.0)) {
+            more = middle;
+        } else {
+            free = middle;
+        }
+    }
+    return fmin(free, left);
+}
+
 // How many periods from the free start delta on meet no bound. The deflection moves by s (1 - P^n) / (1 - P) in n of them,
 // s being how far it moves in the first.
 static double free_periods(Walk* walk, double left) {
+    if (walk->law.is_planar) {
+        return free_periods_in_plane(walk, left);
+    }
     const FcMap map = free_map_of(walk);
     const double delta = walk->total.delta;
     const double s = map.offset - map.relaxation * delta;
@@ -111,6 +185,7 @@ static void repeat(Walk* walk, double times) {
     FcStepResult* total = &walk->total;
     const FcStepResult* met = &walk->met;
     total->impulse += times * (total->impulse - met->impulse);
+    total->impulse_y += times * (total->impulse_y - met->impulse_y);
     total->work += times * (total->work - met->work);
     total->heat += times * (total->heat - met->heat);
     total->drag += times * (total->drag - met->drag);
@@ -119,13 +194,15 @@ static void repeat(Walk* walk, double times) {
 
 // Whether the bristle is where it was after the last period that met its bound.
 static bool repeats(Walk* walk) {
-    const double delta = walk->total.delta;
-    const double changed = fabs(delta - walk->met.delta);
-    if (walk->met_at < 0.0 || walk->total.slips != walk->met.slips || !(changed <= SAME_END * fabs(delta))) {
+    const FcStepResult* total = &walk->total;
+    const double size = size_of(total);
+    const double changed =
+        fmax(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
+    if (walk->met_at < 0.0 || total->slips != walk->met.slips || !(changed <= SAME_END * size)) {
         return false;
     }
     const double part = fmax(LEAST_PART, fmin(1.0, free_map_of(walk).relaxation));
-    return changed <= SAME_END * part * fabs(delta);
+    return changed <= SAME_END * part * size;
 }
 
 // Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
@@ -135,12 +212,12 @@ static void walk_to_repetition(Walk* walk, double periods) {
     walk->met_at = -1.0;
     int meetings = 0;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
-        const double delta = total->delta;
+        const FcStepResult before = *total;
         total->meetings = 0;
         walk->law.step(walk->scene, walk->options, walk->period, total);
         walk->done += 1.0;
         const bool was_free = total->meetings == 0 && total->slips == 0;
-        if (was_free && total->delta == delta) {
+        if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
             walk->met_at = -1.0;
             return;
         }
@@ -158,14 +235,11 @@ static void walk_to_repetition(Walk* walk, double periods) {
             continue;
         }
         if (isinf(n)) {
-            const FcMap* map = &walk->free_map;
-            const double target = map->relaxation > 0.0 ? map->offset / map->relaxation : total->delta;
-            total->delta = isfinite(target) ? target : total->delta;
+            settle(walk, total);
             walk->met_at = -1.0;
             return;
         }
-        const FcMap map = fc_map_power(&walk->free_map, n);
-        fc_map_apply(&map, total);
+        take_free(walk, n, total);
         walk->done += n;
     }
 }
@@ -181,23 +255,21 @@ static Walk walk_from(FcIntegration law, const FcScene* scene, const FcSolverOpt
 
 static void step_over_equal_periods(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
                                     double periods, FcStepResult* total) {
+    Walk walk = walk_from(law, scene, options, total);
     if (!law.is_bounded) {
-        const FcMap one =
-            law.free_map(scene, options, 1.0 / scene->drive.vibration.f, total->delta, &total->evaluations);
-        const FcMap all = fc_map_power(&one, periods);
-        fc_map_apply(&all, total);
+        free_map_of(&walk);
+        take_free(&walk, periods, &walk.total);
+        *total = walk.total;
         return;
     }
-    Walk walk = walk_from(law, scene, options, total);
     while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
         walk_to_repetition(&walk, periods);
         const double cycle = walk.done - walk.met_at;
         if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
             repeat(&walk, floor((periods - walk.done) / cycle));
         } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
-            const FcMap map = free_map_of(&walk);
-            const FcMap all = fc_map_power(&map, periods - walk.done);
-            fc_map_apply(&all, &walk.total);
+            free_map_of(&walk);
+            take_free(&walk, periods - walk.done, &walk.total);
             walk.done = periods;
         }
     }
@@ -252,31 +324,29 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     return fc_periods_check(scene, h, result->evaluations, message);
 }
 
-double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                          FcStepResult* end) {
+FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                            FcStepResult* end) {
     const double f = scene->drive.vibration.f;
     if (fc_scene_is_loose(scene)) {
         fc_loose_step(scene, end);
-        return 0.0;
+        return (FcVector){0.0, 0.0};
     }
     Walk walk = walk_from(law, scene, options, end);
-    FcMap map;
     if (law.is_bounded) {
         walk_to_repetition(&walk, HUGE_VAL);
         const double cycle = walk.done - walk.met_at;
-        *end = walk.total;
         if (walk.met_at >= 0.0 && cycle > 0.0) {
-            return (walk.total.impulse - walk.met.impulse) / cycle * f;
+            *end = walk.total;
+            return (FcVector){(end->impulse - walk.met.impulse) / cycle * f,
+                              (end->impulse_y - walk.met.impulse_y) / cycle * f};
         }
-        map = free_map_of(&walk);
-        end->evaluations = walk.total.evaluations;
+        free_map_of(&walk);
     } else {
-        map = law.free_map(scene, options, 1.0 / f, end->delta, &end->evaluations);
-        const double target =
-            map.offset != 0.0 || map.relaxation != 0.0 ? map.offset / map.relaxation : end->delta;
-        end->delta = isfinite(target) ? target : end->delta;
+        free_map_of(&walk);
+        settle(&walk, &walk.total);
     }
-    FcStepResult period = {.delta = end->delta};
-    fc_map_apply(&map, &period);
-    return period.impulse * f;
+    *end = walk.total;
+    FcStepResult period = {.delta = end->delta, .delta_y = end->delta_y};
+    take_free(&walk, 1.0, &period);
+    return (FcVector){period.impulse * f, period.impulse_y * f};
 }

@@ -15,6 +15,7 @@
 
 #include <stdbool.h>
 
+#include "model/plane.h"
 #include "solver/affine_map.h"
 #include "solver/solver.h"
 
@@ -25,16 +26,17 @@ typedef enum { FC_MAP_THIS_START, FC_MAP_ANY_START } FcMapScope;
 typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
                        FcStepResult* result);
 
-// The map of [0, duration] that holds for any start of the size of delta_0 [m] from which no bound is met. Adds what it spends to
-// *evaluations.
+// The map of [0, duration] that holds for any start of the size of delta_0 [m] from which no bound is met. In the plane *across becomes
+// the map of delta_y. Adds what it spends to *evaluations.
 typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
-                           double delta_0, double* evaluations);
+                           double delta_0, FcMap* across, double* evaluations);
 
 // How a law is integrated.
 typedef struct {
     FcStep step;
     FcFreeMap free_map;
     bool is_bounded; // the bristle may meet a bound
+    bool is_planar;
 } FcIntegration;
 
 // Takes *total over an interval of at most a period, piece by piece (solver/pieces.h).
@@ -59,7 +61,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
 
 // What the bristle in *end tends to after infinitely many periods of a scene that vibrates with its inputs held, and the mean of F
 // (solver.h) [N] over a period from there on, or over those that repeat. Adds what it spends to end->evaluations.
-double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                          FcStepResult* end);
+FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                            FcStepResult* end);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "solver/panels/nodes.h"
 #include "solver/panels/panel_tables.h"
+#include "solver/panels/radau_error.h"
 
 // The lengths of the loops below are known only once the outer one is unrolled; then they become vector instructions.
 #ifdef __clang__
@@ -14,7 +15,7 @@
 #endif
 
 // A row of the linear system: the matrix, a pad, the two right-hand sides. COUNT: the stages, and the start after them.
-enum { STAGES = FC_RADAU_STAGES, COUNT = STAGES + 1, WIDEST = STAGES + 3 };
+enum { STAGES = FC_RADAU_STAGES, COUNT = FC_RADAU_POINTS, WIDEST = STAGES + 3 };
 typedef double StageSystem[STAGES][WIDEST] FC_PAIRED;
 
 // Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative. By pairs of columns; those
@@ -44,31 +45,6 @@ FC_INLINE void solve(StageSystem row) {
         }
     }
 }
-
-// x^6: what is left of an error that is orthogonal to the polynomials of degree 7 when it is weighted with a function whose
-// Legendre coefficients fall by x. Three quarters of that degree, since x is an estimate.
-FC_INLINE double acting_part(double x) {
-    const double x_3 = x * x * x;
-    return x_3 * x_3;
-}
-
-// The part of the slope that the collocation leaves unresolved and that acts on the end. at_start is its defect at the
-// panel's start, where it is largest; the tail's own continuation counts where that happens to vanish.
-FC_INLINE double unresolved(const double* slope, double z) {
-    const double at_start = fc_dot(COUNT, FC_RADAU_9.start, slope);
-    const FcTail tail = fc_tail_of(COUNT, FC_RADAU_9.tail, slope);
-    const double acts = fc_least(1.0, z / (z + 2.0 * STAGES) + tail.fall);
-    return fc_most(fabs(at_start), tail.top * tail.fall) * acting_part(acts);
-}
-
-FC_INLINE double quadrature_error(const double* f) {
-    const FcTail tail = fc_tail_of(COUNT, FC_RADAU_9.tail, f);
-    return fc_beyond_rounding(fc_largest(STAGES, f), tail.top) * tail.fall * acting_part(tail.fall);
-}
-
-// What the mean over a panel sees of a defect: it changes sign between the nodes. By hand: less lets panels pass that miss the
-// tolerance, more costs panels.
-static const double MEAN_OF_DEFECT = 0.1;
 
 void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const FcTrajectories* from,
                     FcPanel* panel) {
@@ -123,23 +99,23 @@ void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const
     panel->sigma = at.sigma[last];
     panel->limit = at.limit[last];
 
-    double error = unresolved(slope, panel->z);
+    double error = fc_radau_unresolved(slope, panel->z);
     fc_panel_force(count, &at, side_per_limit, side, from->speed, from->held, u, f);
-    double mean_error = quadrature_error(f);
+    double mean_error = fc_radau_quadrature_error(f);
     if (from->scale != 0.0) {
         for (int i = 0; i < count; i++) {
             slope[i] = -z[i] * P[i];
             u[i] = from->scale * P[i];
         }
-        error += from->scale * unresolved(slope, panel->z);
+        error += from->scale * fc_radau_unresolved(slope, panel->z);
         fc_panel_force(count, &at, side_per_limit, side, from->speed, 0.0, u, f);
-        mean_error += quadrature_error(f);
+        mean_error += fc_radau_quadrature_error(f);
     }
     // A defect is damped at the end by what relaxes there, inside by the least that does anywhere.
     const double whole = panel->z;
     const double z_last = fc_most(0.0, fc_least(z[last], whole));
     const double z_least = fc_most(fc_least(z_last, z[n]), fc_least(whole, sqrt(whole)));
     panel->end_error = panel->sigma * error / (1.0 + z_last);
-    panel->mean_error = mean_error + MEAN_OF_DEFECT * panel->sigma * error *
+    panel->mean_error = mean_error + FC_MEAN_OF_DEFECT * panel->sigma * error *
                                          fc_most(1.0 / (1.0 + z_least), rule->weight[last] / (1.0 + z_last));
 }

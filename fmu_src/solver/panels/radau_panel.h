@@ -11,9 +11,7 @@
 #define FC_SOLVER_RADAU_PANEL_H
 
 #include "solver/panels/panel.h"
-
-// By hand: fewer stages need more panels for the same error, more cost a larger linear system.
-enum { FC_RADAU_STAGES = 9 };
+#include "solver/panels/radau_error.h"
 
 // The panel [t, t + h], h > 0. sign is the sign of V over it.
 void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const FcTrajectories* from,

@@ -1,0 +1,35 @@
+// The course of V = (V, V_y) over an interval: where |V| comes near 0, and the variable in which it is smooth there.
+//
+// At a near-zero t_c the square of |V| is c^2 ((t - t_c)^2 + eps^2), to the lowest order: |V| has branch points at the distance eps from
+// the real axis, and a kink if eps = 0, which is a reversal. With
+//
+//     t = t_c + L sinh(u)      L = max(eps, sqrt(tolerance) times the layer, sqrt(2 g / (sigma c)), over which a bristle relaxes there)
+//
+// |V| is smooth in u on either side of t_c: sqrt((t - t_c)^2 + eps^2) = eps cosh(u) if L = eps.
+#ifndef FC_SOLVER_COURSE_H
+#define FC_SOLVER_COURSE_H
+
+#include "model/plane.h"
+
+typedef struct {
+    double center; // s, t_c
+    double length; // s, L; infinite without a near-zero: then t = t_c + u
+} FcStraight;
+
+double fc_straight_time(const FcStraight* in, double u); // s
+double fc_straight_pace(const FcStraight* in, double u); // s, dt/du
+double fc_straight_place(const FcStraight* in, double t);
+
+// A part of the interval that has no near-zero inside, from there to halfway to the next one or the other way round.
+typedef struct {
+    double start, end; // s
+    FcStraight in;
+} FcHalf;
+
+// Up to two near-zeros a period, over less than three periods.
+enum { FC_MOST_HALVES = 24 };
+
+// The halves of [0, h], in their order; their number. h [s] < 2 periods of a scene that vibrates.
+int fc_halves(const FcPlane* plane, double h, double tolerance, FcHalf halves[FC_MOST_HALVES]);
+
+#endif

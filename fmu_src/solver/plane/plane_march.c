@@ -1,0 +1,491 @@
+#include "solver/plane/plane_march.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+
+#include "model/constants.h"
+#include "solver/budget.h"
+#include "solver/interval.h"
+#include "solver/panels/judge.h"
+#include "solver/plane/plane_panel.h"
+
+enum { POINTS = FC_RADAU_POINTS, STAGES = FC_RADAU_STAGES };
+
+// How the bristle moves; Coulomb's law has none.
+typedef enum { FREE, SLIPS, NO_BRISTLE } Motion;
+
+typedef struct {
+    const FcPlane* plane;
+    const FcInterval* interval;
+    const FcHalf* half;
+    double u, end;     // reached in the half, and to be reached
+    double path_after; // m, at least, from the end of the half to that of the interval
+    double h;          // of the next panel, in u; 0 before the first of a half
+    FcMap along, across;
+    double scale; // m, of the starts that the maps are for, beside the one they have
+    double heat;  // J, of break-away
+    bool is_bounded;
+    int slips; // FcBristle
+    Motion motion;
+    int meetings;
+    int halted; // how often the bristle went from one motion to the other at the same place
+    double evaluations;
+} March;
+
+static FcPlaneFrom from_of(const March* march) {
+    return (FcPlaneFrom){.delta = {march->along.offset, march->across.offset},
+                         .scale = (1.0 - march->along.relaxation) * march->scale,
+                         .speed = march->interval->speed + DBL_MIN};
+}
+
+// Panels that are refused in a row before one is taken as it is. By hand: 0.3^12 of the first, where rounding rules.
+enum { MOST_TRIES = 12 };
+// What a panel of 9 stages resolves. Derived: of a function that is smooth but for branch points at the distance pi/2, the polynomials
+// miss rho^-17, sinh(ln rho) = pi over the panel's length. And of a decaying exponential, by hand: costs tries, not accuracy.
+static const double ORDER = 17.0;
+static const double LAYERS = 6.3;
+// A panel may last so many times the time over which the contact moves by 1. By hand: costs tries, not accuracy.
+static const double SMOOTH = 7.0;
+
+// The force [N] by which the bristle is behind what it tends to.
+static double lag(const March* march, const FcPlaneCoefficients* at) {
+    const FcPlaneFrom from = from_of(march);
+    const double settled = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+    return hypot(at->sigma * from.delta.x - settled * at->V.x, at->sigma * from.delta.y - settled * at->V.y) +
+           at->sigma * fabs(from.scale);
+}
+
+// The length in u of the next panel.
+static double planned(const March* march) {
+    const FcInterval* interval = march->interval;
+    const FcStraight* in = &march->half->in;
+    const double left = march->end - march->u;
+    const double t = fc_straight_time(in, march->u);
+    const double resolves = pow(interval->tolerance, 1.0 / ORDER);     // 1 / rho
+    double span = SMOOTH * resolves * fc_smooth_time(&interval->pace); // s
+    if (march->motion == FREE && march->plane->scene->friction->model != FC_ELASTIC_PLASTIC) {
+        const FcPlaneCoefficients at =
+            fc_plane_coefficients(march->plane, t, fc_drive_phase(&interval->scene->drive, t));
+        const double behind = lag(march, &at) / (interval->tolerance * interval->force);
+        const double r = at.sigma * at.speed / at.limit;
+        if (behind > 1.0 && r > 0.0) {
+            // |V| may rise from 0 within the layer of L
+            const double layer = LAYERS * pow(behind, -1.0 / ORDER) / r;
+            span = fmin(span, layer);
+        }
+    }
+    double h = fmin(left, fc_straight_place(in, t + span) - march->u);
+    if (isfinite(in->length)) {
+        h = fmin(h, FC_PI / sinh(-log(resolves)));
+    }
+    if (march->h > 0.0) {
+        h = fmin(h, march->h);
+    }
+    h = h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
+    return h;
+}
+
+// How many times the panel's errors are too large.
+static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcPanel* panel) {
+    const FcInterval* interval = march->interval;
+    const double end = nodes->t[STAGES - 1];
+    const double length = march->half->in.length;
+    const double forgets =
+        panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
+    const FcErrorLife life = {
+        .lives = fmin(interval->duration - end, forgets) / interval->duration,
+        .lasts = nodes->duration / interval->duration,
+        .grows = fmax(1.0, interval->stiffness / panel->sigma),
+    };
+    FcPanel whole = *panel;
+    whole.z = fmax(1.0, panel->z); // the shares are those of a panel that relaxes
+    const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
+    const double left_at_end = exp(-march->path_after / interval->saturation);
+    return fmax(over.mean, over.end * left_at_end);
+}
+
+// Coulomb's law: the force is known.
+static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel);
+
+static bool make_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    const FcPlaneFrom from = from_of(march);
+    switch (march->motion) {
+    case SLIPS:
+        return fc_plane_slip_panel(march->plane, nodes, &from, panel);
+    case FREE:
+        fc_plane_free_panel(march->plane, nodes, &from, panel);
+        return true;
+    default:
+        coulomb_panel(march, nodes, panel);
+        return true;
+    }
+}
+
+// The panel from the place reached, of the length h, or shorter until it is accurate; its length.
+static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    for (int tries = 0;; tries++) {
+        fc_plane_nodes(march->plane, &march->half->in, march->u, h, nodes);
+        march->evaluations += STAGES;
+        const bool is_solved = make_panel(march, nodes, panel);
+        const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
+        if ((is_solved && excess <= 1.0) || tries >= MOST_TRIES) {
+            march->h = h * fmin(2.0, 0.9 * pow(excess + 1e-30, -1.0 / ORDER));
+            return h;
+        }
+        h *= is_solved ? fmax(0.3, fmin(0.9, 0.85 * pow(excess, -1.0 / 12.0))) : 0.4;
+    }
+}
+
+static void append(March* march, const FcPlanePanel* panel, double h) {
+    fc_map_append(&march->along, &panel->along.map);
+    fc_map_append(&march->across, &panel->across);
+    const double next = march->u + h;
+    march->u = march->end - next < 1e-12 * h ? march->end : next;
+}
+
+// The first place of the panel, of its length, at which a function that is known at its points rises above 0, and then above `over`; 2
+// for none. By the polynomial through the points, in barycentric form.
+typedef struct {
+    const double* f;
+    double weight[POINTS];
+} Through;
+
+static double value_at(const Through* through, double x) {
+    double above = 0.0;
+    double below = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        const double away = x - (0.5 + FC_RADAU_9.node[i]);
+        if (away == 0.0) {
+            return through->f[i];
+        }
+        above += through->weight[i] / away * through->f[i];
+        below += through->weight[i] / away;
+    }
+    return above / below;
+}
+
+static double first_rise(const double* f, double over) {
+    enum { SAMPLES = 32, HALVINGS = 50 };
+    double largest = f[0];
+    double smallest = f[0];
+    for (int i = 1; i < POINTS; i++) {
+        largest = fmax(largest, f[i]);
+        smallest = fmin(smallest, f[i]);
+    }
+    if (largest + 0.25 * (largest - smallest) < 0.0) {
+        return 2.0;
+    }
+    Through through = {.f = f};
+    for (int i = 0; i < POINTS; i++) {
+        double product = 1.0;
+        for (int j = 0; j < POINTS; j++) {
+            product *= j == i ? 1.0 : 4.0 * (FC_RADAU_9.node[i] - FC_RADAU_9.node[j]);
+        }
+        through.weight[i] = 1.0 / product;
+    }
+    double before = 0.0;
+    for (int k = 1; k <= SAMPLES; k++) {
+        const double x = (double)k / SAMPLES;
+        const double value = value_at(&through, x);
+        if (!(value > over)) {
+            before = value <= 0.0 ? x : before;
+            continue;
+        }
+        double a = before;
+        double b = x;
+        for (int i = 0; i < HALVINGS; i++) {
+            const double middle = 0.5 * (a + b);
+            if (value_at(&through, middle) > 0.0) {
+                b = middle;
+            } else {
+                a = middle;
+            }
+        }
+        return b;
+    }
+    return 2.0;
+}
+
+// |delta|^2 - D^2 at the points of a free panel.
+static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    for (int i = 0; i < POINTS; i++) {
+        const double D =
+            fc_plane_bound(march->plane, &nodes->at[i], march->slips, nodes->t[i], nodes->phase[i]).D;
+        panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
+    }
+}
+
+static void set_delta(March* march, FcVector delta) {
+    march->along.relaxation = march->across.relaxation = 1.0;
+    march->along.offset = delta.x;
+    march->across.offset = delta.y;
+}
+
+// Where the march is now.
+typedef struct {
+    double t;
+    FcPhase phase;
+    FcPlaneCoefficients at;
+    FcPlaneBound bound; // of a bristle that slips
+    FcVector n;
+    double push;
+} Place;
+
+static Place place_of(const March* march) {
+    Place place = {.t = fc_straight_time(&march->half->in, march->u)};
+    place.phase = fc_drive_phase(&march->interval->scene->drive, place.t);
+    place.at = fc_plane_coefficients(march->plane, place.t, place.phase);
+    place.bound = fc_plane_bound(march->plane, &place.at, 1, place.t, place.phase);
+    const FcVector delta = from_of(march).delta;
+    const double size = hypot(delta.x, delta.y);
+    place.n = size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
+    place.push = fc_plane_push(march->plane, &place.at, &place.bound, place.n);
+    return place;
+}
+
+// A free bristle that has come to its bound slips if it is pushed; one with static friction breaks away.
+static void meet(March* march) {
+    const FcFriction* friction = march->plane->scene->friction;
+    const Place place = place_of(march);
+    march->meetings++;
+    if (fc_has_static_friction(friction) && march->slips == 0) {
+        const double D = place.at.static_limit / place.at.sigma;
+        march->heat += 0.5 * place.at.sigma * (D - place.bound.D) * (D + place.bound.D);
+        march->slips = 1;
+    }
+    set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
+    if (place.push > 0.0) {
+        march->motion = SLIPS;
+    } else {
+        march->slips = 0;
+    }
+}
+
+// Of a bristle on its bound whose push has come to 0.
+static void let_go(March* march) {
+    march->motion = FREE;
+    march->slips = 0;
+}
+
+static void free_panel(March* march, double h) {
+    FcPlaneNodes nodes;
+    FcPlanePanel panel;
+    h = take_accurate(march, h, &nodes, &panel);
+    if (!march->is_bounded) {
+        append(march, &panel, h);
+        return;
+    }
+    const FcInterval* interval = march->interval;
+    double meets = 2.0;
+    find_to_bound(march, &nodes, &panel);
+    const double D_D = fmax(1e-300, fc_product(panel.delta[STAGES - 1], panel.delta[STAGES - 1]) -
+                                        panel.to_bound[STAGES - 1]);
+    const double D = sqrt(D_D);
+    const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness;
+    const double over = 2.0 * D * fmax(fmin(allowed, 1e-3 * D), 1e-14 * D);
+    meets = first_rise(panel.to_bound, over);
+    if (meets > 1.0) {
+        append(march, &panel, h);
+        march->halted = 0;
+        return;
+    }
+    march->halted = meets * h < 1e-9 ? march->halted + 1 : 0;
+    // The panel is taken again up to where it meets the bound, which its own points tell better.
+    for (int tries = 0; tries < 3 && meets > 0.0 && meets <= 1.0; tries++) {
+        h *= meets;
+        fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
+        march->evaluations += STAGES;
+        make_panel(march, &nodes, &panel);
+        find_to_bound(march, &nodes, &panel);
+        if (fabs(panel.to_bound[STAGES - 1]) <= over) {
+            break;
+        }
+        const double slope = fmax(0.0, panel.to_bound[STAGES - 1] - panel.to_bound[STAGES - 2]) /
+                             (FC_RADAU_9.node[STAGES - 1] - FC_RADAU_9.node[STAGES - 2]);
+        meets = slope > 0.0 ? fmin(1.0, fmax(0.5, 1.0 - panel.to_bound[STAGES - 1] / slope)) : 1.0;
+    }
+    if (meets > 0.0) {
+        append(march, &panel, h);
+    }
+    meet(march);
+}
+
+static void slip_panel(March* march, double h) {
+    FcPlaneNodes nodes;
+    FcPlanePanel panel;
+    h = take_accurate(march, h, &nodes, &panel);
+    double back[POINTS]; // pull inwards
+    for (int i = 0; i < POINTS; i++) {
+        back[i] = -panel.to_bound[i];
+    }
+    const double over = 1e-13 * march->interval->speed;
+    const double ends = back[STAGES] > over ? 0.0 : first_rise(back, over);
+    march->halted = ends * h < 1e-9 ? march->halted + 1 : 0;
+    if (ends > 1.0) {
+        append(march, &panel, h);
+        return;
+    }
+    if (ends > 0.0) {
+        h *= ends;
+        fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
+        march->evaluations += STAGES;
+        make_panel(march, &nodes, &panel);
+        append(march, &panel, h);
+    }
+    let_go(march);
+}
+
+static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    double F_x[POINTS], F_y[POINTS], V_x[POINTS], V_y[POINTS];
+    FcMap* map = &panel->along.map;
+    *panel = (FcPlanePanel){.along = {.z = 1.0, .sigma = march->interval->stiffness}};
+    for (int i = 0; i < POINTS; i++) {
+        const FcPlaneCoefficients* at = &nodes->at[i];
+        const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+        const double weight = FC_RADAU_9.weight[i] * nodes->tau[i];
+        V_x[i] = at->V.x;
+        V_y[i] = at->V.y;
+        F_x[i] = over_speed * at->V.x;
+        F_y[i] = over_speed * at->V.y;
+        map->impulse_offset += weight * F_x[i];
+        panel->across.impulse_offset += weight * F_y[i];
+        map->work_offset += weight * at->limit * at->speed;
+    }
+    map->heat_offset = map->work_offset;
+    panel->along.limit = nodes->at[STAGES - 1].limit;
+    fc_plane_force_errors(nodes, march->interval->speed, F_x, F_y, V_x, V_y, &panel->along);
+}
+
+static void cross_half(March* march) {
+    march->u = fc_straight_place(&march->half->in, march->half->start);
+    march->end = fc_straight_place(&march->half->in, march->half->end);
+    march->h = 0.0;
+    while (march->u < march->end && march->evaluations <= FC_MOST_EVALUATIONS &&
+           !isnan(march->along.offset)) {
+        const double h = planned(march);
+        if (march->motion == SLIPS) {
+            slip_panel(march, h);
+        } else {
+            free_panel(march, h);
+        }
+        if (march->halted > 3) { // rounding tells neither motion from the other: on by the least
+            march->u = fmin(march->end, march->u + 1e-9);
+            march->halted = 0;
+        }
+    }
+}
+
+// The way [m] from start to end in a straight line, which is at most the path.
+static double straight_way(const FcDrive* along, const FcDrive* across, double start, double end) {
+    return hypot(fc_drive_displacement(along, start, end), fc_drive_displacement(across, start, end));
+}
+
+static void cross(March* march) {
+    const FcInterval* interval = march->interval;
+    FcHalf halves[FC_MOST_HALVES];
+    const int count = fc_halves(march->plane, interval->duration, interval->tolerance, halves);
+    const FcDrive across = fc_drive_across(&interval->scene->drive);
+    double way[FC_MOST_HALVES];
+    double after = 0.0;
+    for (int i = count - 1; i >= 0; i--) {
+        way[i] = after;
+        after += straight_way(&interval->scene->drive, &across, halves[i].start, halves[i].end);
+    }
+    for (int i = 0; i < count; i++) {
+        march->half = &halves[i];
+        march->path_after = way[i];
+        cross_half(march);
+    }
+}
+
+static March march_over(const FcPlane* plane, const FcInterval* interval, double evaluations) {
+    return (March){.plane = plane,
+                   .interval = interval,
+                   .motion = plane->scene->friction->model == FC_COULOMB ? NO_BRISTLE : FREE,
+                   .evaluations = evaluations};
+}
+
+void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                   FcStepResult* result) {
+    if (!(duration > 0.0)) {
+        return;
+    }
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcInterval interval = fc_interval_make(scene, scene, duration, options);
+    March march = march_over(&plane, &interval, result->evaluations);
+    march.is_bounded = fc_is_bounded(scene->friction);
+    march.slips = result->slips;
+    set_delta(&march, (FcVector){result->delta, result->delta_y});
+    const FcHalf whole = {0.0, duration, {0.0, INFINITY}};
+    march.half = &whole;
+    if (march.is_bounded) {
+        const Place place = place_of(&march);
+        const FcVector delta = from_of(&march).delta;
+        const bool is_on = hypot(delta.x, delta.y) >= (1.0 - 1e-10) * place.bound.D;
+        const bool may_slip = march.slips != 0 || !fc_has_static_friction(scene->friction);
+        march.motion = is_on && may_slip && place.push > 0.0 ? SLIPS : FREE;
+        march.meetings = march.motion == SLIPS;
+    }
+    cross(&march);
+    fc_map_apply(&march.along, result);
+    fc_map_apply_across(&march.across, result);
+    result->heat += march.heat;
+    result->meetings += march.meetings;
+    result->slips = fc_has_static_friction(scene->friction) ? march.slips : 0;
+    result->evaluations = march.evaluations;
+}
+
+FcMap fc_plane_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
+                   FcMap* across, double* evaluations) {
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcInterval interval = fc_interval_make(scene, scene, duration, options);
+    March march = march_over(&plane, &interval, *evaluations);
+    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
+    march.scale = fmax(start, at.limit / at.sigma);
+    cross(&march);
+    *evaluations = march.evaluations;
+    *across = march.across;
+    return march.along;
+}
+
+// Along V as along a line, across it by relaxation alone.
+void fc_plane_constant(const FcScene* scene, double h, FcStepResult* result) {
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
+    const FcVector n =
+        at.speed > 0.0 ? (FcVector){at.V.x / at.speed, at.V.y / at.speed} : (FcVector){1.0, 0.0};
+    const FcMap along = fc_map_of_constant_scene(&(FcCoefficients){at.speed, at.sigma, at.limit}, h);
+    const FcMap across = {.relaxation = along.relaxation,
+                          .impulse_slope = along.impulse_slope,
+                          .heat_square = along.heat_square};
+    FcStepResult turned = {.delta = n.x * result->delta + n.y * result->delta_y,
+                           .delta_y = n.x * result->delta_y - n.y * result->delta,
+                           .evaluations = 1.0};
+    fc_map_apply(&along, &turned);
+    fc_map_apply_across(&across, &turned);
+    *result = turned;
+    result->delta = n.x * turned.delta - n.y * turned.delta_y;
+    result->delta_y = n.y * turned.delta + n.x * turned.delta_y;
+    result->impulse = n.x * turned.impulse - n.y * turned.impulse_y;
+    result->impulse_y = n.y * turned.impulse + n.x * turned.impulse_y;
+}
+
+FcBristle fc_plane_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force) {
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
+    const bool has_bristle = scene->friction->model != FC_COULOMB;
+    if (at.speed == 0.0) {
+        *force = (FcVector){at.sigma * from.delta, at.sigma * from.delta_y};
+        return from;
+    }
+    *force = (FcVector){at.limit * at.V.x / at.speed, at.limit * at.V.y / at.speed};
+    return has_bristle ? (FcBristle){.delta = force->x / at.sigma,
+                                     .slips = fc_has_static_friction(scene->friction),
+                                     .delta_y = force->y / at.sigma}
+                       : from;
+}
