@@ -290,7 +290,7 @@ def test_across_alone_is_along_alone(fmu: FrictionFmu, law: str, contact: str, l
         "V_y": along["V"],
         "delta_y_0": along["delta_0"],
     }
-    turned |= {"vibration.V_1": 0.0, "V": 0.0, "delta_0": 0.0}
+    turned |= {"delta_y_0": along["delta_0"], "vibration.V_1": 0.0, "V": 0.0, "delta_0": 0.0}
     one, other = course(fmu, along, NAMES), course(fmu, turned, TURNED, "V_y")
     assert (np.abs(one - other) <= 1e-6 * np.abs(one).max(axis=0)).all()
 
