@@ -585,7 +585,7 @@ static bool go_periods(World* w, State* state, Real n, Sums* sums) {
     return true;
 }
 
-enum { MOST_CYCLE = 4096 };
+enum { MOST_CYCLE = 256 };
 
 // How many periods more from a state make no slip; each one shifts the deflection.
 static Real skip_untouched(World* w, State state, Vector shift) {
@@ -601,7 +601,7 @@ static Real skip_untouched(World* w, State state, Vector shift) {
     return low;
 }
 
-// With static friction: periods until one that slips ends where one has ended before, or nothing slips nor drifts.
+// ElasticPlastic: periods until one that slips ends where one has ended before, or nothing slips nor drifts.
 static bool settle_by_cycle(World* w, State* state, Vector* mean) {
     typedef struct {
         State state;
@@ -652,43 +652,25 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
     return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
 }
 
-// The periodic state where a period's map is smooth enough for Newton: at once where no bound is met, soon where slips are so
-// small that each forgets little; after some steps by shorter ones, for kinks. A bristle that only drifts goes to where it
-// slips.
+// The periodic state where it does not depend on the start, by Newton: at once where no bound is met, soon where slips are so
+// small that each forgets little. A bristle that only drifts goes to where it slips.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
     const Vector shift = {w->along.V / w->scene.f, w->transverse.V / w->scene.f};
-    const Real unit = unit_of(w), drift = w->elastic ? length_of(shift) : 0.0L;
-    const Real step = 1e-3L * (drift > 0.0L ? fminl(drift, unit) : unit);
-    Real part = 1.0L, missed = INFINITY;
-    Vector from = state->delta, way_to = {0};
-    for (int k = 0; k < 400 && w->panels <= MOST_PANELS; k++) {
+    const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
+    for (int k = 0; k < 60 && w->panels <= MOST_PANELS; k++) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
         *mean = times(w->scene.f, march.sums.impulse);
-        if (w->elastic && !march.slipped && drift == 0.0L) {
-            return true;
-        }
-        if (k > 60 && !(length_of(miss) < missed) && part > 1e-3L) {
-            part *= 0.25L;
-            state->delta = plus(from, part, way_to);
-            continue;
-        }
         if (w->elastic && !march.slipped) {
             state->delta = plus(march.delta, skip_untouched(w, state_of(&march), shift), shift);
-            missed = INFINITY;
             continue;
         }
-        way_to = newton_step(w, *state, march.delta, miss, step);
-        if (length_of(miss) <= 1e-15L * unit && !(length_of(way_to) > 1e-12L * unit)) {
+        const Vector newton = newton_step(w, *state, march.delta, miss, step);
+        if (length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
             return true;
         }
-        from = state->delta;
-        if ((k > 60 ? part <= 1e-3L : k % 4 == 3) || !(length_of(way_to) < 10.0L * unit)) { // a plain period
-            way_to = miss;
-        }
-        missed = way_to.x == miss.x && way_to.y == miss.y ? INFINITY : length_of(miss);
-        part = 1.0L;
-        state->delta = plus(from, 1.0L, way_to);
+        const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
+        state->delta = plus(state->delta, 1.0L, plain ? miss : newton);
     }
     return false;
 }
@@ -701,8 +683,9 @@ static bool settle(World* w, State* state, Vector* mean) {
         return true;
     }
     if (vibrates(s)) {
-        return w->elastic && w->excess != 0.0L ? settle_by_cycle(w, state, mean)
-                                               : settle_by_newton(w, state, mean);
+        const bool drifts = w->along.V != 0.0L || w->transverse.V != 0.0L;
+        return (w->elastic && settle_by_cycle(w, state, mean)) ||
+               ((!w->elastic || (drifts && w->excess == 0.0L)) && settle_by_newton(w, state, mean));
     }
     const At at = scene_at(w, 0.0L, false);
     const Vector V = velocity_at(&at);

@@ -18,9 +18,11 @@ typedef struct {
     double value[OF_SETTLED];
 } Values;
 
-static Values of_fmu(const FmuStep* s) {
+// In the plane a side is only whether the bristle slips.
+static Values of_fmu(const FmuStep* s, bool planar) {
+    const double side = planar ? (double)(s->slips != 0.0) : s->slips;
     return (Values){
-        {s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->F_y, s->F_y_mean, s->F_y_start, s->slips}};
+        {s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->F_y, s->F_y_mean, s->F_y_start, side}};
 }
 
 static Values of_reference(const ReferenceStep* s) {
@@ -33,14 +35,16 @@ static double over(double error, double tolerance, double scale, double rounding
 }
 
 // The worst error of a step between the least and the largest that the reference says.
-static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, const Values* least,
-                               const Values* largest, double tolerance) {
+static Verdict verdict_between(const TrialStep* taken, const Values* least, const Values* largest,
+                               double tolerance) {
+    const ReferenceStep* truth = &taken->truth;
+    const FmuStep* step = &taken->step;
     const double S = fmax(truth->S, LEAST_S);
     const double path =
         truth->path + hypot(truth->delta - step->delta_start, truth->delta_y - step->delta_y_start);
     const double lengths = hypot(step->delta_start, step->delta_y_start) + hypot(step->delta, step->delta_y);
     const double stored = LEAST_S + DIGITS * S * lengths; // over at least 1 m
-    const Values found = of_fmu(step);
+    const Values found = of_fmu(step, taken->planar);
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < OF_SETTLED; k++) {
         const double x = found.value[k];
@@ -94,7 +98,7 @@ static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* t
             largest.value[i] = fmax(largest.value[i], values.value[i]);
         }
     }
-    return verdict_between(&taken->truth, &taken->step, &least, &largest, tolerance);
+    return verdict_between(taken, &least, &largest, tolerance);
 }
 
 // The error of F_t_settled over the tolerance, -1 if the reference does not say.
@@ -117,6 +121,7 @@ static double settled_ratio(TrialStep* taken, int method, double tolerance) {
 
 static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, int method,
                   double tolerance) {
+    taken->planar = plane_is_needed(before, &taken->scene);
     step_of_reference(before, &taken->scene, &taken->step, &taken->truth);
     if (!taken->truth.known) {
         trial->unknown++;
@@ -124,7 +129,7 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
         return;
     }
     const Values truth = of_reference(&taken->truth);
-    taken->verdict = verdict_between(&taken->truth, &taken->step, &truth, &truth, tolerance);
+    taken->verdict = verdict_between(taken, &truth, &truth, tolerance);
     if (!(taken->verdict.ratio <= 1.0)) {
         taken->verdict = verdict_by_clock(before, taken, tolerance);
     }
