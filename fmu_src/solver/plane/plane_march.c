@@ -139,7 +139,9 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
         .crosses_peak = has_peak || march->motion == NO_BRISTLE, // a force that turns by itself, as in a peak
     };
     FcPanel whole = *panel;
-    whole.z = fmax(1.0, panel->z); // the shares are those of a panel that relaxes
+    if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V asks for the whole share
+        whole.z = fmax(1.0, panel->z);
+    }
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
     const double path = march->path_after + straight_way(march, end, march->half->end);
     const double left_at_end = exp(-path / interval->saturation);
