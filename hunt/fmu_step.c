@@ -26,6 +26,7 @@ static void set_tunable(FcVariables* v, const ReferenceScene* s) {
     v->d = s->d;
     v->E = s->E;
     v->load = s->load;
+    v->V_y = s->V_y;
     v->F_C = s->F_C;
     v->friction.mu = s->mu;
     v->friction.staticRatio = s->staticRatio;
@@ -34,11 +35,13 @@ static void set_tunable(FcVariables* v, const ReferenceScene* s) {
     v->friction.sigma_2 = s->sigma_2;
     v->contact.sigma = s->contact_sigma;
     v->contact.stiffnessScale = s->stiffnessScale;
-    v->vibration = (FcVibration){.f = s->f, .V_1 = s->V_1, .a_d = s->a_d, .phase_d = s->phase_d};
+    v->vibration = (FcVibration){
+        .f = s->f, .V_1 = s->V_1, .a_d = s->a_d, .phase_d = s->phase_d, .V_2 = s->V_2, .phase_2 = s->phase_2};
 }
 
 static void set_fixed(FcVariables* v, const ReferenceScene* s) {
     v->delta_0 = s->delta_0;
+    v->delta_y_0 = s->delta_y_0;
     v->initialState = s->initial;
     v->friction.model = s->law;
     v->friction.limit = s->limit;
@@ -76,6 +79,7 @@ static void set_rates(FcFrictionState* state, const ReferenceScene* s) {
     state->next_rate[FC_INPUT_D] = s->d_rate;
     state->next_rate[FC_INPUT_E] = s->E_rate;
     state->next_rate[FC_INPUT_LOAD] = s->load_rate;
+    state->next_rate[FC_INPUT_V_Y] = s->V_y_rate;
     state->next_rate_set = 1;
 }
 
@@ -88,6 +92,7 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     const FcFrictionState before = *state;
     const bool first = run->steps++ == 0;
     step->delta_start = v->delta;
+    step->delta_y_start = v->delta_y;
     step->slips_start = state->slips;
     const ReferenceScene still = {0};
     set_tunable(v, scene);
@@ -96,14 +101,18 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
         return false;
     }
     step->F_t_start = v->F_t;
+    step->F_y_start = v->F_y;
     set_rates(state, scene);
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
     step->delta = v->delta;
+    step->delta_y = v->delta_y;
     step->slips = state->slips;
     step->F_t = v->F_t;
+    step->F_y = v->F_y;
     step->F_t_mean = v->F_t_mean;
+    step->F_y_mean = v->F_y_mean;
     step->work = v->W_f + state->W_f_rest;
     step->heat = v->Q_f + state->Q_f_rest;
     if (!first) {
@@ -114,10 +123,11 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     return true;
 }
 
-bool fmu_settled_force(FmuRun* run, double* force) {
+bool fmu_settled_force(FmuRun* run, double force[2]) {
     FcVector both = {0.0, 0.0};
     const bool found = run->started && fc_settled_force(&run->contact, &both, &run->message);
-    *force = both.x;
+    force[0] = both.x;
+    force[1] = both.y;
     return found;
 }
 

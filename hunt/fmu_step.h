@@ -7,16 +7,16 @@
 #include "reference.h"
 
 typedef struct {
-    double delta;       // m
-    double F_t;         // N
-    double F_t_mean;    // N
-    double work;        // J, of this step
-    double heat;        // J, of this step; of the first step with that of the start
-    double slips;       // side along which a bristle with static friction slips at the end, or 0
-    double delta_start; // m, before the step and its inputs
+    double delta, delta_y;     // m
+    double F_t, F_y;           // N
+    double F_t_mean, F_y_mean; // N
+    double work;               // J, of this step
+    double heat;               // J, of this step; of the first step with that of the start
+    double slips;              // side along which a bristle with static friction slips at the end, or 0
+    double delta_start, delta_y_start; // m, before the step and its inputs
     int slips_start;
-    double F_t_start;   // N, before the step, with its inputs held
-    double evaluations; // 1, since the start
+    double F_t_start, F_y_start; // N, before the step, with its inputs held
+    double evaluations;          // 1, since the start
 } FmuStep;
 
 typedef struct FmuRun FmuRun;
@@ -29,8 +29,9 @@ void fmu_close(FmuRun* run);
 // where the core refuses it, or refused to start.
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step);
 
-// F_t_settled [N] at the inputs that the run was opened with. Returns false where the core refuses it, or refused to start.
-bool fmu_settled_force(FmuRun* run, double* force);
+// F_t_settled and F_y_settled [N] at the inputs that the run was opened with. Returns false where the core refuses it, or
+// refused to start.
+bool fmu_settled_force(FmuRun* run, double force[2]);
 
 // Why the core refused.
 const char* fmu_message(const FmuRun* run);

@@ -32,7 +32,7 @@ typedef struct {
     double tolerance[MOST_TOLERANCES];
     int tolerances, jobs, law;
     const char *replay, *file;
-    bool brief;
+    bool brief, plane;
     int minimize; // misses that a job makes plain, at the most, of each law and grade
 } Options;
 
@@ -53,7 +53,7 @@ typedef struct {
 
 static int kappa_class(const ReferenceScene* scene) {
     const double kappa = scene_kappa(scene);
-    const bool vibrates = scene->V_1 != 0.0 || scene->a_d != 0.0;
+    const bool vibrates = scene->V_1 != 0.0 || scene->V_2 != 0.0 || scene->a_d != 0.0;
     return !vibrates ? KAPPAS - 1 : kappa <= 1.0 ? 0 : kappa >= 1e8 ? 5 : 1 + (int)(log10(kappa) / 2.0);
 }
 
@@ -174,8 +174,16 @@ static void print_step(const TrialStep* taken, int step, double tolerance) {
            s->F_t_mean, s->work, s->heat, s->delta, s->slips, s->F_t_start);
     printf("  reference F_t %.17g mean %.17g W %.17g Q %.17g delta %.17g side %g; start: F_t %.17g\n", t->F_t,
            t->F_t_mean, t->work, t->heat, t->delta, t->slips, t->F_t_start);
+    if (s->F_y != 0.0 || t->F_y != 0.0) {
+        printf("  FMU       F_y %.17g mean %.17g delta_y %.17g; start: F_y %.17g\n", s->F_y, s->F_y_mean,
+               s->delta_y, s->F_y_start);
+        printf("  reference F_y %.17g mean %.17g delta_y %.17g; start: F_y %.17g\n", t->F_y, t->F_y_mean,
+               t->delta_y, t->F_y_start);
+    }
     if (step == 0) {
-        printf("  F_t_settled: FMU %.17g, reference %.17g\n", taken->settled[0], taken->settled[1]);
+        const double (*both)[2] = taken->settled;
+        printf("  settled: FMU %.17g, %.17g, reference %.17g, %.17g\n", both[0][0], both[0][1], both[1][0],
+               both[1][1]);
     }
 }
 
@@ -218,7 +226,7 @@ static void run_job(const Options* options, int job, Tally* tally) {
     for (uint64_t n = (uint64_t)job; n < options->scenes && now() - begin < options->seconds;
          n += (uint64_t)options->jobs) {
         const uint64_t number = options->first + n;
-        const Sequence sequence = sequence_drawn(options->seed, number, options->law);
+        const Sequence sequence = sequence_drawn(options->seed, number, options->law, options->plane);
         tally->drawn++;
         try_at(options, &sequence, number, (int)(number % (uint64_t)options->tolerances), tally);
     }
@@ -295,10 +303,11 @@ static void usage(void) {
     fprintf(stderr,
             "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--law NAME] "
             "[--jobs J]\n"
-            "     [--minimize K] [--brief] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
+            "     [--minimize K] [--brief] [--plane] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--first: number of the first sequence; with --scenes 1 a single one. --minimize: makes K misses "
             "of each\n"
-            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables.\n");
+            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables.\n"
+            "--plane: scenes that slide, or vibrate, across.\n");
     exit(2);
 }
 
@@ -321,16 +330,25 @@ static Options read_options(int argc, char** argv) {
         MINIMIZE,
         NUMBERS,
         BRIEF = NUMBERS,
+        PLANE,
         TOLERANCE,
         LAW,
         FILE_NAME,
         REPLAY
     };
-    static const struct option NAMES[] = {
-        {"seed", 1, NULL, SEED},       {"scenes", 1, NULL, SCENES},       {"first", 1, NULL, FIRST},
-        {"minutes", 1, NULL, MINUTES}, {"jobs", 1, NULL, JOBS},           {"minimize", 1, NULL, MINIMIZE},
-        {"brief", 0, NULL, BRIEF},     {"tolerance", 1, NULL, TOLERANCE}, {"law", 1, NULL, LAW},
-        {"file", 1, NULL, FILE_NAME},  {"replay", 1, NULL, REPLAY},       {0}};
+    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},
+                                          {"scenes", 1, NULL, SCENES},
+                                          {"first", 1, NULL, FIRST},
+                                          {"minutes", 1, NULL, MINUTES},
+                                          {"jobs", 1, NULL, JOBS},
+                                          {"minimize", 1, NULL, MINIMIZE},
+                                          {"brief", 0, NULL, BRIEF},
+                                          {"plane", 0, NULL, PLANE},
+                                          {"tolerance", 1, NULL, TOLERANCE},
+                                          {"law", 1, NULL, LAW},
+                                          {"file", 1, NULL, FILE_NAME},
+                                          {"replay", 1, NULL, REPLAY},
+                                          {0}};
     Options o = {.tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, .tolerances = 5};
     double number[NUMBERS] = {1.0, NAN, 0.0, INFINITY, 1.0, 0.0};
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
@@ -338,6 +356,8 @@ static Options read_options(int argc, char** argv) {
             number[name] = number_of(optarg);
         } else if (name == BRIEF) {
             o.brief = true;
+        } else if (name == PLANE) {
+            o.plane = true;
         } else if (name == FILE_NAME || name == REPLAY) {
             *(name == REPLAY ? &o.replay : &o.file) = optarg;
         } else if (name == TOLERANCE) {

@@ -1,390 +1,14 @@
-#include "reference.h"
-
 #include <float.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
-typedef long double Real;
+#include "moment.h"
 
 static const Real PI = 3.141592653589793238462643383279502884L;
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
-// ---------------------------------------------------------------------------------------------------------------------
-
-enum { MOST_STAGES = 12 };
-
-typedef struct {
-    int stages;
-    Real node[MOST_STAGES];            // the last one is 1
-    Real weight[MOST_STAGES];          // sum 1
-    Real to[MOST_STAGES][MOST_STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i]
-} Rule;
-
-// P_0 .. P_n of Legendre at x.
-static void legendre(int n, Real x, Real* P) {
-    P[0] = 1.0L;
-    P[1] = x;
-    for (int m = 1; m < n; m++) {
-        P[m + 1] = ((Real)(2 * m + 1) * x * P[m] - (Real)m * P[m - 1]) / (Real)(m + 1);
-    }
-}
-
-static Rule make_rule(int n) {
-    Rule rule = {.stages = n};
-    Real x[MOST_STAGES], P[MOST_STAGES][MOST_STAGES + 1];
-    for (int i = 0; i < n; i++) {
-        // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
-        x[i] = i == 0 ? -0.999999L : i == n - 1 ? 1.0L : x[i - 1] + 1e-6L;
-        for (int k = 0; k < 100 && i < n - 1; k++) {
-            legendre(n, x[i], P[i]);
-            const Real of_n = P[i][n - 1] - x[i] * P[i][n], of_less = P[i][n - 2] - x[i] * P[i][n - 1];
-            const Real value = P[i][n] - P[i][n - 1];
-            Real slope = ((Real)n * of_n - (Real)(n - 1) * of_less) / (1.0L - x[i] * x[i]);
-            for (int j = 0; j < i; j++) {
-                slope -= value / (x[i] - x[j]);
-            }
-            x[i] -= value / slope;
-        }
-        legendre(n, x[i], P[i]);
-        rule.node[i] = 0.5L * (1.0L + x[i]);
-        rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
-    }
-    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
-    // Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            Real sum = 1.0L + x[i];
-            for (int m = 1; m < n; m++) {
-                sum += P[j][m] * (P[i][m + 1] - P[i][m - 1]);
-            }
-            rule.to[i][j] = 0.5L * rule.weight[j] * sum;
-        }
-    }
-    return rule;
-}
-
-// Made once; the first call is not safe to be made by two threads at once.
-static const Rule* rule_of(int stages) {
-    static Rule rules[MOST_STAGES + 1];
-    if (rules[stages].stages == 0) {
-        rules[stages] = make_rule(stages);
-    }
-    return &rules[stages];
-}
-
-static void swap(Real* a, Real* b) {
-    const Real kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
-// Solves A x = b in place, pivoting by columns.
-static void solve(int n, Real A[MOST_STAGES][MOST_STAGES], Real* b) {
-    for (int k = 0; k < n; k++) {
-        int best = k;
-        for (int i = k + 1; i < n; i++) {
-            best = fabsl(A[i][k]) > fabsl(A[best][k]) ? i : best;
-        }
-        for (int j = k; best != k && j < n; j++) {
-            swap(&A[k][j], &A[best][j]);
-        }
-        swap(&b[k], &b[best]);
-        for (int i = k + 1; i < n; i++) {
-            const Real factor = A[i][k] / A[k][k];
-            for (int j = k + 1; j < n; j++) {
-                A[i][j] -= factor * A[k][j];
-            }
-            b[i] -= factor * b[k];
-        }
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        for (int j = i + 1; j < n; j++) {
-            b[i] -= A[i][j] * b[j];
-        }
-        b[i] /= A[i][i];
-    }
-}
-
-typedef Real Function(const void* context, Real x);
-
-// Where a function passes zero between low and high, on the side of high: regula falsi, by halves every third time.
-static Real crossing(Function* function, const void* context, Real low, Real high) {
-    Real at_low = function(context, low), at_high = function(context, high);
-    const bool rises = at_high > 0.0L;
-    for (int k = 0; k < 200; k++) {
-        const Real middle = 0.5L * (low + high), least = 2.0L * LDBL_EPSILON * fabsl(high);
-        Real x = high - at_high * (high - low) / (at_high - at_low);
-        x = k % 3 == 2 ? middle : fmaxl(low + least, fminl(high - least, x));
-        x = x > low && x < high ? x : middle;
-        if (!(x > low && x < high)) {
-            break;
-        }
-        const Real at = function(context, x);
-        if ((at > 0.0L) == rises) {
-            high = x;
-            at_high = at;
-            at_low *= 0.5L;
-        } else {
-            low = x;
-            at_low = at;
-            at_high *= 0.5L;
-        }
-    }
-    return high;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The contact
-// ---------------------------------------------------------------------------------------------------------------------
-
-// Lower incomplete gamma function of s = 3/2 and 5/2: x^s e^-x sum of x^k / (s (s + 1) .. (s + k)), for large x by erf.
-static Real lower_gamma(Real s, Real x) {
-    if (x > 4.0L) {
-        const Real of_3_2 = 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x);
-        return s < 2.0L ? of_3_2 : 1.5L * of_3_2 - x * sqrtl(x) * expl(-x);
-    }
-    Real term = 1.0L / s, sum = term;
-    for (int k = 1; term > 1e-22L * sum; k++) {
-        term *= x / (s + (Real)k);
-        sum += term;
-    }
-    return powl(x, s) * expl(-x) * sum;
-}
-
-// Gamma(3/2, y) = sqrt(y) e^-y + sqrt(pi) / 2 erfc(sqrt(y)).
-static Real upper_gamma_3_2(Real y) { return sqrtl(y) * expl(-y) + 0.5L * sqrtl(PI) * erfcl(sqrtl(y)); }
-
-static Real bessel_I0(Real x) {
-    const Real quarter = 0.25L * x * x;
-    Real term = 1.0L, sum = 1.0L;
-    for (int k = 1; k < 100000 && term > 1e-22L * sum; k++) {
-        term *= quarter / ((Real)k * (Real)k);
-        sum += term;
-    }
-    return sum;
-}
-
-// What F_n and sigma are over their power of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
-typedef struct {
-    Real force, by_force;         // N
-    Real stiffness, by_stiffness; // N/m; N m2 for Asperities
-} AtModulus;
-
-static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
-    const Real R = scene->R, R_q = scene->R_q, lambda = scene->lambda, nu = scene->nu;
-    const Real density = (Real)scene->eta * scene->A_n * scene->c;
-    const Real p_m = (1.234L + 1.256L * nu) * (1.0L - nu * nu) * scene->Y;
-    const Real yields = PI * p_m / (2.0L * E);
-    const Real x = lambda * yields * yields * R / R_q;
-    const Real x_E = -2.0L * x / E;
-    const Real decay = expl(-x);
-    AtModulus at;
-    {
-        const Real front = 4.0L / 3.0L * sqrtl(R) * powl(R_q, 1.5L) / powl(lambda, 2.5L);
-        const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
-        const Real gamma = lower_gamma(2.5L, x);
-        const Real sum = front * E * gamma + plastic * (2.0L + x) * decay;
-        const Real slope =
-            front * (gamma + E * powl(x, 1.5L) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
-        at.force = density * sum;
-        at.by_force = slope / sum;
-    }
-    if (scene->contact == CONTACT_ASPERITIES) {
-        const Real area = scene->c * PI * (Real)scene->eta * R * R_q * scene->A_n / (lambda * lambda);
-        const Real bracket = 1.0L + decay;
-        at.stiffness = scene->stiffnessScale * E * area * area * bracket * bracket;
-        at.by_stiffness = 1.0L / E - 2.0L * decay * x_E / bracket;
-    } else if (scene->contact == CONTACT_MINDLIN) {
-        const Real half = expl(-0.5L * x), plastic = 0.5L * powl(2.0L / lambda, 1.5L);
-        const Real upper = upper_gamma_3_2(0.5L * x);
-        const Real sum = lower_gamma(1.5L, x) / powl(lambda, 1.5L) + plastic * half * upper;
-        const Real slope =
-            sqrtl(x) * decay / powl(lambda, 1.5L) - 0.5L * plastic * half * (upper + sqrtl(0.5L * x) * half);
-        const Real tangential = 2.0L * (1.0L - nu) / (2.0L - nu);
-        at.stiffness = scene->stiffnessScale * density * 2.0L * E * tangential * sqrtl(R * R_q) * sum;
-        at.by_stiffness = 1.0L / E + slope * x_E / sum;
-    } else {
-        at.stiffness = scene->contact_sigma;
-        at.by_stiffness = 0.0L;
-    }
-    return at;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The scene at a time
-// ---------------------------------------------------------------------------------------------------------------------
-
-typedef struct {
-    ReferenceScene scene;
-    Real V_start; // m/s
-    Real h, omega, theta_0, decay, swell, excess;
-    Real no_load;   // s, when a load that moves is 0
-    AtModulus held; // at the modulus of the start
-    bool elastic;   // the law is ElasticPlastic
-    bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
-    bool open;      // nothing touches
-    bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
-    Real S;         // N
-    Real top;       // m/s, the largest |V|
-    const Rule* rule;
-    int fineness;
-    Real panels;
-} World;
-
-// At a local time; rates are time derivatives of logarithms, found only when they are asked for.
-typedef struct {
-    Real V;
-    Real sigma;
-    Real coulomb;                  // N, F_C or mu F_n
-    Real g;                        // N, where the bristle's force tends
-    Real B;                        // N, the bound of what does not slip
-    Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
-} At;
-
-// Sine of x + shift pi / 2. The library's own reduction to a quarter turn would take half of all time; pi / 2 in two parts,
-// the first of 41 bits, is as good for some thousand turns.
-static Real sine(Real x, int shift) {
-    static const Real FIRST = 0x1.921fb54442p0L, SECOND = 0x0.d18469898cc51701b8p-40L;
-    const Real quarters = rintl(x * (2.0L / PI));
-    const Real rest = (x - quarters * FIRST) - quarters * SECOND;
-    switch (((long)quarters + shift) & 3) {
-    case 0:
-        return sinl(rest);
-    case 1:
-        return cosl(rest);
-    case 2:
-        return -sinl(rest);
-    default:
-        return -cosl(rest);
-    }
-}
-
-static int sign_of(Real x) { return (x > 0.0L) - (x < 0.0L); }
-
-static Real phase_at(const World* w, Real t) { return w->theta_0 + w->omega * t; }
-
-static bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->a_d != 0.0; }
-
-static bool is_held(const ReferenceScene* s) {
-    return s->V_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 && s->load_rate == 0.0;
-}
-
-static Real velocity(const World* w, Real t) {
-    const Real V_1 = w->scene.V_1, change = w->scene.V_rate * t;
-    if (V_1 == 0.0L) {
-        return w->scene.V + change;
-    }
-    const Real half = 0.5L * w->omega * t;
-    if (fabsl(half) < 0.25L) { // a step of 1e-14 s may lie next to a reversal as a whole
-        return w->V_start + change - 2.0L * V_1 * sine(w->theta_0 + half, 0) * sinl(half);
-    }
-    return w->scene.V + change + V_1 * sine(phase_at(w, t), 1);
-}
-
-static Real velocity_rate(const World* w, Real t) {
-    const Real slope = w->scene.V_rate;
-    return w->scene.V_1 == 0.0 ? slope : slope - w->scene.V_1 * w->omega * sine(phase_at(w, t), 0);
-}
-
-// Integral of V over [a, b].
-static Real travel(const World* w, Real a, Real b) {
-    const Real span = b - a;
-    const Real smooth = ((Real)w->scene.V + w->scene.V_rate * 0.5L * (a + b)) * span;
-    if (w->scene.V_1 == 0.0) {
-        return smooth;
-    }
-    const Real half = 0.5L * w->omega * span;
-    return smooth + 2.0L * w->scene.V_1 / w->omega * sine(phase_at(w, a) + half, 1) * sinl(half);
-}
-
-static Real load_at(const World* w, Real t) {
-    return w->no_load > -INFINITY ? w->scene.load_rate * (t - w->no_load)
-                                  : (Real)w->scene.load + w->scene.load_rate * t;
-}
-
-static AtModulus modulus_at(const World* w, Real t) {
-    return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
-}
-
-// sigma [N/m] where F_n and d are those.
-static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
-    const Real share = force / at->force;
-    return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
-           : s->contact == CONTACT_MINDLIN ? at->stiffness * share
-                                           : at->stiffness * share * share / (d * d * d);
-}
-
-// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma), but for Stribeck's curve, without what cancels in it.
-static void contact_at(const World* w, Real t, bool with_rates, Real* force, Real* sigma, Real* ratio_rate) {
-    const ReferenceScene* s = &w->scene;
-    *sigma = s->contact_sigma;
-    *ratio_rate = *force = 0.0L;
-    if (w->open || (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT)) {
-        return;
-    }
-    const AtModulus at = modulus_at(w, t);
-    const Real theta = phase_at(w, t) + s->phase_d;
-    const Real swing = s->a_d == 0.0 ? 0.0L : s->a_d * sine(theta, 1);
-    Real d, rest_rate;
-    if (s->input == INPUT_LOAD) {
-        const Real load = load_at(w, t);
-        *force = load / w->swell * expl(-w->decay * swing);
-        d = logl(at.force * w->swell / load) / w->decay + swing;
-        rest_rate = (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
-    } else {
-        d = (Real)s->d + s->d_rate * t + swing;
-        *force = at.force * expl(-w->decay * d);
-        rest_rate = s->d_rate;
-    }
-    *sigma = stiffness_at(s, &at, *force, d);
-    if (with_rates) {
-        const Real d_rate = rest_rate - (s->a_d == 0.0 ? 0.0L : s->a_d * w->omega * sine(theta, 0));
-        Real of_E = s->limit == LIMIT_LOAD ? at.by_force : 0.0L;
-        Real of_d = s->limit == LIMIT_LOAD ? -w->decay : 0.0L;
-        if (s->contact == CONTACT_ASPERITIES) {
-            of_E -= at.by_stiffness;
-            of_d += 2.0L * w->decay + 3.0L / d;
-        } else if (s->contact == CONTACT_MINDLIN) {
-            of_E -= at.by_stiffness;
-            of_d += w->decay;
-        }
-        *ratio_rate = of_E * s->E_rate + of_d * d_rate;
-    }
-}
-
-static At scene_at(const World* w, Real t, bool with_rates) {
-    const ReferenceScene* s = &w->scene;
-    At at = {.V = velocity(w, t)};
-    Real force;
-    contact_at(w, t, with_rates, &force, &at.sigma, &at.bound_rate);
-    at.kinetic_rate = at.bound_rate;
-    at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
-    Real curve = 1.0L;
-    if (w->excess != 0.0L) {
-        const Real slow = at.V / s->V_S, peak = w->excess * expl(-slow * slow);
-        curve = 1.0L + peak;
-        if (with_rates) {
-            at.kinetic_rate -= 2.0L * peak * slow * velocity_rate(w, t) / (s->V_S * curve);
-        }
-    }
-    at.g = at.coulomb * curve;
-    at.B = at.coulomb * (1.0L + w->excess);
-    return at;
-}
 
 // -d(delta') / d(delta) [1/s] with |V| = side V, which holds between reversals.
 static Real relaxation(const World* w, const At* at, int side) {
     return w->elastic ? 0.0L : at->sigma * (Real)side * at->V / at->g;
-}
-
-// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
-static Real bound(const World* w, const At* at, bool sticks) {
-    return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
-}
-static Real bound_rate(const World* w, const At* at, bool sticks) {
-    return bound(w, at, sticks) * (sticks || !w->elastic ? at->bound_rate : at->kinetic_rate);
 }
 
 // How fast [m/s] the law alone would carry a bristle that lies on the bound of this side beyond it.
@@ -399,47 +23,6 @@ static Real outward(const World* w, Real t, int side, bool sticks) {
 static Real gap(const World* w, Real t, Real delta, int side, bool sticks) {
     const At at = scene_at(w, t, false);
     return bound(w, &at, sticks) - (Real)side * delta;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Open or closed
-// ---------------------------------------------------------------------------------------------------------------------
-
-static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration, if d is given
-
-// The bristle, or Coulomb's limit, depends on the separation.
-static bool knows_contact(const ReferenceScene* s) {
-    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
-}
-
-static bool is_open(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (!knows_contact(s)) {
-        return false;
-    }
-    if (s->input == INPUT_LOAD) {
-        return !(load_at(w, t) > 0.0L);
-    }
-    const AtModulus at = modulus_at(w, t);
-    const Real d = (Real)s->d + s->d_rate * t, force = at.force * expl(-w->decay * d);
-    return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
-}
-
-// The part of [0, h] in which the contact is closed; empty: from = to = h.
-// The part of [0, h] in which the contact is closed; empty: from = to = h.
-typedef struct {
-    Real from, to;
-} Closed;
-
-static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
-
-static Closed closed_part(const World* w) {
-    const bool at_start = is_open(w, 0.0L), at_end = is_open(w, w->h);
-    if (at_start == at_end) {
-        return (Closed){at_start ? w->h : 0.0L, w->h};
-    }
-    const Real t = crossing(openness, w, 0.0L, w->h);
-    return at_start ? (Closed){t, w->h} : (Closed){0.0L, t};
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -504,7 +87,7 @@ static Real collocate(const World* w, const At* at, const Real* r, Real size, Re
             A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r[j];
         }
     }
-    solve(n, A, Y);
+    solve(n, A, 1, &Y);
     for (int i = 0; i < n; i++) {
         at_delta[i] = delta + Y[i];
     }
@@ -516,7 +99,7 @@ static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
     const int n = rule->stages, last = n - 1;
     const Real size = b - a;
     const bool bristle = !w->open && w->scene.law != LAW_COULOMB;
-    Sums sums = {.path = fabsl(travel(w, a, b)), .end = delta};
+    Sums sums = {.path = fabsl(travel(w, &w->along, a, b)), .end = delta};
     At at[MOST_STAGES];
     Real r[MOST_STAGES] = {0}, rate[MOST_STAGES] = {0}, at_delta[MOST_STAGES] = {0};
     for (int i = 0; i < n; i++) {
@@ -526,13 +109,15 @@ static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
             at_delta[i] = (Real)motion->slip * bound(w, &at[i], false);
             rate[i] = (Real)motion->slip * bound_rate(w, &at[i], false);
         } else if (bristle && w->elastic) {
-            at_delta[i] = delta + travel(w, a, t);
+            at_delta[i] = delta + travel(w, &w->along, a, t);
             rate[i] = at[i].V;
         } else if (bristle) {
             r[i] = relaxation(w, &at[i], motion->sign);
         }
     }
-    sums.change = motion->slip ? at_delta[last] - delta : bristle && w->elastic ? travel(w, a, b) : 0.0L;
+    sums.change = motion->slip            ? at_delta[last] - delta
+                  : bristle && w->elastic ? travel(w, &w->along, a, b)
+                                          : 0.0L;
     if (bristle && !motion->slip && !w->elastic) {
         sums.change = collocate(w, at, r, size, delta, at_delta);
         for (int i = 0; i < n; i++) {
@@ -679,45 +264,6 @@ static void go_over(March* march, const Motion* motion, Real a, Real b) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 typedef struct {
-    Real* time;
-    size_t count, room;
-} Cuts;
-
-static void* memory(void* old, size_t size) {
-    void* found = realloc(old, size);
-    if (found == NULL) {
-        abort();
-    }
-    return found;
-}
-
-static void cut(Cuts* cuts, Real t) {
-    if (cuts->count == cuts->room) {
-        cuts->room = cuts->room ? 2 * cuts->room : 256;
-        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
-    }
-    cuts->time[cuts->count++] = t;
-}
-
-static int by_time(const void* a, const void* b) {
-    const Real x = *(const Real*)a, y = *(const Real*)b;
-    return (x > y) - (x < y);
-}
-
-// Sorted, without repetition, inside the part.
-static void tidy(Cuts* cuts, Closed part) {
-    qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
-    size_t kept = 0;
-    for (size_t k = 0; k < cuts->count; k++) {
-        const Real t = cuts->time[k];
-        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
-            cuts->time[kept++] = t;
-        }
-    }
-    cuts->count = kept;
-}
-
-typedef struct {
     const World* w;
     Real level; // m/s, of V
     int side;   // of a bound
@@ -726,7 +272,7 @@ typedef struct {
 
 static Real velocity_less(const void* context, Real t) {
     const Zero* zero = context;
-    return velocity(zero->w, t) - zero->level;
+    return velocity(zero->w, &zero->w->along, t) - zero->level;
 }
 
 static Real outward_of(const void* context, Real t) {
@@ -852,7 +398,7 @@ static void break_away(March* march, Real t, int side) {
 static void stretch(March* march, Real a, Real b) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
-    Motion motion = {.sign = sign_of(velocity(w, middle))};
+    Motion motion = {.sign = sign_of(velocity(w, &w->along, middle))};
     while (a < b) {
         if (march->slip && !(outward(w, middle, march->slip, false) > 0.0L)) {
             march->slip = 0; // it sticks, or leaves the bound
@@ -1079,210 +625,12 @@ static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* su
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// An input that jumps: the limit of a fast ramp
-// ---------------------------------------------------------------------------------------------------------------------
-
-// The ends of the ramp: what is linear, and what is so in its logarithm.
-typedef struct {
-    Real V, d, E;
-    Real ln_limit, ln_scale, ln_ratio, ln_V_S; // of F_C or mu, of the stiffness's factor, of R and V_S
-} Corner;
-
-static Corner corner_of(const World* w) {
-    const ReferenceScene* s = &w->scene;
-    const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
-    const Real rest =
-        s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
-    Corner corner = {.V = velocity(w, 0.0L), .d = rest + swing, .E = s->E};
-    corner.ln_limit = logl(s->limit == LIMIT_LOAD ? s->mu : s->F_C);
-    corner.ln_scale = logl(s->contact == CONTACT_CONSTANT ? s->contact_sigma : s->stiffnessScale);
-    corner.ln_ratio = logl(1.0L + w->excess);
-    corner.ln_V_S = logl(s->V_S);
-    return corner;
-}
-
-typedef struct {
-    const World* w;
-    Corner from, to;
-} Ramp;
-
-typedef struct {
-    Real g, sigma, B;
-} OnRamp;
-
-static OnRamp ramp_at(const Ramp* ramp, Real x) {
-#define LINEAR(name) (ramp->from.name + x * (ramp->to.name - ramp->from.name))
-    ReferenceScene s = ramp->w->scene;
-    s.stiffnessScale = 1.0;
-    s.contact_sigma = 1.0;
-    const AtModulus at = at_modulus(&s, LINEAR(E));
-    const Real d = LINEAR(d), force = at.force * expl(-ramp->w->decay * d);
-    const Real ratio = expl(LINEAR(ln_ratio)), slow = LINEAR(V) / expl(LINEAR(ln_V_S));
-    const Real coulomb = expl(LINEAR(ln_limit)) * (s.limit == LIMIT_LOAD ? force : 1.0L);
-    OnRamp on = {.sigma = expl(LINEAR(ln_scale)) * stiffness_at(&s, &at, force, d), .B = ratio * coulomb};
-    on.g = ramp->w->elastic ? coulomb * (1.0L + (ratio - 1.0L) * expl(-slow * slow)) : on.B;
-    return on;
-#undef LINEAR
-}
-
-// Integral of g |dD| over [a, b], where D = g / sigma falls: D' by the rule's matrix, and by halves until they agree.
-static Real heat_along(const Ramp* ramp, Real a, Real b, int depth) {
-    const Rule* rule = ramp->w->rule;
-    const Real half[3] = {a, 0.5L * (a + b), b};
-    Real sum[3] = {0}; // of the halves, of the whole
-    for (int part = 0; part < 3; part++) {
-        const Real from = half[part % 2], to = part == 2 ? b : half[part + 1];
-        const OnRamp first = ramp_at(ramp, from);
-        Real A[MOST_STAGES][MOST_STAGES], D[MOST_STAGES], g[MOST_STAGES];
-        for (int i = 0; i < rule->stages; i++) {
-            const OnRamp on = ramp_at(ramp, from + (to - from) * rule->node[i]);
-            g[i] = on.g;
-            D[i] = on.g / on.sigma - first.g / first.sigma;
-            for (int j = 0; j < rule->stages; j++) {
-                A[i][j] = rule->to[i][j];
-            }
-        }
-        solve(rule->stages, A, D);
-        for (int i = 0; i < rule->stages; i++) {
-            sum[part] -= rule->weight[i] * g[i] * D[i];
-        }
-    }
-    const OnRamp on = ramp_at(ramp, a);
-    const Real least = 1e-17L * on.g * on.g / on.sigma;
-    const bool agree = fabsl(sum[0] + sum[1] - sum[2]) <= 1e-14L * fabsl(sum[2]) + least;
-    return agree || depth == 0
-               ? sum[0] + sum[1]
-               : heat_along(ramp, a, half[1], depth - 1) + heat_along(ramp, half[1], b, depth - 1);
-}
-
-// A length [m] and the bound on the ramp that it is to hold.
-typedef struct {
-    const Ramp* ramp;
-    Real length;
-    bool sticks;
-} Held;
-
-static Real excess_length(const void* context, Real x) {
-    const Held* held = context;
-    const OnRamp on = ramp_at(held->ramp, x);
-    return held->length - (held->sticks ? on.B : on.g) / on.sigma;
-}
-
-// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher there.
-static Real lowest(const Held* held, Real a, Real b) {
-    const Real near = 1e-6L * (b - a);
-    const Real at_a = excess_length(held, a), at_b = excess_length(held, b);
-    if (excess_length(held, a + near) > at_a && fmaxl(excess_length(held, b - near), at_a) > at_b) {
-        for (int k = 0; k < 45; k++) { // golden section
-            const Real x = a + 0.381966L * (b - a), y = b - 0.381966L * (b - a);
-            *(excess_length(held, x) > excess_length(held, y) ? &b : &a) =
-                excess_length(held, x) > excess_length(held, y) ? y : x;
-        }
-        return 0.5L * (a + b);
-    }
-    return at_a > at_b ? a : b;
-}
-
-// Moves the bristle along the ramp from before to the start of w; returns the heat.
-static Real ride(const World* before, const World* w, Real* delta, int* slip) {
-    enum { CELLS = 64 };
-    const Ramp ramp = {w, corner_of(before), corner_of(w)};
-    const int side = sign_of(*delta);
-    const bool sticks = w->elastic && w->excess + before->excess > 0.0L && *slip == 0;
-    Held held = {&ramp, fabsl(*delta), sticks};
-    Real heat = 0.0L;
-    for (int k = 0; k < CELLS; k++) {
-        Real from = (Real)k / CELLS;
-        for (;;) {
-            const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
-            // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
-            if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
-                break;
-            }
-            from = excess_length(&held, from) > 0.0L ? from : crossing(excess_length, &held, from, to);
-            const OnRamp there = ramp_at(&ramp, from), end = ramp_at(&ramp, to);
-            if (held.sticks) { // it breaks away
-                const Real kinetic = there.g / there.sigma;
-                heat += 0.5L * there.sigma * (held.length - kinetic) * (held.length + kinetic);
-                held.length = kinetic;
-                held.sticks = false;
-                *slip = side;
-            } else {
-                heat += heat_along(&ramp, from, to, 12);
-                held.length = end.g / end.sigma;
-                from = to;
-            }
-        }
-    }
-    *delta = (Real)side * held.length;
-    return heat;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
 // The step
 // ---------------------------------------------------------------------------------------------------------------------
-
-// Mean of the limit over a period of the vibration with the inputs of a time [N].
-static Real mean_limit(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (s->limit == LIMIT_CONSTANT) {
-        return s->F_C;
-    }
-    if (is_open(w, t)) {
-        return 0.0L;
-    }
-    if (s->input == INPUT_LOAD) {
-        return s->mu * load_at(w, t);
-    }
-    const AtModulus at = modulus_at(w, t);
-    return s->mu * at.force * w->swell * expl(-w->decay * ((Real)s->d + s->d_rate * t));
-}
-
-static Real largest_force(const World* w, Real delta) {
-    const ReferenceScene* s = &w->scene;
-    const bool bristle = s->law != LAW_COULOMB;
-    Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
-    if (bristle && !is_open(w, 0.0L)) {
-        S = fmaxl(S, scene_at(w, 0.0L, false).sigma * fabsl(delta));
-    }
-    return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
-}
-
-// The same with its inputs held.
-static World held_world(const World* w, Real h) {
-    World held = *w;
-    held.scene.V_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate = 0.0;
-    held.no_load = -INFINITY;
-    held.h = h;
-    return held;
-}
 
 static bool has_many_periods(const World* w) {
     return is_held(&w->scene) && vibrates(&w->scene) && w->h * w->scene.f > 4.0L;
 }
-static World make_world(const ReferenceScene* scene, Real h, int fineness) {
-    World w = {.scene = *scene, .h = h, .fineness = fineness, .elastic = scene->law == LAW_ELASTIC_PLASTIC};
-    w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
-    w.top = fmaxl(fabsl((Real)scene->V), fabsl((Real)scene->V + scene->V_rate * h)) + fabsl((Real)scene->V_1);
-    w.excess =
-        scene->law == LAW_LUGRE || scene->law == LAW_ELASTIC_PLASTIC ? (Real)scene->staticRatio - 1.0L : 0.0L;
-    w.omega = 2.0L * PI * scene->f;
-    // f start, of which whole numbers are taken off, exactly: the product and what it loses in rounding
-    const double cycles = scene->f * scene->start;
-    const double lost = fma(scene->f, scene->start, -cycles);
-    w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);
-    w.V_start = (Real)scene->V + scene->V_1 * sine(w.theta_0, 1);
-    w.decay = (Real)scene->lambda / scene->R_q;
-    w.swell = bessel_I0(w.decay * scene->a_d);
-    w.held = at_modulus(scene, scene->E);
-    w.rule = rule_of(fineness == 1 ? 10 : 12);
-    const Real load_end = (Real)scene->load + scene->load_rate * h;
-    w.no_load = (scene->load > 0.0) != (load_end > 0.0L) && scene->load_rate != 0.0
-                    ? -(Real)scene->load / scene->load_rate
-                    : -INFINITY;
-    return w;
-}
-
 // F_t [N] at a time.
 static Real force_at(const World* w, Real t, Real delta, int slip) {
     const ReferenceScene* s = &w->scene;
@@ -1301,33 +649,6 @@ static Real force_at(const World* w, Real t, Real delta, int slip) {
     const Real rate =
         slips ? (Real)slip * bound_rate(w, &at, false) : at.V - relaxation(w, &at, sign_of(at.V)) * delta;
     return at.sigma * delta + s->sigma_1 * rate + s->sigma_2 * at.V;
-}
-
-// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
-static Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
-    const ReferenceScene* s = &w->scene;
-    const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
-    if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
-        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
-        const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
-        *delta = 0.0L;
-        *slip = 0;
-        return heat;
-    }
-    if (!w->bounded) {
-        return 0.0L;
-    }
-    if (before != NULL) {
-        return ride(&past, w, delta, slip);
-    }
-    const At at = scene_at(w, 0.0L, false);
-    const Real length = fabsl(*delta), lies = bound(w, &at, false);
-    if (length <= (1.0L + 1e-11L) * bound(w, &at, *slip == 0)) {
-        return 0.0L;
-    }
-    *slip = w->elastic ? sign_of(*delta) : 0;
-    *delta = (Real)sign_of(*delta) * lies;
-    return 0.5L * at.sigma * (length - lies) * (length + lies);
 }
 
 // The deflection at the start that the periodic state of held inputs has, without vibration the one of sliding for ever.
@@ -1369,34 +690,6 @@ static bool advance(World* w, Real* delta, int* slip, Sums* sums) {
     return known && rest.panels <= MOST_PANELS;
 }
 
-ReferenceScene reference_scene(void) {
-    return (ReferenceScene){.V = 0.005,
-                            .d = 14e-6,
-                            .E = 58.556936170e9,
-                            .load = 312.44,
-                            .f = 20e3,
-                            .F_C = 55.0,
-                            .mu = 0.176,
-                            .staticRatio = 1.0,
-                            .V_S = 0.01,
-                            .contact_sigma = 2.5e6,
-                            .stiffnessScale = 1.0,
-                            .R_q = 6e-6,
-                            .R = 1.7e-6,
-                            .eta = 47e9,
-                            .A_n = 1e-4,
-                            .nu = 0.33,
-                            .Y = 410e6,
-                            .c = 17.0,
-                            .lambda = 3.0,
-                            .h = 1e-4,
-                            .law = LAW_DAHL,
-                            .limit = LIMIT_CONSTANT,
-                            .contact = CONTACT_ASPERITIES,
-                            .input = INPUT_SEPARATION,
-                            .initial = START_GIVEN};
-}
-
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result) {
     World w = make_world(scene, scene->h, fineness);
@@ -1429,11 +722,6 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     result->work = (double)sums.work;
     result->heat = (double)sums.heat;
     result->path = (double)sums.path;
-}
-
-bool reference_is_open(const ReferenceScene* scene) {
-    const World w = make_world(scene, 0.0L, 1);
-    return is_open(&w, 0.0L);
 }
 
 bool reference_settled_force(const ReferenceScene* scene, double* force, double* S) {

@@ -22,28 +22,32 @@ typedef struct {
     double h;                                  // s
     double V, d, E, load;                      // m/s, m, Pa, N at the start of the step
     double V_rate, d_rate, E_rate, load_rate;  // per second
-    double f, V_1, a_d, phase_d;               // Hz, m/s, m, rad
+    double V_y, V_y_rate;                      // m/s, m/s2
+    double f, V_1, a_d, phase_d, V_2, phase_2; // Hz, m/s, m, rad, m/s, rad
     double F_C, mu, staticRatio, V_S;          // N, 1, 1, m/s
     double sigma_1, sigma_2;                   // N s/m
-    double delta_0;                            // m
+    double delta_0, delta_y_0;                 // m
     double contact_sigma, stiffnessScale;      // N/m, 1
     double R_q, R, eta, A_n, nu, Y, c, lambda; // m, m, 1/m2, m2, 1, Pa, 1, 1
     int law, limit, contact, input, initial;
     int slips; // side along which a bristle with static friction slips at the start, or 0
 } ReferenceScene;
 
-enum { REFERENCE_DOUBLES = 31 };
+enum { REFERENCE_DOUBLES = 36 };
 
 typedef struct {
-    double delta;     // m, at the end
-    double slips;     // -1, 0 or 1 at the end
-    double F_t;       // N, at the end
-    double F_t_mean;  // N
-    double work;      // J, of F_t in the step
-    double heat;      // J, with that of a jump before the step
-    double F_t_start; // N, after that jump, the inputs held
-    double S;         // N, what the errors of forces are relative to
-    double path;      // m, time integral of |V|
+    double delta;                             // m, at the end
+    double slips;                             // -1, 0 or 1 at the end
+    double F_t;                               // N, at the end
+    double F_t_mean;                          // N
+    double work;                              // J, of F_t in the step
+    double heat;                              // J, with that of a jump before the step
+    double F_t_start;                         // N, after that jump, the inputs held
+    double S;                                 // N, what the errors of forces are relative to
+    double path;                              // m, time integral of |V|
+    double delta_y, F_y, F_y_mean, F_y_start; // the same, transverse
+    double
+        error; // plane_step: of F_t_mean, F_y_mean over S, work and heat over S path, at the most, but for rounding
     bool known; // false: it takes more panels or cycles than the reference goes through, and only S is known
 } ReferenceStep;
 

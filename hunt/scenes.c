@@ -7,6 +7,8 @@
 static const double TURN = 6.283185307179586;
 // The domain of docs/numerics.md.
 static const double LEAST_KAPPA = 1e-3, MOST_KAPPA = 1e8;
+static const double LEAST_PLANAR_KAPPA = 1e-2, MOST_PLANAR_KAPPA = 1e6;
+static const double MOST_PLANAR = 30.0;   // periods of a step
 static const double SHORTEST = 1e-9;      // s, of a step
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
@@ -37,7 +39,9 @@ static int pick(Draw* draw, int count) { return (int)(unit(draw) * count); }
 // Parts of a scene
 // ---------------------------------------------------------------------------------------------------------------------
 
-static double top_speed(const ReferenceScene* s) { return fmax(fmax(fabs(s->V), s->V_1), 1e-6); }
+static double top_speed(const ReferenceScene* s) {
+    return fmax(fmax(hypot(s->V, s->V_y), fmax(s->V_1, s->V_2)), 1e-6);
+}
 
 static double velocity(Draw* draw, double V_1) {
     const double kind = unit(draw);
@@ -54,6 +58,23 @@ static double velocity(Draw* draw, double V_1) {
         return V_1 * between(draw, -3.0, 3.0);
     }
     return sign(draw) * log_between(draw, 1e-5, 10.0);
+}
+
+// A velocity of the plane for that size of the vibration: zeta, and any direction, or along or across.
+static void planar_velocity(Draw* draw, double swing, double* V, double* V_y) {
+    const double size = swing * log_between(draw, 1e-4, 10.0);
+    const double angle = chance(draw, 0.5) ? TURN / 4.0 * pick(draw, 4) : between(draw, 0.0, TURN);
+    *V = size * cos(angle) * (fabs(cos(angle)) > 1e-9);
+    *V_y = size * sin(angle) * (fabs(sin(angle)) > 1e-9);
+}
+
+// A vibration across alone, along a line, around a circle, or any ellipse.
+static void planar(Draw* draw, ReferenceScene* s) {
+    const double kind = unit(draw);
+    s->V_2 = log_between(draw, 1e-3, 3.0);
+    s->V_1 = kind < 0.3 ? 0.0 : s->V_2 * (kind < 0.5 ? 1.0 : log_between(draw, 1e-3, 10.0));
+    s->phase_2 = kind < 0.5 ? TURN / 4.0 * sign(draw) : kind < 0.6 ? 0.0 : between(draw, -TURN, TURN);
+    planar_velocity(draw, fmax(s->V_1, s->V_2), &s->V, &s->V_y);
 }
 
 static void surfaces(Draw* draw, ReferenceScene* s) {
@@ -117,8 +138,10 @@ static void friction(Draw* draw, int law, ReferenceScene* s) {
     s->contact = 1 + pick(draw, 3);
     s->input = chance(draw, 0.45) ? INPUT_LOAD : INPUT_SEPARATION;
     s->load = log_between(draw, 1e-1, 1e3);
-    const double scale =
-        log_between(draw, LEAST_KAPPA, chance(draw, 0.5) ? 1e3 : MOST_KAPPA) / scene_kappa(s);
+    const bool plane = s->V_2 != 0.0;
+    const double least = plane ? LEAST_PLANAR_KAPPA : LEAST_KAPPA,
+                 most = plane ? MOST_PLANAR_KAPPA : MOST_KAPPA;
+    const double scale = log_between(draw, least, chance(draw, 0.5) ? 1e3 : most) / scene_kappa(s);
     *(s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
         s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
@@ -154,11 +177,14 @@ static double length(Draw* draw, const ReferenceScene* s, double most_periods) {
     return fmax(SHORTEST, periods / s->f);
 }
 
-static ReferenceScene contact_drawn(Draw* draw, int law) {
+static ReferenceScene contact_drawn(Draw* draw, int law, bool plane) {
     ReferenceScene s = reference_scene();
     s.f = log_between(draw, 1e2, 1e5);
     s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
     s.V = velocity(draw, s.V_1);
+    if (plane) {
+        planar(draw, &s);
+    }
     surfaces(draw, &s);
     friction(draw, law, &s);
     if (chance(draw, 0.6)) {
@@ -179,6 +205,12 @@ static void rates(Draw* draw, ReferenceScene* s) {
             to = -s->V * log_between(draw, 1e-9, 10.0);
         }
         s->V_rate = fmax(-3.0 * top, fmin(3.0 * top, to - s->V)) / s->h;
+    }
+    if (s->V_2 != 0.0 && chance(draw, 0.6)) {
+        double to, to_y;
+        planar_velocity(draw, fmax(s->V_1, s->V_2), &to, &to_y);
+        s->V_rate = (to - s->V) / s->h;
+        s->V_y_rate = (to_y - s->V_y) / s->h;
     }
     if (chance(draw, 0.5)) {
         const double room = s->d - s->a_d, most = chance(draw, 0.2) ? 18.0 : 2.0;
@@ -217,8 +249,13 @@ static void change_parameters(Draw* draw, ReferenceScene* s) {
 // Inputs that jump, tunable parameters, the length of the step and its rates.
 static void step_at_random(Draw* draw, ReferenceScene* s) {
     scale(draw, &s->V_1, 3.0);
+    scale(draw, &s->V_2, 3.0);
     if (chance(draw, 0.3)) {
-        s->V = velocity(draw, s->V_1);
+        if (s->V_2 != 0.0) {
+            planar_velocity(draw, fmax(s->V_1, s->V_2), &s->V, &s->V_y);
+        } else {
+            s->V = velocity(draw, s->V_1);
+        }
     }
     scale(draw, &s->d, 1.1);
     s->d = fmax(s->d, 1.1 * s->a_d);
@@ -233,7 +270,7 @@ static void step_at_random(Draw* draw, ReferenceScene* s) {
         s->phase_d = between(draw, -TURN, TURN);
     }
     const bool linear = chance(draw, 0.4);
-    s->h = length(draw, s, linear ? MOST_MOVING : MOST_PERIODS);
+    s->h = length(draw, s, s->V_2 != 0.0 ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS);
     if (linear) {
         rates(draw, s);
     }
@@ -284,16 +321,20 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
                            ReferenceScene* s) {
     double load, d;
     press(draw, full, signal->load[k], &load, &d);
-    const double V = full->V * signal->V[k];
+    const double V = full->V * signal->V[k], V_y = full->V_y * signal->V[k];
     s->V_1 = full->V_1 * signal->vibration[k];
+    s->V_2 = full->V_2 * signal->vibration[k];
     s->a_d = full->a_d * signal->vibration[k];
     if (linear && k > 0) {
         s->V = full->V * signal->V[k - 1]; // as the user samples it, not as the last step's rate left it
+        s->V_y = full->V_y * signal->V[k - 1];
         s->V_rate = (V - s->V) / s->h;
+        s->V_y_rate = (V_y - s->V_y) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;
     } else {
         s->V = V;
+        s->V_y = V_y;
         s->d = d;
         s->load = load;
     }
@@ -306,19 +347,22 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
 static bool is_in_domain(const ReferenceScene* s) {
     const ReferenceScene end = scene_after(s);
     const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
-    const bool vibrates = s->V_1 != 0.0 || s->a_d != 0.0;
+    const bool vibrates = s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0;
     return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
            !(vibrates && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
            (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }
 
-static Sequence sequence_of(Draw draw, int law) {
+static Sequence sequence_of(Draw draw, int law, bool plane) {
     Sequence sequence = {.method = 1};
-    const ReferenceScene full = contact_drawn(&draw, law);
+    const ReferenceScene full = contact_drawn(&draw, law, plane);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
-    const double most = !linear ? MOST_PERIODS : of_user ? MOST_MOVING / MOST_STEPS : MOST_MOVING;
+    const double most = plane     ? MOST_PLANAR
+                        : !linear ? MOST_PERIODS
+                        : of_user ? MOST_MOVING / MOST_STEPS
+                                  : MOST_MOVING;
     const double usual_h = length(&draw, &full, most);
     ReferenceScene before = full;
     for (int k = 0; k < wanted; k++) {
@@ -340,6 +384,11 @@ static Sequence sequence_of(Draw draw, int law) {
         if (k == 0) {
             s.delta_0 =
                 s.law == LAW_COULOMB || (of_user && chance(&draw, 0.7)) ? 0.0 : deflection(&draw, &full);
+            if (plane) {
+                const double angle = between(&draw, 0.0, TURN);
+                s.delta_y_0 = s.delta_0 * sin(angle);
+                s.delta_0 *= cos(angle);
+            }
             s.initial = chance(&draw, 0.15) ? START_SETTLED : START_GIVEN;
         }
         if (!is_in_domain(&s)) {
@@ -352,9 +401,9 @@ static Sequence sequence_of(Draw draw, int law) {
     return sequence;
 }
 
-Sequence sequence_drawn(uint64_t seed, uint64_t number, int law) {
+Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane) {
     Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
     next(&draw);
     draw.state ^= next(&draw);
-    return sequence_of(draw, law);
+    return sequence_of(draw, law, plane);
 }

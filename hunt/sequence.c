@@ -25,7 +25,8 @@ typedef struct {
 // clang-format off
 static const Field TABLE[FIELDS] = {
     NUMBER(start), NUMBER(h), NUMBER(V), NUMBER(d), NUMBER(E), NUMBER(load), NUMBER(V_rate), NUMBER(d_rate),
-    NUMBER(E_rate), NUMBER(load_rate), NUMBER(f), NUMBER(V_1), NUMBER(a_d), NUMBER(phase_d), NUMBER(F_C), NUMBER(mu),
+    NUMBER(E_rate), NUMBER(load_rate), NUMBER(f), NUMBER(V_1), NUMBER(a_d), NUMBER(phase_d), NUMBER(V_y), NUMBER(V_y_rate), NUMBER(V_2),
+    NUMBER(phase_2), NUMBER(delta_y_0), NUMBER(F_C), NUMBER(mu),
     NUMBER(staticRatio), NUMBER(V_S), NUMBER(sigma_1), NUMBER(sigma_2), NUMBER(delta_0), NUMBER(contact_sigma),
     NUMBER(stiffnessScale), NUMBER(R_q), NUMBER(R), NUMBER(eta), NUMBER(A_n), NUMBER(nu), NUMBER(Y), NUMBER(c),
     NUMBER(lambda),
@@ -61,10 +62,11 @@ ReferenceScene scene_after(const ReferenceScene* before) {
     ReferenceScene s = *before;
     s.start = before->start + before->h;
     s.V += before->V_rate * before->h;
+    s.V_y += before->V_y_rate * before->h;
     s.d += before->d_rate * before->h;
     s.E += before->E_rate * before->h;
     s.load += before->load_rate * before->h;
-    s.V_rate = s.d_rate = s.E_rate = s.load_rate = 0.0;
+    s.V_rate = s.V_y_rate = s.d_rate = s.E_rate = s.load_rate = 0.0;
     s.initial = START_GIVEN;
     return s;
 }

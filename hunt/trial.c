@@ -4,7 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 
-const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f", "Q_f", "F_t_start", "side", "F_t_settled"};
+#include "plane_reference.h"
+
+const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f",       "Q_f",  "F_t_start",
+                                         "F_y", "F_y_mean", "F_y_start", "side", "settled"};
 
 static const double ROUNDING = 1e-11;            // of S, beside the tolerance
 static const double DIGITS = 32.0 * DBL_EPSILON; // of a deflection, as the state holds it
@@ -15,12 +18,16 @@ typedef struct {
     double value[OF_SETTLED];
 } Values;
 
-static Values of_fmu(const FmuStep* s) {
-    return (Values){{s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->slips}};
+// In the plane a side is only whether the bristle slips.
+static Values of_fmu(const FmuStep* s, bool planar) {
+    const double side = planar ? (double)(s->slips != 0.0) : s->slips;
+    return (Values){
+        {s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->F_y, s->F_y_mean, s->F_y_start, side}};
 }
 
 static Values of_reference(const ReferenceStep* s) {
-    return (Values){{s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->slips}};
+    return (Values){
+        {s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->F_y, s->F_y_mean, s->F_y_start, s->slips}};
 }
 
 static double over(double error, double tolerance, double scale, double rounding) {
@@ -28,13 +35,16 @@ static double over(double error, double tolerance, double scale, double rounding
 }
 
 // The worst error of a step between the least and the largest that the reference says.
-static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, const Values* least,
-                               const Values* largest, double tolerance) {
+static Verdict verdict_between(const TrialStep* taken, const Values* least, const Values* largest,
+                               double tolerance) {
+    const ReferenceStep* truth = &taken->truth;
+    const FmuStep* step = &taken->step;
     const double S = fmax(truth->S, LEAST_S);
-    const double path = truth->path + fabs(truth->delta - step->delta_start);
-    const double stored =
-        LEAST_S + DIGITS * S * (fabs(step->delta_start) + fabs(step->delta)); // over at least 1 m
-    const Values found = of_fmu(step);
+    const double path =
+        truth->path + hypot(truth->delta - step->delta_start, truth->delta_y - step->delta_y_start);
+    const double lengths = hypot(step->delta_start, step->delta_y_start) + hypot(step->delta, step->delta_y);
+    const double stored = LEAST_S + DIGITS * S * lengths; // over at least 1 m
+    const Values found = of_fmu(step, taken->planar);
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < OF_SETTLED; k++) {
         const double x = found.value[k];
@@ -53,15 +63,18 @@ static Verdict verdict_between(const ReferenceStep* truth, const FmuStep* step, 
 // The step from where the FMU stood before it. A settled start is judged by its own force.
 static void step_of_reference(const ReferenceScene* before, const ReferenceScene* scene, const FmuStep* step,
                               ReferenceStep* truth) {
-    reference_step(before, scene, 1, truth);
+    const bool planar = plane_is_needed(before, scene);
+    (planar ? plane_step : reference_step)(before, scene, 1, truth);
     if (scene->initial == START_SETTLED && scene->law != LAW_COULOMB) {
         const ReferenceStep settled = *truth;
         ReferenceScene from = *scene;
         from.initial = START_GIVEN;
         from.delta_0 = step->delta_start;
+        from.delta_y_0 = step->delta_y_start;
         from.slips = step->slips_start;
-        reference_step(NULL, &from, 1, truth);
+        (planar ? plane_step : reference_step)(NULL, &from, 1, truth);
         truth->F_t_start = settled.F_t_start;
+        truth->F_y_start = settled.F_y_start;
         truth->known = truth->known && settled.known;
     }
 }
@@ -85,18 +98,22 @@ static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* t
             largest.value[i] = fmax(largest.value[i], values.value[i]);
         }
     }
-    return verdict_between(&taken->truth, &taken->step, &least, &largest, tolerance);
+    return verdict_between(taken, &least, &largest, tolerance);
 }
 
 // The error of F_t_settled over the tolerance, -1 if the reference does not say.
 static double settled_ratio(TrialStep* taken, int method, double tolerance) {
     ReferenceScene still = taken->scene;
-    double *found = taken->settled, S, ratio = -1.0;
-    found[0] = found[1] = NAN;
+    double *found = taken->settled[0], *truth = taken->settled[1], S, ratio = -1.0;
+    found[0] = found[1] = truth[0] = truth[1] = NAN;
     still.initial = START_GIVEN;
     FmuRun* run = fmu_open(&still, method, tolerance);
-    if (fmu_settled_force(run, &found[0]) && reference_settled_force(&still, &found[1], &S)) {
-        ratio = over(found[0] - found[1], tolerance, fmax(S, LEAST_S), 0.0);
+    const bool planar = plane_is_needed(NULL, &still);
+    truth[1] = planar ? NAN : 0.0;
+    if (fmu_settled_force(run, found) &&
+        (planar ? plane_settled_force : reference_settled_force)(&still, truth, &S)) {
+        const double off = fmax(fabs(found[0] - truth[0]), fabs(found[1] - truth[1]));
+        ratio = isnan(found[0] + found[1]) ? INFINITY : over(off, tolerance, fmax(S, LEAST_S), 0.0);
     }
     fmu_close(run);
     return ratio;
@@ -104,6 +121,7 @@ static double settled_ratio(TrialStep* taken, int method, double tolerance) {
 
 static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, int method,
                   double tolerance) {
+    taken->planar = plane_is_needed(before, &taken->scene);
     step_of_reference(before, &taken->scene, &taken->step, &taken->truth);
     if (!taken->truth.known) {
         trial->unknown++;
@@ -111,7 +129,7 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
         return;
     }
     const Values truth = of_reference(&taken->truth);
-    taken->verdict = verdict_between(&taken->truth, &taken->step, &truth, &truth, tolerance);
+    taken->verdict = verdict_between(taken, &truth, &truth, tolerance);
     if (!(taken->verdict.ratio <= 1.0)) {
         taken->verdict = verdict_by_clock(before, taken, tolerance);
     }
@@ -125,17 +143,19 @@ static void look_at(TrialStep* taken, const ReferenceScene* before) {
     ReferenceScene now = taken->scene;
     const ReferenceScene end = scene_after(&now);
     const bool ends_open = reference_is_open(&end), was_open = reference_is_open(before ? before : &now);
-    const bool moves = now.V_rate != 0.0 || now.d_rate != 0.0 || now.E_rate != 0.0 || now.load_rate != 0.0;
-    const bool vibrates = now.V_1 != 0.0 || now.a_d != 0.0;
+    const bool moves = now.V_rate != 0.0 || now.V_y_rate != 0.0 || now.d_rate != 0.0 || now.E_rate != 0.0 ||
+                       now.load_rate != 0.0;
+    const bool vibrates = now.V_1 != 0.0 || now.V_2 != 0.0 || now.a_d != 0.0;
     taken->is[IS_STATIC] = now.staticRatio > 1.0 && (now.law == LAW_ELASTIC_PLASTIC || now.law == LAW_LUGRE);
     taken->is[OPENS] = ends_open && !was_open;
     taken->is[CLOSES] = was_open && !ends_open;
     taken->is[LEAPS] = moves && vibrates && now.h * now.f >= 10.0 && now.law != LAW_COULOMB;
-    now.h = now.V_rate = now.d_rate = now.E_rate = now.load_rate = 0.0;
+    now.h = now.V_rate = now.V_y_rate = now.d_rate = now.E_rate = now.load_rate = 0.0;
     for (int k = 0; before && k < REFERENCE_DOUBLES; k++) {
         ReferenceScene past = *before;
         past.h = 0.0;
         past.delta_0 = now.delta_0;
+        past.delta_y_0 = now.delta_y_0;
         taken->is[JUMPS] = taken->is[JUMPS] || scene_get(&past, k) != scene_get(&now, k);
     }
 }
@@ -154,6 +174,7 @@ void trial_run(Trial* trial, const Sequence* sequence, double tolerance) {
         if (k > 0) {
             before = scene_after(&before);
             taken->scene.delta_0 = taken->step.delta_start;
+            taken->scene.delta_y_0 = taken->step.delta_y_start;
             taken->scene.slips = taken->step.slips_start;
         }
         grade(trial, taken, k == 0 ? NULL : &before, sequence->method, tolerance);

@@ -2,7 +2,7 @@
 //
 // The rule: with S, the largest force of the step (reference.h), and path, the way of the surfaces and of the bristle
 // (integral of |V| dt + |delta_end - delta_start|),
-// - F_t and F_t_mean are within tolerance S; F_t_start, the force after a jump or a settled start, too;
+// - F_t and F_t_mean are within tolerance S; F_t_start, the force after a jump or a settled start, too; F_y likewise;
 // - the W_f and Q_f of the step are within tolerance S path;
 // - the side along which a bristle with static friction slips is the same at the end;
 // - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
@@ -17,7 +17,19 @@
 #include "fmu_step.h"
 #include "sequence.h"
 
-enum { OF_FORCE, OF_MEAN, OF_WORK, OF_HEAT, OF_START, OF_SIDE, OF_SETTLED, GRADES };
+enum {
+    OF_FORCE,
+    OF_MEAN,
+    OF_WORK,
+    OF_HEAT,
+    OF_START,
+    OF_FORCE_Y,
+    OF_MEAN_Y,
+    OF_START_Y,
+    OF_SIDE,
+    OF_SETTLED,
+    GRADES
+};
 extern const char* const GRADE_NAMES[GRADES];
 
 typedef struct {
@@ -33,8 +45,9 @@ typedef struct {
     ReferenceScene scene; // from where the FMU stood
     FmuStep step;
     ReferenceStep truth;
-    double settled[2]; // N, F_t_settled of the FMU and of the reference, at the first step
+    double settled[2][2]; // N, F_t_settled and F_y_settled of the FMU and of the reference, at the first step
     Verdict verdict;
+    bool planar; // it is in the plane
     bool is[KINDS];
 } TrialStep;
 

@@ -2,73 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
-from functools import cache
 from typing import Any
 
 import pytest
-
-from workshop.build import build_targets
-
-NUMBERS = """start h V d E load V_rate d_rate E_rate load_rate f V_1 a_d phase_d F_C mu staticRatio V_S
-    sigma_1 sigma_2 delta_0 contact_sigma stiffnessScale R_q R eta A_n nu Y c lambda""".split()
-CHOICES = {
-    "law": ("Dahl", "Coulomb", "ElasticPlastic", "LuGre"),
-    "limit": ("Constant", "Load"),
-    "contact": ("Asperities", "Constant", "Mindlin"),
-    "input": ("Separation", "Load"),
-    "initial": ("Given", "Settled"),
-}
-RESULTS = "delta slips F_t F_t_mean work heat F_t_start S path".split()
-LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
-
-
-class Scene(ctypes.Structure):
-    _fields_ = [
-        *((name, ctypes.c_double) for name in NUMBERS),
-        *((name, ctypes.c_int) for name in (*CHOICES, "slips")),
-    ]
-
-
-class Step(ctypes.Structure):
-    _fields_ = [*((name, ctypes.c_double) for name in RESULTS), ("known", ctypes.c_bool)]
-
-
-@cache
-def library() -> Any:
-    found = ctypes.CDLL(str(build_targets("default", ["hunt_reference"]) / "hunt/libhunt_reference.so"))
-    found.reference_scene.restype = Scene
-    return found
-
-
-def scene(**values: Any) -> Scene:
-    made = library().reference_scene()
-    for name, value in values.items():
-        setattr(made, name, 1 + CHOICES[name].index(value) if name in CHOICES else value)
-    return made
-
-
-def step(now: Scene, before: Scene | None = None, fineness: int = 1) -> Any:
-    result = Step()
-    past = ctypes.byref(before) if before is not None else None
-    library().reference_step(past, ctypes.byref(now), fineness, ctypes.byref(result))
-    assert result.known
-    return result
-
-
-def after(before: Scene, result: Any, **values: Any) -> tuple[Scene, Scene]:
-    """What the step left, and the scene of the next one."""
-    left = Scene.from_buffer_copy(before)
-    left.start += before.h
-    for name in ("V", "d", "E", "load"):
-        setattr(left, name, getattr(before, name) + getattr(before, f"{name}_rate") * before.h)
-        setattr(left, f"{name}_rate", 0.0)
-    left.delta_0, left.slips, left.initial = result.delta, int(result.slips), 1
-    now = Scene.from_buffer_copy(left)
-    for name, value in values.items():
-        setattr(now, name, value)
-    return left, now
+from hunt_library import CHOICES, LAWS_WITH_A_STATE, Scene, after, scene, step
 
 
 def stiffness_under(load: float, **values: Any) -> float:

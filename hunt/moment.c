@@ -1,0 +1,692 @@
+#include "moment.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const Real PI = 3.141592653589793238462643383279502884L;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
+// ---------------------------------------------------------------------------------------------------------------------
+
+// P_0 .. P_n of Legendre at x.
+static void legendre(int n, Real x, Real* P) {
+    P[0] = 1.0L;
+    P[1] = x;
+    for (int m = 1; m < n; m++) {
+        P[m + 1] = ((Real)(2 * m + 1) * x * P[m] - (Real)m * P[m - 1]) / (Real)(m + 1);
+    }
+}
+
+static Rule make_rule(int n) {
+    Rule rule = {.stages = n};
+    Real x[MOST_STAGES], P[MOST_STAGES][MOST_STAGES + 1];
+    for (int i = 0; i < n; i++) {
+        // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
+        x[i] = i == 0 ? -0.999999L : i == n - 1 ? 1.0L : x[i - 1] + 1e-6L;
+        for (int k = 0; k < 100 && i < n - 1; k++) {
+            legendre(n, x[i], P[i]);
+            const Real of_n = P[i][n - 1] - x[i] * P[i][n], of_less = P[i][n - 2] - x[i] * P[i][n - 1];
+            const Real value = P[i][n] - P[i][n - 1];
+            Real slope = ((Real)n * of_n - (Real)(n - 1) * of_less) / (1.0L - x[i] * x[i]);
+            for (int j = 0; j < i; j++) {
+                slope -= value / (x[i] - x[j]);
+            }
+            x[i] -= value / slope;
+        }
+        legendre(n, x[i], P[i]);
+        rule.node[i] = 0.5L * (1.0L + x[i]);
+        rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
+    }
+    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
+    // Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            Real sum = 1.0L + x[i];
+            for (int m = 1; m < n; m++) {
+                sum += P[j][m] * (P[i][m + 1] - P[i][m - 1]);
+            }
+            rule.to[i][j] = 0.5L * rule.weight[j] * sum;
+        }
+    }
+    return rule;
+}
+
+// Made once; the first call is not safe to be made by two threads at once.
+const Rule* rule_of(int stages) {
+    static Rule rules[MOST_STAGES + 1];
+    if (rules[stages].stages == 0) {
+        rules[stages] = make_rule(stages);
+    }
+    return &rules[stages];
+}
+
+static void swap(Real* a, Real* b) {
+    const Real kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STAGES]) {
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k + 1; i < n; i++) {
+            best = fabsl(A[i][k]) > fabsl(A[best][k]) ? i : best;
+        }
+        for (int j = k; best != k && j < n; j++) {
+            swap(&A[k][j], &A[best][j]);
+        }
+        for (int c = 0; c < count; c++) {
+            swap(&b[c][k], &b[c][best]);
+        }
+        for (int i = k + 1; i < n; i++) {
+            const Real factor = A[i][k] / A[k][k];
+            for (int j = k + 1; j < n; j++) {
+                A[i][j] -= factor * A[k][j];
+            }
+            for (int c = 0; c < count; c++) {
+                b[c][i] -= factor * b[c][k];
+            }
+        }
+    }
+    for (int c = 0; c < count; c++) {
+        for (int i = n - 1; i >= 0; i--) {
+            for (int j = i + 1; j < n; j++) {
+                b[c][i] -= A[i][j] * b[c][j];
+            }
+            b[c][i] /= A[i][i];
+        }
+    }
+}
+
+// Regula falsi, by halves every third time.
+Real crossing(Function* function, const void* context, Real low, Real high) {
+    Real at_low = function(context, low), at_high = function(context, high);
+    const bool rises = at_high > 0.0L;
+    for (int k = 0; k < 200; k++) {
+        const Real middle = 0.5L * (low + high), least = 2.0L * LDBL_EPSILON * fabsl(high);
+        Real x = high - at_high * (high - low) / (at_high - at_low);
+        x = k % 3 == 2 ? middle : fmaxl(low + least, fminl(high - least, x));
+        x = x > low && x < high ? x : middle;
+        if (!(x > low && x < high)) {
+            break;
+        }
+        const Real at = function(context, x);
+        if ((at > 0.0L) == rises) {
+            high = x;
+            at_high = at;
+            at_low *= 0.5L;
+        } else {
+            low = x;
+            at_low = at;
+            at_high *= 0.5L;
+        }
+    }
+    return high;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The contact
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Lower incomplete gamma function of s = 3/2 and 5/2: x^s e^-x sum of x^k / (s (s + 1) .. (s + k)), for large x by erf.
+static Real lower_gamma(Real s, Real x) {
+    if (x > 4.0L) {
+        const Real of_3_2 = 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x);
+        return s < 2.0L ? of_3_2 : 1.5L * of_3_2 - x * sqrtl(x) * expl(-x);
+    }
+    Real term = 1.0L / s, sum = term;
+    for (int k = 1; term > 1e-22L * sum; k++) {
+        term *= x / (s + (Real)k);
+        sum += term;
+    }
+    return powl(x, s) * expl(-x) * sum;
+}
+
+// Gamma(3/2, y) = sqrt(y) e^-y + sqrt(pi) / 2 erfc(sqrt(y)).
+static Real upper_gamma_3_2(Real y) { return sqrtl(y) * expl(-y) + 0.5L * sqrtl(PI) * erfcl(sqrtl(y)); }
+
+static Real bessel_I0(Real x) {
+    const Real quarter = 0.25L * x * x;
+    Real term = 1.0L, sum = 1.0L;
+    for (int k = 1; k < 100000 && term > 1e-22L * sum; k++) {
+        term *= quarter / ((Real)k * (Real)k);
+        sum += term;
+    }
+    return sum;
+}
+
+static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
+    const Real R = scene->R, R_q = scene->R_q, lambda = scene->lambda, nu = scene->nu;
+    const Real density = (Real)scene->eta * scene->A_n * scene->c;
+    const Real p_m = (1.234L + 1.256L * nu) * (1.0L - nu * nu) * scene->Y;
+    const Real yields = PI * p_m / (2.0L * E);
+    const Real x = lambda * yields * yields * R / R_q;
+    const Real x_E = -2.0L * x / E;
+    const Real decay = expl(-x);
+    AtModulus at;
+    {
+        const Real front = 4.0L / 3.0L * sqrtl(R) * powl(R_q, 1.5L) / powl(lambda, 2.5L);
+        const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
+        const Real gamma = lower_gamma(2.5L, x);
+        const Real sum = front * E * gamma + plastic * (2.0L + x) * decay;
+        const Real slope =
+            front * (gamma + E * powl(x, 1.5L) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
+        at.force = density * sum;
+        at.by_force = slope / sum;
+    }
+    if (scene->contact == CONTACT_ASPERITIES) {
+        const Real area = scene->c * PI * (Real)scene->eta * R * R_q * scene->A_n / (lambda * lambda);
+        const Real bracket = 1.0L + decay;
+        at.stiffness = scene->stiffnessScale * E * area * area * bracket * bracket;
+        at.by_stiffness = 1.0L / E - 2.0L * decay * x_E / bracket;
+    } else if (scene->contact == CONTACT_MINDLIN) {
+        const Real half = expl(-0.5L * x), plastic = 0.5L * powl(2.0L / lambda, 1.5L);
+        const Real upper = upper_gamma_3_2(0.5L * x);
+        const Real sum = lower_gamma(1.5L, x) / powl(lambda, 1.5L) + plastic * half * upper;
+        const Real slope =
+            sqrtl(x) * decay / powl(lambda, 1.5L) - 0.5L * plastic * half * (upper + sqrtl(0.5L * x) * half);
+        const Real tangential = 2.0L * (1.0L - nu) / (2.0L - nu);
+        at.stiffness = scene->stiffnessScale * density * 2.0L * E * tangential * sqrtl(R * R_q) * sum;
+        at.by_stiffness = 1.0L / E + slope * x_E / sum;
+    } else {
+        at.stiffness = scene->contact_sigma;
+        at.by_stiffness = 0.0L;
+    }
+    return at;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The scene at a time
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Sine of x + shift pi / 2. The library's own reduction to a quarter turn would take half of all time; pi / 2 in two parts,
+// the first of 41 bits, is as good for some thousand turns.
+Real sine(Real x, int shift) {
+    static const Real FIRST = 0x1.921fb54442p0L, SECOND = 0x0.d18469898cc51701b8p-40L;
+    const Real quarters = rintl(x * (2.0L / PI));
+    const Real rest = (x - quarters * FIRST) - quarters * SECOND;
+    switch (((long)quarters + shift) & 3) {
+    case 0:
+        return sinl(rest);
+    case 1:
+        return cosl(rest);
+    case 2:
+        return -sinl(rest);
+    default:
+        return -cosl(rest);
+    }
+}
+
+int sign_of(Real x) { return (x > 0.0L) - (x < 0.0L); }
+
+static Real phase_at(const World* w, Real t) { return w->theta_0 + w->omega * t; }
+
+bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }
+
+bool is_held(const ReferenceScene* s) {
+    return s->V_rate == 0.0 && s->V_y_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 &&
+           s->load_rate == 0.0;
+}
+
+static Drive drive_of(Real V, Real rate, Real swing, Real theta) {
+    return (Drive){V, rate, swing, theta, V + swing * sine(theta, 1)};
+}
+
+Real velocity(const World* w, const Drive* drive, Real t) {
+    const Real change = drive->rate * t;
+    if (drive->swing == 0.0L) {
+        return drive->V + change;
+    }
+    const Real half = 0.5L * w->omega * t;
+    if (fabsl(half) < 0.25L) { // a step of 1e-14 s may lie next to a reversal as a whole
+        return drive->start + change - 2.0L * drive->swing * sine(drive->theta + half, 0) * sinl(half);
+    }
+    return drive->V + change + drive->swing * sine(drive->theta + w->omega * t, 1);
+}
+
+Real velocity_rate(const World* w, const Drive* drive, Real t) {
+    const Real swing = drive->swing * w->omega;
+    return swing == 0.0L ? drive->rate : drive->rate - swing * sine(drive->theta + w->omega * t, 0);
+}
+
+Real travel(const World* w, const Drive* drive, Real a, Real b) {
+    const Real span = b - a;
+    const Real smooth = (drive->V + drive->rate * 0.5L * (a + b)) * span;
+    if (drive->swing == 0.0L) {
+        return smooth;
+    }
+    const Real half = 0.5L * w->omega * span;
+    return smooth + 2.0L * drive->swing / w->omega * sine(drive->theta + w->omega * a + half, 1) * sinl(half);
+}
+
+static Real load_at(const World* w, Real t) {
+    return w->no_load > -INFINITY ? w->scene.load_rate * (t - w->no_load)
+                                  : (Real)w->scene.load + w->scene.load_rate * t;
+}
+
+static AtModulus modulus_at(const World* w, Real t) {
+    return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
+}
+
+// sigma [N/m] where F_n and d are those.
+static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
+    const Real share = force / at->force;
+    return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
+           : s->contact == CONTACT_MINDLIN ? at->stiffness * share
+                                           : at->stiffness * share * share / (d * d * d);
+}
+
+// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma), but for Stribeck's curve, without what cancels in it.
+static void contact_at(const World* w, Real t, bool with_rates, Real* force, Real* sigma, Real* ratio_rate) {
+    const ReferenceScene* s = &w->scene;
+    *sigma = s->contact_sigma;
+    *ratio_rate = *force = 0.0L;
+    if (w->open || (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT)) {
+        return;
+    }
+    const AtModulus at = modulus_at(w, t);
+    const Real theta = phase_at(w, t) + s->phase_d;
+    const Real swing = s->a_d == 0.0 ? 0.0L : s->a_d * sine(theta, 1);
+    Real d, rest_rate;
+    if (s->input == INPUT_LOAD) {
+        const Real load = load_at(w, t);
+        *force = load / w->swell * expl(-w->decay * swing);
+        d = logl(at.force * w->swell / load) / w->decay + swing;
+        rest_rate = (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
+    } else {
+        d = (Real)s->d + s->d_rate * t + swing;
+        *force = at.force * expl(-w->decay * d);
+        rest_rate = s->d_rate;
+    }
+    *sigma = stiffness_at(s, &at, *force, d);
+    if (with_rates) {
+        const Real d_rate = rest_rate - (s->a_d == 0.0 ? 0.0L : s->a_d * w->omega * sine(theta, 0));
+        Real of_E = s->limit == LIMIT_LOAD ? at.by_force : 0.0L;
+        Real of_d = s->limit == LIMIT_LOAD ? -w->decay : 0.0L;
+        if (s->contact == CONTACT_ASPERITIES) {
+            of_E -= at.by_stiffness;
+            of_d += 2.0L * w->decay + 3.0L / d;
+        } else if (s->contact == CONTACT_MINDLIN) {
+            of_E -= at.by_stiffness;
+            of_d += w->decay;
+        }
+        *ratio_rate = of_E * s->E_rate + of_d * d_rate;
+    }
+}
+
+At scene_at(const World* w, Real t, bool with_rates) {
+    const ReferenceScene* s = &w->scene;
+    At at = {.V = velocity(w, &w->along, t), .V_y = velocity(w, &w->transverse, t)};
+    Real force;
+    contact_at(w, t, with_rates, &force, &at.sigma, &at.bound_rate);
+    at.kinetic_rate = at.bound_rate;
+    at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
+    Real curve = 1.0L;
+    if (w->excess != 0.0L) {
+        const Real square = (Real)s->V_S * s->V_S;
+        const Real peak = w->excess * expl(-(at.V * at.V + at.V_y * at.V_y) / square);
+        curve = 1.0L + peak;
+        if (with_rates) {
+            at.kinetic_rate -=
+                2.0L * peak / (square * curve) *
+                (at.V * velocity_rate(w, &w->along, t) + at.V_y * velocity_rate(w, &w->transverse, t));
+        }
+    }
+    at.g = at.coulomb * curve;
+    at.B = at.coulomb * (1.0L + w->excess);
+    return at;
+}
+
+// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
+Real bound(const World* w, const At* at, bool sticks) {
+    return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
+}
+Real bound_rate(const World* w, const At* at, bool sticks) {
+    return bound(w, at, sticks) * (sticks || !w->elastic ? at->bound_rate : at->kinetic_rate);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Open or closed
+// ---------------------------------------------------------------------------------------------------------------------
+
+static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration, if d is given
+
+// The bristle, or Coulomb's limit, depends on the separation.
+static bool knows_contact(const ReferenceScene* s) {
+    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
+}
+
+bool is_open(const World* w, Real t) {
+    const ReferenceScene* s = &w->scene;
+    if (!knows_contact(s)) {
+        return false;
+    }
+    if (s->input == INPUT_LOAD) {
+        return !(load_at(w, t) > 0.0L);
+    }
+    const AtModulus at = modulus_at(w, t);
+    const Real d = (Real)s->d + s->d_rate * t, force = at.force * expl(-w->decay * d);
+    return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
+}
+
+static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
+
+Closed closed_part(const World* w) {
+    const bool at_start = is_open(w, 0.0L), at_end = is_open(w, w->h);
+    if (at_start == at_end) {
+        return (Closed){at_start ? w->h : 0.0L, w->h};
+    }
+    const Real t = crossing(openness, w, 0.0L, w->h);
+    return at_start ? (Closed){t, w->h} : (Closed){0.0L, t};
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Cuts
+// ---------------------------------------------------------------------------------------------------------------------
+
+void* memory(void* old, size_t size) {
+    void* found = realloc(old, size);
+    if (found == NULL) {
+        abort();
+    }
+    return found;
+}
+
+void cut(Cuts* cuts, Real t) {
+    if (cuts->count == cuts->room) {
+        cuts->room = cuts->room ? 2 * cuts->room : 256;
+        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
+    }
+    cuts->time[cuts->count++] = t;
+}
+
+static int by_time(const void* a, const void* b) {
+    const Real x = *(const Real*)a, y = *(const Real*)b;
+    return (x > y) - (x < y);
+}
+
+// Sorted, without repetition, inside the part.
+void tidy(Cuts* cuts, Closed part) {
+    qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
+    size_t kept = 0;
+    for (size_t k = 0; k < cuts->count; k++) {
+        const Real t = cuts->time[k];
+        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
+            cuts->time[kept++] = t;
+        }
+    }
+    cuts->count = kept;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The step
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Mean of the limit over a period of the vibration with the inputs of a time [N].
+static Real mean_limit(const World* w, Real t) {
+    const ReferenceScene* s = &w->scene;
+    if (s->limit == LIMIT_CONSTANT) {
+        return s->F_C;
+    }
+    if (is_open(w, t)) {
+        return 0.0L;
+    }
+    if (s->input == INPUT_LOAD) {
+        return s->mu * load_at(w, t);
+    }
+    const AtModulus at = modulus_at(w, t);
+    return s->mu * at.force * w->swell * expl(-w->decay * ((Real)s->d + s->d_rate * t));
+}
+
+Real largest_force(const World* w, Real delta) {
+    const ReferenceScene* s = &w->scene;
+    const bool bristle = s->law != LAW_COULOMB;
+    Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
+    if (bristle && !is_open(w, 0.0L)) {
+        S = fmaxl(S, scene_at(w, 0.0L, false).sigma * fabsl(delta));
+    }
+    return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
+}
+
+// The same with its inputs held.
+World held_world(const World* w, Real h) {
+    World held = *w;
+    held.along.rate = held.transverse.rate = 0.0L;
+    held.scene.V_rate = held.scene.V_y_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate =
+        0.0;
+    held.no_load = -INFINITY;
+    held.h = h;
+    return held;
+}
+
+// The largest speed [m/s] of a component, with its vibration.
+static Real fastest(const Drive* drive, Real h) {
+    return fmaxl(fabsl(drive->V), fabsl(drive->V + drive->rate * h)) + fabsl(drive->swing);
+}
+
+World make_world(const ReferenceScene* scene, Real h, int fineness) {
+    World w = {.scene = *scene, .h = h, .fineness = fineness, .elastic = scene->law == LAW_ELASTIC_PLASTIC};
+    w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
+    w.excess =
+        scene->law == LAW_LUGRE || scene->law == LAW_ELASTIC_PLASTIC ? (Real)scene->staticRatio - 1.0L : 0.0L;
+    w.omega = 2.0L * PI * scene->f;
+    // f start, of which whole numbers are taken off, exactly: the product and what it loses in rounding
+    const double cycles = scene->f * scene->start;
+    const double lost = fma(scene->f, scene->start, -cycles);
+    w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);
+    w.along = drive_of(scene->V, scene->V_rate, scene->V_1, w.theta_0);
+    w.transverse = drive_of(scene->V_y, scene->V_y_rate, scene->V_2, w.theta_0 + scene->phase_2);
+    w.top = hypotl(fastest(&w.along, h), fastest(&w.transverse, h));
+    w.decay = (Real)scene->lambda / scene->R_q;
+    w.swell = bessel_I0(w.decay * scene->a_d);
+    w.held = at_modulus(scene, scene->E);
+    w.rule = rule_of(fineness == 1 ? 10 : 12);
+    const Real load_end = (Real)scene->load + scene->load_rate * h;
+    w.no_load = (scene->load > 0.0) != (load_end > 0.0L) && scene->load_rate != 0.0
+                    ? -(Real)scene->load / scene->load_rate
+                    : -INFINITY;
+    return w;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// An input that jumps: the limit of a fast ramp
+// ---------------------------------------------------------------------------------------------------------------------
+
+// The ends of the ramp: what is linear, and what is so in its logarithm.
+typedef struct {
+    Real V, V_y, d, E;
+    Real ln_limit, ln_scale, ln_ratio, ln_V_S; // of F_C or mu, of the stiffness's factor, of R and V_S
+} Corner;
+
+static Corner corner_of(const World* w) {
+    const ReferenceScene* s = &w->scene;
+    const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
+    const Real rest =
+        s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
+    Corner corner = {.V = w->along.start, .V_y = w->transverse.start, .d = rest + swing, .E = s->E};
+    corner.ln_limit = logl(s->limit == LIMIT_LOAD ? s->mu : s->F_C);
+    corner.ln_scale = logl(s->contact == CONTACT_CONSTANT ? s->contact_sigma : s->stiffnessScale);
+    corner.ln_ratio = logl(1.0L + w->excess);
+    corner.ln_V_S = logl(s->V_S);
+    return corner;
+}
+
+typedef struct {
+    const World* w;
+    Corner from, to;
+} Ramp;
+
+typedef struct {
+    Real g, sigma, B;
+} OnRamp;
+
+static OnRamp ramp_at(const Ramp* ramp, Real x) {
+#define LINEAR(name) (ramp->from.name + x * (ramp->to.name - ramp->from.name))
+    ReferenceScene s = ramp->w->scene;
+    s.stiffnessScale = 1.0;
+    s.contact_sigma = 1.0;
+    const AtModulus at = at_modulus(&s, LINEAR(E));
+    const Real d = LINEAR(d), force = at.force * expl(-ramp->w->decay * d);
+    const Real ratio = expl(LINEAR(ln_ratio));
+    const Real slow = hypotl(LINEAR(V), LINEAR(V_y)) / expl(LINEAR(ln_V_S));
+    const Real coulomb = expl(LINEAR(ln_limit)) * (s.limit == LIMIT_LOAD ? force : 1.0L);
+    OnRamp on = {.sigma = expl(LINEAR(ln_scale)) * stiffness_at(&s, &at, force, d), .B = ratio * coulomb};
+    on.g = ramp->w->elastic ? coulomb * (1.0L + (ratio - 1.0L) * expl(-slow * slow)) : on.B;
+    return on;
+#undef LINEAR
+}
+
+// Integral of g |dD| over [a, b], where D = g / sigma falls: D' by the rule's matrix, and by halves until they agree.
+static Real heat_along(const Ramp* ramp, Real a, Real b, int depth) {
+    const Rule* rule = ramp->w->rule;
+    const Real half[3] = {a, 0.5L * (a + b), b};
+    Real sum[3] = {0}; // of the halves, of the whole
+    for (int part = 0; part < 3; part++) {
+        const Real from = half[part % 2], to = part == 2 ? b : half[part + 1];
+        const OnRamp first = ramp_at(ramp, from);
+        Real A[MOST_STAGES][MOST_STAGES], D[MOST_STAGES], g[MOST_STAGES];
+        for (int i = 0; i < rule->stages; i++) {
+            const OnRamp on = ramp_at(ramp, from + (to - from) * rule->node[i]);
+            g[i] = on.g;
+            D[i] = on.g / on.sigma - first.g / first.sigma;
+            for (int j = 0; j < rule->stages; j++) {
+                A[i][j] = rule->to[i][j];
+            }
+        }
+        solve(rule->stages, A, 1, &D);
+        for (int i = 0; i < rule->stages; i++) {
+            sum[part] -= rule->weight[i] * g[i] * D[i];
+        }
+    }
+    const OnRamp on = ramp_at(ramp, a);
+    const Real least = 1e-17L * on.g * on.g / on.sigma;
+    const bool agree = fabsl(sum[0] + sum[1] - sum[2]) <= 1e-14L * fabsl(sum[2]) + least;
+    return agree || depth == 0
+               ? sum[0] + sum[1]
+               : heat_along(ramp, a, half[1], depth - 1) + heat_along(ramp, half[1], b, depth - 1);
+}
+
+// A length [m] and the bound on the ramp that it is to hold.
+typedef struct {
+    const Ramp* ramp;
+    Real length;
+    bool sticks;
+} Held;
+
+static Real excess_length(const void* context, Real x) {
+    const Held* held = context;
+    const OnRamp on = ramp_at(held->ramp, x);
+    return held->length - (held->sticks ? on.B : on.g) / on.sigma;
+}
+
+// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher there.
+static Real lowest(const Held* held, Real a, Real b) {
+    const Real near = 1e-6L * (b - a);
+    const Real at_a = excess_length(held, a), at_b = excess_length(held, b);
+    if (excess_length(held, a + near) > at_a && fmaxl(excess_length(held, b - near), at_a) > at_b) {
+        for (int k = 0; k < 45; k++) { // golden section
+            const Real x = a + 0.381966L * (b - a), y = b - 0.381966L * (b - a);
+            *(excess_length(held, x) > excess_length(held, y) ? &b : &a) =
+                excess_length(held, x) > excess_length(held, y) ? y : x;
+        }
+        return 0.5L * (a + b);
+    }
+    return at_a > at_b ? a : b;
+}
+
+// Moves the bristle along the ramp from before to the start of w; returns the heat.
+static Real ride(const World* before, const World* w, Real* delta, int* slip) {
+    enum { CELLS = 64 };
+    const Ramp ramp = {w, corner_of(before), corner_of(w)};
+    const int side = sign_of(*delta);
+    const bool sticks = w->elastic && w->excess + before->excess > 0.0L && *slip == 0;
+    Held held = {&ramp, fabsl(*delta), sticks};
+    Real heat = 0.0L;
+    for (int k = 0; k < CELLS; k++) {
+        Real from = (Real)k / CELLS;
+        for (;;) {
+            const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
+            // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
+            if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
+                break;
+            }
+            from = excess_length(&held, from) > 0.0L ? from : crossing(excess_length, &held, from, to);
+            const OnRamp there = ramp_at(&ramp, from), end = ramp_at(&ramp, to);
+            if (held.sticks) { // it breaks away
+                const Real kinetic = there.g / there.sigma;
+                heat += 0.5L * there.sigma * (held.length - kinetic) * (held.length + kinetic);
+                held.length = kinetic;
+                held.sticks = false;
+                *slip = side;
+            } else {
+                heat += heat_along(&ramp, from, to, 12);
+                held.length = end.g / end.sigma;
+                from = to;
+            }
+        }
+    }
+    *delta = (Real)side * held.length;
+    return heat;
+}
+
+// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
+Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
+    const ReferenceScene* s = &w->scene;
+    const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
+    if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
+        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
+        const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
+        *delta = 0.0L;
+        *slip = 0;
+        return heat;
+    }
+    if (!w->bounded) {
+        return 0.0L;
+    }
+    if (before != NULL) {
+        return ride(&past, w, delta, slip);
+    }
+    const At at = scene_at(w, 0.0L, false);
+    const Real length = fabsl(*delta), lies = bound(w, &at, false);
+    if (length <= (1.0L + 1e-11L) * bound(w, &at, *slip == 0)) {
+        return 0.0L;
+    }
+    *slip = w->elastic ? sign_of(*delta) : 0;
+    *delta = (Real)sign_of(*delta) * lies;
+    return 0.5L * at.sigma * (length - lies) * (length + lies);
+}
+
+ReferenceScene reference_scene(void) {
+    return (ReferenceScene){.V = 0.005,
+                            .d = 14e-6,
+                            .E = 58.556936170e9,
+                            .load = 312.44,
+                            .f = 20e3,
+                            .F_C = 55.0,
+                            .mu = 0.176,
+                            .staticRatio = 1.0,
+                            .V_S = 0.01,
+                            .contact_sigma = 2.5e6,
+                            .stiffnessScale = 1.0,
+                            .R_q = 6e-6,
+                            .R = 1.7e-6,
+                            .eta = 47e9,
+                            .A_n = 1e-4,
+                            .nu = 0.33,
+                            .Y = 410e6,
+                            .c = 17.0,
+                            .lambda = 3.0,
+                            .h = 1e-4,
+                            .law = LAW_DAHL,
+                            .limit = LIMIT_CONSTANT,
+                            .contact = CONTACT_ASPERITIES,
+                            .input = INPUT_SEPARATION,
+                            .initial = START_GIVEN};
+}
+
+bool reference_is_open(const ReferenceScene* scene) {
+    const World w = make_world(scene, 0.0L, 1);
+    return is_open(&w, 0.0L);
+}
