@@ -17,6 +17,7 @@ VARIABLES = {variable["name"]: variable for variable in description(XML)["variab
 CONTEXT = {
     "contact.sigma": {"contact.model": "Constant"},
     "vibration.phase_d": {"vibration.a_d": 1e-6},
+    "vibration.phase_2": {"vibration.V_2": 0.7},
     "friction.model": {"friction.staticRatio": 1.5},  # with 1 LuGre is Dahl
     "friction.mu": {"friction.limit": "Load"},
     "friction.staticRatio": {"friction.model": "LuGre"},

@@ -27,6 +27,7 @@ typedef struct {
     double transient; // N, by which the start is behind what it tends to, as far as it has not relaxed
     double scale;     // m, of the starts that the maps are for, beside the one they have
     double heat;      // J, of break-away
+    double drag;      // m2/s, of its drops
     bool is_bounded;
     int slips; // FcBristle
     Motion motion;
@@ -316,6 +317,7 @@ static bool begins_to_slip(March* march) {
     }
     // What it stores less is heat, also of the little that it went too far.
     march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
+    march->drag += (place.bound.D - place.size) * fc_product(place.n, place.at.V);
     set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
     march->meetings++;
     march->slips = place.push > 0.0;
@@ -501,6 +503,7 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     fc_map_apply(&march.along, result);
     fc_map_apply_across(&march.across, result);
     result->heat += march.heat;
+    result->drag += march.drag;
     result->meetings += march.meetings;
     result->slips = fc_has_static_friction(scene->friction) ? march.slips : 0;
     result->evaluations = march.evaluations;
