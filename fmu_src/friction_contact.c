@@ -53,7 +53,8 @@ static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
     FcLinearInput load = {v->load, rate[FC_INPUT_LOAD]};
     E.value = fc_input_after(E, ahead);
     load.value = fc_input_after(load, ahead);
-    const FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
+    FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
+    drive.V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
     return fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
 }
 
@@ -136,39 +137,52 @@ static bool is_to_be_checked(const FcScene* scene) {
 
 // What can be seen of the scene at its start.
 typedef struct {
-    double F_t; // N
+    FcVector force; // N, (F_t, F_y)
     FcContactResponse contact;
 } Outputs;
+
+FcFastest fc_fastest(const FcDrive* drive) {
+    const FcVibration* v = &drive->vibration;
+    return fabs(drive->V_y.value) + v->V_2 > fabs(drive->V.value) + v->V_1
+               ? (FcFastest){"V_y", drive->V_y.value, "vibration.V_2", v->V_2}
+               : (FcFastest){"V", drive->V.value, "vibration.V_1", v->V_1};
+}
 
 // Of a bristle that is within its bound; false if one of them is beyond the largest number.
 static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outputs, FcMessage* message) {
     const FcContactResponse contact = fc_scene_contact(scene, 0.0);
     *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
-    if (!isfinite(bristle.delta)) {
-        return fc_message_set(
-            message, "delta is beyond the largest number: V = %.9g m/s with vibration.V_1 = %.9g m/s",
-            scene->drive.V.value, scene->drive.vibration.V_1);
+    if (!isfinite(bristle.delta) || !isfinite(bristle.delta_y)) {
+        const FcFastest of = fc_fastest(&scene->drive);
+        return fc_message_set(message, "%s is beyond the largest number: %s = %.9g m/s with %s = %.9g m/s",
+                              isfinite(bristle.delta) ? "delta_y" : "delta", of.name, of.V, of.vibration,
+                              of.amplitude);
     }
     if (!isfinite(contact.sigma) || !isfinite(contact.A_r) || !isfinite(contact.F_n)) {
         return fail_stiffness(message, scene->drive.d.value, scene->drive.E.value);
     }
-    if (!isfinite(outputs->F_t)) {
-        return fc_message_set(
-            message, "F_t = sigma delta is beyond the largest number: sigma = %.9g N/m, delta = %.9g m",
-            contact.sigma, bristle.delta);
+    const FcVector force = outputs->force;
+    if (!isfinite(force.x) || !isfinite(force.y)) {
+        const bool along = !isfinite(force.x);
+        return fc_message_set(message,
+                              "%s = sigma %s is beyond the largest number: sigma = %.9g N/m, %s = %.9g m",
+                              along ? "F_t" : "F_y", along ? "delta" : "delta_y", contact.sigma,
+                              along ? "delta" : "delta_y", along ? bristle.delta : bristle.delta_y);
     }
     return true;
 }
 
 static void set_outputs(FcVariables* v, const Outputs* now) {
-    v->F_t = now->F_t;
+    v->F_t = now->force.x;
+    v->F_y = now->force.y;
     v->F_n = now->contact.F_n;
     v->sigma = now->contact.sigma;
     v->A_r = now->contact.A_r;
 }
 
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
-    return (FcBristle){.delta = contact->state.variables.delta, .slips = contact->state.slips};
+    const FcVariables* v = &contact->state.variables;
+    return (FcBristle){.delta = v->delta, .slips = contact->state.slips, .delta_y = v->delta_y};
 }
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
@@ -221,12 +235,14 @@ bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* me
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
     const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
-    const FcStateRates rates = fc_motion(&scene, fc_regime(&scene, bristle), bristle.delta).rates;
-    if (!isfinite(rates.delta) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
-        return fc_message_set(message,
-                              "the rate of delta, W_f or Q_f is beyond the largest number: V = %.9g m/s with "
-                              "vibration.V_1 = %.9g m/s, F_t = %.9g N",
-                              v->V, v->vibration.V_1, v->F_t);
+    const FcStateRates rates = fc_motion(&scene, fc_regime(&scene, bristle), bristle).rates;
+    if (!isfinite(rates.delta) || !isfinite(rates.delta_y) || !isfinite(rates.W_f) || !isfinite(rates.Q_f)) {
+        const FcFastest of = fc_fastest(&scene.drive);
+        return fc_message_set(
+            message,
+            "the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = %.9g "
+            "m/s with %s = %.9g m/s, F_t = %.9g N, F_y = %.9g N",
+            of.name, of.V, of.vibration, of.amplitude, v->F_t, v->F_y);
     }
     v->der = rates;
     return true;
@@ -244,7 +260,7 @@ static const double SMALLEST_TOLERANCE = 1e-12;
 
 // What solver.tolerance is relative to [N]: the largest of the limit at both ends of the step, the bristle's force at its start, and
 // the forces of damping and viscosity.
-static double force_scale(const FcScene* scene, double h, double delta) {
+static double force_scale(const FcScene* scene, double h, FcBristle from) {
     const FcFriction* friction = scene->friction;
     double limit = fc_scene_mean_limit(scene, 0.0);
     if (fc_scene_has_pieces(scene)) {
@@ -253,6 +269,7 @@ static double force_scale(const FcScene* scene, double h, double delta) {
     const double speed = fc_drive_largest_speed(&scene->drive, h);
     const double viscous =
         friction->model == FC_COULOMB ? friction->sigma_2 : friction->sigma_1 + friction->sigma_2;
+    const double delta = hypot(from.delta, from.delta_y);
     const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);
@@ -268,14 +285,14 @@ static double least_limit(const FcScene* scene, double h) {
 
 // An error of the deflection acts through sigma delta and, since delta' = V - sigma |V| delta / g, through sigma_1 delta': there times
 // sigma |V| / g. So the damping divides the tolerance of the bristle's force.
-static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, double delta) {
+static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, FcBristle from) {
     double tolerance = v->solver.tolerance;
     const double limit = v->friction.sigma_1 != 0.0 ? least_limit(scene, h) : 0.0;
     if (limit > 0.0) {
         tolerance /= 1.0 + v->friction.sigma_1 * fc_drive_largest_speed(&scene->drive, h) / limit;
     }
     return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, tolerance),
-                             .force = force_scale(scene, h, delta),
+                             .force = force_scale(scene, h, from),
                              .step_size = v->solver.stepSize};
 }
 
@@ -286,12 +303,12 @@ static FcBristle first_bristle(FcFrictionContact* contact) {
         return (FcBristle){0};
     }
     if (v->initialState == FC_STATE_GIVEN) {
-        return (FcBristle){.delta = v->delta_0};
+        return (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0};
     }
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0});
+    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double period = fc_drive_vibrates(&scene.drive) ? 1.0 / v->vibration.f : 0.0;
-    const FcSolverOptions options = solver_options(v, &scene, period, start.delta);
+    const FcSolverOptions options = solver_options(v, &scene, period, start);
     FcVector force;
     return fc_method_settled(&scene, &options, start, &force, &v->solver.evaluations);
 }
@@ -314,7 +331,8 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
     v->solver.evaluations = 0.0;
     const FcBristle first = first_bristle(&fresh);
     v->delta = first.delta;
-    state->slips = first.slips;
+    v->delta_y = first.delta_y;
+    state->slips = fc_side_of_slip(first);
     state->past = (FcPast){.sigma = 0.0};
     if (v->solver.evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(
@@ -327,6 +345,7 @@ bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, Fc
         return false;
     }
     v->F_t_mean = v->F_t;
+    v->F_y_mean = v->F_y;
     *contact = fresh;
     return true;
 }
@@ -337,17 +356,24 @@ void fc_friction_contact_free(FcFrictionContact* contact) {
 }
 
 // Adds the damping of the bristle, which Coulomb's law has none of, and the viscous friction to what the method gives.
-static void add_damping(const FcScene* scene, double h, double start, FcStepResult* result) {
+static void add_damping(const FcScene* scene, double h, FcBristle start, FcStepResult* result) {
     const double sigma_1 = scene->friction->sigma_1;
     const double sigma_2 = scene->friction->sigma_2;
     if (sigma_1 != 0.0) {
-        result->impulse += sigma_1 * (result->delta - start + result->lost);
+        result->impulse += sigma_1 * (result->delta - start.delta + result->lost);
+        result->impulse_y += sigma_1 * (result->delta_y - start.delta_y + result->lost_y);
         result->work += sigma_1 * result->drag;
         result->heat += sigma_1 * result->drag;
     }
     if (sigma_2 != 0.0) {
-        const double viscous = sigma_2 * fc_drive_square(&scene->drive, 0.0, h);
+        double square = fc_drive_square(&scene->drive, 0.0, h);
         result->impulse += sigma_2 * fc_drive_displacement(&scene->drive, 0.0, h);
+        if (fc_drive_is_planar(&scene->drive)) {
+            const FcDrive across = fc_drive_across(&scene->drive);
+            square += fc_drive_square(&across, 0.0, h);
+            result->impulse_y += sigma_2 * fc_drive_displacement(&across, 0.0, h);
+        }
+        const double viscous = sigma_2 * square;
         result->work += viscous;
         result->heat += viscous;
     }
@@ -368,15 +394,18 @@ static void accumulate(double* sum, double* rest, double part) {
 }
 
 // The inputs where they end, the deflection, the sums; the rates of the next step are those of the last one now.
-static void commit(FcFrictionState* state, double h, const FcStepResult* result, const FcPast* past) {
+static void commit(FcFrictionState* state, double h, const FcStepResult* result, FcBristle reached,
+                   const FcPast* past) {
     FcVariables* v = &state->variables;
-    state->slips = result->slips;
+    state->slips = fc_side_of_slip(reached);
     state->past = *past;
     v->V += state->next_rate[FC_INPUT_V] * h;
+    v->V_y += state->next_rate[FC_INPUT_V_Y] * h;
     v->d += state->next_rate[FC_INPUT_D] * h;
     v->E = fc_input_after((FcLinearInput){v->E, state->next_rate[FC_INPUT_E]}, h);
     v->load = fc_input_after((FcLinearInput){v->load, state->next_rate[FC_INPUT_LOAD]}, h);
-    v->delta = result->delta;
+    v->delta = reached.delta;
+    v->delta_y = reached.delta_y;
     v->solver.evaluations += result->evaluations;
     accumulate(&v->W_f, &state->W_f_rest, result->work);
     accumulate(&v->Q_f, &state->Q_f_rest, result->heat);
@@ -402,7 +431,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     const FcVariables* v = &before->variables;
-    const FcSolverOptions options = solver_options(v, &scene, h, v->delta);
+    const FcSolverOptions options = solver_options(v, &scene, h, fc_friction_contact_bristle(contact));
     double heat;
     const FcBristle start = fc_jump(&scene, &before->past, fc_friction_contact_bristle(contact), &heat);
     FcStepResult result;
@@ -411,7 +440,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     result.heat += heat;
-    add_damping(&scene, h, start.delta, &result);
+    add_damping(&scene, h, start, &result);
 
     // Evaluated at the phase of t + h itself, which is also that of the next step: a phase that is carried on from the
     // step's start loses digits with every period of it.
@@ -419,22 +448,25 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
     Outputs now;
-    if (!find_outputs(&end, (FcBristle){.delta = result.delta, .slips = result.slips}, &now, message)) {
+    const FcBristle reached = {.delta = result.delta, .slips = result.slips, .delta_y = result.delta_y};
+    if (!find_outputs(&end, reached, &now, message)) {
         return false;
     }
-    const double F_t_mean = h > 0.0 ? result.impulse / h : now.F_t;
-    if (!isfinite(F_t_mean) || !isfinite(result.delta) || !isfinite(v->W_f + result.work) ||
-        !isfinite(v->Q_f + result.heat)) {
+    const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : now.force;
+    if (!isfinite(mean.x) || !isfinite(mean.y) || !isfinite(result.delta) || !isfinite(result.delta_y) ||
+        !isfinite(v->W_f + result.work) || !isfinite(v->Q_f + result.heat)) {
+        const FcFastest of = fc_fastest(&scene.drive);
         return fc_message_set(
             message,
-            "the step by h = %.9g s gives a result beyond the largest number at V = %.9g m/s, "
+            "the step by h = %.9g s gives a result beyond the largest number at %s = %.9g m/s, "
             "d = %.9g m",
-            h, v->V, v->d);
+            h, of.name, of.V, v->d);
     }
     const FcPast past = fc_is_bounded(&v->friction) ? fc_past(&end) : (FcPast){.sigma = 0.0};
-    commit(&contact->state, h, &result, &past);
+    commit(&contact->state, h, &result, reached, &past);
     set_outputs(&contact->state.variables, &now);
-    contact->state.variables.F_t_mean = F_t_mean;
+    contact->state.variables.F_t_mean = mean.x;
+    contact->state.variables.F_y_mean = mean.y;
     contact->state.time = t + h;
     contact->state.time_rest = time_rest;
     return true;
@@ -442,5 +474,6 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
 
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h) {
     const FcVibration* vibration = &contact->state.variables.vibration;
-    return (vibration->V_1 != 0.0 || vibration->a_d != 0.0) && h * vibration->f > 0.5;
+    return (vibration->V_1 != 0.0 || vibration->V_2 != 0.0 || vibration->a_d != 0.0) &&
+           h * vibration->f > 0.5;
 }

@@ -29,7 +29,7 @@ typedef struct {
     double sigma;     // N/m  output
     double A_r;       // m2   output
     double delta;     // m    output, the state
-    FcStateRates der; //      of delta, W_f and Q_f
+    FcStateRates der; //      of delta, W_f, Q_f and delta_y
     double delta_0;   // m
     double F_C;       // N
     int initialState; // FcInitialState
@@ -62,9 +62,9 @@ typedef struct {
     double speed[FC_INPUT_COUNT]; // 1/s times their units: how fast they move
     double nominal_delta;         // m
     double nominal_energy;        // J
-    double lag;                   // m, of delta behind the bound along which the bristle slips
-    double lag_force;             // N, the bristle's force there
-    double lag_heat;              // J, what Q_f lags behind by
+    double lag;       // m, of delta behind the bound along which the bristle slips; in the plane of |delta|
+    double lag_force; // N, the bristle's force there
+    double lag_heat;  // J, what Q_f lags behind by
 } FcHybrid;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
@@ -125,6 +125,15 @@ bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
 
 // Recomputes the rates of the states, der, for the outputs as they are; the law of friction may be any.
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message);
+
+// The faster of the two velocities along and across, for a message: its input, and the amplitude of its vibration.
+typedef struct {
+    const char* name;
+    double V; // m/s
+    const char* vibration;
+    double amplitude; // m/s
+} FcFastest;
+FcFastest fc_fastest(const FcDrive* drive);
 
 // The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);

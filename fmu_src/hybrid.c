@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/constants.h"
+#include "model/plane.h"
 #include "model/root.h"
 
 // What an event is late by, of the bound and of the velocities. By hand: far above rounding, far below what a host's
@@ -26,6 +27,10 @@ static const double LEAST_PART_OF_PERIOD = 1e-4;
 
 // Beyond this velocity, over V_S, e^-25 is left of Stribeck's peak. By hand.
 static const double END_OF_PEAK = 5.0;
+
+// The slope by which a reversal in the plane is seen: V + SLANT V_y passes 0 there, whatever its direction is. By hand: tan(1/2),
+// no slope that a host's V_y over V is likely to have.
+static const double SLANT = -0.5463024898437905;
 
 // By this part of a period an event of time is later than the turn that it stands for. By hand: the indicators see the turn
 // first, and an event at a turn does not ask for a second one.
@@ -74,11 +79,13 @@ static void look(FcFrictionContact* contact, View* view) {
     view->side = slips != 0 ? slips : (int)regime_of(contact);
 }
 
-static bool fail_rates(const FcVariables* v, FcMessage* message) {
-    return fc_message_set(message,
-                          "F_t or the rate of delta, W_f or Q_f is beyond the largest number: V = %.9g m/s "
-                          "with vibration.V_1 = %.9g m/s, delta = %.9g m",
-                          v->V, v->vibration.V_1, v->delta);
+static bool fail_rates(const FcScene* scene, const FcVariables* v, FcMessage* message) {
+    const FcFastest of = fc_fastest(&scene->drive);
+    return fc_message_set(
+        message,
+        "F_t, F_y or the rate of delta, delta_y, W_f or Q_f is beyond the largest number: %s = "
+        "%.9g m/s with %s = %.9g m/s, delta = %.9g m, delta_y = %.9g m",
+        of.name, of.V, of.vibration, of.amplitude, v->delta, v->delta_y);
 }
 
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
@@ -88,13 +95,15 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     const FcContactResponse response = fc_scene_contact(&scene, 0.0);
-    const FcMotion now = fc_motion(&scene, regime_of(contact), v->delta);
-    if (!isfinite(now.F_t) || !isfinite(now.rates.delta) || !isfinite(now.rates.W_f) ||
-        !isfinite(now.rates.Q_f)) {
-        return fail_rates(v, message);
+    const FcMotion now = fc_motion(&scene, regime_of(contact), fc_friction_contact_bristle(contact));
+    if (!isfinite(now.force.x) || !isfinite(now.force.y) || !isfinite(now.rates.delta) ||
+        !isfinite(now.rates.delta_y) || !isfinite(now.rates.W_f) || !isfinite(now.rates.Q_f)) {
+        return fail_rates(&scene, v, message);
     }
-    v->F_t = now.F_t;
-    v->F_t_mean = now.F_t;
+    v->F_t = now.force.x;
+    v->F_t_mean = now.force.x;
+    v->F_y = now.force.y;
+    v->F_y_mean = now.force.y;
     v->F_n = response.F_n;
     v->sigma = response.sigma;
     v->A_r = response.A_r;
@@ -116,6 +125,17 @@ static void find_indicators_of_bound(const View* view, FcRegime regime, double d
     }
 }
 
+static void find_indicators_in_plane(const View* view, FcRegime regime, FcBristle bristle, double* z) {
+    const FcBound bound = fc_bound_in_plane(&view->bound, 0.0);
+    if (regime == FC_FREE) {
+        z[1] = (1.0 - hypot(bristle.delta, bristle.delta_y) / bound.D) + HYSTERESIS;
+    }
+    if (view->side != 0) {
+        const double speed = fc_drive_largest_speed(&view->scene.drive, 0.0) + fabs(bound.rate);
+        z[2] = fc_push_in_plane(&view->scene, bristle) + HYSTERESIS * speed;
+    }
+}
+
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
@@ -123,6 +143,8 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     const FcVariables* v = &contact->state.variables;
     View now;
     look(contact, &now);
+    const FcBristle bristle = fc_friction_contact_bristle(contact);
+    const bool planar = fc_is_planar(&now.scene, bristle);
     double* z = indicators->of;
     z[0] = z[1] = z[2] = z[3] = 1.0;
     if (fc_scene_depends_on_d(&now.scene)) {
@@ -131,15 +153,19 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     }
     if (!fc_scene_is_loose(&now.scene)) {
         if (v->friction.model != FC_ELASTIC_PLASTIC) {
-            z[0] = fc_drive_V(&now.scene.drive, 0.0);
+            const FcDrive* drive = &now.scene.drive;
+            z[0] = fc_drive_V(drive, 0.0);
+            z[0] += planar ? SLANT * fc_drive_V_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)) : 0.0;
         }
-        if (fc_is_bounded(&v->friction)) {
+        if (fc_is_bounded(&v->friction) && planar) {
+            find_indicators_in_plane(&now, regime_of(contact), bristle, z);
+        } else if (fc_is_bounded(&v->friction)) {
             find_indicators_of_bound(&now, regime_of(contact), v->delta, z);
         }
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {
-            return fail_rates(v, message);
+            return fail_rates(&now.scene, v, message);
         }
     }
     return true;
@@ -151,6 +177,7 @@ static void copy_inputs(const FcVariables* v, double inputs[FC_INPUT_COUNT]) {
     inputs[FC_INPUT_D] = v->d;
     inputs[FC_INPUT_E] = v->E;
     inputs[FC_INPUT_LOAD] = v->load;
+    inputs[FC_INPUT_V_Y] = v->V_y;
 }
 
 static void look_at_inputs(FcFrictionContact* contact) {
@@ -169,9 +196,15 @@ static void look_at_inputs(FcFrictionContact* contact) {
     hybrid->seen_time = contact->state.time;
 }
 
-// Where the bound is that the bristle slips along, with its sign [m], and the bristle's force there [N]; false where none slips,
-// or the contact has opened and taken the stiffness along.
-static bool slips_along(FcFrictionContact* contact, double* bound, double* force) {
+// A bristle that slips: how far delta lags behind the bound, where it is without a lag, and its force there.
+typedef struct {
+    double lag;     // m, in the plane that of |delta|
+    FcVector delta; // m
+    double force;   // N
+} Slip;
+
+// False where none slips, or the contact has opened and taken the stiffness along.
+static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     FcMessage unheard;
     if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &unheard)) {
         return false;
@@ -179,8 +212,17 @@ static bool slips_along(FcFrictionContact* contact, double* bound, double* force
     View now;
     look(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
-    *bound = fc_scene_is_loose(&now.scene) ? 0.0 : (double)regime_of(contact) * fc_bound(&now.bound, 0.0);
-    *force = sigma * *bound;
+    const bool loose = fc_scene_is_loose(&now.scene);
+    const FcBristle bristle = fc_friction_contact_bristle(contact);
+    if (fc_is_planar(&now.scene, bristle)) {
+        const double D = loose ? 0.0 : fc_bound_in_plane(&now.bound, 0.0).D;
+        const double size = hypot(bristle.delta, bristle.delta_y);
+        const double onto = size > 0.0 ? D / size : 0.0;
+        *slip = (Slip){D - size, {onto * bristle.delta, onto * bristle.delta_y}, sigma * D};
+    } else {
+        const double bound = loose ? 0.0 : (double)regime_of(contact) * fc_bound(&now.bound, 0.0);
+        *slip = (Slip){bound - bristle.delta, {bound, 0.0}, sigma * bound};
+    }
     return sigma != 0.0;
 }
 
@@ -188,14 +230,13 @@ static bool slips_along(FcFrictionContact* contact, double* bound, double* force
 // bristle's force over that lag, here by the trapezoidal rule from step to step.
 static void look_at_lag(FcFrictionContact* contact) {
     FcHybrid* hybrid = &contact->state.hybrid;
-    double bound;
-    double force;
-    if (slips_along(contact, &bound, &force)) {
-        const double lag = bound - contact->state.variables.delta;
-        const double heat = hybrid->lag_heat - 0.5 * (force + hybrid->lag_force) * (lag - hybrid->lag);
-        if (isfinite(lag) && isfinite(force) && isfinite(heat)) {
-            hybrid->lag = lag;
-            hybrid->lag_force = force;
+    Slip slip;
+    if (slips_along(contact, &slip)) {
+        const double heat =
+            hybrid->lag_heat - 0.5 * (slip.force + hybrid->lag_force) * (slip.lag - hybrid->lag);
+        if (isfinite(slip.lag) && isfinite(slip.force) && isfinite(heat)) {
+            hybrid->lag = slip.lag;
+            hybrid->lag_force = slip.force;
             hybrid->lag_heat = heat;
         }
     }
@@ -211,11 +252,12 @@ bool fc_hybrid_step_completed(FcFrictionContact* contact) {
 }
 
 // Moves delta and adds heat [J], if they stay numbers.
-static void move_to(FcFrictionContact* contact, double delta, double heat) {
+static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
     FcVariables* v = &contact->state.variables;
-    if (isfinite(delta) && delta != v->delta) {
+    if (isfinite(delta.x) && isfinite(delta.y) && (delta.x != v->delta || delta.y != v->delta_y)) {
         contact->state.hybrid.changed = 1;
-        v->delta = delta;
+        v->delta = delta.x;
+        v->delta_y = delta.y;
     }
     if (isfinite(v->Q_f + heat) && heat != 0.0) {
         contact->state.hybrid.changed = 1;
@@ -230,25 +272,28 @@ static void begin_regime(FcFrictionContact* contact) {
     look(contact, &now);
     double heat;
     const FcBristle bristle = fc_jump(&now.scene, &state->past, fc_friction_contact_bristle(contact), &heat);
-    move_to(contact, bristle.delta, heat);
-    state->slips = bristle.slips;
+    move_to(contact, (FcVector){bristle.delta, bristle.delta_y}, heat);
+    state->slips = fc_side_of_slip(bristle);
     state->hybrid.regime = fc_regime(&now.scene, bristle);
     state->past = fc_past(&now.scene);
-    double bound;
-    double force;
-    if (slips_along(contact, &bound, &force)) { // but for rounding it is there
-        move_to(contact, bound, 0.0);
+    Slip slip;
+    if (slips_along(contact, &slip)) { // but for rounding it is there
+        move_to(contact, slip.delta, 0.0);
     }
 }
 
 // What the drop of a bristle that breaks away, which is motion, does to its damper.
-static void add_drop(FcFrictionContact* contact, double before) {
+static void add_drop(FcFrictionContact* contact, FcVector before) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    const double work = v->friction.sigma_1 * (v->delta - before) * fc_drive_V(&scene.drive, 0.0);
+    double work = v->friction.sigma_1 * (v->delta - before.x) * fc_drive_V(&scene.drive, 0.0);
+    if (v->delta_y != before.y) {
+        const FcDrive across = fc_drive_across(&scene.drive);
+        work += v->friction.sigma_1 * (v->delta_y - before.y) * fc_drive_V(&across, 0.0);
+    }
     if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
         v->W_f += work;
-        move_to(contact, v->delta, work);
+        move_to(contact, (FcVector){v->delta, v->delta_y}, work);
     }
 }
 
@@ -256,15 +301,15 @@ void fc_hybrid_event_begins(FcFrictionContact* contact) {
     look_at_inputs(contact);
     look_at_lag(contact);
     FcHybrid* hybrid = &contact->state.hybrid;
-    double bound;
-    double force;
-    const bool slips = slips_along(contact, &bound, &force);
-    move_to(contact, slips ? bound : contact->state.variables.delta, hybrid->lag_heat);
+    const FcVariables* v = &contact->state.variables;
+    Slip slip;
+    const bool slips = slips_along(contact, &slip);
+    move_to(contact, slips ? slip.delta : (FcVector){v->delta, v->delta_y}, hybrid->lag_heat);
     hybrid->lag = hybrid->lag_heat = hybrid->lag_force = 0.0;
     contact->state.past = (FcPast){.sigma = 0.0};
     FcMessage unheard;
     if (fc_friction_contact_check(contact, &unheard)) {
-        const double before = contact->state.variables.delta;
+        const FcVector before = {v->delta, v->delta_y};
         begin_regime(contact);
         add_drop(contact, before);
     }
@@ -330,6 +375,10 @@ bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
         return false;
     }
     const double period = 1.0 / drive->vibration.f;
+    if (fc_is_planar(&now.scene, fc_friction_contact_bristle(contact))) {
+        *time = contact->state.time + PART_OF_PERIOD * period;
+        return isfinite(*time) && *time > contact->state.time;
+    }
     const double start = 1e3 * AFTER_TURN * period;
     double turn = period;
     for (int side = -1; side <= 1; side += 2) {
@@ -361,7 +410,8 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
     const FcHybrid* hybrid = &contact->state.hybrid;
     const bool open = fc_scene_is_loose(&scene);
     if (open && hybrid->nominal_delta > 0.0) {
-        *nominals = (FcStates){.of = {hybrid->nominal_delta, hybrid->nominal_energy, hybrid->nominal_energy}};
+        *nominals = (FcStates){.of = {hybrid->nominal_delta, hybrid->nominal_energy, hybrid->nominal_energy,
+                                      hybrid->nominal_delta}};
         return true;
     }
     const double d = open ? touching(&scene) : scene.drive.d.value;
@@ -371,7 +421,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
                          : fc_limit_follows_load(scene.friction) ? scene.friction->mu * at.F_n
                                                                  : scene.F_C;
     const double length = force / at.sigma;
-    const double amplitude = vibration->V_1 / (FC_TWO_PI * vibration->f);
+    const double amplitude = hypot(vibration->V_1, vibration->V_2) / (FC_TWO_PI * vibration->f);
     const double energy = force * fmax(length, amplitude);
     if (!(length > 0.0 && energy > 0.0) || !isfinite(length) || !isfinite(energy)) {
         return fc_message_set(message,
@@ -379,6 +429,6 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
                               "the force is %.9g N, sigma = %.9g N/m",
                               force, at.sigma);
     }
-    *nominals = (FcStates){.of = {length, energy, energy}};
+    *nominals = (FcStates){.of = {length, energy, energy, length}};
     return true;
 }

@@ -1,5 +1,5 @@
 // One contact as a differential equation with events: what FMI for model exchange sees of the physics. The states are delta,
-// W_f and Q_f; the inputs are what they are when asked.
+// W_f, Q_f and delta_y; the inputs are what they are when asked.
 //
 // A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event: it slips once it is
 // beyond its bound and pushed, and is free again once it is pushed no more; with static friction it breaks away and drops to
@@ -17,10 +17,10 @@
 #include "friction_contact.h"
 
 // As many as modelDescription.xml declares.
-enum { FC_STATE_COUNT = 3, FC_EVENT_INDICATOR_COUNT = 4 };
+enum { FC_STATE_COUNT = 4, FC_EVENT_INDICATOR_COUNT = 4 };
 
 typedef struct {
-    double of[FC_STATE_COUNT]; // delta [m], W_f [J], Q_f [J]
+    double of[FC_STATE_COUNT]; // delta [m], W_f [J], Q_f [J], delta_y [m]
 } FcStates;
 
 typedef struct {
@@ -41,7 +41,8 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
-//   0   V with its vibration [m/s], where |V| has a kink; 1 in ElasticPlastic, which has none
+//   0   V with its vibration [m/s], where |V| has a kink; in the plane a slanting part of it, which is 0 at any reversal,
+//       and harmlessly elsewhere; 1 in ElasticPlastic, which has no kink
 //   1   (D - |delta|) / D + hysteresis while a bounded bristle is free, else 1
 //   2   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
 //   3   what keeps a closed contact from opening, or an open one from closing: the load [N], or the way of d [m]; 1 where
@@ -62,8 +63,8 @@ void fc_hybrid_event_begins(FcFrictionContact* contact);
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
 
 // The time [s] of the next event that the indicators may miss, for a step over two of their zeros: where the vibration, with the
-// inputs as they are, turns a bounded bristle back from a bound; a period ahead if it turns nowhere before. False where
-// there is none.
+// inputs as they are, turns a bounded bristle back from a bound; a period ahead if it turns nowhere before; in the plane a
+// part of the period ahead. False where there is none.
 bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
 
 // The event is over: the inputs may have jumped in it, which is no motion.

@@ -29,6 +29,7 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
     FcFrictionContact held = *contact;
     FcFrictionState* state = &held.state;
     state->variables.delta = 0.0;
+    state->variables.delta_y = 0.0;
     state->time = 0.0;
     state->time_rest = 0.0;
     state->slips = 0;
@@ -38,71 +39,80 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
 }
 
 // But for viscous friction. Adds what it spends to *evaluations.
-static bool dry_force(FcFrictionContact* held, double tolerance, double* force, double* evaluations,
+static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force, double* evaluations,
                       FcMessage* message) {
     if (!fc_friction_contact_refresh(held, message)) {
         return false;
     }
     const FcVariables* v = &held->state.variables;
     const FcScene scene = fc_friction_contact_scene(held);
-    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0});
+    const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
         .tolerance = tolerance, .force = fmax(scale, DBL_MIN), .step_size = v->solver.stepSize};
-    FcVector settled;
-    fc_method_settled(&scene, &options, start, &settled, evaluations);
-    *force = settled.x;
+    fc_method_settled(&scene, &options, start, force, evaluations);
     if (*evaluations > FC_MOST_EVALUATIONS) {
-        return fc_message_set(
-            message,
-            "F_t_settled or its derivative needs more than %.0e evaluations: vibration.a_d = %.9g m at "
-            "d = %.9g m moves the contact over too many orders of magnitude",
-            FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
+        return fc_message_set(message,
+                              "F_t_settled, F_y_settled or a derivative of them needs more than %.0e "
+                              "evaluations: vibration.a_d = %.9g m at "
+                              "d = %.9g m moves the contact over too many orders of magnitude",
+                              FC_MOST_EVALUATIONS, v->vibration.a_d, v->d);
     }
     return true;
 }
 
-static bool is_finite(double number, const char* name, FcMessage* message) {
-    return isfinite(number) || fc_message_set(message, "%s is beyond the largest number", name);
+static bool is_finite(FcVector of, const char* prefix, FcMessage* message) {
+    return (isfinite(of.x) && isfinite(of.y)) ||
+           fc_message_set(message, "%s%s is beyond the largest number", prefix,
+                          isfinite(of.x) ? "F_y_settled" : "F_t_settled");
 }
 
-bool fc_settled_force(const FcFrictionContact* contact, double* force, FcMessage* message) {
+bool fc_settled_force(const FcFrictionContact* contact, FcVector* force, FcMessage* message) {
     FcFrictionContact held = at_time_0(contact);
     const FcVariables* v = &held.state.variables;
-    double dry;
     double evaluations = 0.0;
-    if (!dry_force(&held, v->solver.tolerance, &dry, &evaluations, message)) {
+    if (!dry_force(&held, v->solver.tolerance, force, &evaluations, message)) {
         return false;
     }
-    *force = dry + v->friction.sigma_2 * v->V;
-    return is_finite(*force, "F_t_settled", message);
+    force->x += v->friction.sigma_2 * v->V;
+    force->y += v->friction.sigma_2 * v->V_y;
+    return is_finite(*force, "", message);
 }
 
 static double* input_of(FcVariables* v, FcInput input) {
     double* const inputs[FC_INPUT_COUNT] = {
-        [FC_INPUT_V] = &v->V, [FC_INPUT_D] = &v->d, [FC_INPUT_E] = &v->E, [FC_INPUT_LOAD] = &v->load};
+        [FC_INPUT_V] = &v->V,       [FC_INPUT_D] = &v->d,     [FC_INPUT_E] = &v->E,
+        [FC_INPUT_LOAD] = &v->load, [FC_INPUT_V_Y] = &v->V_y,
+    };
     return inputs[input];
+}
+
+static const double PART_OF_SCALE = 0.25; // for the first range
+
+// Of a velocity along or across with its amplitude.
+static double first_range_of_V(const FcVariables* v, const FcScene* scene, double V, double amplitude) {
+    const double speed = fabs(V);
+    double scale = fmax(amplitude, speed - amplitude);
+    if (amplitude == 0.0) {
+        const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+        const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
+        scale =
+            fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V) : v->friction.V_S);
+    }
+    const double room = speed >= amplitude ? speed - amplitude : speed; // towards 0
+    return copysign(PART_OF_SCALE * scale, room > PART_OF_SCALE * scale ? -V : V);
 }
 
 // The range [the input's unit] over which the force is fitted at first, with its sign: it passes neither V = 0 nor
 // |V| = V_1, where the force has jumps and kinks, and leads to surfaces farther apart.
 static double first_range(const FcFrictionContact* held, const FcScene* scene, FcInput input) {
     const FcVariables* v = &held->state.variables;
-    const double V_1 = v->vibration.V_1;
-    const double speed = fabs(v->V);
-    const double part = 0.25;
+    const double part = PART_OF_SCALE;
     switch (input) {
-    case FC_INPUT_V: {
-        double scale = fmax(V_1, speed - V_1);
-        if (V_1 == 0.0) {
-            const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-            const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
-            scale = fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V)
-                                                                 : v->friction.V_S);
-        }
-        const double room = speed >= V_1 ? speed - V_1 : speed; // towards 0
-        return copysign(part * scale, room > part * scale ? -v->V : v->V);
-    }
+    case FC_INPUT_V:
+        return first_range_of_V(v, scene, v->V, v->vibration.V_1);
+    case FC_INPUT_V_Y:
+        return first_range_of_V(v, scene, v->V_y, v->vibration.V_2);
     case FC_INPUT_D:
         return part * fmin(1.0 / scene->at_E.decay, v->d);
     case FC_INPUT_E:
@@ -116,11 +126,11 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, F
 // last terms come to. With c_k the coefficients of T_k over the range, the derivative there is 2 / range times the sum of
 // (-1)^(k + 1) k^2 c_k. By hand: fewer points need a shorter range, more multiply rounding by more.
 enum { POINTS = 8 };
-static bool slope_over(FcFrictionContact* held, FcInput input, double range, double* slope, double* error,
+static bool slope_over(FcFrictionContact* held, FcInput input, double range, FcVector* slope, double* error,
                        double* evaluations, FcMessage* message) {
     double* const x = input_of(&held->state.variables, input);
     const double start = *x;
-    double force[POINTS];
+    FcVector force[POINTS];
     for (int j = 0; j < POINTS; j++) {
         *x = start + 0.5 * range * (1.0 + cos(FC_PI * (j + 0.5) / POINTS));
         if (!dry_force(held, TOLERANCE_OF_FORCES, &force[j], evaluations, message)) {
@@ -128,22 +138,25 @@ static bool slope_over(FcFrictionContact* held, FcInput input, double range, dou
         }
     }
     *x = start;
-    *slope = 0.0;
+    *slope = (FcVector){0.0, 0.0};
     *error = 0.0;
     for (int k = 1; k < POINTS; k++) {
-        double c = 0.0;
+        FcVector c = {0.0, 0.0};
         for (int j = 0; j < POINTS; j++) {
-            c += 2.0 / POINTS * (force[j] - force[0]) * cos(FC_PI * k * (j + 0.5) / POINTS);
+            const double at_point = cos(FC_PI * k * (j + 0.5) / POINTS);
+            c.x += 2.0 / POINTS * (force[j].x - force[0].x) * at_point;
+            c.y += 2.0 / POINTS * (force[j].y - force[0].y) * at_point;
         }
-        const double term = 2.0 * k * k * c / range;
-        *slope += k % 2 == 1 ? term : -term;
-        *error = k >= POINTS - 2 ? fmax(*error, fabs(term)) : 0.0;
+        const FcVector term = {2.0 * k * k * c.x / range, 2.0 * k * k * c.y / range};
+        slope->x += k % 2 == 1 ? term.x : -term.x;
+        slope->y += k % 2 == 1 ? term.y : -term.y;
+        *error = k >= POINTS - 2 ? fmax(*error, hypot(term.x, term.y)) : 0.0;
     }
     return true;
 }
 
 // The range is shortened until the last terms are small, or rounding.
-bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, double* slope,
+bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcVector* slope,
                             FcMessage* message) {
     FcFrictionContact held = at_time_0(contact);
     if (!fc_friction_contact_refresh(&held, message)) {
@@ -154,23 +167,25 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, dou
     double range = first_range(&held, &scene, input);
     const double usual = force / fabs(range);
     double least = DBL_MAX;
-    *slope = NAN;
+    *slope = (FcVector){NAN, NAN};
     double evaluations = 0.0;
     for (int tried = 0; tried < MOST_RANGES; tried++) {
-        double found;
+        FcVector found;
         double error;
         if (!slope_over(&held, input, range, &found, &error, &evaluations, message)) {
             return false;
         }
-        if (error < least * (fabs(found) + usual)) {
-            least = error / (fabs(found) + usual);
+        const double size = hypot(found.x, found.y);
+        if (error < least * (size + usual)) {
+            least = error / (size + usual);
             *slope = found;
         }
-        if (error <= GOOD_OVER_SLOPE * fabs(found) || error * fabs(range) <= GOOD_OVER_FORCE * force) {
+        if (error <= GOOD_OVER_SLOPE * size || error * fabs(range) <= GOOD_OVER_FORCE * force) {
             break;
         }
         range *= RANGE_SHORTENED_BY;
     }
-    *slope += input == FC_INPUT_V ? held.state.variables.friction.sigma_2 : 0.0;
-    return is_finite(*slope, "the derivative of F_t_settled", message);
+    slope->x += input == FC_INPUT_V ? held.state.variables.friction.sigma_2 : 0.0;
+    slope->y += input == FC_INPUT_V_Y ? held.state.variables.friction.sigma_2 : 0.0;
+    return is_finite(*slope, "the derivative of ", message);
 }

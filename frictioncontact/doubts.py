@@ -27,16 +27,20 @@ USED = (
     ("friction.V_S", "friction.staticRatio", None),
     ("friction.sigma_1", "friction.model", BRISTLES),
     ("delta_0", "friction.model", BRISTLES),
+    ("delta_y_0", "friction.model", BRISTLES),
     ("solver.stepSize", "solver.method", FIXED_STEPS),
     ("vibration.phase_d", "vibration.a_d", None),
-    ("vibration.f", "vibration.V_1 vibration.a_d", None),
+    ("vibration.phase_2", "vibration.V_2", None),
+    ("vibration.f", "vibration.V_1 vibration.V_2 vibration.a_d", None),
 )
 # Magnitudes [SI] from which to which a value is a likely one; 0 always is.
 LIKELY = {
     "V": (0.0, 100.0),
+    "V_y": (0.0, 100.0),
     "d": (1e-9, 1e-3),
     "E": (1e5, 1e13),
     "delta_0": (0.0, 1e-2),
+    "delta_y_0": (0.0, 1e-2),
     "contact.sigma": (100.0, 1e15),
     "contact.R_q": (1e-10, 1e-3),
     "contact.R": (1e-9, 1e-1),
@@ -45,8 +49,10 @@ LIKELY = {
     "friction.V_S": (0.0, 10.0),
     "vibration.f": (100.0, 1e8),
     "vibration.V_1": (0.0, 100.0),
+    "vibration.V_2": (0.0, 100.0),
     "vibration.a_d": (0.0, 1e-3),
     "vibration.phase_d": (0.0, 15.0),
+    "vibration.phase_2": (0.0, 15.0),
 }
 
 

@@ -124,8 +124,11 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
 }
 
 bool fmu_settled_force(FmuRun* run, double force[2]) {
-    force[1] = 0.0;
-    return run->started && fc_settled_force(&run->contact, force, &run->message);
+    FcVector both = {0.0, 0.0};
+    const bool found = run->started && fc_settled_force(&run->contact, &both, &run->message);
+    force[0] = both.x;
+    force[1] = both.y;
+    return found;
 }
 
 const char* fmu_message(const FmuRun* run) { return run->message.text; }

@@ -25,7 +25,7 @@ from frictioncontact.fmu import FrictionError, FrictionFmu, Value, logging_callb
 
 Inputs = Callable[[float, np.ndarray], Mapping[str, float]]
 Rates = Callable[[float, np.ndarray, float], Sequence[float]]
-STATES = 3  # delta, W_f, Q_f
+STATES = 4  # delta, W_f, Q_f, delta_y
 MOST_STEPS = 1_000_000  # of CVODE on the way to one output
 
 

@@ -1,7 +1,7 @@
-// Derivatives in time, in co-simulation: of inputs, given, and of F_t. Directional ones of outputs and rates: by V, d, E and load
-// from initialization mode on, in model exchange by the states too. All are formulas but F_t_settled's (settled_force.c) and
-// what the rate of a bound adds where the bristle slips, to F_t by its damping, to der(delta) and der(Q_f): central differences
-// (model/derivatives.c).
+// Derivatives in time, in co-simulation: of inputs, given, and of F_t and F_y. Directional ones of outputs and rates: by the inputs
+// from initialization mode on, in model exchange by the states too. All are formulas but those of F_t_settled and F_y_settled
+// (settled_force.c) and what the rate of a bound adds where the bristle slips, to F_t and F_y by its damping, to der(delta),
+// der(delta_y) and der(Q_f): central differences (model/derivatives.c).
 #include <math.h>
 
 #include "fmi2/instance.h"
@@ -78,8 +78,9 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     }
     for (size_t i = 0; i < nvr; i++) {
         const FcVariableInfo* info = &fc_variables[vr[i]];
-        if (info->offset != offsetof(FcVariables, F_t)) {
-            return fc_refuse(instance, call, "%s has no derivative in time here: only F_t has", info->name);
+        if (info->offset != offsetof(FcVariables, F_t) && info->offset != offsetof(FcVariables, F_y)) {
+            return fc_refuse(instance, call, "%s has no derivative in time here: only F_t and F_y have",
+                             info->name);
         }
     }
     FcMessage message;
@@ -87,12 +88,13 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
     const FcScene scene = fc_friction_contact_scene(&instance->contact);
-    const double rate = fc_force_rate(&scene, fc_friction_contact_reached(&instance->contact, &scene));
-    if (!isfinite(rate)) {
-        return fc_refuse(instance, call, "the time derivative of F_t is beyond the largest number");
+    const FcVector rate = fc_force_rate(&scene, fc_friction_contact_reached(&instance->contact, &scene));
+    if (!isfinite(rate.x) || !isfinite(rate.y)) {
+        return fc_refuse(instance, call, "the time derivative of %s is beyond the largest number",
+                         isfinite(rate.x) ? "F_y" : "F_t");
     }
     for (size_t i = 0; i < nvr; i++) {
-        value[i] = rate;
+        value[i] = fc_variables[vr[i]].offset == offsetof(FcVariables, F_t) ? rate.x : rate.y;
     }
     return fmi2OK;
 }
@@ -114,6 +116,9 @@ static double* state_of(FcStateRates* states, const FcVariableInfo* info) {
     case offsetof(FcVariables, Q_f):
     case offsetof(FcVariables, der.Q_f):
         return &states->Q_f;
+    case offsetof(FcVariables, delta_y):
+    case offsetof(FcVariables, der.delta_y):
+        return &states->delta_y;
     default:
         return NULL;
     }
@@ -121,11 +126,12 @@ static double* state_of(FcStateRates* states, const FcVariableInfo* info) {
 
 // Derivatives of the outputs along a direction.
 typedef struct {
-    double F_t, F_n, sigma, A_r;
+    double F_t, F_n, sigma, A_r, F_y;
+    FcVector settled_force;
 } Slopes;
 
 // The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs. Before the
-// first step F_t_mean is F_t.
+// first step F_t_mean is F_t, and F_y_mean F_y.
 static double slope_of(const Slopes* slopes, const FcVariableInfo* output, bool mean_is_force) {
     switch (output->offset) {
     case offsetof(FcVariables, F_t):
@@ -138,6 +144,14 @@ static double slope_of(const Slopes* slopes, const FcVariableInfo* output, bool 
         return slopes->A_r;
     case offsetof(FcVariables, F_t_mean):
         return mean_is_force ? slopes->F_t : 0.0;
+    case offsetof(FcVariables, F_y):
+        return slopes->F_y;
+    case offsetof(FcVariables, F_y_mean):
+        return mean_is_force ? slopes->F_y : 0.0;
+    case offsetof(FcVariables, F_t_settled):
+        return slopes->settled_force.x;
+    case offsetof(FcVariables, F_y_settled):
+        return slopes->settled_force.y;
     default:
         return 0.0;
     }
@@ -148,7 +162,6 @@ typedef struct {
     Slopes outputs;
     FcStateRates states;
     FcStateRates rates;
-    double F_t_settled;
     bool mean_is_force; // F_t_mean is F_t
 } Tangent;
 
@@ -173,17 +186,22 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
                              .d = along->input[FC_INPUT_D],
                              .E = along->input[FC_INPUT_E],
                              .load = along->input[FC_INPUT_LOAD],
-                             .delta = along->state.delta};
-    if (reached.delta != bristle.delta &&
+                             .delta = along->state.delta,
+                             .V_y = along->input[FC_INPUT_V_Y],
+                             .delta_y = along->state.delta_y};
+    if ((reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) &&
         !fc_scene_is_loose(&scene)) { // an input has pushed it onto its bound
-        direction.delta = fc_bound_along(&scene, reached, &direction);
+        const FcVector moves = fc_bound_along(&scene, reached, &direction);
+        direction.delta = moves.x;
+        direction.delta_y = moves.y;
     }
     const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
-    const FcMotion motion = fc_motion_along(&scene, regime, reached.delta, &direction);
+    const FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
     const FcLogSlopes by = fc_log_slopes(&scene);
     return (Tangent){
-        .outputs = {.F_t = motion.F_t,
+        .outputs = {.F_t = motion.force.x,
+                    .F_y = motion.force.y,
                     .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
                     .sigma =
                         scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
@@ -194,28 +212,22 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
     };
 }
 
-static bool is_settled_force(const FcVariableInfo* output) {
-    return output->offset == offsetof(FcVariables, F_t_settled);
-}
-
-// The derivative of F_t_settled along the direction, which costs many periods of the vibration.
-static bool settled_force_along(const FcFrictionContact* contact, const Direction* along, double* derivative,
-                                FcMessage* message) {
-    *derivative = 0.0;
+// The derivatives of F_t_settled and F_y_settled along the direction, which cost many periods of the vibration.
+static bool settled_force_along(const FcFrictionContact* contact, const Direction* along,
+                                FcVector* derivative, FcMessage* message) {
+    *derivative = (FcVector){0.0, 0.0};
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        double slope = 0.0;
+        FcVector slope = {0.0, 0.0};
         if (along->input[input] != 0.0 && !fc_settled_force_slope(contact, (FcInput)input, &slope, message)) {
             return false;
         }
-        *derivative += scaled(slope, along->input[input]);
+        derivative->x += scaled(slope.x, along->input[input]);
+        derivative->y += scaled(slope.y, along->input[input]);
     }
     return true;
 }
 
 static double derivative_of(Tangent* tangent, const FcVariableInfo* unknown) {
-    if (is_settled_force(unknown)) {
-        return tangent->F_t_settled;
-    }
     double* state = state_of(fc_variable_is_rate(unknown) ? &tangent->rates : &tangent->states, unknown);
     return state ? *state : slope_of(&tangent->outputs, unknown, tangent->mean_is_force);
 }
@@ -256,7 +268,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if ((nUnknown > 0 && (!vUnknown_ref || !dvUnknown)) || (nKnown > 0 && (!vKnown_ref || !dvKnown))) {
         return fc_refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
     }
-    Direction direction = {{0.0}, {0.0, 0.0, 0.0}};
+    Direction direction = {.input = {0.0}};
     if (!read_direction(instance, vKnown_ref, nKnown, dvKnown, &direction)) {
         return fmi2Error;
     }
@@ -267,16 +279,16 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         if (!is_rate && !expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
             return fmi2Error;
         }
-        asks_settled |= is_settled_force(&fc_variables[vUnknown_ref[u]]);
+        asks_settled |= fc_variable_is_settled_force(&fc_variables[vUnknown_ref[u]]);
     }
     FcMessage message;
-    double F_t_settled = 0.0;
+    FcVector of_settled = {0.0, 0.0};
     if (!fc_instance_refresh_outputs(instance, &message) ||
-        (asks_settled && !settled_force_along(&instance->contact, &direction, &F_t_settled, &message))) {
+        (asks_settled && !settled_force_along(&instance->contact, &direction, &of_settled, &message))) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
     Tangent along = tangent(instance, &direction);
-    along.F_t_settled = F_t_settled;
+    along.outputs.settled_force = of_settled;
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
         if (!isfinite(derivative_of(&along, info))) {

@@ -23,6 +23,7 @@ static const struct {
     {AT(friction.V_S), AT(friction.model), ITEM_3 | ITEM_4},
     {AT(friction.sigma_1), AT(friction.model), ITEM_1 | ITEM_3 | ITEM_4},
     {AT(delta_0), AT(friction.model), ITEM_1 | ITEM_3 | ITEM_4},
+    {AT(delta_y_0), AT(friction.model), ITEM_1 | ITEM_3 | ITEM_4},
 };
 
 // Magnitudes between which a value other than 0 is a likely one. By hand: machines, not numbers.
@@ -31,13 +32,16 @@ static const struct {
     double low, high;
 } LIKELY[] = {
     {AT(V), 0.0, 100.0},
+    {AT(V_y), 0.0, 100.0},
     {AT(d), 1e-9, 1e-3},
     {AT(E), 1e5, 1e13},
     {AT(contact.sigma), 100.0, 1e15},
     {AT(vibration.f), 100.0, 1e8},
     {AT(vibration.V_1), 0.0, 100.0},
+    {AT(vibration.V_2), 0.0, 100.0},
     {AT(vibration.a_d), 0.0, 1e-3},
     {AT(vibration.phase_d), 0.0, 15.0},
+    {AT(vibration.phase_2), 0.0, 15.0},
 };
 
 static const FcVariableInfo* variable_at(size_t offset) {

@@ -27,7 +27,7 @@ typedef struct {
     fmi2CallbackFunctions callbacks; // a copy: the host may forget its own
     unsigned log_mask;               // bit i: category fc_log_categories[i] is on
     bool undersampling_told;         // the warning of fmi2DoStep is given once
-    double settled_force;            // N, F_t_settled as it was last computed
+    FcVector settled_force;          // N, (F_t_settled, F_y_settled) as they were last computed
     FcVariables settled_force_of;    // of these inputs and parameters; zeros before the first time
     char name[];
 } FcInstance;

@@ -140,13 +140,13 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
 // The states in the order of ModelStructure/Derivatives.
 static double* state(FcInstance* instance, int index) {
     FcVariables* v = &instance->contact.state.variables;
-    double* const states[FC_STATE_COUNT] = {&v->delta, &v->W_f, &v->Q_f};
+    double* const states[FC_STATE_COUNT] = {&v->delta, &v->W_f, &v->Q_f, &v->delta_y};
     return states[index];
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx) {
-    static const char* const names[FC_STATE_COUNT] = {"delta", "W_f", "Q_f"};
-    static const char* const units[FC_STATE_COUNT] = {"m", "J", "J"};
+    static const char* const names[FC_STATE_COUNT] = {"delta", "W_f", "Q_f", "delta_y"};
+    static const char* const units[FC_STATE_COUNT] = {"m", "J", "J", "m"};
     const FcCall call = FC_CALL_SET_CONTINUOUS_STATES;
     FcInstance* instance = fc_instance_enter(c, call);
     if (!instance || !array_fits(instance, call, x, nx, FC_STATE_COUNT, "continuous states")) {
@@ -180,6 +180,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx
     derivatives[0] = v->der.delta;
     derivatives[1] = v->der.W_f;
     derivatives[2] = v->der.Q_f;
+    derivatives[3] = v->der.delta_y;
     return fmi2OK;
 }
 

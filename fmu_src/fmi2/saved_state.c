@@ -40,15 +40,19 @@ FcSavedState* fc_saved_state_to_fill(const FcInstance* instance, FcCall call, fm
 static void drop_stale_outputs(const FcInstance* instance, FcSavedState* saved) {
     FcVariables* variables = &saved->friction.variables;
     variables->F_t = 0.0;
+    variables->F_y = 0.0;
     variables->sigma = 0.0;
     variables->A_r = 0.0;
     variables->F_n = 0.0;
     if (fc_instance_is_hybrid(instance)) {
         variables->F_t_mean = 0.0;
+        variables->F_y_mean = 0.0;
     }
     if (saved->experiment.mode == FC_INITIALIZATION_MODE) {
         variables->delta = 0.0;
+        variables->delta_y = 0.0;
         variables->F_t_mean = 0.0;
+        variables->F_y_mean = 0.0;
         variables->W_f = 0.0;
         variables->Q_f = 0.0;
     }
@@ -70,7 +74,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
         drop_stale_outputs(instance, saved);
     }
     if (!settled || !fc_instance_is_hybrid(instance)) { // rates are computed when they are asked for
-        saved->friction.variables.der = (FcStateRates){0.0, 0.0, 0.0};
+        saved->friction.variables.der = (FcStateRates){.delta = 0.0};
     }
     return fmi2OK;
 }

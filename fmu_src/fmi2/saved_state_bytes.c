@@ -27,7 +27,7 @@
 #include "fmi2/variables.h"
 
 // Counted from 1: rises when anything but the variables changes in the layout above. With the variables the guid changes.
-enum { LAYOUT_VERSION = 4 };
+enum { LAYOUT_VERSION = 5 };
 
 // Bytes of the parts above: the length of magic, of a guid in braces, of a 64-bit hash.
 enum { MAGIC_SIZE = 8, GUID_SIZE = 38, HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_SIZE, HASH_SIZE = 8 };

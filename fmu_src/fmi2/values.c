@@ -102,11 +102,6 @@ static bool is_computed(const FcVariableInfo* info) {
     return info->causality == FC_CAUSALITY_OUTPUT || info->causality == FC_CAUSALITY_LOCAL;
 }
 
-// F_t_settled is computed for who asks for it.
-static bool is_settled_force(const FcVariableInfo* info) {
-    return info->offset == offsetof(FcVariables, F_t_settled);
-}
-
 static bool have_equal_causes(const FcVariables* a, const FcVariables* b) {
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
@@ -118,10 +113,10 @@ static bool have_equal_causes(const FcVariables* a, const FcVariables* b) {
 }
 
 // An importer that records all outputs asks for it at each of them, mostly with the same inputs and parameters.
-static bool settled_force(FcInstance* instance, double* force, FcMessage* message) {
+static bool settled_force(FcInstance* instance, FcVector* force, FcMessage* message) {
     const FcVariables* now = &instance->contact.state.variables;
     if (!have_equal_causes(now, &instance->settled_force_of)) {
-        double found;
+        FcVector found;
         if (!fc_settled_force(&instance->contact, &found, message)) {
             return false;
         }
@@ -151,19 +146,21 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
         }
         computed |= is_computed(&fc_variables[vr[i]]);
         rates |= fc_variable_is_rate(&fc_variables[vr[i]]);
-        settled |= is_settled_force(&fc_variables[vr[i]]);
+        settled |= fc_variable_is_settled_force(&fc_variables[vr[i]]);
     }
     FcMessage message;
-    double F_t_settled = 0.0;
+    FcVector of_settled = {0.0, 0.0};
     if ((computed &&
          !(rates ? fc_instance_refresh_rates : fc_instance_refresh_outputs)(instance, &message)) ||
-        (settled && !settled_force(instance, &F_t_settled, &message))) {
+        (settled && !settled_force(instance, &of_settled, &message))) {
         return fc_refuse(instance, FC_CALL_GET_REAL, "the outputs can't be computed: %s", message.text);
     }
+    FcVariables* variables = &instance->contact.state.variables;
     for (size_t i = 0; i < nvr; i++) {
         const FcVariableInfo* info = &fc_variables[vr[i]];
-        value[i] = is_settled_force(info) ? F_t_settled
-                                          : *fc_variable_real(&instance->contact.state.variables, info);
+        value[i] = info->offset == offsetof(FcVariables, F_t_settled)   ? of_settled.x
+                   : info->offset == offsetof(FcVariables, F_y_settled) ? of_settled.y
+                                                                        : *fc_variable_real(variables, info);
     }
     return fmi2OK;
 }

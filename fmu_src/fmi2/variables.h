@@ -75,16 +75,22 @@ static inline int fc_variable_allows(const FcVariableInfo* info, double value) {
     return value >= info->min && value <= info->max;
 }
 
-// One of der(delta), der(W_f), der(Q_f).
+// The rate of a state.
 static inline bool fc_variable_is_rate(const FcVariableInfo* info) {
     return info->offset >= offsetof(FcVariables, der) &&
            info->offset < offsetof(FcVariables, der) + sizeof(FcStateRates);
 }
 
-// One of delta, W_f, Q_f: the states of model exchange.
+// One of delta, W_f, Q_f, delta_y: the states of model exchange.
 static inline bool fc_variable_is_state(const FcVariableInfo* info) {
     return info->offset == offsetof(FcVariables, delta) || info->offset == offsetof(FcVariables, W_f) ||
-           info->offset == offsetof(FcVariables, Q_f);
+           info->offset == offsetof(FcVariables, Q_f) || info->offset == offsetof(FcVariables, delta_y);
+}
+
+// F_t_settled and F_y_settled, computed for who asks for them.
+static inline bool fc_variable_is_settled_force(const FcVariableInfo* info) {
+    return info->offset == offsetof(FcVariables, F_t_settled) ||
+           info->offset == offsetof(FcVariables, F_y_settled);
 }
 
 // The place of an input variable in the arrays of friction_contact.h; FC_INPUT_COUNT for any other variable.
@@ -98,6 +104,8 @@ static inline FcInput fc_variable_input(const FcVariableInfo* info) {
         return FC_INPUT_E;
     case offsetof(FcVariables, load):
         return FC_INPUT_LOAD;
+    case offsetof(FcVariables, V_y):
+        return FC_INPUT_V_Y;
     default:
         return FC_INPUT_COUNT;
     }

@@ -36,12 +36,13 @@ static double bound_rate_with(const FcScene* bound, size_t input, double value) 
     ((FcLinearInput*)(void*)((char*)&drive + input))->value = value;
     const FcContactAtModulus at_E = fc_contact_at_modulus(bound->contact, drive.E.value);
     const FcScene moved = fc_scene_make(bound->contact, &at_E, bound->friction, bound->F_C, &drive);
-    return fc_bound_rate(&moved, 0.0);
+    return fc_bound_in_plane(&moved, 0.0).rate;
 }
 
 double fc_bound_rate_slope(const FcScene* bound, size_t input) {
     const double value = ((const FcLinearInput*)(const void*)((const char*)&bound->drive + input))->value;
-    const double change = input == offsetof(FcDrive, V) ? 1e-5 * bound->friction->V_S : 1e-5 * value;
+    const bool is_velocity = input == offsetof(FcDrive, V) || input == offsetof(FcDrive, V_y);
+    const double change = 1e-5 * (is_velocity ? bound->friction->V_S : value);
     return (bound_rate_with(bound, input, value + change) - bound_rate_with(bound, input, value - change)) /
            (2.0 * change);
 }

@@ -39,6 +39,12 @@ typedef struct {
     double delta_y; // m, across; in the plane slips says only whether it slips
 } FcBristle;
 
+// The side along: 1 or -1.
+static inline int fc_side(FcBristle bristle) { return bristle.delta < 0.0 ? -1 : 1; }
+
+// slips of a bristle that a motion in the plane may have left: with the side, which a motion along a line goes on from.
+static inline int fc_side_of_slip(FcBristle bristle) { return bristle.slips != 0 ? fc_side(bristle) : 0; }
+
 static inline bool fc_limit_follows_load(const FcFriction* friction) {
     return friction->limit == FC_LIMIT_LOAD;
 }

@@ -50,7 +50,37 @@ static double bound_of(const FcScene* scene, const FcCoefficients* at, int slips
     return at->limit * (is_static ? fc_static_over_limit(scene->friction, at->V) : 1.0) / at->sigma;
 }
 
+FcBound fc_bound_in_plane(const FcScene* bound, double t) {
+    if (fc_drive_is_planar(&bound->drive)) {
+        FcPlane plane;
+        fc_plane_make(&plane, bound);
+        const FcPhase phase = fc_drive_phase(&bound->drive, t);
+        const FcPlaneCoefficients at = fc_plane_coefficients(&plane, t, phase);
+        const FcPlaneBound of = fc_plane_bound(&plane, &at, 1, t, phase);
+        return (FcBound){at.limit, of.D, of.rate};
+    }
+    const FcCoefficients at = fc_scene_coefficients(bound, t);
+    return (FcBound){at.limit, at.limit / at.sigma, fc_bound_rate(bound, t)};
+}
+
+static FcVector direction(double x, double y) {
+    const double size = hypot(x, y);
+    return size > 0.0 ? (FcVector){x / size, y / size} : (FcVector){0.0, 0.0};
+}
+
+double fc_push_in_plane(const FcScene* scene, FcBristle bristle) {
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    const FcPhase phase = fc_drive_phase(&scene->drive, 0.0);
+    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, phase);
+    const FcPlaneBound bound = fc_plane_bound(&plane, &at, bristle.slips, 0.0, phase);
+    return fc_plane_push(&plane, &at, &bound, direction(bristle.delta, bristle.delta_y));
+}
+
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
+    if (fc_is_planar(scene, bristle)) {
+        return fc_plane_reach(scene, bristle);
+    }
     if (fc_scene_is_loose(scene)) {
         return (FcBristle){0};
     }
@@ -82,90 +112,158 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
         (fc_has_static_friction(scene->friction) && bristle.slips == 0)) {
         return FC_FREE;
     }
-    const int side = bristle.delta < 0.0 ? -1 : 1;
+    if (fc_is_planar(scene, bristle)) {
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(scene, bristle.slips, &friction);
+        const double D = fc_bound_in_plane(&bound, 0.0).D;
+        const bool on_circle = hypot(bristle.delta, bristle.delta_y) >= (1.0 - INSIDE_BOUND) * D;
+        return on_circle && fc_push_in_plane(scene, bristle) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
+    }
+    const int side = fc_side(bristle);
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
     const double D = bound_of(scene, &at, bristle.slips);
     const bool on_bound = fabs(bristle.delta) >= (1.0 - INSIDE_BOUND) * D && side * bristle.slips >= 0;
     return on_bound && push(scene, bristle.slips, side) > 0.0 ? (FcRegime)side : FC_FREE;
 }
 
+// What the bristle's equation needs at the start of a scene.
+typedef struct {
+    FcVector V;   // m/s
+    double speed; // m/s, |V|
+    double sigma; // N/m
+    double limit; // N, g
+} Moment;
+
+static Moment moment(const FcScene* scene, const FcContactResponse* contact) {
+    if (fc_drive_is_planar(&scene->drive)) {
+        FcPlane plane;
+        fc_plane_make(&plane, scene);
+        const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
+        return (Moment){at.V, at.speed, at.sigma, at.limit};
+    }
+    const FcCoefficients at = fc_scene_coefficients_of(scene, contact);
+    return (Moment){{at.V, 0.0}, fabs(at.V), at.sigma, at.limit};
+}
+
 // What a motion is made of, or their derivatives along a direction.
 typedef struct {
-    double V;          // m/s
-    double force;      // N, F
-    double delta_rate; // m/s
+    FcVector V;          // m/s
+    FcVector force;      // N, F
+    FcVector delta_rate; // m/s
+    FcVector state_rate; // m/s, the same of a delta that lags behind the bound
 } Parts;
 
-static Parts parts_at(const FcScene* scene, const FcCoefficients* at, FcRegime regime, double delta) {
+// a + factor b.
+static FcVector plus(FcVector a, double factor, FcVector b) {
+    return (FcVector){a.x + factor * b.x, a.y + factor * b.y};
+}
+
+static FcVector times(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
+
+// Without a part across it is the product along to the bit, a zero's sign included.
+static double product(FcVector a, FcVector b) { return b.y == 0.0 ? a.x * b.x : fc_product(a, b); }
+
+// The part of a that is perpendicular to n, |n| = 1.
+static FcVector perpendicular(FcVector a, FcVector n) { return plus(a, -product(a, n), n); }
+
+// Of a bristle that slips.
+static FcVector direction_of_slip(const FcScene* scene, FcRegime regime, FcBristle bristle) {
+    return fc_is_planar(scene, bristle) ? direction(bristle.delta, bristle.delta_y)
+                                        : (FcVector){(double)regime, 0.0};
+}
+
+static Parts slipping_parts(const FcScene* scene, const Moment* at, FcRegime regime, FcBristle bristle) {
+    FcFriction friction;
+    const FcScene of_bound = fc_scene_of_bound(scene, regime, &friction);
+    const FcBound bound = fc_bound_in_plane(&of_bound, 0.0);
+    const FcVector n = direction_of_slip(scene, regime, bristle);
+    Parts parts = {.V = at->V, .force = times(bound.limit, n), .delta_rate = times(bound.rate, n)};
+    parts.state_rate = parts.delta_rate;
+    if (fc_is_planar(scene, bristle)) {
+        const FcVector turning = perpendicular(at->V, n);
+        parts.delta_rate = plus(parts.delta_rate, 1.0, turning);
+        parts.state_rate = plus(parts.state_rate, hypot(bristle.delta, bristle.delta_y) / bound.D, turning);
+    }
+    return parts;
+}
+
+// r = sigma |V| / g [1/s] of Dahl and LuGre.
+static double relaxation_rate(const FcScene* scene, const Moment* at) {
+    return scene->friction->model == FC_ELASTIC_PLASTIC ? 0.0 : at->sigma * at->speed / at->limit;
+}
+
+static Parts parts_of(const FcScene* scene, const FcContactResponse* contact, FcRegime regime,
+                      FcBristle bristle) {
+    const Moment at = moment(scene, contact);
     if (fc_scene_is_loose(scene)) {
-        return (Parts){.V = at->V};
+        return (Parts){.V = at.V};
     }
     if (scene->friction->model == FC_COULOMB) {
-        return (Parts){.V = at->V, .force = fc_sign(at->V) * at->limit};
+        return (Parts){.V = at.V, .force = times(at.limit, direction(at.V.x, at.V.y))};
     }
-    if (regime == FC_FREE) {
-        return (Parts){.V = at->V, .force = at->sigma * delta, .delta_rate = fc_free_rate(scene, at, delta)};
+    if (regime != FC_FREE) {
+        return slipping_parts(scene, &at, regime, bristle);
     }
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
-    return (Parts){.V = at->V,
-                   .force = (double)regime * fc_scene_coefficients(&bound, 0.0).limit,
-                   .delta_rate = (double)regime * fc_bound_rate(&bound, 0.0)};
+    const FcVector delta = {bristle.delta, bristle.delta_y};
+    const FcVector rate =
+        scene->friction->model == FC_ELASTIC_PLASTIC ? at.V : plus(at.V, -relaxation_rate(scene, &at), delta);
+    return (Parts){.V = at.V, .force = times(at.sigma, delta), .delta_rate = rate, .state_rate = rate};
 }
 
-// F_t, and its derivative where parts are derivatives: it is linear in them.
-static double whole_force(const FcFriction* friction, const Parts* of) {
-    double F_t = of->force;
+// F_t and F_y, and their derivatives where parts are derivatives: they are linear in them.
+static FcVector whole_force(const FcFriction* friction, const Parts* of) {
+    FcVector F = of->force;
     if (friction->model != FC_COULOMB && friction->sigma_1 != 0.0) {
-        F_t += friction->sigma_1 * of->delta_rate;
+        F = plus(F, friction->sigma_1, of->delta_rate);
     }
-    if (friction->sigma_2 != 0.0) {
-        F_t += friction->sigma_2 * of->V;
-    }
-    return F_t;
+    return friction->sigma_2 != 0.0 ? plus(F, friction->sigma_2, of->V) : F;
 }
 
-static Parts parts(const FcScene* scene, FcRegime regime, double delta) {
+static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
     const FcContactResponse contact = fc_scene_contact(scene, 0.0);
-    const FcCoefficients at = fc_scene_coefficients_of(scene, &contact);
-    return parts_at(scene, &at, regime, delta);
+    return parts_of(scene, &contact, regime, bristle);
 }
 
-double fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
-    const FcCoefficients coefficients = fc_scene_coefficients_of(scene, contact);
+FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
     const bool asks_for_rate = scene->friction->sigma_1 != 0.0;
-    const Parts at =
-        parts_at(scene, &coefficients, asks_for_rate ? fc_regime(scene, bristle) : FC_FREE, bristle.delta);
+    const Parts at = parts_of(scene, contact, asks_for_rate ? fc_regime(scene, bristle) : FC_FREE, bristle);
     return whole_force(scene->friction, &at);
 }
 
-FcMotion fc_motion(const FcScene* scene, FcRegime regime, double delta) {
-    const Parts at = parts(scene, regime, delta);
-    const double F_t = whole_force(scene->friction, &at);
-    const double power = F_t * at.V;
-    return (FcMotion){
-        .F_t = F_t, .rates = {.delta = at.delta_rate, .W_f = power, .Q_f = power - at.force * at.delta_rate}};
+FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle) {
+    const Parts at = parts(scene, regime, bristle);
+    const FcVector F = whole_force(scene->friction, &at);
+    const double power = product(F, at.V);
+    return (FcMotion){.force = F,
+                      .rates = {.delta = at.state_rate.x,
+                                .W_f = power,
+                                .Q_f = power - product(at.force, at.delta_rate),
+                                .delta_y = at.state_rate.y}};
 }
 
-// The derivative of ln g along the direction, by the normal force and by the Stribeck curve.
-static double log_limit_along(const FcScene* scene, double V, double log_F_n, const FcDirection* along) {
+// The derivative of ln g along the direction, by the normal force and, with the speed, by the Stribeck curve.
+static double log_limit_along(const FcScene* scene, FcVector V, double log_F_n, const FcDirection* along) {
     const FcFriction* friction = scene->friction;
     const double by_load = fc_limit_follows_load(friction) ? log_F_n : 0.0;
     if (!fc_has_stribeck_curve(friction)) {
         return by_load;
     }
-    return by_load + fc_stribeck_slope(friction, V) / fc_stribeck(friction, V) * along->V;
+    const double speed = hypot(V.x, V.y);
+    const double speed_along = product((FcVector){along->V, along->V_y}, direction(V.x, V.y));
+    return by_load + fc_stribeck_slope(friction, speed) / fc_stribeck(friction, speed) * speed_along;
 }
 
 // Of delta' = V - r delta, r = sigma |V| / g.
-static double free_rate_along(const FcScene* scene, const FcCoefficients* at, double delta, double log_sigma,
-                              double log_limit, const FcDirection* along) {
+static FcVector free_rate_along(const FcScene* scene, const Moment* at, FcVector delta, double log_sigma,
+                                double log_limit, const FcDirection* along) {
+    const FcVector V_along = {along->V, along->V_y};
     if (scene->friction->model == FC_ELASTIC_PLASTIC) {
-        return along->V;
+        return V_along;
     }
-    const double r = fc_relaxation_rate(at);
-    const double r_along = r * (log_sigma - log_limit) + fc_sign(at->V) * at->sigma / at->limit * along->V;
-    return along->V - r_along * delta - r * along->delta;
+    const double r = relaxation_rate(scene, at);
+    const double r_along =
+        r * (log_sigma - log_limit) + at->sigma / at->limit * product(V_along, direction(at->V.x, at->V.y));
+    return plus(plus(V_along, -r_along, delta), -r, (FcVector){along->delta, along->delta_y});
 }
 
 // How a direction moves what the contact gives.
@@ -186,70 +284,99 @@ static ContactAlong contact_along(const FcScene* scene, const FcDirection* along
 
 static double bound_rate_along(const FcScene* bound, const FcDirection* along) {
     const bool floats = bound->contact->input == FC_CONTACT_LOAD; // d is no input
-    const double by[] = {along->V, floats ? 0.0 : along->d, along->E, along->load};
+    const double by[] = {along->V, floats ? 0.0 : along->d, along->E, along->load, along->V_y};
     const size_t input[] = {offsetof(FcDrive, V), offsetof(FcDrive, d), offsetof(FcDrive, E),
-                            offsetof(FcDrive, load)};
+                            offsetof(FcDrive, load), offsetof(FcDrive, V_y)};
     double change = 0.0;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
         change += by[k] != 0.0 ? by[k] * fc_bound_rate_slope(bound, input[k]) : 0.0;
     }
     return change;
 }
 
-// But for delta_rate.
-static Parts slipping_along(const FcScene* bound, FcRegime regime, const ContactAlong* contact,
-                            const FcDirection* along) {
-    const FcCoefficients at = fc_scene_coefficients(bound, 0.0);
-    const double log_limit = log_limit_along(bound, at.V, contact->log_F_n, along);
-    return (Parts){.V = along->V, .force = (double)regime * at.limit * log_limit};
+// D_rate_along is that of D'.
+static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcRegime regime, FcBristle bristle,
+                            const ContactAlong* contact, const FcDirection* along, double D_rate_along) {
+    const FcBound bound = fc_bound_in_plane(of_bound, 0.0);
+    const FcContactResponse now = fc_scene_contact(scene, 0.0);
+    const FcVector V = moment(scene, &now).V;
+    const double log_limit = log_limit_along(of_bound, V, contact->log_F_n, along);
+    const FcVector V_along = {along->V, along->V_y};
+    const FcVector delta_along = {along->delta, along->delta_y};
+    const FcVector n = direction_of_slip(scene, regime, bristle);
+    const double size = hypot(bristle.delta, bristle.delta_y);
+    const FcVector n_along =
+        size > 0.0 ? times(1.0 / size, perpendicular(delta_along, n)) : (FcVector){0.0, 0.0};
+    const FcVector turning = perpendicular(V, n);
+    FcVector turning_along = perpendicular(V_along, n);
+    turning_along = plus(turning_along, -product(V, n_along), n);
+    turning_along = plus(turning_along, -product(V, n), n_along);
+    const FcVector with_D = plus(times(D_rate_along, n), bound.rate, n_along);
+    const double lag = size / bound.D;
+    const double lag_along = product(delta_along, n) / bound.D - lag * (log_limit - contact->log_sigma);
+    return (Parts){.V = V_along,
+                   .force = plus(times(bound.limit * log_limit, n), bound.limit, n_along),
+                   .delta_rate = plus(with_D, 1.0, turning_along),
+                   .state_rate = plus(plus(with_D, lag, turning_along), lag_along, turning)};
 }
 
-static Parts free_along(const FcScene* scene, double delta, const ContactAlong* contact,
+static Parts free_along(const FcScene* scene, FcBristle bristle, const ContactAlong* contact,
                         const FcDirection* along) {
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const FcContactResponse now = fc_scene_contact(scene, 0.0);
+    const Moment at = moment(scene, &now);
     const double log_limit = log_limit_along(scene, at.V, contact->log_F_n, along);
+    const FcVector V_along = {along->V, along->V_y};
     if (scene->friction->model == FC_COULOMB) {
-        return (Parts){.V = along->V, .force = fc_sign(at.V) * at.limit * log_limit};
+        const FcVector n = direction(at.V.x, at.V.y);
+        const FcVector turning = at.speed > 0.0 ? times(at.limit / at.speed, perpendicular(V_along, n)) : n;
+        return (Parts){.V = V_along, .force = plus(turning, at.limit * log_limit, n)};
     }
+    const FcVector delta = {bristle.delta, bristle.delta_y};
+    const FcVector delta_along = {along->delta, along->delta_y};
+    const FcVector rate = free_rate_along(scene, &at, delta, contact->log_sigma, log_limit, along);
     return (Parts){
-        .V = along->V,
-        .force = at.sigma * (contact->log_sigma * delta + along->delta),
-        .delta_rate = free_rate_along(scene, &at, delta, contact->log_sigma, log_limit, along),
+        .V = V_along,
+        .force = times(at.sigma, plus(delta_along, contact->log_sigma, delta)),
+        .delta_rate = rate,
+        .state_rate = rate,
     };
 }
 
-static Parts parts_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along) {
+static Parts parts_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along) {
     if (fc_scene_is_loose(scene)) {
-        return (Parts){.V = along->V};
+        return (Parts){.V = {along->V, along->V_y}};
     }
     const ContactAlong contact = contact_along(scene, along);
     if (regime == FC_FREE) {
-        return free_along(scene, delta, &contact, along);
+        return free_along(scene, bristle, &contact, along);
     }
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
-    Parts change = slipping_along(&bound, regime, &contact, along);
-    change.delta_rate = (double)regime * bound_rate_along(&bound, along);
-    return change;
+    return slipping_along(scene, &bound, regime, bristle, &contact, along, bound_rate_along(&bound, along));
 }
 
-FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along) {
-    const Parts at = parts(scene, regime, delta);
-    const Parts change = parts_along(scene, regime, delta, along);
-    const double F_t = whole_force(scene->friction, &at);
-    const double F_t_along = whole_force(scene->friction, &change);
-    const double power = F_t_along * at.V + F_t * change.V;
-    const double stored = change.force * at.delta_rate + at.force * change.delta_rate;
-    return (FcMotion){.F_t = F_t_along,
-                      .rates = {.delta = change.delta_rate, .W_f = power, .Q_f = power - stored}};
+FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along) {
+    const Parts at = parts(scene, regime, bristle);
+    const Parts change = parts_along(scene, regime, bristle, along);
+    const FcVector F = whole_force(scene->friction, &at);
+    const FcVector F_along = whole_force(scene->friction, &change);
+    const double power = product(F_along, at.V) + product(F, change.V);
+    const double stored = product(change.force, at.delta_rate) + product(at.force, change.delta_rate);
+    return (FcMotion){.force = F_along,
+                      .rates = {.delta = change.state_rate.x,
+                                .W_f = power,
+                                .Q_f = power - stored,
+                                .delta_y = change.state_rate.y}};
 }
 
-double fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along) {
+FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along) {
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, bristle.slips, &friction);
     const ContactAlong contact = contact_along(scene, along);
-    const double V = fc_drive_V(&scene->drive, 0.0);
-    return bristle.delta * (log_limit_along(&bound, V, contact.log_F_n, along) - contact.log_sigma);
+    const FcContactResponse now = fc_scene_contact(scene, 0.0);
+    const FcVector V = moment(scene, &now).V;
+    return times(log_limit_along(&bound, V, contact.log_F_n, along) - contact.log_sigma,
+                 (FcVector){bristle.delta, bristle.delta_y});
 }
 
 // Second time derivative of the bound [m/s2], by a central difference of its rate, which is exact. Its pace is that of what moves
@@ -262,32 +389,39 @@ static double bound_acceleration(const FcScene* bound) {
         pace += fc_drive_load_growth(drive, 0.0);
     }
     if (fc_has_stribeck_curve(bound->friction)) {
-        pace += (fabs(drive->V.rate) + drive->omega * drive->vibration.V_1) / bound->friction->V_S;
+        const double across = fabs(drive->V_y.rate) + drive->omega * drive->vibration.V_2;
+        pace += (fabs(drive->V.rate) + drive->omega * drive->vibration.V_1 + across) / bound->friction->V_S;
     }
     double tau = 1e-4 / pace; // the error is some tau^2
     if (!isfinite(tau)) {     // it stands still, but for less than the smallest number
         return 0.0;
     }
     tau = copysign(tau, fc_scene_d_rate(bound, 0.0));
-    const double apart = fc_bound_rate(bound, tau);
+    const double apart = fc_bound_in_plane(bound, tau).rate;
     if (fc_scene_d(bound, -tau) > 0.0) {
-        return (apart - fc_bound_rate(bound, -tau)) / (2.0 * tau);
+        return (apart - fc_bound_in_plane(bound, -tau).rate) / (2.0 * tau);
     }
-    return (4.0 * apart - 3.0 * fc_bound_rate(bound, 0.0) - fc_bound_rate(bound, 2.0 * tau)) / (2.0 * tau);
+    return (4.0 * apart - 3.0 * fc_bound_in_plane(bound, 0.0).rate -
+            fc_bound_in_plane(bound, 2.0 * tau).rate) /
+           (2.0 * tau);
 }
 
-double fc_force_rate(const FcScene* scene, FcBristle bristle) {
+FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
     const FcDrive* drive = &scene->drive;
+    const FcDrive across = fc_drive_across(drive);
     const FcRegime regime = fc_regime(scene, bristle);
+    const FcStateRates rates = fc_motion(scene, regime, bristle).rates;
     const FcDirection in_time = {
         .V = fc_drive_V_rate(drive, 0.0),
         .d = scene->contact->input == FC_CONTACT_LOAD ? 0.0 : fc_drive_d_rate(drive, 0.0),
         .E = drive->E.rate,
         .load = drive->load.rate,
-        .delta = fc_motion(scene, regime, bristle.delta).rates.delta,
+        .delta = rates.delta,
+        .V_y = fc_drive_V_rate(&across, 0.0),
+        .delta_y = rates.delta_y,
     };
     if (fc_scene_is_loose(scene)) {
-        return scene->friction->sigma_2 * in_time.V;
+        return times(scene->friction->sigma_2, (FcVector){in_time.V, in_time.V_y});
     }
     ContactAlong contact = contact_along(scene, &in_time);
     if (scene->contact->input == FC_CONTACT_LOAD) { // which the vibration moves besides
@@ -297,13 +431,12 @@ double fc_force_rate(const FcScene* scene, FcBristle bristle) {
     }
     Parts change;
     if (regime == FC_FREE) {
-        change = free_along(scene, bristle.delta, &contact, &in_time);
+        change = free_along(scene, bristle, &contact, &in_time);
     } else {
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
-        change = slipping_along(&bound, regime, &contact, &in_time);
-        change.delta_rate =
-            scene->friction->sigma_1 != 0.0 ? (double)regime * bound_acceleration(&bound) : 0.0;
+        const double acceleration = scene->friction->sigma_1 != 0.0 ? bound_acceleration(&bound) : 0.0;
+        change = slipping_along(scene, &bound, regime, bristle, &contact, &in_time, acceleration);
     }
     return whole_force(scene->friction, &change);
 }

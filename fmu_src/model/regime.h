@@ -1,20 +1,24 @@
 // The bound of a bristle, its regime, and its motion at the start of a scene:
 //
 //     free       delta' = V in ElasticPlastic, V - sigma |V| delta / g in Dahl and LuGre      F = sigma delta
-//     slipping   delta' = side D'                                                             F = side sigma D
+//     slipping   delta' = n D' + V - (n V) n                                                  F = n sigma D
 //
+// delta, V and F are vectors in the plane of the contact (model/plane.h), and n is the direction of delta. Along a line n is the
+// bound's side, 1 or -1, and delta' = n D'.
 // The bound D is g / sigma: in ElasticPlastic with the static limit while it sticks and the kinetic one while it slips, in LuGre
 // with the static limit. In model exchange a regime holds from one event to the next, so that the right-hand side is smooth
 // between them; the force of a bristle that slips is that of the bound itself, so an integrator's error of delta does not
-// reach it. With F_t = F + sigma_1 delta' + sigma_2 V
+// reach it; nor do inputs that move the bound, which delta lags behind: n turns as on the bound itself. With
+// F_t = F + sigma_1 delta' + sigma_2 V
 //
 //     W_f' = F_t V        Q_f' = F_t V - F delta'
 #ifndef FC_MODEL_REGIME_H
 #define FC_MODEL_REGIME_H
 
+#include "model/plane.h"
 #include "model/scene.h"
 
-// The sign of the bound along which the bristle slips; 0 where it touches none.
+// The sign of the bound along which the bristle slips; 0 where it touches none. In the plane either sign says that it slips.
 typedef enum { FC_SLIPS_BACK = -1, FC_FREE = 0, FC_SLIPS_FORWARD = 1 } FcRegime;
 
 // The scene whose limit, over sigma, is the bound of a bristle of a bounded law that slips or does not (FcBristle.slips). It points
@@ -49,40 +53,54 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle);
 // The regime of a bristle that is within its bound.
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 
+// fc_push in the plane, at the start: in the direction of the bristle's deflection, wherever its bound is.
+double fc_push_in_plane(const FcScene* scene, FcBristle bristle);
+
+// The bound at a local time of a scene of fc_scene_of_bound, in the plane too.
+typedef struct {
+    double limit; // N
+    double D;     // m
+    double rate;  // m/s, D'
+} FcBound;
+FcBound fc_bound_in_plane(const FcScene* bound, double t);
+
 // Time derivatives of the states.
 typedef struct {
-    double delta; // m/s
-    double W_f;   // W
-    double Q_f;   // W
+    double delta;   // m/s
+    double W_f;     // W
+    double Q_f;     // W
+    double delta_y; // m/s
 } FcStateRates;
 
 typedef struct {
-    double F_t; // N
+    FcVector force; // N, (F_t, F_y)
     FcStateRates rates;
 } FcMotion;
 
-// delta [m]. FC_FREE for a law without a bound; Coulomb's force has no regime.
-FcMotion fc_motion(const FcScene* scene, FcRegime regime, double delta);
+// FC_FREE for a law without a bound; Coulomb's force has no regime.
+FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle);
 
-// F_t [N] of a bristle that is within its bound, from what fc_scene_contact says at the start.
-double fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle);
+// (F_t, F_y) [N] of a bristle that is within its bound, from what fc_scene_contact says at the start.
+FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle);
 
 // A direction in the space of what the motion depends on.
 typedef struct {
-    double V;     // m/s
-    double d;     // m
-    double E;     // Pa
-    double load;  // N
-    double delta; // m
+    double V;       // m/s
+    double d;       // m
+    double E;       // Pa
+    double load;    // N
+    double delta;   // m
+    double V_y;     // m/s
+    double delta_y; // m
 } FcDirection;
 
 // The derivative of the motion along the direction, by the chain rule; of the rate of a bound by a central difference.
-FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, double delta, const FcDirection* along);
+FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along);
 
-// How fast delta changes along the direction if the bristle is kept on the bound of its side.
-double fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along);
+// How fast the deflection changes along the direction if the bristle is kept on its bound.
+FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along);
 
-// Time derivative of F_t [N/s] of a bristle that is within its bound, the inputs moving as the drive says.
-double fc_force_rate(const FcScene* scene, FcBristle bristle);
+// Time derivative of (F_t, F_y) [N/s] of a bristle that is within its bound, the inputs moving as the drive says.
+FcVector fc_force_rate(const FcScene* scene, FcBristle bristle);
 
 #endif

@@ -145,7 +145,7 @@ CALLS = [
     BadCall(
         "one state too few",
         CONTINUOUS,
-        lambda i: i.put_states(*[0.0] * (STATES - 1)),
+        lambda i: i.call("fmi2SetContinuousStates", (c_double * STATES)(), STATES - 1),
         ("fmi2SetContinuousStates", str(STATES - 1), str(STATES)),
         kind=MODEL_EXCHANGE,
     ),

@@ -13,7 +13,7 @@ from fmpy.model_description import ScalarVariable
 
 from workshop import description
 
-STATES, INDICATORS = 3, 4
+STATES, INDICATORS = 4, 4
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING = range(6)
 MODEL_EXCHANGE, CO_SIMULATION = range(2)
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED_STATUS = range(4)
@@ -236,12 +236,14 @@ class Instance:
         return info
 
     def states(self) -> list[float]:
-        """delta, W_f, Q_f."""
+        """delta, W_f, Q_f, delta_y."""
         x = (c_double * STATES)()
         assert self.call("fmi2GetContinuousStates", x, STATES) == OK, self.messages
         return list(x)
 
     def put_states(self, *x: float) -> int:
+        """Those of states(); delta_y may be left out: 0."""
+        x = (*x, 0.0) if len(x) == STATES - 1 else x
         return self.call("fmi2SetContinuousStates", (c_double * len(x))(*x), len(x))
 
     def rates(self) -> list[float]:

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from fmi_library import OK, Instance
 
 from workshop.description import description
 
-# test_settled_force.py has the derivatives of F_t_settled.
+# test_settled_force.py has the derivatives of F_t_settled and F_y_settled.
 OUTPUTS = tuple(
     variable["name"]
     for variable in description()["variables"]
-    if variable["causality"] == "output" and variable["name"] != "F_t_settled"
+    if variable["causality"] == "output" and not variable["name"].endswith("_settled")
 )
-STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5, "load": 3e-4}
+STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5, "load": 3e-4, "V_y": 1e-6}
 ELASTIC_PLASTIC, LUGRE = {"friction.model": 3}, {"friction.model": 4}
 LIMIT_BY_LOAD, PRESSED = {"friction.limit": 2}, {"friction.limit": 2, "contact.input": 2}
 SOFT = {"contact.stiffnessScale": 1e-6}
 DAMPED = {"friction.sigma_1": 20.0, "friction.sigma_2": 30.0}
 STRIBECK = {"friction.staticRatio": 1.4, "friction.V_S": 0.01}
+ACROSS = {"V_y": -0.004, "delta_y_0": 1.5e-9, "vibration.V_2": 0.02, "vibration.phase_2": 0.4}
+FORCES = ("F_t", "F_y")
 SCENES = {
     "asperities": ({}, {"contact.stiffnessScale": 1e-6}),
     "constant stiffness": ({"contact.model": 2}, {}),
@@ -38,9 +41,16 @@ SCENES = {
     ),
     "ElasticPlastic that sticks": (ELASTIC_PLASTIC, {**SOFT, **DAMPED}),
     "ElasticPlastic that sticks, pressed by a load": ({**ELASTIC_PLASTIC, **PRESSED}, {**SOFT, **DAMPED}),
+    "Coulomb in the plane": ({"friction.model": 2, **PRESSED}, {**DAMPED, **ACROSS}),
+    "Dahl in the plane": (LIMIT_BY_LOAD, {**SOFT, **DAMPED, **ACROSS}),
+    "LuGre in the plane, pressed by a load": (
+        {**LUGRE, **PRESSED},
+        {**SOFT, **DAMPED, **STRIBECK, **ACROSS, "vibration.V_1": 0.3, "vibration.a_d": 1e-6},
+    ),
+    "ElasticPlastic in the plane": (ELASTIC_PLASTIC, {**SOFT, **DAMPED, **ACROSS}),
 }
 # A bristle that slips stays on the bound while the bound comes nearer: where an input moves this way.
-NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0}
+NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0, "V_y": 1.0}
 VIBRATING_SURFACES = {
     "contact.stiffnessScale": 1e-5,
     "friction.sigma_1": 200.0,
@@ -54,6 +64,8 @@ SLIPPING = {
     "Mindlin": ({"contact.model": 3}, {}),
     "vibrating surfaces": (LIMIT_BY_LOAD, VIBRATING_SURFACES),
     "vibrating surfaces, pressed by a load": (PRESSED, VIBRATING_SURFACES),
+    "in the plane": (PRESSED, {**VIBRATING_SURFACES, "V_y": 0.3}),
+    "with static friction, in the plane": (PRESSED, {**STRIBECK, "V_y": 0.3, "friction.V_S": 0.5}),
 }
 
 
@@ -70,7 +82,7 @@ def differences(instance: Instance, name: str) -> list[float]:
 
 def scales(instance: Instance, name: str) -> list[float]:
     """Size of one output over one input: rounding of the differences is judged against it."""
-    start = abs(instance.get(name)[0])
+    start = abs(instance.get(name)[0]) or 0.005  # m/s, where V_y is 0
     return [abs(value) / start for value in instance.get(*OUTPUTS)]
 
 
@@ -104,16 +116,16 @@ def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], sc
     instance.initialize()
     assert instance.step(0.0, 1.23e-5) == OK
     for name, side in NEARER.items():
-        status, (exact,) = instance.directional(["F_t"], {name: 1.0})
+        status, exact = instance.directional(FORCES, {name: 1.0})
         assert status == OK
-        start, F_t = instance.get(name, "F_t")
+        start, *force = instance.get(name, *FORCES)
         slopes = []
         for step in (side * STEPS[name], 2.0 * side * STEPS[name]):
             assert instance.set({name: start + step}) == OK
-            slopes.append((instance.get("F_t")[0] - F_t) / step)
+            slopes.append((np.array(instance.get(*FORCES)) - force) / step)
         assert instance.set({name: start}) == OK
-        difference = 2.0 * slopes[0] - slopes[1]
-        assert exact == pytest.approx(difference, rel=1e-5, abs=1e-6 * abs(F_t / start)), name
+        size = np.hypot(*force) / abs(start or 0.5)
+        assert exact == pytest.approx(2.0 * slopes[0] - slopes[1], rel=1e-5, abs=1e-6 * size), name
 
 
 def test_some_derivatives_are_not_zero(new_instance: Callable[..., Instance]) -> None:

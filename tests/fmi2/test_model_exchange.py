@@ -11,8 +11,9 @@ import pytest
 from fmi_library import ERROR, MODEL_EXCHANGE, OK, STATES, Instance
 
 DAHL, ELASTIC_PLASTIC, LUGRE = 1, 3, 4
-RATES = ("der(delta)", "der(W_f)", "der(Q_f)")
-UNKNOWNS = ("F_t", "F_t_mean", "F_n", "sigma", "A_r", "delta", "W_f", "Q_f", *RATES)
+RATES = ("der(delta)", "der(W_f)", "der(Q_f)", "der(delta_y)")
+FORCES = ("F_t", "F_t_mean", "F_y", "F_y_mean")
+UNKNOWNS = (*FORCES, "delta", "delta_y", "F_n", "sigma", "A_r", "W_f", "Q_f", *RATES)
 CONTINUOUS = "continuous-time mode"
 BLOCK = {"contact.sigma": 2.5e6, "F_C": 50.0}  # bound at 20 um with contact.model = Constant
 
@@ -33,7 +34,10 @@ def block(new_instance: Callable[..., Instance], law: int, **values: float) -> I
 
 
 def random_scene(number: int) -> tuple[dict[str, int], dict[str, float], float]:
-    """Choices, values and a deflection over that of the limit; every law, contact, limit and input."""
+    """Choices, values and a deflection over that of the limit; every law, contact, limit and input.
+
+    From 48 on they move across, too.
+    """
     rng = np.random.default_rng([31, number])
     choices = {
         "friction.model": (DAHL, ELASTIC_PLASTIC, LUGRE)[number % 3],
@@ -54,17 +58,24 @@ def random_scene(number: int) -> tuple[dict[str, int], dict[str, float], float]:
         "vibration.a_d": rng.choice([0.0, 10 ** rng.uniform(-8, -6)]),
         "vibration.phase_d": rng.uniform(0, 2 * math.pi),
     }
-    return choices, values, float(rng.choice([0.5, -0.5, 2.5, -2.5]))
+    part = float(rng.choice([0.5, -0.5, 2.5, -2.5]))
+    if number >= 48:
+        values["V_y"] = rng.choice([-1, 1]) * 10 ** rng.uniform(-2, 0)
+        values["vibration.V_2"] = rng.choice([0.0, 10 ** rng.uniform(-2, 0)])
+        values["vibration.phase_2"] = rng.uniform(0, 2 * math.pi)
+    return choices, values, part
 
 
 def derivative_errors(instance: Instance) -> float:
     """The largest difference of a directional derivative to a central one, over the variable's size."""
     now = np.array(instance.get(*UNKNOWNS))
-    sizes = {"V": abs(instance.get("V")[0]) + instance.get("vibration.V_1")[0], "delta": abs(now[5])}
+    V, V_1, V_2 = instance.get("V", "vibration.V_1", "vibration.V_2")
+    speed, force, delta = abs(V) + V_1 + V_2, np.hypot(now[0], now[2]), np.hypot(now[4], now[5])
+    sizes = {"V": speed, "V_y": speed, "delta": delta, "delta_y": delta}
     sizes |= {name: abs(instance.get(name)[0]) for name in ("d", "E", "load")}
     sizes |= {"W_f": 1e-3, "Q_f": 1e-3}
-    speed, power = sizes["V"], abs(now[0]) * sizes["V"]
-    least = np.array([1e-300] * 8 + [speed, power, power])  # a rate may be a difference of such, and 0
+    power = force * speed  # a rate may be a difference of such, and 0
+    least = np.array([force] * 4 + [delta] * 2 + [1e-300] * 5 + [speed, power, power, speed])
     worst = 0.0
     for name, size in sizes.items():
         status, exact = instance.directional(UNKNOWNS, {name: size})
@@ -82,7 +93,7 @@ def derivative_errors(instance: Instance) -> float:
     return worst
 
 
-@pytest.mark.parametrize("number", range(48))
+@pytest.mark.parametrize("number", range(96))
 def test_every_derivative_by_every_input_and_state(
     new_instance: Callable[..., Instance], number: int
 ) -> None:
@@ -92,7 +103,8 @@ def test_every_derivative_by_every_input_and_state(
     assert instance.call("fmi2SetTime", 1.3e-5) == OK
     F_n, sigma = instance.get("F_n", "sigma")
     limit = 55.0 if choices["friction.limit"] == 1 else 0.176 * F_n
-    assert instance.put_states(part * limit / sigma, 1e-3, 1e-3) == OK
+    across = 0.7 * part * limit / sigma if number >= 48 else 0.0
+    assert instance.put_states(part * limit / sigma, 1e-3, 1e-3, across) == OK
     instance.event()
     assert derivative_errors(instance) < 1e-6
 
@@ -103,7 +115,9 @@ def test_rates_are_power_and_heat(new_instance: Callable[..., Instance]) -> None
     assert instance.put_states(8e-6, 0.0, 0.0) == OK
     expected = 0.1 * (1 - 2.5e6 * 8e-6 / 50.0)
     F_t = 2.5e6 * 8e-6
-    assert instance.rates() == pytest.approx([expected, 0.1 * F_t, 0.1 * F_t - F_t * expected], rel=1e-14)
+    assert instance.rates() == pytest.approx(
+        [expected, 0.1 * F_t, 0.1 * F_t - F_t * expected, 0.0], rel=1e-14
+    )
     assert instance.get(*RATES) == instance.rates()
     assert instance.get("F_t", "F_t_mean") == pytest.approx([F_t, F_t], rel=1e-15)
     calls = instance.get("solver.evaluations")[0]
@@ -131,7 +145,7 @@ def test_rates_of_the_same_names_in_co_simulation(new_instance: Callable[..., In
     for step in range(5):
         assert instance.step(step * 1e-5, 1e-5) == OK
         assert exchanged.call("fmi2SetTime", (step + 1) * 1e-5) == OK
-        assert exchanged.put_states(*instance.get("delta", "W_f", "Q_f")) == OK
+        assert exchanged.put_states(*instance.get("delta", "W_f", "Q_f", "delta_y")) == OK
         assert instance.get(*RATES) == pytest.approx(exchanged.rates(), rel=1e-12)
 
 
@@ -168,7 +182,7 @@ def test_a_bristle_reaches_its_bound_and_leaves_it(new_instance: Callable[..., I
     assert instance.event().valuesOfContinuousStatesChanged
     assert instance.states()[0] == pytest.approx(20e-6, rel=1e-15)
     assert all(z > 0 for z in instance.indicators()) and not instance.step_completed()
-    assert instance.rates() == pytest.approx([0.0, 5.0, 5.0], rel=1e-15)
+    assert instance.rates() == pytest.approx([0.0, 5.0, 5.0, 0.0], rel=1e-15)
     assert instance.set({"V": 1e-12}) == OK
     assert all(z > 0 for z in instance.indicators())
     assert instance.set({"V": -1e-12}) == OK
@@ -189,7 +203,7 @@ def test_a_bristle_breaks_away_and_sticks_again(new_instance: Callable[..., Inst
     assert instance.put_states(D_s * (1 + 1e-9), 0.0, 0.0) == OK
     assert instance.indicators()[1] < 0 and instance.step_completed()
     assert instance.event().valuesOfContinuousStatesChanged
-    delta, W_f, Q_f = instance.states()
+    delta, W_f, Q_f, _ = instance.states()
     drop = D_k - D_s * (1 + 1e-9)
     assert delta == pytest.approx(D_k, rel=1e-15)
     assert W_f == pytest.approx(3.0 * 0.1 * drop, rel=1e-12)  # by the damper, at once
@@ -227,7 +241,7 @@ def test_a_jump_up_of_the_bound_leaves_it_slipping(new_instance: Callable[..., I
         assert one.put_states(24e-6 * (1 + 1e-9), 0.0, 0.0) == OK  # F_C / sigma, not 36 um
         assert one.indicators()[1] < 0 and one.step_completed()
         one.event()
-        assert one.rates() == pytest.approx([0.0, 60.0, 60.0], rel=1e-12)
+        assert one.rates() == pytest.approx([0.0, 60.0, 60.0, 0.0], rel=1e-12)
 
 
 @pytest.mark.parametrize("contact", [1, 2, 3])
@@ -246,7 +260,7 @@ def test_a_contact_opens_and_closes_at_events(new_instance: Callable[..., Instan
             assert all(z > 0 for z in instance.indicators()[1:]) and not instance.step_completed()
         if load <= 0:
             assert instance.get("F_t", "F_n", "A_r", "delta") == [7.0 * 0.1, 0.0, 0.0, 0.0]
-            assert instance.rates() == pytest.approx([0.0, 0.07, 0.07], rel=1e-14)
+            assert instance.rates() == pytest.approx([0.0, 0.07, 0.07, 0.0], rel=1e-14)
             assert nominals(instance) == sizes
     assert instance.rates()[0] == pytest.approx(0.1, rel=1e-12)
 
@@ -313,7 +327,7 @@ def test_rounding_of_an_event_starts_no_second_one(new_instance: Callable[..., I
 def test_what_lies_beyond_the_bound_becomes_heat(new_instance: Callable[..., Instance]) -> None:
     """As the first step of co-simulation does with delta_0: sigma (delta_0^2 - D^2) / 2."""
     instance = block(new_instance, ELASTIC_PLASTIC, V=0.1, delta_0=30e-6)
-    delta, W_f, Q_f = instance.states()
+    delta, W_f, Q_f, _ = instance.states()
     assert (delta, W_f) == (pytest.approx(20e-6, rel=1e-15), 0.0)
     assert Q_f == pytest.approx(0.5 * 2.5e6 * (30e-6**2 - 20e-6**2), rel=1e-14)
 
@@ -350,13 +364,13 @@ def nominals(instance: Instance) -> list[float]:
 def test_nominal_values_are_the_scene_s(new_instance: Callable[..., Instance]) -> None:
     """delta: F / sigma; the energies: F times that, or times the amplitude of a vibration if larger."""
     instance = block(new_instance, DAHL)
-    assert nominals(instance) == pytest.approx([20e-6, 1e-3, 1e-3], rel=1e-14)
+    assert nominals(instance) == pytest.approx([20e-6, 1e-3, 1e-3, 20e-6], rel=1e-14)
     assert instance.call("fmi2EnterEventMode") == OK
     assert not instance.new_discrete_states().nominalsOfContinuousStatesChanged
     assert instance.set({"F_C": 100.0, "vibration.V_1": 50.0}) == OK
     assert instance.new_discrete_states().nominalsOfContinuousStatesChanged
     amplitude = 50.0 / (2 * math.pi * 20e3)
-    assert nominals(instance) == pytest.approx([40e-6, 100 * amplitude, 100 * amplitude], rel=1e-14)
+    assert nominals(instance) == pytest.approx([40e-6, 100 * amplitude, 100 * amplitude, 40e-6], rel=1e-14)
     by_load = started(
         new_instance,
         {"friction.limit": 2, "contact.input": 2, "contact.model": 2},

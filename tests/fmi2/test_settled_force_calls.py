@@ -1,4 +1,4 @@
-"""F_t_settled at the FMI boundary: computed when asked for, wherever outputs may be read, without a trace."""
+"""F_t_settled and F_y_settled at the FMI boundary: computed when asked for, wherever outputs may be read, without a trace."""
 
 from __future__ import annotations
 
@@ -17,23 +17,27 @@ VIBRATING = {
     "contact.stiffnessScale": 4.4e-7,
     "friction.sigma_2": 3.0,
 }
-INPUTS = ("V", "d", "E", "load")
+ACROSS = {"V_y": 0.2, "vibration.V_2": 0.7, "vibration.phase_2": 1.0}
+INPUTS = ("V", "d", "E", "load", "V_y")
+BOTH = ("F_t_settled", "F_y_settled")
 
 
 def ask(instance: Instance) -> list[float]:
-    """The mean and its derivatives."""
-    slopes = [instance.directional(["F_t_settled"], {name: 1.0}) for name in INPUTS]
+    """The means and their derivatives."""
+    slopes = [instance.directional(BOTH, {name: 1.0}) for name in INPUTS]
     assert all(status == OK for status, _ in slopes)
-    return [*instance.get("F_t_settled"), *(slope for _, (slope,) in slopes)]
+    return [*instance.get(*BOTH), *(slope for _, pair in slopes for slope in pair)]
 
 
 @pytest.mark.parametrize("law", [1, 2, 3, 4])
-@pytest.mark.parametrize("initial", [1, 2])
-def test_asking_leaves_no_trace(new_instance: Callable[..., Instance], law: int, initial: int) -> None:
+@pytest.mark.parametrize(("initial", "across"), [(1, {}), (2, {}), (1, ACROSS)])
+def test_asking_leaves_no_trace(
+    new_instance: Callable[..., Instance], law: int, initial: int, across: dict[str, float]
+) -> None:
     asked, other = new_instance(), new_instance()
     for each in (asked, other):
         assert each.choose({"friction.model": law, "friction.limit": 2, "initialState": initial}) == OK
-        assert each.set(VIBRATING | {"friction.staticRatio": 1.2}) == OK
+        assert each.set(VIBRATING | across | {"friction.staticRatio": 1.2}) == OK
         assert each.call("fmi2EnterInitializationMode") == OK
     first = ask(asked)
     assert asked.fingerprint() == other.fingerprint()
@@ -57,7 +61,7 @@ def test_asking_leaves_no_trace(new_instance: Callable[..., Instance], law: int,
     assert asked.restore(state) == OK and asked.drop(state) == OK
     assert ask(asked) == last
     assert asked.call("fmi2Terminate") == OK
-    assert asked.get("F_t_settled") == last[:1]
+    assert asked.get(*BOTH) == last[:2] and (last[1] != 0.0) == bool(across)
 
 
 def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance]) -> None:
@@ -75,12 +79,13 @@ def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance])
         "vibration.V_1": 1.2,
         "vibration.a_d": 5e-7,
         "vibration.phase_d": 1.0,
+        **ACROSS,
     }
     asked, so_far = new_instance(), dict(VIBRATING)
     assert asked.set(VIBRATING) == OK and asked.call("fmi2EnterInitializationMode") == OK
-    last = asked.get("F_t_settled")
+    last = asked.get(*BOTH)
     steps = [("set", {name: value}) for name, value in changes.items()] + [("choose", {"friction.model": 4})]
-    steps.append(("set", {"friction.staticRatio": 1.5}))
+    steps.append(("set", {"friction.staticRatio": 1.5, "friction.V_S": 0.5}))
     chosen: dict[str, int] = {}
     for how, change in steps:
         (so_far if how == "set" else chosen).update(change)
@@ -88,8 +93,8 @@ def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance])
         assert fresh.choose(chosen) == OK and fresh.set(so_far) == OK
         assert fresh.call("fmi2EnterInitializationMode") == OK
         assert getattr(asked, how)(change) == OK
-        now = asked.get("F_t_settled")
-        assert now == fresh.get("F_t_settled") == asked.get("F_t_settled")
+        now = asked.get(*BOTH)
+        assert now == fresh.get(*BOTH) == asked.get(*BOTH)
         assert now != last or how == "choose", change
         last = now
 
@@ -102,15 +107,19 @@ def test_one_call_may_ask_for_it_more_than_once_and_beside_others(instance: Inst
 
 
 def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
-    assert instance.set(VIBRATING) == OK
+    assert instance.set(VIBRATING | ACROSS) == OK
     instance.initialize()
-    _, *slopes = ask(instance)
-    direction = {"V": 0.3, "d": -2e-7, "E": 4e8, "load": 7.0}
-    parts = [slope * along for slope, along in zip(slopes, direction.values(), strict=True)]
-    outputs = ["F_t_settled", "F_t", "F_t_settled"]
-    status, (settled, _, again) = instance.directional(outputs, direction)
-    assert status == OK and settled == again == pytest.approx(sum(parts), rel=1e-12)
-    assert instance.directional(["F_t_settled"], {"V": 0.0}) == (OK, [0.0])
+    _, _, *slopes = ask(instance)
+    direction = {"V": 0.3, "d": -2e-7, "E": 4e8, "load": 7.0, "V_y": -0.2}
+    along, across = (
+        sum(slope * part for slope, part in zip(slopes[k::2], direction.values(), strict=True))
+        for k in (0, 1)
+    )
+    outputs = ["F_t_settled", "F_t", "F_t_settled", "F_y_settled"]
+    status, (settled, _, again, transverse) = instance.directional(outputs, direction)
+    assert status == OK and settled == again == pytest.approx(along, rel=1e-12)
+    assert transverse == pytest.approx(across, rel=1e-12)
+    assert instance.directional(BOTH, {"V": 0.0}) == (OK, [0.0, 0.0])
 
 
 def test_what_it_refuses(instance: Instance) -> None:
@@ -123,12 +132,13 @@ def test_what_it_refuses(instance: Instance) -> None:
 
 
 @pytest.mark.slow
-def test_the_model_description_says_what_it_depends_on(library: Library) -> None:
+@pytest.mark.parametrize("name", BOTH)
+def test_the_model_description_says_what_it_depends_on(library: Library, name: str) -> None:
     model = description.read()
-    (output,) = (each for each in model.outputs if each.variable.name == "F_t_settled")
+    (output,) = (each for each in model.outputs if each.variable.name == name)
     assert [each.name for each in output.dependencies] == list(INPUTS)
-    assert output.dependenciesKind == ["dependent"] * 4
-    (unknown,) = (each for each in model.initialUnknowns if each.variable.name == "F_t_settled")
+    assert output.dependenciesKind == ["dependent"] * 5
+    (unknown,) = (each for each in model.initialUnknowns if each.variable.name == name)
     names = {each.name for each in unknown.dependencies}
     parameters = set(library.names("parameter")) | set(library.names("parameter", "Enumeration"))
     assert names - set(INPUTS) == parameters - {

@@ -1,4 +1,4 @@
-"""fmi2GetRealOutputDerivatives: the exact slope of F_t, against differences of F_t over short steps."""
+"""fmi2GetRealOutputDerivatives: the exact slopes of F_t and F_y, against differences over short steps."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import pytest
 from fmi_library import OK, Instance
 
 RATES = {"V": 2.0, "d": 1e-3, "E": 5e12}
+ACROSS = {"V_y": 0.01, "vibration.V_2": 0.07, "vibration.phase_2": 1.9}
 
 
 def soft_instance(new_instance: Callable[..., Instance], law: int = 1) -> Instance:
@@ -20,14 +21,16 @@ def soft_instance(new_instance: Callable[..., Instance], law: int = 1) -> Instan
     return instance
 
 
-def slope_ahead(instance: Instance, t: float, h: float, rates: dict[str, float]) -> float:
-    """Second-order forward difference of F_t over two steps with the inputs moving at the rates."""
+def slope_ahead(
+    instance: Instance, t: float, h: float, rates: dict[str, float], output: str = "F_t"
+) -> float:
+    """Second-order forward difference of the output over two steps with the inputs moving at the rates."""
     start = instance.save()
-    forces = instance.get("F_t")
+    forces = instance.get(output)
     for step in range(2):
         assert instance.set_input_rates(rates) == OK
         assert instance.step(t + step * h, h) == OK
-        forces += instance.get("F_t")
+        forces += instance.get(output)
     assert instance.restore(start) == OK
     assert instance.drop(start) == OK
     return (-3 * forces[0] + 4 * forces[1] - forces[2]) / (2 * h)
@@ -50,11 +53,12 @@ def test_slope_of_the_force_with_the_rates_of_the_next_step(
     assert slope == pytest.approx(expected, rel=1e-5)
 
 
+@pytest.mark.parametrize("output", ["F_t", "F_t in the plane", "F_y in the plane"])
 @pytest.mark.parametrize("phase_d", [0.0, 0.7, 2.5])
 @pytest.mark.parametrize("damping", [{}, {"friction.sigma_1": 20.0}, {"friction.sigma_2": 30.0}], ids=repr)
 @pytest.mark.parametrize("law", [1, 3, 4], ids=["Dahl", "ElasticPlastic", "LuGre"])
 def test_slope_of_the_force_under_vibration(
-    new_instance: Callable[..., Instance], law: int, damping: dict[str, float], phase_d: float
+    new_instance: Callable[..., Instance], law: int, damping: dict[str, float], phase_d: float, output: str
 ) -> None:
     """Off by (2 pi f h)^2 = 1.6e-6 of the slopes that the vibration gives, at h = 1e-8 s.
 
@@ -69,17 +73,19 @@ def test_slope_of_the_force_under_vibration(
         "vibration.a_d": 1.1e-6,
         "vibration.phase_d": phase_d,
     }
-    assert instance.set({"contact.stiffnessScale": 1e-6, **vibration}) == OK
+    output, *in_plane = output.split(" ", 1)
+    across, rates = (ACROSS, RATES | {"V_y": -3.0}) if in_plane else ({}, RATES)
+    assert instance.set({"contact.stiffnessScale": 1e-6, **vibration, **across}) == OK
     instance.initialize()
     t = 0.0
     expected, slopes = [], []
     for h in (1.3e-5, 1.1e-5, 1.9e-5, 0.8e-5):
         assert instance.step(t, h) == OK
         t += h
-        assert instance.set_input_rates(RATES) == OK
-        expected.append(slope_ahead(instance, t, 1e-8, RATES))
-        assert instance.set_input_rates(RATES) == OK
-        status, slope = instance.output_rate("F_t")
+        assert instance.set_input_rates(rates) == OK
+        expected.append(slope_ahead(instance, t, 1e-8, rates, output))
+        assert instance.set_input_rates(rates) == OK
+        status, slope = instance.output_rate(output)
         assert status == OK
         slopes.append(slope)
     steepest = max(map(abs, expected))

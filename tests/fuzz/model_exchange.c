@@ -9,7 +9,7 @@
 #include "host.h"
 #include "input.h"
 
-enum { SLOTS = 3, CALLS_MOST = 60, STATES = 3, INDICATORS = 4 };
+enum { SLOTS = 3, CALLS_MOST = 60, STATES = 4, INDICATORS = 4 };
 
 typedef struct {
     Fmi2Instance exchange;

@@ -87,7 +87,7 @@ static double later(const FcScene* scene, double delta, int side, double t) {
 
 static double force_later(const FcScene* scene, double delta, int side, double t) {
     const FcScene then = fc_scene_from(scene, t);
-    return fc_motion(&then, (FcRegime)side, later(scene, delta, side, t)).F_t;
+    return fc_motion(&then, (FcRegime)side, (FcBristle){.delta = later(scene, delta, side, t)}).force.x;
 }
 
 // What the rates of a scene may add up to [1/s]: differences over tau are off by (rate tau)^4 / 30 of the force.
@@ -112,7 +112,7 @@ static double force_scale(const FcScene* scene, double delta) {
 }
 
 static void slope_in_time(const FcScene* scene, double delta, int side) {
-    const double got = fc_force_rate(scene, (FcBristle){.delta = delta, .slips = side});
+    const double got = fc_force_rate(scene, (FcBristle){.delta = delta, .slips = side}).x;
     const double rate = fastest(scene);
     if (rate == 0.0) {
         CHECK(got == 0.0);
@@ -142,18 +142,18 @@ typedef struct {
 } All;
 
 static All all_of(const FcScene* scene, double delta, int side) {
-    const FcMotion motion = fc_motion(scene, (FcRegime)side, delta);
+    const FcMotion motion = fc_motion(scene, (FcRegime)side, (FcBristle){.delta = delta});
     const FcContactResponse contact = fc_scene_contact(scene, 0.0);
-    return (All){{motion.F_t, motion.rates.delta, motion.rates.W_f, motion.rates.Q_f,
+    return (All){{motion.force.x, motion.rates.delta, motion.rates.W_f, motion.rates.Q_f,
                   bound_at(scene, side, 0.0), log(contact.sigma), log(contact.A_r), log(contact.F_n)}};
 }
 
 static All slopes_of(const FcScene* scene, double delta, int side, const FcDirection* along,
                      FcContactLogSlope contact) {
-    const FcMotion motion = fc_motion_along(scene, (FcRegime)side, delta, along);
-    const FcBristle on_bound = {bound_at(scene, side, 0.0), side};
-    return (All){{motion.F_t, motion.rates.delta, motion.rates.W_f, motion.rates.Q_f,
-                  fc_bound_along(scene, on_bound, along), contact.sigma, contact.A_r, contact.F_n}};
+    const FcMotion motion = fc_motion_along(scene, (FcRegime)side, (FcBristle){.delta = delta}, along);
+    const FcBristle on_bound = {.delta = bound_at(scene, side, 0.0), .slips = side};
+    return (All){{motion.force.x, motion.rates.delta, motion.rates.W_f, motion.rates.Q_f,
+                  fc_bound_along(scene, on_bound, along).x, contact.sigma, contact.A_r, contact.F_n}};
 }
 
 // The deflection itself moves, too, by which the motion of a bristle that is free changes.
@@ -199,9 +199,10 @@ static void at_a_reversal(void) {
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 9e9);
     const FcScene scene = fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
     const FcDirection by_V = {.V = 1.0};
-    CHECK_NEAR(fc_force_rate(&scene, (FcBristle){.delta = 1e-6}), (friction.sigma_1 + friction.sigma_2) * 7.0,
-               1e-14);
-    CHECK_NEAR(fc_motion_along(&scene, FC_FREE, 1e-6, &by_V).F_t, friction.sigma_1 + friction.sigma_2, 1e-14);
+    CHECK_NEAR(fc_force_rate(&scene, (FcBristle){.delta = 1e-6}).x,
+               (friction.sigma_1 + friction.sigma_2) * 7.0, 1e-14);
+    CHECK_NEAR(fc_motion_along(&scene, FC_FREE, (FcBristle){.delta = 1e-6}, &by_V).force.x,
+               friction.sigma_1 + friction.sigma_2, 1e-14);
 }
 
 // A contact that is open has viscous friction alone.
@@ -213,10 +214,10 @@ static void open_contacts(void) {
         if (!fc_scene_is_loose(&scene)) {
             continue;
         }
-        const FcDirection along = {1.0, 1.0, 1.0, 1.0, 1.0};
-        const FcMotion change = fc_motion_along(&scene, FC_FREE, 0.0, &along);
-        CHECK(change.F_t == 3.0 && change.rates.delta == 0.0);
-        CHECK_NEAR(fc_force_rate(&scene, (FcBristle){0}), 3.0 * fc_drive_V_rate(&scene.drive, 0.0), 1e-14);
+        const FcDirection along = {1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0};
+        const FcMotion change = fc_motion_along(&scene, FC_FREE, (FcBristle){0}, &along);
+        CHECK(change.force.x == 3.0 && change.rates.delta == 0.0);
+        CHECK_NEAR(fc_force_rate(&scene, (FcBristle){0}).x, 3.0 * fc_drive_V_rate(&scene.drive, 0.0), 1e-14);
         CHECK(fc_log_slopes(&scene).by_d.sigma == 0.0 && fc_log_slopes(&scene).by_load.F_n == 0.0);
     }
 }
@@ -238,7 +239,7 @@ static void slipping_while_the_surfaces_move(double d, double d_rate) {
     const double delta = bound_at(&scene, 0, 0.0);
     const double moves = at_E.decay * d_rate; // 1/s
     const double expected = friction.sigma_1 * moves * moves * delta;
-    const double found = fc_force_rate(&scene, (FcBristle){.delta = delta});
+    const double found = fc_force_rate(&scene, (FcBristle){.delta = delta}).x;
     CHECK(fc_regime(&scene, (FcBristle){.delta = delta}) == FC_SLIPS_FORWARD);
     CHECK(fabs(found - expected) <= 1e-6 * expected);
 }

@@ -16,7 +16,7 @@ typedef struct {
 static FcDrive drive_of(Case c) {
     return fc_drive_make((FcLinearInput){c.V, c.V_rate}, (FcLinearInput){14e-6, c.d_rate},
                          (FcLinearInput){58e9, 0.0}, (FcLinearInput){1.0, 0.0},
-                         (FcVibration){F, c.V_1, c.a_d, c.phase_d}, c.start, 0.0);
+                         (FcVibration){F, c.V_1, c.a_d, c.phase_d, 0.0, 0.0}, c.start, 0.0);
 }
 
 // f t modulo 1 in whole numbers: every double t from 2^29 to 2^30 s is a multiple of 2^-23 s, and f is one of 1 Hz.
@@ -36,7 +36,7 @@ static void phase_is_exact_after_many_years(void) {
 }
 
 static void rest_of_the_time_counts(void) {
-    const FcVibration vibration = {F, 1.0, 0.0, 0.0};
+    const FcVibration vibration = {.f = F, .V_1 = 1.0};
     const FcLinearInput held = {1.0, 0.0};
     const double rest = 4e-8; // s, below the rounding of 1e9 s
     const FcDrive with = fc_drive_make(held, held, held, held, vibration, 1e9, rest);
@@ -351,7 +351,7 @@ static void reversal_of_a_fast_input_over_a_slow_vibration(void) {
     const FcLinearInput V = {0.0118295, -1.177e9};
     const FcLinearInput held = {1.0, 0.0};
     const FcDrive drive =
-        fc_drive_make(V, held, held, held, (FcVibration){1e-4, 1e-3, 0.0, 0.0}, 1000.0, 0.0);
+        fc_drive_make(V, held, held, held, (FcVibration){.f = 1e-4, .V_1 = 1e-3}, 1000.0, 0.0);
     const double end = 1.83e-11;
     const FcDriveEvent event = fc_drive_next_event(&drive, 0.0, end);
     CHECK(event.time < end && event.reversal);
@@ -479,8 +479,7 @@ static void what_is_left_of_E_and_load_has_its_digits(void) {
         const uint64_t ticks = (start << 40) / rate;
         const double left = (double)((start << 40) - rate * ticks) * 0x1p-40;
         const FcLinearInput falls = {(double)start, -(double)rate};
-        const FcDrive drive =
-            fc_drive_make(held, held, falls, falls, (FcVibration){F, 0.0, 0.0, 0.0}, 0.0, 0.0);
+        const FcDrive drive = fc_drive_make(held, held, falls, falls, (FcVibration){.f = F}, 0.0, 0.0);
         CHECK_NEAR(fc_drive_E(&drive, (double)ticks * 0x1p-40), left, 1e-15);
         CHECK_NEAR(fc_drive_load(&drive, (double)ticks * 0x1p-40), left, 1e-15);
     }

@@ -140,7 +140,7 @@ static void many_small_jumps_are_one(void) {
         *to[what] *= factor;
         const double old = *to[what] / factor;
         const double scale = bound(&start);
-        const FcBristle from = {scale * (0.6 + 0.4 * random_01()), 0};
+        const FcBristle from = {.delta = scale * (0.6 + 0.4 * random_01())};
         double at_once = 0.0;
         const FcBristle reached = jump(&start, &end, from, &at_once);
         double in_parts = 0.0;
@@ -200,7 +200,7 @@ static void static_friction_breaks_away_on_the_ramp(void) {
         // One that slips follows the kinetic bound down, and stays where it is as that rises.
         heat = 0.0;
         const double D_before = kinetic * 0.2 * 300.0 / 2.5e6;
-        const FcBristle slipping = {D_before, 1};
+        const FcBristle slipping = {.delta = D_before, .slips = 1};
         const FcBristle followed = jump(&before, &after, slipping, &heat);
         CHECK_NEAR(followed.delta, kinetic * D, 1e-14);
         CHECK(followed.slips == 1);

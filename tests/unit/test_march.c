@@ -188,7 +188,7 @@ static void draw(Case* one, int k) {
     const Moment start = moment(&one->scene, 0.0);
     const double delta = start.D_static * 1.2 * either_sign();
     const bool slips = k % 4 == 1 && random_01() < 0.4; // on its bound, or inside
-    const FcBristle from = {delta, slips ? (delta < 0.0 ? -1 : 1) : 0};
+    const FcBristle from = {.delta = delta, .slips = slips ? (delta < 0.0 ? -1 : 1) : 0};
     const FcBristle reached = fc_reach(&one->scene, from);
     one->start = (FcStepResult){.delta = reached.delta, .slips = reached.slips};
     const double limit =

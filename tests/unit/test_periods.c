@@ -25,8 +25,8 @@ static double evaluations_each;
 
 // Relaxes by a quarter and adds V duration, whatever the scene; the impulse is the duration, and delta times a force per deflection.
 static FcMap quarter_map(const FcScene* scene, const FcSolverOptions* options, double duration,
-                         double delta_0, double* evaluations) {
-    (void)options, (void)delta_0;
+                         double delta_0, FcMap* across, double* evaluations) {
+    (void)options, (void)delta_0, (void)across;
     asked.maps++;
     *evaluations += evaluations_each;
     return (FcMap){.relaxation = 0.25,
@@ -43,12 +43,12 @@ static void quarter_step(const FcScene* scene, const FcSolverOptions* options, d
     asked.d[k] = scene->drive.d.value;
     asked.E[k] = scene->drive.E.value;
     asked.delta[k] = result->delta;
-    const FcMap map = quarter_map(scene, options, duration, result->delta, &result->evaluations);
+    const FcMap map = quarter_map(scene, options, duration, result->delta, NULL, &result->evaluations);
     asked.maps--;
     fc_map_apply(&map, result);
 }
 
-static const FcIntegration QUARTER = {quarter_step, quarter_map, false};
+static const FcIntegration QUARTER = {quarter_step, quarter_map, false, false};
 
 typedef struct {
     double V_rate, V_1, h;
@@ -61,7 +61,7 @@ static FcScene scene_of(Case c) {
     memset(&asked, 0, sizeof asked);
     const FcDrive drive = fc_drive_make((FcLinearInput){2.0, c.V_rate}, (FcLinearInput){1.0, 0.5 * c.V_rate},
                                         (FcLinearInput){8.0, 0.25 * c.V_rate}, (FcLinearInput){1.0, 0.0},
-                                        (FcVibration){F, c.V_1, 0.0, 0.0}, 0.0, 0.0);
+                                        (FcVibration){.f = F, .V_1 = c.V_1}, 0.0, 0.0);
     static const FcFriction friction = {.model = FC_DAHL, .limit = FC_LIMIT_CONSTANT};
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, drive.E.value);
     return fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
@@ -112,7 +112,7 @@ static void a_billion_periods_cost_two_intervals(void) {
 static void the_settled_force_takes_one_interval(void) {
     const FcScene scene = scene_of((Case){0.0, 1.0, 0.0});
     FcStepResult end = {.delta = 1.0};
-    const double force = fc_periods_settled(QUARTER, &scene, &options, &end);
+    const double force = fc_periods_settled(QUARTER, &scene, &options, &end).x;
     CHECK(asked.maps == 1 && asked.steps == 0 && end.evaluations == evaluations_each);
     CHECK_NEAR(force, 1.0 + 3.0 * 8.0 * PERIOD, 1e-15);
     CHECK_NEAR(end.delta, 8.0 * PERIOD, 1e-15);
@@ -182,10 +182,10 @@ static void draw(Slider* slider) {
     const double V = slider->V_1 * random_log(1e-3, 2.0) * (random_01() < 0.5 ? -1.0 : 1.0);
     const int contacts[] = {FC_CONTACT_ASPERITIES, FC_CONTACT_MINDLIN, FC_CONTACT_CONSTANT};
     slider->contact = table_1(contacts[(int)(3.0 * random_01())], FC_CONTACT_LOAD);
-    const FcDrive drive =
-        fc_drive_make((FcLinearInput){V, 0.0}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
-                      (FcLinearInput){LIMIT / 0.176, 0.0},
-                      (FcVibration){F, slider->V_1, slider->a_d, 6.28 * random_01()}, random_01() / F, 0.0);
+    const FcDrive drive = fc_drive_make(
+        (FcLinearInput){V, 0.0}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
+        (FcLinearInput){LIMIT / 0.176, 0.0},
+        (FcVibration){F, slider->V_1, slider->a_d, 6.28 * random_01(), 0.0, 0.0}, random_01() / F, 0.0);
     FcContactAtModulus at_E = fc_contact_at_modulus(&slider->contact, 58e9);
     slider->scene = fc_scene_make(&slider->contact, &at_E, &slider->friction, LIMIT, &drive);
     const double sigma = random_log(1e-2, 1e2) * LIMIT * omega / slider->V_1;
@@ -252,12 +252,12 @@ static void stick_slip_over_several_periods_is_a_cycle(void) {
     const double D = LIMIT / slider.contact.sigma;
     const FcDrive drive = fc_drive_make((FcLinearInput){0.16 * D * F, 0.0}, (FcLinearInput){14e-6, 0.0},
                                         (FcLinearInput){58e9, 0.0}, (FcLinearInput){1.0, 0.0},
-                                        (FcVibration){F, 0.3 * D * 6.28 * F, 0.0, 0.0}, 0.0, 0.0);
+                                        (FcVibration){.f = F, .V_1 = 0.3 * D * 6.28 * F}, 0.0, 0.0);
     const FcContactAtModulus at_E = fc_contact_at_modulus(&slider.contact, 58e9);
     slider.scene = fc_scene_make(&slider.contact, &at_E, &slider.friction, LIMIT, &drive);
     const FcScene* scene = &slider.scene;
     int periods_of_slip = 0;
-    FcBristle bristle = {0.0, 0};
+    FcBristle bristle = {0};
     for (int k = 0; k < 60; k++) {
         const FcStepResult one = take(scene, 1e-8, PERIOD, bristle);
         periods_of_slip += one.meetings > 0;

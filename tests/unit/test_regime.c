@@ -38,7 +38,7 @@ static void make(Case* one, int law, double V) {
 
 static void check_motion(const FcMotion* of, double force, double delta_rate, double V) {
     const double F_t = force + 3.0 * delta_rate + 7.0 * V;
-    CHECK_NEAR(of->F_t, F_t, 1e-14);
+    CHECK_NEAR(of->force.x, F_t, 1e-14);
     CHECK_WITHIN(of->rates.delta, delta_rate, 1e-15 * fabs(V));
     CHECK_NEAR(of->rates.W_f, F_t * V, 1e-14);
     CHECK_WITHIN(of->rates.Q_f, F_t * V - force * delta_rate, 1e-13 * fabs(F_t * V));
@@ -49,9 +49,10 @@ static void closed_forms(void) {
     const double delta = 0.4 * D;
     Case one;
     make(&one, FC_ELASTIC_PLASTIC, V);
-    FcMotion at = fc_motion(&one.scene, FC_FREE, delta);
+    FcMotion at = fc_motion(&one.scene, FC_FREE, (FcBristle){.delta = delta});
     check_motion(&at, SIGMA * delta, V, V);
-    at = fc_motion(&one.scene, FC_SLIPS_BACK, -1.1 * D); // the force is that of the bound, whatever delta is
+    at = fc_motion(&one.scene, FC_SLIPS_BACK,
+                   (FcBristle){.delta = -1.1 * D}); // the force is that of the bound, whatever delta is
     check_motion(&at, -F_C, 0.0, V);
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(&one.scene, 0, &friction);
@@ -59,11 +60,11 @@ static void closed_forms(void) {
     CHECK_NEAR(fc_push(&one.scene, &bound, 0.0, -1), -V, 1e-15);
     CHECK_NEAR(fc_push(&one.scene, &bound, 0.0, 1), V, 1e-15);
     make(&one, FC_DAHL, V);
-    at = fc_motion(&one.scene, FC_FREE, delta);
+    at = fc_motion(&one.scene, FC_FREE, (FcBristle){.delta = delta});
     check_motion(&at, SIGMA * delta, V * (1.0 + delta / D), V);
     make(&one, FC_COULOMB, V);
-    at = fc_motion(&one.scene, FC_FREE, 0.0);
-    CHECK_NEAR(at.F_t, -F_C + 7.0 * V, 1e-15);
+    at = fc_motion(&one.scene, FC_FREE, (FcBristle){0});
+    CHECK_NEAR(at.force.x, -F_C + 7.0 * V, 1e-15);
     CHECK(at.rates.delta == 0.0);
 }
 
@@ -86,8 +87,8 @@ static void a_bound_that_moves(void) {
         const FcScene before = scene_at(&one, 0.3, 1e-6, t - tau);
         const double rate = (bound_of(&after) - bound_of(&before)) / (2.0 * tau);
         const double pace = bound_of(&now) * now.drive.omega;
-        CHECK_WITHIN(fc_motion(&now, FC_SLIPS_FORWARD, 0.0).rates.delta, rate, 1e-6 * pace);
-        CHECK_WITHIN(fc_motion(&now, FC_SLIPS_BACK, 0.0).rates.delta, -rate, 1e-6 * pace);
+        CHECK_WITHIN(fc_motion(&now, FC_SLIPS_FORWARD, (FcBristle){0}).rates.delta, rate, 1e-6 * pace);
+        CHECK_WITHIN(fc_motion(&now, FC_SLIPS_BACK, (FcBristle){0}).rates.delta, -rate, 1e-6 * pace);
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(&now, 0, &friction);
         CHECK_WITHIN(fc_push(&now, &bound, 0.0, 1), -rate, 1e-6 * pace); // on its bound it would relax to it
@@ -101,16 +102,17 @@ static void derivatives(void) {
     Case one;
     make(&one, FC_DAHL, V);
     const FcDirection by_delta = {.delta = 1.0};
-    FcMotion slope = fc_motion_along(&one.scene, FC_FREE, delta, &by_delta);
+    FcMotion slope = fc_motion_along(&one.scene, FC_FREE, (FcBristle){.delta = delta}, &by_delta);
     CHECK_NEAR(slope.rates.delta, -V / D, 1e-14);
-    CHECK_NEAR(slope.F_t, SIGMA - 3.0 * V / D, 1e-14);
+    CHECK_NEAR(slope.force.x, SIGMA - 3.0 * V / D, 1e-14);
     const FcDirection by_V = {.V = 1.0};
-    slope = fc_motion_along(&one.scene, FC_FREE, delta, &by_V);
+    slope = fc_motion_along(&one.scene, FC_FREE, (FcBristle){.delta = delta}, &by_V);
     CHECK_NEAR(slope.rates.delta, 1.0 - delta / D, 1e-14);
-    CHECK_NEAR(slope.F_t, 3.0 * (1.0 - delta / D) + 7.0, 1e-14);
+    CHECK_NEAR(slope.force.x, 3.0 * (1.0 - delta / D) + 7.0, 1e-14);
     make(&one, FC_ELASTIC_PLASTIC, V);
-    slope = fc_motion_along(&one.scene, FC_SLIPS_FORWARD, delta, &by_delta);
-    CHECK(slope.F_t == 0.0 && slope.rates.delta == 0.0 && slope.rates.W_f == 0.0 && slope.rates.Q_f == 0.0);
+    slope = fc_motion_along(&one.scene, FC_SLIPS_FORWARD, (FcBristle){.delta = delta}, &by_delta);
+    CHECK(slope.force.x == 0.0 && slope.rates.delta == 0.0 && slope.rates.W_f == 0.0 &&
+          slope.rates.Q_f == 0.0);
 }
 
 // While V, d, E and the load, given by this, move and the surfaces vibrate.
@@ -127,7 +129,7 @@ static FcMotion moved(const Case* one, const double at[4], int input, double cha
     double there[4] = {at[0], at[1], at[2], at[3]};
     there[input] += change;
     const FcScene scene = moving_scene(one, there);
-    return fc_motion(&scene, FC_SLIPS_FORWARD, 0.0);
+    return fc_motion(&scene, FC_SLIPS_FORWARD, (FcBristle){0});
 }
 
 // Of a bristle that slips along a bound that every input moves: against differences of the motion, of second order.
@@ -146,15 +148,15 @@ static void derivatives_of_slipping(void) {
         double by[4] = {0.0};
         by[input] = 1.0;
         const FcDirection along = {.V = by[0], .d = by[1], .E = by[2], .load = by[3]};
-        const FcMotion slope = fc_motion_along(&scene, FC_SLIPS_FORWARD, 0.0, &along);
-        const FcMotion now = fc_motion(&scene, FC_SLIPS_FORWARD, 0.0);
+        const FcMotion slope = fc_motion_along(&scene, FC_SLIPS_FORWARD, (FcBristle){0}, &along);
+        const FcMotion now = fc_motion(&scene, FC_SLIPS_FORWARD, (FcBristle){0});
         const double change = 3e-5 * at[input];
         const FcMotion after = moved(&one, at, input, change);
         const FcMotion before = moved(&one, at, input, -change);
-        const double of_force = (after.F_t - before.F_t) / (2.0 * change);
+        const double of_force = (after.force.x - before.force.x) / (2.0 * change);
         const double of_rate = (after.rates.delta - before.rates.delta) / (2.0 * change);
         const double of_heat = (after.rates.Q_f - before.rates.Q_f) / (2.0 * change);
-        CHECK_WITHIN(slope.F_t, of_force, 1e-6 * (fabs(of_force) + fabs(now.F_t) / at[input]));
+        CHECK_WITHIN(slope.force.x, of_force, 1e-6 * (fabs(of_force) + fabs(now.force.x) / at[input]));
         CHECK_WITHIN(slope.rates.delta, of_rate, 1e-6 * (fabs(of_rate) + fabs(now.rates.delta) / at[input]));
         CHECK_WITHIN(slope.rates.Q_f, of_heat, 1e-6 * (fabs(of_heat) + fabs(now.rates.Q_f) / at[input]));
     }

@@ -6,7 +6,7 @@
 #include "fmi2/saved_state.h"
 #include "fmi2/variables.h"
 
-enum { MOST_BYTES = 4096 };
+enum { MOST_BYTES = 4096, LAYOUT = 5 };
 
 static void silent(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
                    fmi2String category, fmi2String text, ...) {
@@ -239,7 +239,7 @@ static bool is_read(fmi2Component c, const Layout* layout, size_t size) {
 static void bytes_are_as_documented(fmi2Component c) {
     FcSavedState saved = full_state();
     const Bytes written = bytes_of(c, &saved);
-    const Layout layout = layout_of(&saved, 4, written.size);
+    const Layout layout = layout_of(&saved, LAYOUT, written.size);
     CHECK(layout.size == written.size && memcmp(layout.bytes, written.bytes, written.size) == 0);
     CHECK(is_read(c, &layout, layout.size));
     char too_few[MOST_BYTES];
@@ -250,15 +250,15 @@ static void bytes_are_as_documented(fmi2Component c) {
 // Other versions, other sizes, bytes cut off or too many, and each byte damaged with the hash put right or not.
 static void other_bytes_are_refused(fmi2Component c) {
     const FcSavedState saved = full_state();
-    const size_t size = layout_of(&saved, 4, 0).size;
-    for (unsigned version = 0; version < 6; version++) {
+    const size_t size = layout_of(&saved, LAYOUT, 0).size;
+    for (unsigned version = 0; version < 7; version++) {
         const Layout layout = layout_of(&saved, version, size);
-        CHECK(is_read(c, &layout, size) == (version == 4));
+        CHECK(is_read(c, &layout, size) == (version == LAYOUT));
     }
-    const Layout good = layout_of(&saved, 4, size);
+    const Layout good = layout_of(&saved, LAYOUT, size);
     for (size_t given = 0; given < size + 20; given++) {
         CHECK(is_read(c, &good, given) == (given == size));
-        const Layout layout = layout_of(&saved, 4, given);
+        const Layout layout = layout_of(&saved, LAYOUT, given);
         CHECK(is_read(c, &layout, size) == (given == size));
     }
     for (size_t i = 0; i < size; i++) {
@@ -274,7 +274,7 @@ static void other_bytes_are_refused(fmi2Component c) {
 }
 
 static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
-    const Layout layout = layout_of(saved, 4, layout_of(saved, 4, 0).size);
+    const Layout layout = layout_of(saved, LAYOUT, layout_of(saved, LAYOUT, 0).size);
     return is_read(c, &layout, layout.size);
 }
 

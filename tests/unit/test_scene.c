@@ -28,13 +28,13 @@ static void limits_of_the_laws(void) {
 // Of a bristle that touches no bound, at the time t.
 static FcMotion free_motion(const FcScene* scene, double t, double delta) {
     const FcScene then = fc_scene_from(scene, t);
-    return fc_motion(&then, FC_FREE, delta);
+    return fc_motion(&then, FC_FREE, (FcBristle){.delta = delta});
 }
 
 // Of a bristle at the start, wherever it is.
 static FcMotion motion_of(const FcScene* scene, FcBristle bristle) {
     const FcBristle reached = fc_reach(scene, bristle);
-    return fc_motion(scene, fc_regime(scene, reached), reached.delta);
+    return fc_motion(scene, fc_regime(scene, reached), reached);
 }
 
 // F_t = sigma delta + sigma_1 delta' + sigma_2 V, and Coulomb's g sgn V + sigma_2 V.
@@ -46,13 +46,13 @@ static void forces_of_the_laws(void) {
         const FcScene sliding = moving_scene(&contact, &coulomb, 0.0);
         const double V = fc_drive_V(&sliding.drive, t);
         const FcMotion slides = free_motion(&sliding, t, delta);
-        CHECK_NEAR(slides.F_t, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-14);
+        CHECK_NEAR(slides.force.x, (V > 0.0 ? 55.0 : -55.0) + 3.0 * V, 1e-14);
         CHECK(slides.rates.delta == 0.0 && slides.rates.Q_f == slides.rates.W_f);
 
         const FcFriction plastic = law(FC_ELASTIC_PLASTIC, FC_LIMIT_CONSTANT);
         const FcScene sticking = moving_scene(&contact, &plastic, 0.0);
         const FcMotion sticks = free_motion(&sticking, t, delta);
-        CHECK_NEAR(sticks.F_t, 20.0 + 40.0 * V + 3.0 * V, 1e-14);
+        CHECK_NEAR(sticks.force.x, 20.0 + 40.0 * V + 3.0 * V, 1e-14);
         CHECK_NEAR(sticks.rates.Q_f, 43.0 * V * V, 1e-13);
 
         const FcFriction lugre = law(FC_LUGRE, FC_LIMIT_CONSTANT);
@@ -61,8 +61,8 @@ static void forces_of_the_laws(void) {
         const double rate = V - 2.5e6 * fabs(V) * delta / g;
         const FcMotion relaxes = free_motion(&bristle, t, delta);
         CHECK_NEAR(relaxes.rates.delta, rate, 1e-13);
-        CHECK_NEAR(relaxes.F_t, 20.0 + 40.0 * rate + 3.0 * V, 1e-13);
-        CHECK_NEAR(relaxes.rates.W_f, relaxes.F_t * V, 1e-13);
+        CHECK_NEAR(relaxes.force.x, 20.0 + 40.0 * rate + 3.0 * V, 1e-13);
+        CHECK_NEAR(relaxes.rates.W_f, relaxes.force.x * V, 1e-13);
     }
 }
 
@@ -114,7 +114,7 @@ static void a_bristle_slips_along_a_limit_that_follows_the_load(void) {
             const double rate = slips ? D_rate : free_rate;
             const FcMotion motion = motion_of(&scene, (FcBristle){.delta = 2.0 * D});
             CHECK_WITHIN(motion.rates.delta, rate, 1e-11 * 1e-3);
-            CHECK_NEAR(motion.F_t, limit + 40.0 * rate, 1e-12);
+            CHECK_NEAR(motion.force.x, limit + 40.0 * rate, 1e-12);
             friction.limit = FC_LIMIT_CONSTANT;
             CHECK(fc_reach(&scene, (FcBristle){.delta = 2.0 * D}).delta == 2.0 * D);
             CHECK(fc_regime(&scene, (FcBristle){.delta = 2.0 * D}) == FC_FREE);
@@ -309,7 +309,8 @@ static void is_as_the_equations_say(const Random* one) {
                                 : expected.V - expected.sigma * fabs(expected.V) * delta / expected.limit;
         CHECK_NEAR(fc_scene_contact(scene, t).A_r, there.A_r, 1e-11);
         CHECK_NEAR(fc_scene_contact(scene, t).sigma, there.sigma, 1e-11);
-        CHECK_WITHIN(free_motion(scene, t, delta).F_t, 0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
+        CHECK_WITHIN(free_motion(scene, t, delta).force.x,
+                     0.1 * expected.limit + 40.0 * rate + 3.0 * expected.V,
                      1e-10 * (expected.limit + 43.0 * fabs(expected.V)));
         const FcScene later = fc_scene_later(scene, PERIOD);
         CHECK_NEAR(later.drive.E.value, one->given.E.value + one->given.E.rate * PERIOD, 1e-14);
@@ -411,7 +412,7 @@ static void it_slips_where_V_outruns_the_bound(void) {
             const FcMotion motion = motion_of(&one.scene, reached);
             CHECK_WITHIN(motion.rates.delta, expected != 0 ? side * D_rate : at.V,
                          1e-7 * (fabs(at.V) + fabs(D_rate)));
-            CHECK_NEAR(motion.F_t, side * at.limit, 1e-13);
+            CHECK_NEAR(motion.force.x, side * at.limit, 1e-13);
             slips += expected != 0;
             sticks += expected == 0;
         }

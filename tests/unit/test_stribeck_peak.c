@@ -30,7 +30,7 @@ static FcScene random_scene(double h) {
     const FcContactAtModulus at_E = fc_contact_at_modulus(&contact, 58e9);
     const FcDrive drive =
         fc_drive_make((FcLinearInput){V, V_rate}, (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0},
-                      (FcLinearInput){1.0, 0.0}, (FcVibration){F, V_1, 0.0, 0.0}, random_01() / F, 0.0);
+                      (FcLinearInput){1.0, 0.0}, (FcVibration){.f = F, .V_1 = V_1}, random_01() / F, 0.0);
     return fc_scene_make(&contact, &at_E, &friction, 55.0, &drive);
 }
 

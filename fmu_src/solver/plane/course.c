@@ -36,20 +36,48 @@ static Motion motion_at(const FcDrive* drive, double t) {
     };
 }
 
-// Half the rate of |V|^2.
+// Half the rate of |V|^2, and the rate of that.
 static double rate_of_square(void* drive, double t) {
     const Motion at = motion_at(drive, t);
     return fc_product(at.V, at.rate);
 }
 
-// Samples in a period among which the rate of |V|^2, of two harmonics, changes its sign. By hand: two of its roots that lie between
-// two of them belong to a dip too flat to matter.
+static double bend_of_square(void* drive, double t) {
+    const Motion at = motion_at(drive, t);
+    return fc_product(at.rate, at.rate) + fc_product(at.V, at.curvature);
+}
+
+// Samples in a period. By hand: the rate of |V|^2, of two harmonics, has at most one extremum between two of them.
 enum { SAMPLES = 16, MOST_CENTERS = FC_MOST_HALVES / 2 };
 
-// The least of |V| over [a, b], between which it falls and rises again.
-static double least_between(FcDrive* drive, double a, double at_a, double b, double at_b) {
+typedef struct {
+    double t, rate, bend; // of half of |V|^2
+} Sample;
+
+static Sample sample_at(FcDrive* drive, double t) {
+    const Motion at = motion_at(drive, t);
+    return (Sample){t, fc_product(at.V, at.rate),
+                    fc_product(at.rate, at.rate) + fc_product(at.V, at.curvature)};
+}
+
+// Whether |V| has a least between two samples; its time [s] in *center.
+static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
     double none = 0.0;
-    return fc_root_between(rate_of_square, drive, a, at_a, b, at_b, 0.0, &none);
+    if (a.rate * b.rate > 0.0 && a.bend * b.bend < 0.0 && a.rate * a.bend < 0.0) {
+        // The rate comes nearest to 0 inside, and may pass it.
+        const double t = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, &none);
+        const Sample nearest = sample_at(drive, t);
+        if (nearest.rate < 0.0) {
+            a = nearest;
+        } else {
+            b = nearest;
+        }
+    }
+    if (!(a.rate < 0.0 && b.rate >= 0.0)) {
+        return false;
+    }
+    *center = fc_root_between(rate_of_square, drive, a.t, a.rate, b.t, b.rate, 0.0, &none);
+    return true;
 }
 
 // The times [s] of the least |V| in and beside [0, h].
@@ -66,16 +94,11 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
         return count;
     }
     const double period = 1.0 / drive.vibration.f;
-    double t = -0.5 * period;
-    double at_t = rate_of_square(&drive, t);
-    while (t < h + 0.5 * period && count < MOST_CENTERS) {
-        const double next = t + period / SAMPLES;
-        const double at_next = rate_of_square(&drive, next);
-        if (at_t < 0.0 && at_next >= 0.0) {
-            centers[count++] = least_between(&drive, t, at_t, next, at_next);
-        }
-        t = next;
-        at_t = at_next;
+    Sample a = sample_at(&drive, -0.5 * period);
+    while (a.t < h + 0.5 * period && count < MOST_CENTERS) {
+        const Sample b = sample_at(&drive, a.t + period / SAMPLES);
+        count += has_least(&drive, a, b, &centers[count]);
+        a = b;
     }
     return count;
 }

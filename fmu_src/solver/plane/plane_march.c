@@ -18,18 +18,20 @@ typedef enum { FREE, SLIPS, NO_BRISTLE } Motion;
 typedef struct {
     const FcPlane* plane;
     const FcInterval* interval;
+    FcDrive across_drive; // fc_drive_across
     const FcHalf* half;
     double u, end;     // reached in the half, and to be reached
     double path_after; // m, at least, from the end of the half to that of the interval
     double h;          // of the next panel, in u; 0 before the first of a half
     FcMap along, across;
-    double scale; // m, of the starts that the maps are for, beside the one they have
-    double heat;  // J, of break-away
+    double transient; // N, by which the start is behind what it tends to, as far as it has not relaxed
+    double scale;     // m, of the starts that the maps are for, beside the one they have
+    double heat;      // J, of break-away
     bool is_bounded;
     int slips; // FcBristle
     Motion motion;
     int meetings;
-    int halted; // how often the bristle went from one motion to the other at the same place
+    bool touches; // a free bristle is at its bound
     double evaluations;
 } March;
 
@@ -45,15 +47,43 @@ enum { MOST_TRIES = 12 };
 // miss rho^-17, sinh(ln rho) = pi over the panel's length. And of a decaying exponential, by hand: costs tries, not accuracy.
 static const double ORDER = 17.0;
 static const double LAYERS = 6.3;
+// Radii of the disc that a bristle which sticks may go in a panel: its points tell then where it comes to the bound. By hand.
+static const double MOST_OF_DISC = 4.0;
 // A panel may last so many times the time over which the contact moves by 1. By hand: costs tries, not accuracy.
 static const double SMOOTH = 7.0;
 
-// The force [N] by which the bristle is behind what it tends to.
-static double lag(const March* march, const FcPlaneCoefficients* at) {
+// A panel whose points do not tell what happens near its start is shortened by this. By hand: costs tries, not accuracy.
+static const double SHORTENED_BY = 1.0 / 32.0;
+
+// The force [N] of Coulomb's law.
+static FcVector coulomb(const FcPlaneCoefficients* at) {
+    const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+    return (FcVector){over_speed * at->V.x, over_speed * at->V.y};
+}
+
+static FcPlaneCoefficients coefficients_at(const March* march, double t) {
+    return fc_plane_coefficients(march->plane, t, fc_drive_phase(&march->interval->scene->drive, t));
+}
+
+// The force [N] by which the bristle at the start is behind what it tends to: Coulomb's force, less by how far that moves in the time
+// 1 / r.
+static double first_transient(const March* march) {
     const FcPlaneFrom from = from_of(march);
-    const double settled = at->speed > 0.0 ? at->limit / at->speed : 0.0;
-    return hypot(at->sigma * from.delta.x - settled * at->V.x, at->sigma * from.delta.y - settled * at->V.y) +
-           at->sigma * fabs(from.scale);
+    const FcPlaneCoefficients at = coefficients_at(march, 0.0);
+    const FcVector now = coulomb(&at);
+    const double r = at.sigma * at.speed / at.limit;
+    FcVector next = now;
+    if (r * march->interval->duration > 1.0) {
+        const FcPlaneCoefficients after = coefficients_at(march, 1.0 / r);
+        next = coulomb(&after);
+    }
+    return hypot(at.sigma * from.delta.x - (2.0 * now.x - next.x),
+                 at.sigma * from.delta.y - (2.0 * now.y - next.y)) +
+           at.sigma * fabs(from.scale);
+}
+
+static bool is_stuck(const March* march) {
+    return march->motion == FREE && march->plane->scene->friction->model == FC_ELASTIC_PLASTIC;
 }
 
 // The length in u of the next panel.
@@ -64,16 +94,13 @@ static double planned(const March* march) {
     const double t = fc_straight_time(in, march->u);
     const double resolves = pow(interval->tolerance, 1.0 / ORDER);     // 1 / rho
     double span = SMOOTH * resolves * fc_smooth_time(&interval->pace); // s
-    if (march->motion == FREE && march->plane->scene->friction->model != FC_ELASTIC_PLASTIC) {
-        const FcPlaneCoefficients at =
-            fc_plane_coefficients(march->plane, t, fc_drive_phase(&interval->scene->drive, t));
-        const double behind = lag(march, &at) / (interval->tolerance * interval->force);
-        const double r = at.sigma * at.speed / at.limit;
-        if (behind > 1.0 && r > 0.0) {
-            // |V| may rise from 0 within the layer of L
-            const double layer = LAYERS * pow(behind, -1.0 / ORDER) / r;
-            span = fmin(span, layer);
-        }
+    const FcPlaneCoefficients at = coefficients_at(march, t);
+    const double layer = at.limit / (at.sigma * at.speed); // s, 1 / r; infinite if V is 0
+    const double behind = march->transient / (interval->tolerance * interval->force);
+    if (is_stuck(march)) {
+        span = march->is_bounded ? fmin(span, MOST_OF_DISC * layer) : span;
+    } else if (march->motion != NO_BRISTLE && behind > 1.0) {
+        span = fmin(span, LAYERS * pow(behind, -1.0 / ORDER) * layer);
     }
     double h = fmin(left, fc_straight_place(in, t + span) - march->u);
     if (isfinite(in->length)) {
@@ -86,6 +113,16 @@ static double planned(const March* march) {
     return h;
 }
 
+// The way [m] from start to end in a straight line, which is at most the path.
+static double straight_way(const March* march, double start, double end) {
+    return hypot(fc_drive_displacement(&march->interval->scene->drive, start, end),
+                 fc_drive_displacement(&march->across_drive, start, end));
+}
+
+// What the errors of a bristle that slips through a Stribeck peak are multiplied by: its force and its push follow the curve at once. By
+// hand: half of it lets panels pass that miss the tolerance, twice costs a tenth more of them.
+static const double SURE_IN_PEAK = 10.0;
+
 // How many times the panel's errors are too large.
 static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcPanel* panel) {
     const FcInterval* interval = march->interval;
@@ -93,16 +130,21 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
     const double length = march->half->in.length;
     const double forgets =
         panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
+    const bool has_peak = fc_has_stribeck_curve(interval->scene->friction);
     const FcErrorLife life = {
         .lives = fmin(interval->duration - end, forgets) / interval->duration,
         .lasts = nodes->duration / interval->duration,
         .grows = fmax(1.0, interval->stiffness / panel->sigma),
+        .in_peak = has_peak,
+        .crosses_peak = has_peak || march->motion == NO_BRISTLE, // a force that turns by itself, as in a peak
     };
     FcPanel whole = *panel;
     whole.z = fmax(1.0, panel->z); // the shares are those of a panel that relaxes
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
-    const double left_at_end = exp(-march->path_after / interval->saturation);
-    return fmax(over.mean, over.end * left_at_end);
+    const double path = march->path_after + straight_way(march, end, march->half->end);
+    const double left_at_end = exp(-path / interval->saturation);
+    const double sure = has_peak && march->motion == SLIPS ? SURE_IN_PEAK : 1.0;
+    return sure * fmax(over.mean, over.end * left_at_end);
 }
 
 // Coulomb's law: the force is known.
@@ -130,7 +172,8 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
         const bool is_solved = make_panel(march, nodes, panel);
         const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= MOST_TRIES) {
-            march->h = h * fmin(2.0, 0.9 * pow(excess + 1e-30, -1.0 / ORDER));
+            const double grows = tries == 0 ? 4.0 : fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER));
+            march->h = tries > 0 || march->h > 0.0 ? h * grows : 0.0;
             return h;
         }
         h *= is_solved ? fmax(0.3, fmin(0.9, 0.85 * pow(excess, -1.0 / 12.0))) : 0.4;
@@ -140,12 +183,12 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
 static void append(March* march, const FcPlanePanel* panel, double h) {
     fc_map_append(&march->along, &panel->along.map);
     fc_map_append(&march->across, &panel->across);
+    march->transient *= exp(-fmax(0.0, panel->along.z));
     const double next = march->u + h;
     march->u = march->end - next < 1e-12 * h ? march->end : next;
 }
 
-// The first place of the panel, of its length, at which a function that is known at its points rises above 0, and then above `over`; 2
-// for none. By the polynomial through the points, in barycentric form.
+// The polynomial through the points of a panel, in barycentric form.
 typedef struct {
     const double* f;
     double weight[POINTS];
@@ -165,6 +208,8 @@ static double value_at(const Through* through, double x) {
     return above / below;
 }
 
+// The place of a panel, of its length, at which a function that is known at its points rises above 0, and then above `over`; 2 for none.
+// One that begins above `over` has to come down first.
 static double first_rise(const double* f, double over) {
     enum { SAMPLES = 32, HALVINGS = 50 };
     double largest = f[0];
@@ -184,15 +229,16 @@ static double first_rise(const double* f, double over) {
         }
         through.weight[i] = 1.0 / product;
     }
-    double before = 0.0;
+    bool is_below = f[STAGES] <= over;
+    double a = 0.0; // the last place at which it was below 0
     for (int k = 1; k <= SAMPLES; k++) {
         const double x = (double)k / SAMPLES;
         const double value = value_at(&through, x);
-        if (!(value > over)) {
-            before = value <= 0.0 ? x : before;
+        if (value <= over || !is_below) {
+            is_below = is_below || value <= over;
+            a = value <= 0.0 ? x : a;
             continue;
         }
-        double a = before;
         double b = x;
         for (int i = 0; i < HALVINGS; i++) {
             const double middle = 0.5 * (a + b);
@@ -228,7 +274,8 @@ typedef struct {
     FcPhase phase;
     FcPlaneCoefficients at;
     FcPlaneBound bound; // of a bristle that slips
-    FcVector n;
+    double size;        // m, |delta|
+    FcVector n;         // its direction
     double push;
 } Place;
 
@@ -238,37 +285,62 @@ static Place place_of(const March* march) {
     place.at = fc_plane_coefficients(march->plane, place.t, place.phase);
     place.bound = fc_plane_bound(march->plane, &place.at, 1, place.t, place.phase);
     const FcVector delta = from_of(march).delta;
-    const double size = hypot(delta.x, delta.y);
-    place.n = size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
+    place.size = hypot(delta.x, delta.y);
+    place.n =
+        place.size > 0.0 ? (FcVector){delta.x / place.size, delta.y / place.size} : (FcVector){1.0, 0.0};
     place.push = fc_plane_push(march->plane, &place.at, &place.bound, place.n);
     return place;
 }
 
-// A free bristle that has come to its bound slips if it is pushed; one with static friction breaks away.
-static void meet(March* march) {
-    const FcFriction* friction = march->plane->scene->friction;
+// Of the largest |V|: a smaller push is rounding, and a bristle that slips may be let go with the other. By hand: what is left of a push
+// acts with its square.
+static const double ROUNDING_OF_PUSH = 1e-13;
+static const double LITTLE_PUSH = 1e-9;
+
+// A free bristle at its bound slips if it is pushed; one with static friction breaks away. False if it is not pushed.
+static bool begins_to_slip(March* march) {
     const Place place = place_of(march);
-    march->meetings++;
-    if (fc_has_static_friction(friction) && march->slips == 0) {
-        const double D = place.at.static_limit / place.at.sigma;
-        march->heat += 0.5 * place.at.sigma * (D - place.bound.D) * (D + place.bound.D);
-        march->slips = 1;
+    const bool breaks_away = fc_has_static_friction(march->plane->scene->friction) && march->slips == 0;
+    const FcPlaneBound held = fc_plane_bound(march->plane, &place.at, march->slips, place.t, place.phase);
+    const double push = fc_plane_push(march->plane, &place.at, &held, place.n);
+    if (!(push > ROUNDING_OF_PUSH * march->interval->speed)) {
+        return false;
     }
+    // What it stores less is heat, also of the little that it went too far.
+    march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
     set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
-    if (place.push > 0.0) {
-        march->motion = SLIPS;
-    } else {
-        march->slips = 0;
-    }
+    march->meetings++;
+    march->slips = place.push > 0.0;
+    march->motion = place.push > 0.0 ? SLIPS : FREE;
+    march->touches = !breaks_away;
+    march->transient = place.at.sigma * place.bound.D *
+                       fabs(place.n.x * place.at.V.y - place.n.y * place.at.V.x) / place.at.speed;
+    return true;
 }
 
-// Of a bristle on its bound whose push has come to 0.
-static void let_go(March* march) {
-    march->motion = FREE;
-    march->slips = 0;
+// What is within rounding of the bound, or within what heat and force may miss [m2], of |delta|^2 - D^2.
+static double close_to_bound(const March* march, double D) {
+    const FcInterval* interval = march->interval;
+    // What it goes too far costs heat at break-away, which is held to the path.
+    const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
+                           fmin(1.0, interval->speed * interval->duration / D);
+    const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
+    const double rounding = 1e-14 * D + 4e-16 * interval->speed * of_time;
+    return 2.0 * D * fmax(fmin(allowed, 1e-3 * D), rounding);
+}
+
+static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    fc_plane_nodes(march->plane, &march->half->in, march->u, h, nodes);
+    march->evaluations += STAGES;
+    if (!make_panel(march, nodes, panel)) {
+        march->along.offset = NAN; // a part of a panel that was solved is, too
+    }
 }
 
 static void free_panel(March* march, double h) {
+    if (march->touches && begins_to_slip(march)) {
+        return;
+    }
     FcPlaneNodes nodes;
     FcPlanePanel panel;
     h = take_accurate(march, h, &nodes, &panel);
@@ -276,64 +348,61 @@ static void free_panel(March* march, double h) {
         append(march, &panel, h);
         return;
     }
-    const FcInterval* interval = march->interval;
-    double meets = 2.0;
-    find_to_bound(march, &nodes, &panel);
-    const double D_D = fmax(1e-300, fc_product(panel.delta[STAGES - 1], panel.delta[STAGES - 1]) -
-                                        panel.to_bound[STAGES - 1]);
-    const double D = sqrt(D_D);
-    const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness;
-    const double over = 2.0 * D * fmax(fmin(allowed, 1e-3 * D), 1e-14 * D);
-    meets = first_rise(panel.to_bound, over);
-    if (meets > 1.0) {
-        append(march, &panel, h);
-        march->halted = 0;
-        return;
-    }
-    march->halted = meets * h < 1e-9 ? march->halted + 1 : 0;
-    // The panel is taken again up to where it meets the bound, which its own points tell better.
-    for (int tries = 0; tries < 3 && meets > 0.0 && meets <= 1.0; tries++) {
-        h *= meets;
-        fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
-        march->evaluations += STAGES;
-        make_panel(march, &nodes, &panel);
+    // The panel is taken again up to where it meets the bound, which its own points tell better; one that dips inside the bound between
+    // them is shortened.
+    enum { MOST_CUTS = 40 };
+    bool is_cut = false;
+    double over = 0.0;
+    for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
         find_to_bound(march, &nodes, &panel);
-        if (fabs(panel.to_bound[STAGES - 1]) <= over) {
+        const FcVector delta = panel.delta[STAGES - 1];
+        over =
+            close_to_bound(march, sqrt(fmax(1e-300, fc_product(delta, delta) - panel.to_bound[STAGES - 1])));
+        const double meets = first_rise(panel.to_bound, over);
+        if (meets > 1.0) {
             break;
         }
-        const double slope = fmax(0.0, panel.to_bound[STAGES - 1] - panel.to_bound[STAGES - 2]) /
-                             (FC_RADAU_9.node[STAGES - 1] - FC_RADAU_9.node[STAGES - 2]);
-        meets = slope > 0.0 ? fmin(1.0, fmax(0.5, 1.0 - panel.to_bound[STAGES - 1] / slope)) : 1.0;
+        is_cut = true;
+        h *= fmax(meets, SHORTENED_BY);
+        take_again(march, h, &nodes, &panel);
     }
-    if (meets > 0.0) {
-        append(march, &panel, h);
+    append(march, &panel, h);
+    march->touches = panel.to_bound[STAGES - 1] >= -over;
+    if (is_cut && !march->touches) {
+        march->h = 4.0 * h; // the panel was too long for its points to tell
     }
-    meet(march);
+}
+
+// The place of a panel, of its length, from where on a bristle that slips is pushed inwards; 2 for none.
+static double end_of_push(const March* march, const FcPlanePanel* panel) {
+    const double rounding = ROUNDING_OF_PUSH * march->interval->speed;
+    double inwards[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        inwards[i] = -panel->to_bound[i];
+    }
+    return inwards[STAGES] > rounding ? 0.0 : first_rise(inwards, rounding);
 }
 
 static void slip_panel(March* march, double h) {
     FcPlaneNodes nodes;
     FcPlanePanel panel;
     h = take_accurate(march, h, &nodes, &panel);
-    double back[POINTS]; // pull inwards
-    for (int i = 0; i < POINTS; i++) {
-        back[i] = -panel.to_bound[i];
-    }
-    const double over = 1e-13 * march->interval->speed;
-    const double ends = back[STAGES] > over ? 0.0 : first_rise(back, over);
-    march->halted = ends * h < 1e-9 ? march->halted + 1 : 0;
-    if (ends > 1.0) {
-        append(march, &panel, h);
-        return;
+    double ends = end_of_push(march, &panel);
+    bool is_over = ends < 1.0;
+    for (int cuts = 0; cuts < MOST_TRIES && ends > 0.0 && ends < 1.0; cuts++) {
+        h *= ends;
+        take_again(march, h, &nodes, &panel);
+        ends = end_of_push(march, &panel);
     }
     if (ends > 0.0) {
-        h *= ends;
-        fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
-        march->evaluations += STAGES;
-        make_panel(march, &nodes, &panel);
         append(march, &panel, h);
+        is_over = is_over && panel.to_bound[STAGES - 1] < LITTLE_PUSH * march->interval->speed;
     }
-    let_go(march);
+    if (is_over) {
+        march->motion = FREE;
+        march->slips = 0;
+        march->touches = !fc_has_static_friction(march->plane->scene->friction);
+    }
 }
 
 static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
@@ -342,12 +411,12 @@ static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlane
     *panel = (FcPlanePanel){.along = {.z = 1.0, .sigma = march->interval->stiffness}};
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients* at = &nodes->at[i];
-        const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+        const FcVector F = coulomb(at);
         const double weight = FC_RADAU_9.weight[i] * nodes->tau[i];
         V_x[i] = at->V.x;
         V_y[i] = at->V.y;
-        F_x[i] = over_speed * at->V.x;
-        F_y[i] = over_speed * at->V.y;
+        F_x[i] = F.x;
+        F_y[i] = F.y;
         map->impulse_offset += weight * F_x[i];
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * at->limit * at->speed;
@@ -369,28 +438,20 @@ static void cross_half(March* march) {
         } else {
             free_panel(march, h);
         }
-        if (march->halted > 3) { // rounding tells neither motion from the other: on by the least
-            march->u = fmin(march->end, march->u + 1e-9);
-            march->halted = 0;
-        }
     }
-}
-
-// The way [m] from start to end in a straight line, which is at most the path.
-static double straight_way(const FcDrive* along, const FcDrive* across, double start, double end) {
-    return hypot(fc_drive_displacement(along, start, end), fc_drive_displacement(across, start, end));
 }
 
 static void cross(March* march) {
     const FcInterval* interval = march->interval;
+    march->transient = first_transient(march);
     FcHalf halves[FC_MOST_HALVES];
     const int count = fc_halves(march->plane, interval->duration, interval->tolerance, halves);
-    const FcDrive across = fc_drive_across(&interval->scene->drive);
+    march->across_drive = fc_drive_across(&interval->scene->drive);
     double way[FC_MOST_HALVES];
     double after = 0.0;
     for (int i = count - 1; i >= 0; i--) {
         way[i] = after;
-        after += straight_way(&interval->scene->drive, &across, halves[i].start, halves[i].end);
+        after += straight_way(march, halves[i].start, halves[i].end);
     }
     for (int i = 0; i < count; i++) {
         march->half = &halves[i];
@@ -422,11 +483,11 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     march.half = &whole;
     if (march.is_bounded) {
         const Place place = place_of(&march);
-        const FcVector delta = from_of(&march).delta;
-        const bool is_on = hypot(delta.x, delta.y) >= (1.0 - 1e-10) * place.bound.D;
+        const bool is_on = place.size >= (1.0 - 1e-10) * place.bound.D;
         const bool may_slip = march.slips != 0 || !fc_has_static_friction(scene->friction);
         march.motion = is_on && may_slip && place.push > 0.0 ? SLIPS : FREE;
         march.meetings = march.motion == SLIPS;
+        march.touches = is_on && may_slip;
     }
     cross(&march);
     fc_map_apply(&march.along, result);
