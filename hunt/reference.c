@@ -426,7 +426,6 @@ static bool is_open(const World* w, Real t) {
 }
 
 // The part of [0, h] in which the contact is closed; empty: from = to = h.
-// The part of [0, h] in which the contact is closed; empty: from = to = h.
 typedef struct {
     Real from, to;
 } Closed;
@@ -569,7 +568,6 @@ static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not
 // An error in a panel is left alone when it is less than this share of the panel's mean force acting over the whole step.
 static const Real LEAST = 1e-16L;
 
-// Whether a panel of this size [s] and its halves give the same.
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
@@ -756,10 +754,13 @@ static void cut_at_bends(const World* w, Cuts* cuts) {
     }
 }
 
+// Of V_S, where Stribeck's curve is cut.
+static const Real MULTIPLES[] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
+enum { LEVELS = sizeof MULTIPLES / sizeof *MULTIPLES };
+
 // Where V is a multiple of V_S, and 0; V is monotone between the cuts so far.
 static void cut_at_velocities(const World* w, Cuts* cuts) {
-    static const Real MULTIPLES[] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : sizeof MULTIPLES / sizeof *MULTIPLES;
+    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : LEVELS;
     for (size_t k = 0; k + 1 < count; k++) {
         const Real a = cuts->time[k], b = cuts->time[k + 1];
         for (size_t m = 0; m < 2 * levels; m++) {
@@ -1019,7 +1020,8 @@ typedef struct {
 } Mark;
 
 // Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
-// the state that at the end of the first of them. False where none repeat.
+// the state that at the end of one that slips, that of
+// the smallest deflection. False where none repeat.
 static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle,
                        Real* length) {
     Period p = {.world = *of, .unit = 1.0L};
@@ -1062,6 +1064,12 @@ static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* su
             add_times(cycle, &marks[k].sums, -1.0L);
             *length = done - marks[k].count;
             if (isinf(n)) {
+                for (; k < count; k++) {
+                    if (fabsl(marks[k].delta) < fabsl(*delta)) {
+                        *delta = marks[k].delta;
+                        *slip = marks[k].slip;
+                    }
+                }
                 break;
             }
             const Real times = floorl((n - done) / *length);
@@ -1183,18 +1191,33 @@ static Real lowest(const Held* held, Real a, Real b) {
     return at_a > at_b ? a : b;
 }
 
+// Equal pieces of the ramp, and where V is a multiple of the old or the new V_S.
+static Cuts cuts_of_ramp(const Ramp* ramp, Real V_S_before) {
+    enum { PIECES = 64 };
+    const Real V_S[2] = {V_S_before, ramp->w->scene.V_S}, V = ramp->from.V, change = ramp->to.V - V;
+    Cuts cuts = {0};
+    for (int k = 0; k <= PIECES; k++) {
+        cut(&cuts, (Real)k / PIECES);
+    }
+    for (int m = 0; m < 4 * LEVELS && change != 0.0L; m++) {
+        cut(&cuts, ((m % 2 ? 1.0L : -1.0L) * MULTIPLES[m / 4] * V_S[m / 2 % 2] - V) / change);
+    }
+    tidy(&cuts, (Closed){0.0L, 1.0L});
+    return cuts;
+}
+
 // Moves the bristle along the ramp from before to the start of w; returns the heat.
 static Real ride(const World* before, const World* w, Real* delta, int* slip) {
-    enum { CELLS = 64 };
     const Ramp ramp = {w, corner_of(before), corner_of(w)};
+    const Cuts cuts = cuts_of_ramp(&ramp, before->scene.V_S);
     const int side = sign_of(*delta);
     const bool sticks = w->elastic && w->excess + before->excess > 0.0L && *slip == 0;
     Held held = {&ramp, fabsl(*delta), sticks};
     Real heat = 0.0L;
-    for (int k = 0; k < CELLS; k++) {
-        Real from = (Real)k / CELLS;
+    for (size_t k = 0; k + 1 < cuts.count; k++) {
+        Real from = cuts.time[k];
         for (;;) {
-            const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
+            const Real to = lowest(&held, from, cuts.time[k + 1]);
             // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
             if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
                 break;
@@ -1214,6 +1237,7 @@ static Real ride(const World* before, const World* w, Real* delta, int* slip) {
             }
         }
     }
+    free(cuts.time);
     *delta = (Real)side * held.length;
     return heat;
 }
@@ -1307,8 +1331,9 @@ static Real force_at(const World* w, Real t, Real delta, int slip) {
 static Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
     const ReferenceScene* s = &w->scene;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
-    if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
-        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
+    const bool was_open = before && is_open(&past, 0.0L); // at the very start something held the bristle
+    if (is_open(w, 0.0L) || was_open) {
+        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !was_open;
         const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
         *delta = 0.0L;
         *slip = 0;

@@ -51,6 +51,8 @@ typedef struct {
     // After a period that met its bound: the last one whose number is a power of 2.
     FcStepResult met;
     double met_at; // periods; negative for none
+    FcBristle
+        least; // the one with the smallest deflection at the end of a period that met its bound since then
 } Walk;
 
 static FcMap free_map_of(Walk* walk) {
@@ -133,6 +135,7 @@ static bool repeats(Walk* walk) {
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
     walk->met_at = -1.0;
+    walk->least.delta = INFINITY;
     int meetings = 0;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
         const double delta = total->delta;
@@ -147,6 +150,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
         const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
         if (n == 0.0) { // it has met its bound, or is at the edge of doing so
             meetings++;
+            if (!was_free && fabs(total->delta) < fabs(walk->least.delta)) {
+                walk->least = (FcBristle){total->delta, total->slips};
+            }
             if (repeats(walk)) {
                 return;
             }
@@ -154,6 +160,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
             if ((meetings & (meetings - 1)) == 0) {
                 walk->met = *total;
                 walk->met_at = walk->done;
+                walk->least.delta = INFINITY;
             }
             continue;
         }
@@ -266,6 +273,10 @@ double fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolve
         const double cycle = walk.done - walk.met_at;
         *end = walk.total;
         if (walk.met_at >= 0.0 && cycle > 0.0) {
+            if (isfinite(walk.least.delta)) {
+                end->delta = walk.least.delta;
+                end->slips = walk.least.slips;
+            }
             return (walk.total.impulse - walk.met.impulse) / cycle * f;
         }
         map = free_map_of(&walk);
