@@ -155,7 +155,6 @@ static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not
 static const Real LEAST = 1e-16L;
 
 // Whether a panel of this size [s] and its halves give the same.
-// Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
     const Real force = share * LEAST * two->force / size;
@@ -304,8 +303,7 @@ static void cut_at_bends(const World* w, Cuts* cuts) {
 
 // Where V is a multiple of V_S, and 0; V is monotone between the cuts so far.
 static void cut_at_velocities(const World* w, Cuts* cuts) {
-    static const Real MULTIPLES[] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : sizeof MULTIPLES / sizeof *MULTIPLES;
+    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : LEVELS;
     for (size_t k = 0; k + 1 < count; k++) {
         const Real a = cuts->time[k], b = cuts->time[k + 1];
         for (size_t m = 0; m < 2 * levels; m++) {
@@ -565,7 +563,8 @@ typedef struct {
 } Mark;
 
 // Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
-// the state that at the end of the first of them. False where none repeat.
+// the state that at the end of one that slips, that of
+// the smallest deflection. False where none repeat.
 static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle,
                        Real* length) {
     Period p = {.world = *of, .unit = 1.0L};
@@ -608,6 +607,12 @@ static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* su
             add_times(cycle, &marks[k].sums, -1.0L);
             *length = done - marks[k].count;
             if (isinf(n)) {
+                for (; k < count; k++) {
+                    if (fabsl(marks[k].delta) < fabsl(*delta)) {
+                        *delta = marks[k].delta;
+                        *slip = marks[k].slip;
+                    }
+                }
                 break;
             }
             const Real times = floorl((n - done) / *length);

@@ -72,7 +72,7 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
 }
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
-                       double at_b, double close, double* evaluations) {
+                       double at_b, double close, double least_area, double* evaluations) {
     const double rounding = DBL_EPSILON * fmax(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;
@@ -85,11 +85,12 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
     double part = at_b / (at_b - at_a);
     for (int i = 0; i < MOST_ROOT_STEPS; i++) {
         const bool on_side = (at_near < 0.0) == ends_negative;
-        if (at_near == 0.0 || (on_side && fabs(at_near) <= close) || fabs(near - far) <= rounding) {
+        const double width = fabs(near - far);
+        const bool is_close = fabs(at_near) <= close || fabs(at_near) * width <= least_area;
+        if (at_near == 0.0 || (on_side && is_close) || width <= rounding) {
             break;
         }
-        const double least =
-            fmin(0.5, fmax(1e-9, rounding / fabs(near - far))); // so that t is another number
+        const double least = fmin(0.5, fmax(1e-9, rounding / width)); // so that t is another number
         const double t = near + fmax(least, fmin(1.0 - least, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;

@@ -137,7 +137,7 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     double none = 0.0;
     const double at_a = above_bound(&of, a);
     const double from =
-        at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, &none) : a;
+        at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, 0.0, &none) : a;
     const FcGaussRule* rule = &FC_GAUSS_8;
     for (int i = 0; i < 8; i++) {
         const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
@@ -182,7 +182,7 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
         const double rate_next = at_place(ramp, next).rate;
         double turn = next; // where D goes the other way
         if (rate * rate_next < 0.0) {
-            turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, &none);
+            turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
         }
         delta = follow(ramp, s, turn, delta, heat);
         delta = turn < next ? follow(ramp, turn, next, delta, heat) : delta;
@@ -203,7 +203,8 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
         const double next = s + step < 1.0 - 1e-9 ? s + step : 1.0;
         const double at_next = above_bound(&of, next);
         if (at_next > 0.0) {
-            return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, &none) : s;
+            return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, 0.0, &none)
+                              : s;
         }
         s = next;
         at_s = at_next;

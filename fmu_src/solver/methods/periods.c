@@ -51,6 +51,8 @@ typedef struct {
     // After a period that met its bound: the last one whose number is a power of 2.
     FcStepResult met;
     double met_at; // periods; negative for none
+    FcBristle
+        least; // the one with the smallest deflection at the end of a period that met its bound since then
 } Walk;
 
 static double size_of(const FcStepResult* result) {
@@ -210,6 +212,7 @@ static bool repeats(Walk* walk) {
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
     walk->met_at = -1.0;
+    walk->least.delta = INFINITY;
     int meetings = 0;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
         const FcStepResult before = *total;
@@ -224,6 +227,11 @@ static void walk_to_repetition(Walk* walk, double periods) {
         const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
         if (n == 0.0) { // it has met its bound, or is at the edge of doing so
             meetings++;
+            if (!was_free && (isinf(walk->least.delta) ||
+                              size_of(total) < hypot(walk->least.delta, walk->least.delta_y))) {
+                walk->least =
+                    (FcBristle){.delta = total->delta, .slips = total->slips, .delta_y = total->delta_y};
+            }
             if (repeats(walk)) {
                 return;
             }
@@ -231,6 +239,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
             if ((meetings & (meetings - 1)) == 0) {
                 walk->met = *total;
                 walk->met_at = walk->done;
+                walk->least.delta = INFINITY;
             }
             continue;
         }
@@ -337,8 +346,13 @@ FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSol
         const double cycle = walk.done - walk.met_at;
         if (walk.met_at >= 0.0 && cycle > 0.0) {
             *end = walk.total;
-            return (FcVector){(end->impulse - walk.met.impulse) / cycle * f,
-                              (end->impulse_y - walk.met.impulse_y) / cycle * f};
+            if (isfinite(walk.least.delta)) {
+                end->delta = walk.least.delta;
+                end->delta_y = walk.least.delta_y;
+                end->slips = walk.least.slips;
+            }
+            return (FcVector){(walk.total.impulse - walk.met.impulse) / cycle * f,
+                              (walk.total.impulse_y - walk.met.impulse_y) / cycle * f};
         }
         free_map_of(&walk);
     } else {
