@@ -51,8 +51,8 @@ static Rule make_rule(int n) {
         rule.node[i] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
     }
-    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
-    // Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
+    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials
+    // are sums of Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             Real sum = 1.0L + x[i];
@@ -109,7 +109,8 @@ static void solve(int n, Real A[MOST_STAGES][MOST_STAGES], Real* b) {
 
 typedef Real Function(const void* context, Real x);
 
-// Where a function passes zero between low and high, on the side of high: regula falsi, by halves every third time.
+// Where a function passes zero between low and high, on the side of high: regula falsi, by halves every third
+// time.
 static Real crossing(Function* function, const void* context, Real low, Real high) {
     Real at_low = function(context, low), at_high = function(context, high);
     const bool rises = at_high > 0.0L;
@@ -139,7 +140,8 @@ static Real crossing(Function* function, const void* context, Real low, Real hig
 // The contact
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Lower incomplete gamma function of s = 3/2 and 5/2: x^s e^-x sum of x^k / (s (s + 1) .. (s + k)), for large x by erf.
+// Lower incomplete gamma function of s = 3/2 and 5/2: x^s e^-x sum of x^k / (s (s + 1) .. (s + k)), for large
+// x by erf.
 static Real lower_gamma(Real s, Real x) {
     if (x > 4.0L) {
         const Real of_3_2 = 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x);
@@ -166,7 +168,8 @@ static Real bessel_I0(Real x) {
     return sum;
 }
 
-// What F_n and sigma are over their power of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
+// What F_n and sigma are over their power of e^(-lambda d / R_q), and the derivatives of their logarithms by
+// E.
 typedef struct {
     Real force, by_force;         // N
     Real stiffness, by_stiffness; // N/m; N m2 for Asperities
@@ -238,13 +241,13 @@ typedef struct {
     Real V;
     Real sigma;
     Real coulomb;                  // N, F_C or mu F_n
-    Real g;                        // N, where the bristle's force tends
-    Real B;                        // N, the bound of what does not slip
+    Real g;                        // N, the limit of the bristle's force
+    Real B;                        // N, the bound of a bristle that does not slip
     Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
 } At;
 
-// Sine of x + shift pi / 2. The library's own reduction to a quarter turn would take half of all time; pi / 2 in two parts,
-// the first of 41 bits, is as good for some thousand turns.
+// Sine of x + shift pi / 2. The library's own reduction to a quarter turn would take half of all time; pi / 2
+// in two parts, the first of 41 bits, is as good for some thousand turns.
 static Real sine(Real x, int shift) {
     static const Real FIRST = 0x1.921fb54442p0L, SECOND = 0x0.d18469898cc51701b8p-40L;
     const Real quarters = rintl(x * (2.0L / PI));
@@ -308,7 +311,7 @@ static AtModulus modulus_at(const World* w, Real t) {
     return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
 }
 
-// sigma [N/m] where F_n and d are those.
+// sigma [N/m] at those F_n and d.
 static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
     const Real share = force / at->force;
     return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
@@ -316,7 +319,8 @@ static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real forc
                                            : at->stiffness * share * share / (d * d * d);
 }
 
-// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma), but for Stribeck's curve, without what cancels in it.
+// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma) without Stribeck's curve, and without its terms that
+// cancel.
 static void contact_at(const World* w, Real t, bool with_rates, Real* force, Real* sigma, Real* ratio_rate) {
     const ReferenceScene* s = &w->scene;
     *sigma = s->contact_sigma;
@@ -426,7 +430,6 @@ static bool is_open(const World* w, Real t) {
 }
 
 // The part of [0, h] in which the contact is closed; empty: from = to = h.
-// The part of [0, h] in which the contact is closed; empty: from = to = h.
 typedef struct {
     Real from, to;
 } Closed;
@@ -453,7 +456,8 @@ typedef struct {
     Real work;    // J
     Real heat;    // J
     Real path;    // m, integral of |V|
-    // What errors of these are measured by: the length is that at the end, or what is kept of a longer one.
+    // The scales of their errors: the length is the deflection at the end, or the remaining part of a longer
+    // one.
     Real length, force, power;
     Real blur; // m, of delta at the end by the rounding of time
 } Sums;
@@ -486,14 +490,15 @@ static void account(const World* w, Sums* sums, Real spring, Real rate, Real V, 
                    (fabsl(V) + (spring == 0.0L ? 0.0L : fabsl(rate)));
 }
 
-// What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound of a side.
+// What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound
+// of a side.
 typedef struct {
     int sign; // of V
     int slip; // 0, +1, -1
 } Motion;
 
-// The deflections at the nodes of a panel by the bristle's own law: delta + Y, Y_i = size sum_j to_ij (V_j - r_j delta -
-// r_j Y_j). Returns the change of delta.
+// The deflections at the nodes of a panel by the bristle's own law: delta + Y, Y_i = size sum_j to_ij (V_j -
+// r_j delta - r_j Y_j). Returns the change of delta.
 static Real collocate(const World* w, const At* at, const Real* r, Real size, Real delta, Real* at_delta) {
     const int n = w->rule->stages;
     Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES] = {0};
@@ -566,10 +571,10 @@ static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
 static const int DEEPEST = 110;
 static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not known
 
-// An error in a panel is left alone when it is less than this share of the panel's mean force acting over the whole step.
+// An error in a panel is left alone when it is less than this share of the panel's mean force acting over the
+// whole step.
 static const Real LEAST = 1e-16L;
 
-// Whether a panel of this size [s] and its halves give the same.
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
@@ -630,8 +635,8 @@ static Real beyond(const void* context, Real t) {
 
 static void go_over(March* march, const Motion* motion, Real a, Real b);
 
-// Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a bristle that is free
-// stops where it meets a bound.
+// Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a
+// bristle that is free stops at a bound.
 static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
@@ -734,7 +739,7 @@ static Real outward_of(const void* context, Real t) {
     return outward(zero->w, t, zero->side, zero->sticks);
 }
 
-// Where dV/dt = 0, where the vibration turns, and equal pieces in between.
+// The zeros of dV/dt, the turns of the vibration, and equal pieces in between.
 static void cut_at_bends(const World* w, Cuts* cuts) {
     const ReferenceScene* s = &w->scene;
     const int pieces = 4 * w->fineness;
@@ -771,8 +776,9 @@ static void cut_at_velocities(const World* w, Cuts* cuts) {
     }
 }
 
-// Cuts where a bristle may leave its bound between a and b, as the samples at the ends of cells show, also where it only
-// just passes zero between two of them: the extreme next to a sample is searched.
+// Cuts at the times between a and b at which a bristle may leave its bound, as the samples at the ends of
+// cells show. A push that passes zero only just, between two samples, counts too: the extreme next to a
+// sample is searched.
 static void cut_at_zeros(const Zero* zero, Cuts* cuts, Real a, Real b) {
     const int cells = 12 * zero->w->fineness;
     Real t[3] = {a, a, a}, value[3] = {0.0L, 0.0L, outward_of(zero, a)};
@@ -820,7 +826,9 @@ static Cuts all_cuts(const World* w, Closed part) {
     cut_at_velocities(w, &cuts);
     tidy(&cuts, part);
     const size_t count = cuts.count;
-    const int kinds = w->excess != 0.0L && w->elastic ? 4 : 2; // of both sides; what slips, then what sticks
+    const int kinds = w->excess != 0.0L && w->elastic
+                          ? 4
+                          : 2; // of both sides; the bound that slips, then the one that sticks
     for (size_t k = 0; w->bounded && !w->open && k + 1 < count; k++) {
         for (int kind = 0; kind < kinds; kind++) {
             const Zero zero = {.w = w, .side = kind % 2 ? 1 : -1, .sticks = kind >= 2};
@@ -835,8 +843,8 @@ static Cuts all_cuts(const World* w, Closed part) {
 // The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-// The bristle meets its bound. One that stuck drops to the bound of what slips: the limit of a fast motion, which the
-// damping feels.
+// The bristle meets its bound. One that stuck drops to the kinetic bound: the limit of a fast motion, so the
+// damping does work.
 static void break_away(March* march, Real t, int side) {
     const At at = scene_at(march->w, t, false);
     const Real from = march->delta, to = (Real)side * bound(march->w, &at, false);
@@ -891,7 +899,7 @@ static void march_over(March* march) {
     World* w = march->w;
     const Closed part = closed_part(w);
     march_part(march, (Closed){0.0L, part.from}, true);
-    // what has no load has no rate: the last 1e-18 of the way to it is left out
+    // without a load there is no rate: the last 1e-18 of the way to it is left out
     const Real edge = ldexpl(part.to - part.from, -58);
     march_part(
         march,
@@ -919,8 +927,8 @@ static March one_period(World* w, Real delta, int slip, bool open_ends) {
     return march;
 }
 
-// As long as it touches no bound, a period maps delta in an affine way, and its sums are polynomials of degree 2 in delta:
-// it multiplies (1, x, x^2, impulse, work, heat, path) by a matrix, x = delta / unit.
+// As long as it touches no bound, a period maps delta in an affine way, and its sums are polynomials of
+// degree 2 in delta: it multiplies (1, x, x^2, impulse, work, heat, path) by a matrix, x = delta / unit.
 enum { ROWS = 7, POWERS = 50 };
 typedef struct {
     Real m[ROWS][ROWS];
@@ -1018,8 +1026,8 @@ typedef struct {
     Sums sums;  // up to it
 } Mark;
 
-// Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
-// the state that at the end of the first of them. False where none repeat.
+// Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length
+// their number, and the state that at the end of the first of them. False if none repeat.
 static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle,
                        Real* length) {
     Period p = {.world = *of, .unit = 1.0L};
@@ -1082,7 +1090,7 @@ static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* su
 // An input that jumps: the limit of a fast ramp
 // ---------------------------------------------------------------------------------------------------------------------
 
-// The ends of the ramp: what is linear, and what is so in its logarithm.
+// The ends of the ramp: its linear quantities, and those with a linear logarithm.
 typedef struct {
     Real V, d, E;
     Real ln_limit, ln_scale, ln_ratio, ln_V_S; // of F_C or mu, of the stiffness's factor, of R and V_S
@@ -1125,7 +1133,8 @@ static OnRamp ramp_at(const Ramp* ramp, Real x) {
 #undef LINEAR
 }
 
-// Integral of g |dD| over [a, b], where D = g / sigma falls: D' by the rule's matrix, and by halves until they agree.
+// Integral of g |dD| over [a, b], on which D = g / sigma falls: D' by the rule's matrix, and by halves until
+// they agree.
 static Real heat_along(const Ramp* ramp, Real a, Real b, int depth) {
     const Rule* rule = ramp->w->rule;
     const Real half[3] = {a, 0.5L * (a + b), b};
@@ -1168,7 +1177,8 @@ static Real excess_length(const void* context, Real x) {
     return held->length - (held->sticks ? on.B : on.g) / on.sigma;
 }
 
-// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher there.
+// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher
+// there.
 static Real lowest(const Held* held, Real a, Real b) {
     const Real near = 1e-6L * (b - a);
     const Real at_a = excess_length(held, a), at_b = excess_length(held, b);
@@ -1195,7 +1205,7 @@ static Real ride(const World* before, const World* w, Real* delta, int* slip) {
         Real from = (Real)k / CELLS;
         for (;;) {
             const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
-            // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
+            // neither the rounding of the state nor that of a bound that stands still is an excess
             if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
                 break;
             }
@@ -1267,7 +1277,7 @@ static World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.excess =
         scene->law == LAW_LUGRE || scene->law == LAW_ELASTIC_PLASTIC ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
-    // f start, of which whole numbers are taken off, exactly: the product and what it loses in rounding
+    // f start less its whole number, exactly: the product and its rounding error
     const double cycles = scene->f * scene->start;
     const double lost = fma(scene->f, scene->start, -cycles);
     w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);
@@ -1303,7 +1313,7 @@ static Real force_at(const World* w, Real t, Real delta, int slip) {
     return at.sigma * delta + s->sigma_1 * rate + s->sigma_2 * at.V;
 }
 
-// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
+// Takes the bristle through the jump of the inputs, or from a start beyond the bound; returns the heat.
 static Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
     const ReferenceScene* s = &w->scene;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
@@ -1330,7 +1340,8 @@ static Real jump(const ReferenceScene* before, const World* w, Real* delta, int*
     return 0.5L * at.sigma * (length - lies) * (length + lies);
 }
 
-// The deflection at the start that the periodic state of held inputs has, without vibration the one of sliding for ever.
+// The deflection at the start that the periodic state of held inputs has, without vibration the one of
+// sliding for ever.
 static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* length) {
     const ReferenceScene* s = &w->scene;
     World held = held_world(w, 1.0L / s->f);
@@ -1347,7 +1358,7 @@ static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* le
     return true;
 }
 
-// Goes over the step; false where it is more than the reference takes.
+// Goes over the step; false if it needs more than the reference takes.
 static bool advance(World* w, Real* delta, int* slip, Sums* sums) {
     bool known = true;
     World rest = *w;

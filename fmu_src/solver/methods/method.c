@@ -87,7 +87,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
         FcStepResult end = {.delta = from.delta, .slips = from.slips, .evaluations = *evaluations};
         *force = fc_periods_settled(integration(scene), scene, options, &end);
         *evaluations = end.evaluations;
-        // What rounding leaves beyond a bound would be heat of the first step.
+        // Rounding beyond a bound would become heat of the first step.
         return fc_reach(scene, (FcBristle){end.delta, end.slips});
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);

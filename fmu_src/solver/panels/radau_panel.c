@@ -6,19 +6,21 @@
 #include "solver/panels/nodes.h"
 #include "solver/panels/panel_tables.h"
 
-// The lengths of the loops below are known only once the outer one is unrolled; then they become vector instructions.
+// The lengths of the loops below are known only once the outer one is unrolled; then they become vector
+// instructions.
 #ifdef __clang__
 #define UNROLL _Pragma("unroll")
 #else
 #define UNROLL _Pragma("GCC unroll 16")
 #endif
 
-// A row of the linear system: the matrix, a pad, the two right-hand sides. COUNT: the stages, and the start after them.
+// A row of the linear system: the matrix, a pad, the two right-hand sides. COUNT: the stages, and the start
+// after them.
 enum { STAGES = FC_RADAU_STAGES, COUNT = STAGES + 1, WIDEST = STAGES + 3 };
 typedef double StageSystem[STAGES][WIDEST] FC_PAIRED;
 
-// Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative. By pairs of columns; those
-// left of the pivot may be touched, they are not read again.
+// Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative. By pairs of
+// columns; those left of the pivot may be touched, they are not read again.
 FC_INLINE void solve(StageSystem row) {
     enum { n = STAGES };
     UNROLL
@@ -45,15 +47,16 @@ FC_INLINE void solve(StageSystem row) {
     }
 }
 
-// x^6: what is left of an error that is orthogonal to the polynomials of degree 7 when it is weighted with a function whose
-// Legendre coefficients fall by x. Three quarters of that degree, since x is an estimate.
+// x^6: the integral of an error that is orthogonal to the polynomials of degree 7, weighted with a function
+// whose Legendre coefficients fall by x from degree to degree. Three quarters of the degree 8, since x is an
+// estimate.
 FC_INLINE double acting_part(double x) {
     const double x_3 = x * x * x;
     return x_3 * x_3;
 }
 
-// The part of the slope that the collocation leaves unresolved and that acts on the end. at_start is its defect at the
-// panel's start, where it is largest; the tail's own continuation counts where that happens to vanish.
+// The unresolved part of the slope that acts on the end. at_start is the defect of the slope at the panel's
+// start, its largest. The continued tail counts if that defect happens to vanish.
 FC_INLINE double unresolved(const double* slope, double z) {
     const double at_start = fc_dot(COUNT, FC_RADAU_9.start, slope);
     const FcTail tail = fc_tail_of(COUNT, FC_RADAU_9.tail, slope);
@@ -66,8 +69,8 @@ FC_INLINE double quadrature_error(const double* f) {
     return fc_beyond_rounding(fc_largest(STAGES, f), tail.top) * tail.fall * acting_part(tail.fall);
 }
 
-// What the mean over a panel sees of a defect: it changes sign between the nodes. By hand: less lets panels pass that miss the
-// tolerance, more costs panels.
+// The part of a defect in the mean over a panel: the defect changes its sign between the nodes. Half of it
+// doubles the error that passes; twice of it costs panels.
 static const double MEAN_OF_DEFECT = 0.1;
 
 void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const FcTrajectories* from,
@@ -135,7 +138,7 @@ void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const
         fc_panel_force(count, &at, side_per_limit, side, from->speed, 0.0, u, f);
         mean_error += quadrature_error(f);
     }
-    // A defect is damped at the end by what relaxes there, inside by the least that does anywhere.
+    // Relaxation damps a defect: at the end by the rate there, inside by the least rate of the panel.
     const double whole = panel->z;
     const double z_last = fc_most(0.0, fc_least(z[last], whole));
     const double z_least = fc_most(fc_least(z_last, z[n]), fc_least(whole, sqrt(whole)));
