@@ -5,7 +5,7 @@
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
 //     build/hunt/hunt --replay "V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2" --tolerance 1e-6
 //
-// Each miss is one line: the tolerance, the error over it, the result that missed, the number of the
+// With --plane the scenes slide and vibrate across as well. Each miss is one line: the tolerance, the error over it, the result that missed, the number of the
 // sequence, and the sequence as name=value for each value that is not the start value. --replay takes such a
 // line. The sequences take the tolerances in turn. The last lines are tables by law and by kappa = sigma V /
 // (2 pi f limit), and counts of the kinds of step. Ends with 1 if a step missed.
