@@ -37,7 +37,7 @@ def accepted(fmu: FrictionFmu) -> list[str]:
         if variable.type == "Real"
         and variable.causality in ("input", "parameter")
         and not name.startswith("solver.")
-        and name != "delta_0"
+        and name not in ("delta_0", "delta_y_0")
     ]
 
 

@@ -41,7 +41,7 @@ from .values import Value, Variables, pairs, path_of, real
 
 MODEL = "FrictionContact"
 FMI2_WARNING = 1
-INPUTS = ("V", "d", "E", "load")
+INPUTS = ("V", "d", "E", "load", "V_y")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
 
@@ -226,10 +226,10 @@ class Session:
         references = [self.fmu.known.readable(name, "read").valueReference for name in names]
         return np.array(self._call(self.slave.getReal, references))
 
-    def force_rate(self) -> float:
-        """dF_t/dt [N/s] at the present time."""
-        reference, order, value = (c_uint * 1)(3), (c_int * 1)(1), (c_double * 1)()
-        reference[0] = self.fmu.variables["F_t"].valueReference
+    def force_rate(self, output: str = "F_t") -> float:
+        """The time derivative [N/s] of F_t or F_y at the present time."""
+        order, value = (c_int * 1)(1), (c_double * 1)()
+        reference = (c_uint * 1)(self.fmu.known.find(output, "force_rate", ("output",)).valueReference)
         self._call(self.slave.fmi2GetRealOutputDerivatives, self.slave.component, reference, 1, order, value)
         return value[0]
 

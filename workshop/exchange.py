@@ -24,7 +24,7 @@ from fmpy.sundials import CVodeSolver
 from frictioncontact.fmu import FrictionError, FrictionFmu, Value, logging_callbacks
 
 Inputs = Callable[[float, np.ndarray], Mapping[str, float]]
-Rates = Callable[[float, np.ndarray, float], Sequence[float]]
+Rates = Callable[..., Sequence[float]]
 STATES = 4  # delta, W_f, Q_f, delta_y
 MOST_STEPS = 1_000_000  # of CVODE on the way to one output
 
@@ -32,8 +32,9 @@ MOST_STEPS = 1_000_000  # of CVODE on the way to one output
 class Host:
     """One contact in model exchange and the host's own states, from start on.
 
-    inputs(t, own) gives inputs of the FMU; what it does not name stays as it is. own_rates(t, own, F_t) gives
-    the rates of the host's own states, of which own are the start values and own_nominals the sizes.
+    inputs(t, own) gives inputs of the FMU; what it does not name stays as it is. own_rates(t, own, *forces)
+    gives the rates of the host's own states by these outputs of the FMU; own are the start values of the
+    states, own_nominals their sizes.
     """
 
     def __init__(
@@ -48,13 +49,14 @@ class Host:
         own: Sequence[float] = (),
         own_nominals: Sequence[float] = (),
         own_rates: Rates | None = None,
+        forces: Sequence[str] = ("F_t",),
     ) -> None:
         self.fmu = fmu
         self.time = start
         self.own = np.array(own, float)
         self.events = 0
         self._inputs, self._own_rates, self._own_nominals = inputs, own_rates, np.array(own_nominals, float)
-        self._force = (c_uint * 1)(fmu.variables["F_t"].valueReference)
+        self._forces = (c_uint * len(forces))(*(fmu.variables[name].valueReference for name in forces))
         self._model = self._instantiated()
         try:
             self._start(start_values, start)
@@ -77,8 +79,13 @@ class Host:
             self.close()
             raise
 
-    def _instantiated(self) -> FMU2Model:
-        model = FMU2Model(
+    @property
+    def calls(self) -> int:
+        """Of every function of the FMU since the start."""
+        return self._model.calls
+
+    def _instantiated(self) -> FMU2Counted:
+        model = FMU2Counted(
             guid=self.fmu.description.guid,
             modelIdentifier=self.fmu.description.modelExchange.modelIdentifier,
             unzipDirectory=str(self.fmu.directory),
@@ -142,9 +149,9 @@ class Host:
     def _get_rates(self, rates: Any, count: int) -> None:
         self._model.getDerivatives(rates, STATES)
         if self._own_rates:
-            F_t = (c_double * 1)()
-            self._model.fmi2GetReal(self._model.component, self._force, 1, F_t)
-            own = self._own_rates(self.time, self.own, F_t[0])
+            forces = (c_double * len(self._forces))()
+            self._model.fmi2GetReal(self._model.component, self._forces, len(forces), forces)
+            own = self._own_rates(self.time, self.own, *forces)
             np.ctypeslib.as_array(rates, (count,))[STATES:] = own
 
     def _get_nominals(self, nominals: Any, count: int) -> None:
@@ -184,6 +191,16 @@ class Host:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+class FMU2Counted(FMU2Model):
+    """Counts the calls of the FMU's functions. FMPy loads by the first letters of the class's name."""
+
+    calls = 0
+
+    def _call(self, *arguments: Any) -> Any:
+        self.calls += 1
+        return super()._call(*arguments)
 
 
 class _NoInput:

@@ -86,8 +86,8 @@ def advise(
     accuracy  largest error, over F_C and over the mean friction, from 1e-8 to 1
     step      communication step, s (a period of the vibration)
     output    which output must be accurate: "F_t", "F_t_mean" or "both"
-    inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load: the steps are
-              its own, the first 400 are graded
+    inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load, V_y: the steps
+              are its own, the first 400 are graded
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
     fmu       another .fmu file of this model
@@ -133,7 +133,9 @@ def mean_limit(fmu: FrictionFmu, asked: Question) -> float:
     forward: dict[str, Value] = {
         "friction.model": "Coulomb",
         "V": 1.0,
+        "V_y": 0.0,
         "vibration.V_1": 0.0,
+        "vibration.V_2": 0.0,
         "friction.sigma_2": 0.0,
     }
     with fmu.session({**asked.given, **forward}) as session:

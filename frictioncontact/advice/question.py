@@ -40,7 +40,7 @@ class Question:
 
     @property
     def vibrates(self) -> bool:
-        return self.values["vibration.V_1"] != 0.0 or self.values["vibration.a_d"] != 0.0
+        return any(self.values[f"vibration.{name}"] != 0.0 for name in ("V_1", "V_2", "a_d"))
 
     @property
     def period(self) -> float:
@@ -98,7 +98,7 @@ def _starts(fmu: FrictionFmu) -> dict[str, Value]:
     return {
         name: value
         for name, value in fmu.known.starts().items()
-        if not name.startswith("solver.") and name not in ("delta_0", "initialState")
+        if not name.startswith("solver.") and name not in ("delta_0", "delta_y_0", "initialState")
     }
 
 

@@ -86,6 +86,8 @@ def _kappa(experiment: Experiment, result: Fit) -> list[str]:
     rows = [{**condition, **fitted} for condition in conditions]
     if any(row.get("friction.limit") == "Load" and row.get("vibration.a_d", 0.0) for row in rows):
         return []
+    if any(row.get(name, 0.0) for row in rows for name in ("V_y", "vibration.V_2")):
+        return []  # the bounds are of a motion along a line
     reversing = [k for k, row in enumerate(rows) if _moves(row)]
     if not reversing and not set(fitted) & {"V", "vibration.V_1", "vibration.a_d"}:
         if any(row.get("friction.model") == "LuGre" or row.get("friction.sigma_2", 0.0) for row in rows):

@@ -15,10 +15,11 @@ from frictioncontact.fmu import FrictionFmu
 
 # The ranges where nothing is given. Of other parameters starts are sought within a factor of 3 of the usual
 # value, and the fit stays within a factor of FARTHEST of it.
+PHASES = ("vibration.phase_d", "vibration.phase_2")
 RANGES = {
     "contact.stiffnessScale": (1e-9, 10.0),
     "contact.sigma": (1e3, 1e13),
-    "vibration.phase_d": (0.0, 2.0 * math.pi),
+    **dict.fromkeys(PHASES, (0.0, 2.0 * math.pi)),
 }
 NEAR, FARTHEST = 3.0, 1e6
 LARGEST = 1e50  # a value without a bound in the model description, and a residual
@@ -41,7 +42,7 @@ class Parameter:
 
     @property
     def periodic(self) -> bool:
-        return self.name == "vibration.phase_d"
+        return self.name in PHASES
 
     @property
     def unit_of_coordinate(self) -> float:
@@ -97,6 +98,6 @@ def parameter(
         far = FARTHEST * abs(usual)
         search = max(low, min(usual / NEAR, usual * NEAR)), min(high, max(usual / NEAR, usual * NEAR))
         stays = max(low, usual / FARTHEST if logarithmic else -far), min(high, far)
-    if name == "vibration.phase_d":
+    if name in PHASES:
         stays = -math.inf, math.inf
     return Parameter(name, variable.unit, *stays, search, start, logarithmic)

@@ -13,13 +13,14 @@ from frictioncontact.command import add_fmu, add_set, can_draw, command_line, fi
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import opened
-from frictioncontact.law.law import FORCE, friction_law
+from frictioncontact.law.law import FORCE, TRANSVERSE, friction_law
 from frictioncontact.sweeps.scenarios import grid
 from frictioncontact.values import assignments
 
 DESCRIPTION = """\
 The friction law that a machine sees which is slower than the vibration: the mean force over a period, once
-settled, and its derivative by V, at every combination of the values that --vary gives to inputs.
+settled, and its derivative by V, at every combination of the values that --vary gives to inputs. With motion
+transverse to V the mean transverse force is there, too.
 
   %(prog)s --set vibration.V_1=1.44 --set contact.stiffnessScale=4.4e-7
   %(prog)s --set vibration.V_1=1.44 --vary V=0.01:2:50:log --vary E=40e9,58e9 --output law.csv
@@ -53,12 +54,14 @@ def run(options: argparse.Namespace) -> None:
     for name in vary:
         known.find(name, "--vary", ("input",))
     if "V" not in vary:
-        V_1 = float(law.start.get("vibration.V_1", 0.0))
-        vary["V"] = f"0:{1.5 * abs(V_1) or 0.1}:16"
+        amplitude = max(float(law.start.get(f"vibration.{name}", 0.0)) for name in ("V_1", "V_2"))
+        vary["V"] = f"0:{1.5 * amplitude or 0.1}:16"
     made = grid(known, vary)
     inputs = made.rows(0, made.count)
     V = inputs.pop("V")
     table = pd.DataFrame({"V": V, **inputs, FORCE: law(V, **inputs), "d/dV": law.derivative(V, **inputs)})
+    if {"V_y", "vibration.V_2", "delta_y_0"} & {*inputs, *law.start}:
+        table[TRANSVERSE] = law.transverse(V, **inputs)
     if options.output:
         write_whole(options.output, table.to_csv(index=False))
     else:

@@ -1,4 +1,4 @@
-"""`friction_law`: F_t_settled as a function of the inputs, for machines slower than the vibration."""
+"""`friction_law`: the settled forces as functions of the inputs, for machines slower than the vibration."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from frictioncontact.values import numbers_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORCE = "F_t_settled"
+FORCE, TRANSVERSE = "F_t_settled", "F_y_settled"
 
 
 class FrictionLaw:
@@ -43,23 +43,33 @@ class FrictionLaw:
         """The force at velocities.
 
         V         velocity, m/s: a number, or an array of any shape
-        inputs    d [m], load [N], E [Pa] by name, of shapes that broadcast with V; the scene's if not given
+        inputs    V_y [m/s], d [m], load [N], E [Pa] by name, of shapes that broadcast with V; the scene's if
+                  not given
         returns   force, N: a float, or an array of the common shape
         raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses it
         """
         return self._at(V, inputs, lambda: self._session.get(FORCE))
 
-    def derivative(self, V: npt.ArrayLike, by: str = "V", **inputs: npt.ArrayLike) -> float | np.ndarray:
-        """The derivative of the force by one of the inputs, at a kink that of one side.
+    def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
+        """The force transverse to V, F_y_settled [N]; else as a call."""
+        return self._at(V, inputs, lambda: self._session.get(TRANSVERSE))
+
+    def derivative(
+        self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
+    ) -> float | np.ndarray:
+        """The derivative of a force by one of the inputs, at a kink that of one side.
 
         V         velocity, m/s: a number, or an array of any shape
-        by        the input: V, d, load or E
+        by        the input: V, V_y, d, load or E
+        of        the force: "F_t_settled", or "F_y_settled" transverse to V
         inputs    as in a call
         returns   N over the input's unit: a float, or an array of the common shape
         raises    UserError, FrictionError: as in a call
         """
         self._fmu.known.find(by, "by", ("input",))
-        return self._at(V, inputs, lambda: self._session.slope(FORCE, by))
+        if of not in (FORCE, TRANSVERSE):
+            raise UserError(f"of {of}: must be {FORCE} or {TRANSVERSE}")
+        return self._at(V, inputs, lambda: self._session.slope(of, by))
 
     def _at(
         self, V: npt.ArrayLike, inputs: Mapping[str, npt.ArrayLike], read: Callable[[], float]
@@ -101,8 +111,8 @@ class FrictionLaw:
         from frictioncontact import style
 
         if V is None:
-            V_1, V_S = self._session.get("vibration.V_1"), self._session.get("friction.V_S")
-            V = np.linspace(0.0, 1.5 * V_1 or 10.0 * V_S, 201)[1:]
+            V_1, V_2, V_S = self._session.read(("vibration.V_1", "vibration.V_2", "friction.V_S"))
+            V = np.linspace(0.0, 1.5 * max(V_1, V_2) or 10.0 * V_S, 201)[1:]
         with matplotlib.rc_context():
             figure, (force, slope) = style.subplots(1, 2, size=(9.0, 3.5))
             force.plot(V, self(V, **inputs))
@@ -117,7 +127,7 @@ def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | 
 
     scene     name of an input or parameter -> value, SI units; of an enumeration an item or its number
     fmu       another .fmu file of this model
-    returns   a `FrictionLaw`: call it with velocities; `derivative`, `plot`
+    returns   a `FrictionLaw`: call it with velocities; `transverse`, `derivative`, `plot`
     raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses the scene
     warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 

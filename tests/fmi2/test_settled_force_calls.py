@@ -1,4 +1,4 @@
-"""F_t_settled and F_y_settled at the FMI boundary: computed when asked for, wherever outputs may be read, without a trace."""
+"""F_t_settled and F_y_settled at the FMI boundary: on demand, wherever outputs are read, without a trace."""
 
 from __future__ import annotations
 

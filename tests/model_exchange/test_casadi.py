@@ -41,9 +41,10 @@ def integrated(fmu: FrictionFmu, scene: ExchangeScene) -> dict[str, float]:
     own = scene.scene
     length = own.F_C / own.contact.sigma
     energy = own.F_C * max(abs(own.V), own.V_1) * scene.h
-    sizes = casadi.DM([{"delta": length, "W_f": energy, "Q_f": energy}[name] for name in dae.x()])
-    inputs = casadi.DM([getattr(own, name) for name in dae.u()])
-    t, x = casadi.MX.sym("t"), casadi.MX.sym("x", 3)
+    size_of = {"delta": length, "delta_y": length, "W_f": energy, "Q_f": energy}
+    sizes = casadi.DM([size_of[name] for name in dae.x()])
+    inputs = casadi.DM([0.0 if name == "V_y" else getattr(own, name) for name in dae.u()])
+    t, x = casadi.MX.sym("t"), casadi.MX.sym("x", len(dae.x()))
     rates, _ = contact(t, sizes * x, inputs)
     solver = casadi.integrator(
         "solver",
@@ -72,11 +73,12 @@ def test_jacobians(fmu: FrictionFmu) -> None:
         "friction.staticRatio": 1.4,
         "vibration.V_1": 0.5,
         "vibration.a_d": 1e-6,
+        "vibration.V_2": 0.3,
     }
     dae = builder(fmu, {**start, "contact.stiffnessScale": 1e-4, "friction.sigma_1": 20.0})
     contact = dae.create("contact", ["t", "x", "u"], ["ode"])
-    t, u = 3e-6, np.array([0.1, 14e-6, 58e9, 312.0])
-    x = np.array([2e-8 if name == "delta" else 1e-4 for name in dae.x()])
+    values = {"V": 0.1, "d": 14e-6, "E": 58e9, "load": 312.0, "V_y": -0.07, "delta": 2e-8, "delta_y": 3e-8}
+    t, u, x = 3e-6, *(np.array([values.get(name, 1e-4) for name in names]) for names in (dae.u(), dae.x()))
     by_x, by_u = (np.array(block) for block in contact.jacobian()(t, x, u, 0)[1:])
     for exact, at, steps in ((by_x, x, 1e-6 * x), (by_u, u, 1e-6 * u)):
         for k, step in enumerate(steps):

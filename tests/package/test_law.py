@@ -42,6 +42,18 @@ class TestLaw:
         assert law.derivative(0.5, "load", load=100.0) == pytest.approx(found[0, 1] / 100.0, rel=1e-6)
         assert law(0.5) == before  # with the scene's load again
 
+    def test_coulomb_s_law_in_the_plane(self, fmu_path: Path) -> None:
+        """At rest in y under a circular vibration both forces turn with the velocity (V, V_y)."""
+        around = {"vibration.V_2": 1.44, "vibration.phase_2": np.pi / 2}
+        law = fc.friction_law(COULOMB | around, fmu=fmu_path)
+        speed, angle = 0.5, np.array([0.0, 0.4, 2.0])
+        V, V_y = speed * np.cos(angle), speed * np.sin(angle)
+        force = law(speed)
+        np.testing.assert_allclose(law(V, V_y=V_y), force * np.cos(angle), rtol=1e-9, atol=1e-8)
+        np.testing.assert_allclose(law.transverse(V, V_y=V_y), force * np.sin(angle), rtol=1e-9, atol=1e-8)
+        assert law.derivative(speed, "V_y", of="F_y_settled") == pytest.approx(force / speed, rel=1e-6)
+        assert law.derivative(speed, "V_y") == pytest.approx(0.0, abs=1e-4)
+
     def test_it_is_the_mean_over_a_period(self, fmu_path: Path) -> None:
         mean = fc.simulate_many(SOFT | {"V": 0.5}, ["F_t_mean"], fmu=fmu_path)["F_t_mean"]
         assert fc.friction_law(SOFT, fmu=fmu_path)(0.5) == pytest.approx(float(mean), rel=1e-5)
@@ -58,6 +70,7 @@ class TestLaw:
             (lambda law: law([1.0, 2.0], E=[1e9, 2e9, 3e9]), "the shapes do not go together: V (2,), E (3,)"),
             (lambda law: law(0.5, d=-1e-6), "fmi2SetReal: d = -1e-06 m is below"),
             (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU and can't be set"),
+            (lambda law: law.derivative(0.5, of="F_t"), "of F_t: must be F_t_settled or F_y_settled"),
         ],
     )
     def test_what_is_wrong_is_one_line(
@@ -90,6 +103,12 @@ class TestWarnings:
             ({"friction.staticRatio": 1.5}, "friction.staticRatio has no effect: friction.model = Dahl"),
             ({"contact.sigma": 1e6}, "contact.sigma has no effect: contact.model = Asperities"),
             ({"vibration.phase_d": 1.0}, "vibration.phase_d has no effect: vibration.a_d = 0"),
+            ({"vibration.phase_2": 1.0}, "vibration.phase_2 has no effect: vibration.V_2 = 0"),
+            ({"V_y": -500.0}, "V_y = -500 m/s is an unlikely magnitude: -500 mm/s is -0.5 here"),
+            (
+                {"friction.model": "Coulomb", "delta_y_0": 1e-9},
+                "delta_y_0 has no effect: friction.model = Coulomb; it is used with",
+            ),
             ({"V": 500.0}, "V = 500 m/s is an unlikely magnitude: 500 mm/s is 0.5 here"),
             (
                 {"vibration.f": 20.0, "vibration.V_1": 0.1},
@@ -172,7 +191,7 @@ class TestSessions:
                 lambda session: session.set("friction.model", "Dal"),
                 "set friction.model: 'Dal' is not one of Dahl",
             ),
-            (lambda session: session.get("F"), "read: F is no variable of the FMU; did you mean F_t?"),
+            (lambda session: session.get("Ft"), "read: Ft is no variable of the FMU; did you mean F_t?"),
             (lambda session: session.step("1"), "h = '1' is not a number"),
             (lambda session: session.step(-1.0), "fmi2DoStep: "),
             (lambda session: session.slope("F_t", "vv"), "slope: vv is no variable of the FMU"),

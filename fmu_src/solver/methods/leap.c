@@ -14,6 +14,10 @@ enum { FEWEST_POINTS = 4, MOST_POINTS = 13 };
 
 // Fewer periods are gone through one by one. By hand: a block costs about as many.
 static const double FEWEST = 9.0;
+// In the plane a bristle that slips forgets its angle in so many periods. By hand: fewer are refused more often, more cost more; each
+// sample costs two times as many, so that fewer periods than FEWEST_OF_SLIPS are gone through one by one.
+enum { WARM_UP = 3 };
+static const double FEWEST_OF_SLIPS = 60.0;
 
 // The numbers of a map, and of the one across.
 enum { OF_MAP = sizeof(FcMap) / sizeof(double), NUMBERS = 2 * OF_MAP };
@@ -33,7 +37,9 @@ typedef struct {
     double first, count; // the block
     double phase;        // s
     int side;            // of the bound at which they begin, 0 for any start
-    double delta;        // m, size of the start
+    int warm_up;     // in the plane: periods after which a bristle that slips has forgotten, 0 for any start
+    FcBristle start; // at the block
+    double delta;    // m, size of the start
     double* evaluations;
     int numbers;                // of a map, or of two in the plane
     Numbers point[MOST_POINTS]; // at the Chebyshev points, then their coefficients
@@ -60,12 +66,51 @@ static bool lies_on_bound(const Block* block, double k, double delta) {
     return fabs(on_bound(&scene, block->side).delta - delta) * fc_scene_stiffness(&scene, 0.0) <= allowed;
 }
 
+// The bristle `periods` after period k - periods of the block.
+static FcBristle warmed_up(const Block* block, double k, int periods) {
+    FcStepResult result = {.delta = block->start.delta,
+                           .slips = block->start.slips,
+                           .evaluations = *block->evaluations,
+                           .delta_y = block->start.delta_y};
+    for (int before = periods; before > 0; before--) {
+        const FcScene scene = scene_at(block, k - before);
+        block->law->step(&scene, block->options, block->period, &result);
+    }
+    *block->evaluations = result.evaluations;
+    return (FcBristle){.delta = result.delta, .slips = result.slips, .delta_y = result.delta_y};
+}
+
+// The result of period k in the plane, if the period before leaves the same whatever the bristle began with earlier.
+static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
+    const FcBristle start = warmed_up(block, k, block->warm_up);
+    const FcBristle other = warmed_up(block, k, block->warm_up - 1);
+    const double allowed = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
+    if (start.slips != block->start.slips || other.slips != start.slips ||
+        !(hypot(start.delta - other.delta, start.delta_y - other.delta_y) * fc_scene_stiffness(scene, 0.0) <=
+          allowed)) {
+        return false;
+    }
+    FcStepResult result = {.delta = start.delta,
+                           .slips = start.slips,
+                           .evaluations = *block->evaluations,
+                           .delta_y = start.delta_y};
+    block->law->step(scene, block->options, block->period, &result);
+    *block->evaluations = result.evaluations;
+    numbers->map = fc_map_of_one_start(&result);
+    numbers->across =
+        (FcMap){.relaxation = 1.0, .offset = result.delta_y, .impulse_offset = result.impulse_y};
+    return result.slips == start.slips;
+}
+
 // The map of period k of the block; false if it has pieces, or does not go from the bound to the bound where it should.
 static bool sample(const Block* block, double k, Numbers* numbers) {
     FcScene scene = scene_at(block, k);
     if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period ||
         scene.is_open) {
         return false;
+    }
+    if (block->warm_up > 0) {
+        return sample_of_slips(block, &scene, k, numbers);
     }
     if (block->side == 0) {
         numbers->map = block->law->free_map(&scene, block->options, block->period, block->delta,
@@ -189,14 +234,16 @@ static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
     return largest_error(block->numbers, &weight, found.of) <= may ? SMOOTH : ROUGH;
 }
 
-// Whether a bristle that has a bound would meet it in period k, from that deflection.
-static bool meets(const Block* block, double k, double delta) {
+// Whether a bristle that has a bound would meet it in period k, from where it then is.
+static bool meets(const Block* block, double k, const FcStepResult* at) {
     const FcScene scene = scene_at(block, k);
-    const FcBristle start = {.delta = delta};
-    if (fc_reach(&scene, start).delta != delta) {
+    const FcBristle start = {.delta = at->delta, .delta_y = at->delta_y};
+    const FcBristle reached = block->law->is_planar ? fc_plane_reach(&scene, start) : fc_reach(&scene, start);
+    if (reached.delta != start.delta || reached.delta_y != start.delta_y) {
         return true;
     }
-    FcStepResult result = {.delta = delta, .evaluations = *block->evaluations};
+    FcStepResult result = {
+        .delta = start.delta, .evaluations = *block->evaluations, .delta_y = start.delta_y};
     block->law->step(&scene, block->options, block->period, &result);
     *block->evaluations = result.evaluations;
     return result.meetings > 0;
@@ -215,12 +262,12 @@ static bool take_block(Block* block, FcStepResult* total) {
         return false;
     }
     FcStepResult result = *total;
-    const bool is_watched = block->side == 0 && block->law->is_bounded;
+    const bool is_watched = block->side == 0 && block->warm_up == 0 && block->law->is_bounded;
     const double each = is_watched ? fmax(1.0, floor(block->count / FEWEST_POINTS)) : HUGE_VAL;
     double next = 0.0;
     for (double k = 0.0; k < block->count; k += 1.0) {
         if (is_watched && (k >= next || k == block->count - 1.0)) {
-            if (meets(block, k, result.delta)) {
+            if (meets(block, k, &result)) {
                 return false;
             }
             next += each;
@@ -276,26 +323,30 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
             k += 1.0;
         }
         const double room = fmin(longest, fmin(periods - k, to_kink(scene, k)));
-        const double count = slipped ? room - 1.0 : room;
+        const bool on_line = slipped && !law.is_planar; // there it begins at its bound
+        const double count = on_line ? room - 1.0 : room;
+        const double fewest = slipped && law.is_planar ? FEWEST_OF_SLIPS : FEWEST;
         Block block = {.law = &law,
                        .scene = scene,
                        .options = options,
                        .period = period,
                        .first = k,
                        .count = floor(count),
-                       .phase = slipped ? total->slip_time : 0.0,
-                       .side = slipped ? total->slip_side : 0,
+                       .phase = on_line ? total->slip_time : 0.0,
+                       .side = on_line ? total->slip_side : 0,
+                       .warm_up = slipped && law.is_planar ? WARM_UP : 0,
+                       .start = {.delta = total->delta, .slips = total->slips, .delta_y = total->delta_y},
                        .delta = hypot(total->delta, total->delta_y),
                        .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};
         bool taken = false;
-        if (block.count >= FEWEST && (total->slips == 0 || slipped) && !(law.is_planar && law.is_bounded)) {
+        if (block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
             FcStepResult before = *total;
-            if (slipped) {
+            if (on_line) {
                 take_part(law, scene, options, k, 0.0, block.phase, total);
             }
-            taken = (!slipped || lies_on_bound(&block, 0.0, total->delta)) && take_block(&block, total);
-            if (taken && slipped) {
+            taken = (!on_line || lies_on_bound(&block, 0.0, total->delta)) && take_block(&block, total);
+            if (taken && on_line) {
                 take_part(law, scene, options, k + block.count, block.phase, period, total);
             } else if (!taken) {
                 before.evaluations = total->evaluations;
@@ -303,10 +354,10 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
             }
             longest = taken ? 2.0 * room : floor(0.5 * room);
         } else {
-            longest = fmax(longest, 2.0 * FEWEST);
+            longest = fmax(longest, 2.0 * fewest);
         }
         if (taken) {
-            k += block.count + (slipped ? 1.0 : 0.0);
+            k += block.count + (on_line ? 1.0 : 0.0);
         } else if (!law.is_bounded) {
             take_part(law, scene, options, k, 0.0, period, total);
             k += 1.0;

@@ -18,6 +18,7 @@ typedef enum { FREE, SLIPS, NO_BRISTLE } Motion;
 typedef struct {
     const FcPlane* plane;
     const FcInterval* interval;
+    FcDrive across_drive; // fc_drive_across
     const FcHalf* half;
     double u, end;     // reached in the half, and to be reached
     double path_after; // m, at least, from the end of the half to that of the interval
@@ -26,12 +27,12 @@ typedef struct {
     double transient; // N, by which the start is behind what it tends to, as far as it has not relaxed
     double scale;     // m, of the starts that the maps are for, beside the one they have
     double heat;      // J, of break-away
+    double drag;      // m2/s, of its drops
     bool is_bounded;
     int slips; // FcBristle
     Motion motion;
     int meetings;
-    double least; // of a panel, in u, that counts as one
-    int halted;   // how often the bristle went from one motion to the other at the same place
+    bool touches; // a free bristle is at its bound
     double evaluations;
 } March;
 
@@ -52,10 +53,8 @@ static const double MOST_OF_DISC = 4.0;
 // A panel may last so many times the time over which the contact moves by 1. By hand: costs tries, not accuracy.
 static const double SMOOTH = 7.0;
 
-// A bristle that would go from one motion to the other where it is is taken on by shorter panels, since it dips inside its bound between
-// the points, and if that is of no use along its bound: there is no push then but for rounding. By hand.
+// A panel whose points do not tell what happens near its start is shortened by this. By hand: costs tries, not accuracy.
 static const double SHORTENED_BY = 1.0 / 32.0;
-enum { MOST_HALTS = 6 };
 
 // The force [N] of Coulomb's law.
 static FcVector coulomb(const FcPlaneCoefficients* at) {
@@ -112,7 +111,13 @@ static double planned(const March* march) {
         h = fmin(h, march->h);
     }
     h = h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
-    return h * pow(SHORTENED_BY, march->halted);
+    return h;
+}
+
+// The way [m] from start to end in a straight line, which is at most the path.
+static double straight_way(const March* march, double start, double end) {
+    return hypot(fc_drive_displacement(&march->interval->scene->drive, start, end),
+                 fc_drive_displacement(&march->across_drive, start, end));
 }
 
 // What the errors of a bristle that slips through a Stribeck peak are multiplied by: its force and its push follow the curve at once. By
@@ -135,9 +140,12 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
         .crosses_peak = has_peak || march->motion == NO_BRISTLE, // a force that turns by itself, as in a peak
     };
     FcPanel whole = *panel;
-    whole.z = fmax(1.0, panel->z); // the shares are those of a panel that relaxes
+    if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V asks for the whole share
+        whole.z = fmax(1.0, panel->z);
+    }
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
-    const double left_at_end = exp(-march->path_after / interval->saturation);
+    const double path = march->path_after + straight_way(march, end, march->half->end);
+    const double left_at_end = exp(-path / interval->saturation);
     const double sure = has_peak && march->motion == SLIPS ? SURE_IN_PEAK : 1.0;
     return sure * fmax(over.mean, over.end * left_at_end);
 }
@@ -167,7 +175,8 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
         const bool is_solved = make_panel(march, nodes, panel);
         const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= MOST_TRIES) {
-            march->h = tries > 0 || !(excess < 1.0) ? h * fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 0.0;
+            const double grows = tries == 0 ? 4.0 : fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER));
+            march->h = tries > 0 || march->h > 0.0 ? h * grows : 0.0;
             return h;
         }
         h *= is_solved ? fmax(0.3, fmin(0.9, 0.85 * pow(excess, -1.0 / 12.0))) : 0.4;
@@ -182,8 +191,7 @@ static void append(March* march, const FcPlanePanel* panel, double h) {
     march->u = march->end - next < 1e-12 * h ? march->end : next;
 }
 
-// The first place of the panel, of its length, at which a function that is known at its points rises above 0, and then above `over`; 2
-// for none. By the polynomial through the points, in barycentric form.
+// The polynomial through the points of a panel, in barycentric form.
 typedef struct {
     const double* f;
     double weight[POINTS];
@@ -203,6 +211,8 @@ static double value_at(const Through* through, double x) {
     return above / below;
 }
 
+// The place of a panel, of its length, at which a function that is known at its points rises above 0, and then above `over`; 2 for none.
+// One that begins above `over` has to come down first.
 static double first_rise(const double* f, double over) {
     enum { SAMPLES = 32, HALVINGS = 50 };
     double largest = f[0];
@@ -222,15 +232,16 @@ static double first_rise(const double* f, double over) {
         }
         through.weight[i] = 1.0 / product;
     }
-    double before = 0.0;
+    bool is_below = f[STAGES] <= over;
+    double a = 0.0; // the last place at which it was below 0
     for (int k = 1; k <= SAMPLES; k++) {
         const double x = (double)k / SAMPLES;
         const double value = value_at(&through, x);
-        if (!(value > over)) {
-            before = value <= 0.0 ? x : before;
+        if (value <= over || !is_below) {
+            is_below = is_below || value <= over;
+            a = value <= 0.0 ? x : a;
             continue;
         }
-        double a = before;
         double b = x;
         for (int i = 0; i < HALVINGS; i++) {
             const double middle = 0.5 * (a + b);
@@ -260,6 +271,12 @@ static void set_delta(March* march, FcVector delta) {
     march->across.offset = delta.y;
 }
 
+// How fast [m/s] the bristle and its bound may move, together.
+static double largest_push(const March* march) {
+    const FcInterval* interval = march->interval;
+    return interval->speed + interval->saturation * interval->pace.log_sigma;
+}
+
 // Where the march is now.
 typedef struct {
     double t;
@@ -284,33 +301,56 @@ static Place place_of(const March* march) {
     return place;
 }
 
-// A free bristle that has come to its bound slips if it is pushed; one with static friction breaks away.
-static void meet(March* march) {
-    const FcFriction* friction = march->plane->scene->friction;
-    const Place place = place_of(march);
-    march->meetings++;
-    const bool breaks_away = fc_has_static_friction(friction) && march->slips == 0;
-    if (breaks_away ||
-        place.push > 0.0) { // what it stores less is heat, also of the little that it went too far
-        march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
-        set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
-    }
-    march->slips = 1;
-    if (place.push > 0.0) {
-        march->motion = SLIPS;
-        march->transient = place.at.sigma * place.bound.D *
-                           fabs(place.n.x * place.at.V.y - place.n.y * place.at.V.x) / place.at.speed;
-    } else {
-        march->slips = 0;
-    }
-}
-
-// Of the largest |V|: rounding of a push, and a push that a bristle which slips may be let go with. By hand: what is left of it acts
-// with its square.
+// Of the largest push: a smaller one is rounding, and a bristle that slips may be let go with the other. By hand: what is left of a push
+// acts with its square.
 static const double ROUNDING_OF_PUSH = 1e-13;
 static const double LITTLE_PUSH = 1e-9;
 
+// A free bristle at its bound slips if it is pushed; one with static friction breaks away. False if it is not pushed.
+static bool begins_to_slip(March* march) {
+    const Place place = place_of(march);
+    const bool breaks_away = fc_has_static_friction(march->plane->scene->friction) && march->slips == 0;
+    const FcPlaneBound held = fc_plane_bound(march->plane, &place.at, march->slips, place.t, place.phase);
+    const double push = fc_plane_push(march->plane, &place.at, &held, place.n);
+    if (!(push > ROUNDING_OF_PUSH * largest_push(march))) {
+        return false;
+    }
+    // What it stores less is heat, also of the little that it went too far.
+    march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
+    march->drag += (place.bound.D - place.size) * fc_product(place.n, place.at.V);
+    set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
+    march->meetings++;
+    march->slips = place.push > 0.0;
+    march->motion = place.push > 0.0 ? SLIPS : FREE;
+    march->touches = !breaks_away;
+    march->transient = place.at.sigma * place.bound.D *
+                       fabs(place.n.x * place.at.V.y - place.n.y * place.at.V.x) / place.at.speed;
+    return true;
+}
+
+// What is within rounding of the bound, or within what heat and force may miss [m2], of |delta|^2 - D^2.
+static double close_to_bound(const March* march, double D) {
+    const FcInterval* interval = march->interval;
+    // What it goes too far costs heat at break-away, which is held to the path.
+    const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
+                           fmin(1.0, interval->speed * interval->duration / D);
+    const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
+    const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
+    return 2.0 * D * fmax(fmin(allowed, 1e-3 * D), rounding);
+}
+
+static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    fc_plane_nodes(march->plane, &march->half->in, march->u, h, nodes);
+    march->evaluations += STAGES;
+    if (!make_panel(march, nodes, panel)) {
+        march->along.offset = NAN; // a part of a panel that was solved is, too
+    }
+}
+
 static void free_panel(March* march, double h) {
+    if (march->touches && begins_to_slip(march)) {
+        return;
+    }
     FcPlaneNodes nodes;
     FcPlanePanel panel;
     h = take_accurate(march, h, &nodes, &panel);
@@ -318,49 +358,34 @@ static void free_panel(March* march, double h) {
         append(march, &panel, h);
         return;
     }
-    const FcInterval* interval = march->interval;
-    double meets = 2.0;
-    find_to_bound(march, &nodes, &panel);
-    const double D_D = fmax(1e-300, fc_product(panel.delta[STAGES - 1], panel.delta[STAGES - 1]) -
-                                        panel.to_bound[STAGES - 1]);
-    const double D = sqrt(D_D);
-    // What it goes too far costs heat at break-away, which is held to the path.
-    const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
-                           fmin(1.0, interval->speed * interval->duration / D);
-    const double rounding =
-        1e-14 * D + 4e-16 * interval->speed *
-                        (fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration);
-    const double over = 2.0 * D * fmax(fmin(allowed, 1e-3 * D), rounding);
-    meets = first_rise(panel.to_bound, over);
-    if (meets > 1.0) {
-        append(march, &panel, h);
-        march->halted = 0;
-        return;
-    }
-    march->halted = meets * h < march->least ? march->halted + 1 : 0;
-    const double first = h;
-    // The panel is taken again up to where it meets the bound, which its own points tell better.
-    for (int tries = 0; tries < MOST_TRIES && meets > 0.0 && meets < 1.0; tries++) {
-        h *= meets;
-        fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
-        march->evaluations += STAGES;
-        make_panel(march, &nodes, &panel);
+    // The panel is taken again up to where it meets the bound, which its own points tell better; one that dips inside the bound between
+    // them is shortened.
+    enum { MOST_CUTS = 40 };
+    bool is_cut = false;
+    double over = 0.0;
+    for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
         find_to_bound(march, &nodes, &panel);
-        meets = first_rise(panel.to_bound, over);
-    }
-    if (meets > 0.0) {
-        append(march, &panel, h);
-        if (panel.to_bound[STAGES - 1] < -over) {
-            march->h = 0.25 * first; // not there yet: the panel was too long for its points to tell
-            return;
+        const FcVector delta = panel.delta[STAGES - 1];
+        over =
+            close_to_bound(march, sqrt(fmax(1e-300, fc_product(delta, delta) - panel.to_bound[STAGES - 1])));
+        const double meets = first_rise(panel.to_bound, over);
+        if (meets > 1.0) {
+            break;
         }
+        is_cut = true;
+        h *= fmax(meets, SHORTENED_BY);
+        take_again(march, h, &nodes, &panel);
     }
-    meet(march);
+    append(march, &panel, h);
+    march->touches = panel.to_bound[STAGES - 1] >= -over;
+    if (is_cut && !march->touches) {
+        march->h = 4.0 * h; // the panel was too long for its points to tell
+    }
 }
 
-// The place of a panel, of its length, from where on a bristle that slips is not pushed outwards any more; 2 for none.
+// The place of a panel, of its length, from where on a bristle that slips is pushed inwards; 2 for none.
 static double end_of_push(const March* march, const FcPlanePanel* panel) {
-    const double rounding = ROUNDING_OF_PUSH * march->interval->speed;
+    const double rounding = ROUNDING_OF_PUSH * largest_push(march);
     double inwards[POINTS];
     for (int i = 0; i < POINTS; i++) {
         inwards[i] = -panel->to_bound[i];
@@ -372,24 +397,21 @@ static void slip_panel(March* march, double h) {
     FcPlaneNodes nodes;
     FcPlanePanel panel;
     h = take_accurate(march, h, &nodes, &panel);
-    double ends = march->halted > MOST_HALTS ? 2.0 : end_of_push(march, &panel);
-    march->halted = ends * h < march->least ? march->halted + 1 : 0;
-    bool is_cut = ends < 1.0;
-    // The panel is taken again up to where the push ends, which its own points tell better.
-    for (int tries = 0; tries < MOST_TRIES && ends > 0.0 && ends < 1.0; tries++) {
+    double ends = end_of_push(march, &panel);
+    bool is_over = ends < 1.0;
+    for (int cuts = 0; cuts < MOST_TRIES && ends > 0.0 && ends < 1.0; cuts++) {
         h *= ends;
-        fc_plane_nodes(march->plane, &march->half->in, march->u, h, &nodes);
-        march->evaluations += STAGES;
-        is_cut = make_panel(march, &nodes, &panel);
+        take_again(march, h, &nodes, &panel);
         ends = end_of_push(march, &panel);
     }
     if (ends > 0.0) {
         append(march, &panel, h);
-        is_cut = is_cut && panel.to_bound[STAGES - 1] < LITTLE_PUSH * march->interval->speed;
+        is_over = is_over && panel.to_bound[STAGES - 1] < LITTLE_PUSH * largest_push(march);
     }
-    if (is_cut) {
+    if (is_over) {
         march->motion = FREE;
         march->slips = 0;
+        march->touches = !fc_has_static_friction(march->plane->scene->friction);
     }
 }
 
@@ -418,13 +440,9 @@ static void cross_half(March* march) {
     march->u = fc_straight_place(&march->half->in, march->half->start);
     march->end = fc_straight_place(&march->half->in, march->half->end);
     march->h = 0.0;
-    march->least = 1e-13 * (march->end - march->u);
     while (march->u < march->end && march->evaluations <= FC_MOST_EVALUATIONS &&
            !isnan(march->along.offset)) {
         const double h = planned(march);
-        if (march->halted > MOST_HALTS) {
-            march->motion = SLIPS;
-        }
         if (march->motion == SLIPS) {
             slip_panel(march, h);
         } else {
@@ -433,22 +451,17 @@ static void cross_half(March* march) {
     }
 }
 
-// The way [m] from start to end in a straight line, which is at most the path.
-static double straight_way(const FcDrive* along, const FcDrive* across, double start, double end) {
-    return hypot(fc_drive_displacement(along, start, end), fc_drive_displacement(across, start, end));
-}
-
 static void cross(March* march) {
     const FcInterval* interval = march->interval;
     march->transient = first_transient(march);
     FcHalf halves[FC_MOST_HALVES];
     const int count = fc_halves(march->plane, interval->duration, interval->tolerance, halves);
-    const FcDrive across = fc_drive_across(&interval->scene->drive);
+    march->across_drive = fc_drive_across(&interval->scene->drive);
     double way[FC_MOST_HALVES];
     double after = 0.0;
     for (int i = count - 1; i >= 0; i--) {
         way[i] = after;
-        after += straight_way(&interval->scene->drive, &across, halves[i].start, halves[i].end);
+        after += straight_way(march, halves[i].start, halves[i].end);
     }
     for (int i = 0; i < count; i++) {
         march->half = &halves[i];
@@ -484,11 +497,13 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
         const bool may_slip = march.slips != 0 || !fc_has_static_friction(scene->friction);
         march.motion = is_on && may_slip && place.push > 0.0 ? SLIPS : FREE;
         march.meetings = march.motion == SLIPS;
+        march.touches = is_on && may_slip;
     }
     cross(&march);
     fc_map_apply(&march.along, result);
     fc_map_apply_across(&march.across, result);
     result->heat += march.heat;
+    result->drag += march.drag;
     result->meetings += march.meetings;
     result->slips = fc_has_static_friction(scene->friction) ? march.slips : 0;
     result->evaluations = march.evaluations;
