@@ -421,7 +421,6 @@ static void cut_where(Cuts* cuts, Function* function, const Zero* zero) {
 
 // Equal pieces of a period; where a load may fall or rise by decades; the extremes of |V|, and multiples of V_S.
 static Cuts all_cuts(const World* w, Closed part) {
-    static const Real MULTIPLES[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
     Cuts cuts = {0};
     const ReferenceScene* s = &w->scene;
     const Real span = part.to - part.from, pieces = 32.0L;
@@ -443,7 +442,7 @@ static Cuts all_cuts(const World* w, Closed part) {
         cut_where(&cuts, change_of_speed, &zero);
         tidy(&cuts, part);
     }
-    for (size_t m = 0; w->excess != 0.0L && m < sizeof MULTIPLES / sizeof *MULTIPLES; m++) {
+    for (size_t m = 0; w->excess != 0.0L && m < LEVELS; m++) {
         const Real level = MULTIPLES[m] * s->V_S;
         const Zero zero = {.w = w, .level = level * level};
         cut_where(&cuts, square_less, &zero);
@@ -585,12 +584,13 @@ static bool go_periods(World* w, State* state, Real n, Sums* sums) {
     return true;
 }
 
-enum { MOST_CYCLE = 256 };
+enum { MOST_CYCLE = 256, CYCLE_BEFORE_NEWTON = 32 };
+static const Real MOST_OF_SETTLING = 1e5L; // panels
 
 // How many periods more from a state make no slip; each one shifts the deflection.
 static Real skip_untouched(World* w, State state, Vector shift) {
     Real low = 0.0L, high = 1.0L;
-    for (bool found = false; !found || high - low > 1.0L;) {
+    for (bool found = false; (!found || high - low > 1.0L) && w->panels <= MOST_OF_SETTLING;) {
         const Real n = found ? floorl(0.5L * (low + high)) : high;
         const State there = {plus(state.delta, n, shift), false};
         const bool touched = march_from(w, there).slipped;
@@ -610,10 +610,11 @@ static bool settle_by_cycle(World* w, State* state, Vector* mean) {
     } Mark;
     const Real unit = unit_of(w);
     const Vector shift = {w->along.V / w->scene.f, w->transverse.V / w->scene.f};
+    const int most = w->excess == 0.0L && length_of(shift) > 0.0L ? CYCLE_BEFORE_NEWTON : MOST_CYCLE;
     Mark* marks = memory(NULL, MOST_CYCLE * sizeof *marks);
     Mark now = {.state = *state};
     bool known = false;
-    for (int count = 0; count < MOST_CYCLE && !known && w->panels <= MOST_PANELS;) {
+    for (int count = 0; count < most && !known && w->panels <= MOST_OF_SETTLING;) {
         const March march = march_from(w, now.state);
         now = (Mark){state_of(&march), plus(now.impulse, 1.0L, march.sums.impulse), now.count + 1.0L};
         *mean = times(w->scene.f, march.sums.impulse);
@@ -657,7 +658,7 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
     const Vector shift = {w->along.V / w->scene.f, w->transverse.V / w->scene.f};
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
-    for (int k = 0; k < 60 && w->panels <= MOST_PANELS; k++) {
+    for (int k = 0; k < 60 && w->panels <= MOST_OF_SETTLING; k++) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
         *mean = times(w->scene.f, march.sums.impulse);

@@ -177,9 +177,10 @@ def test_means_of_the_pages(
         assert settled(fmu, values)[0] == pytest.approx(mean, abs=6e-7)
 
 
+@pytest.mark.parametrize("kappa", [0.3, 3.0])
 @pytest.mark.parametrize("law", LAWS)
-def test_a_million_periods_are_settled(fmu: FrictionFmu, law: str) -> None:
-    values = across(law, 3.0, 0.0) | OBLIQUE
+def test_a_million_periods_are_settled(fmu: FrictionFmu, law: str, kappa: float) -> None:
+    values = across(law, kappa, 0.0) | OBLIQUE
     with fmu.session(values) as session:
         session.step(3 / F)
         few = session.get("solver.evaluations")

@@ -162,20 +162,17 @@ def check_soak(extent: Extent) -> None:
 
 
 def check_hunt(extent: Extent) -> None:
-    """Random scenes against the reference of hunt/, every law: nothing is beyond the tolerance."""
+    """Random scenes against the references of hunt/, along and in the plane: none is beyond the tolerance."""
     folder = build_targets("default", ["hunt"])
     options = {
         "seed": extent.seed,
-        "minutes": extent.hunt_minutes,
+        "minutes": extent.hunt_minutes / 2,
         "jobs": os.cpu_count() or 1,
         "minimize": 2,
     }
-    _run(
-        [
-            str(folder / "hunt/hunt"),
-            *(word for name, value in options.items() for word in (f"--{name}", str(value))),
-        ]
-    )
+    words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
+    for plane in ([], ["--plane"]):
+        _run([str(folder / "hunt/hunt"), *words, *plane])
 
 
 def check_leaks(extent: Extent) -> None:

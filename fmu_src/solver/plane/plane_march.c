@@ -140,7 +140,9 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
         .crosses_peak = has_peak || march->motion == NO_BRISTLE, // a force that turns by itself, as in a peak
     };
     FcPanel whole = *panel;
-    whole.z = fmax(1.0, panel->z); // the shares are those of a panel that relaxes
+    if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V asks for the whole share
+        whole.z = fmax(1.0, panel->z);
+    }
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
     const double path = march->path_after + straight_way(march, end, march->half->end);
     const double left_at_end = exp(-path / interval->saturation);
@@ -269,6 +271,12 @@ static void set_delta(March* march, FcVector delta) {
     march->across.offset = delta.y;
 }
 
+// How fast [m/s] the bristle and its bound may move, together.
+static double largest_push(const March* march) {
+    const FcInterval* interval = march->interval;
+    return interval->speed + interval->saturation * interval->pace.log_sigma;
+}
+
 // Where the march is now.
 typedef struct {
     double t;
@@ -293,7 +301,7 @@ static Place place_of(const March* march) {
     return place;
 }
 
-// Of the largest |V|: a smaller push is rounding, and a bristle that slips may be let go with the other. By hand: what is left of a push
+// Of the largest push: a smaller one is rounding, and a bristle that slips may be let go with the other. By hand: what is left of a push
 // acts with its square.
 static const double ROUNDING_OF_PUSH = 1e-13;
 static const double LITTLE_PUSH = 1e-9;
@@ -304,7 +312,7 @@ static bool begins_to_slip(March* march) {
     const bool breaks_away = fc_has_static_friction(march->plane->scene->friction) && march->slips == 0;
     const FcPlaneBound held = fc_plane_bound(march->plane, &place.at, march->slips, place.t, place.phase);
     const double push = fc_plane_push(march->plane, &place.at, &held, place.n);
-    if (!(push > ROUNDING_OF_PUSH * march->interval->speed)) {
+    if (!(push > ROUNDING_OF_PUSH * largest_push(march))) {
         return false;
     }
     // What it stores less is heat, also of the little that it went too far.
@@ -327,7 +335,7 @@ static double close_to_bound(const March* march, double D) {
     const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
-    const double rounding = 1e-14 * D + 4e-16 * interval->speed * of_time;
+    const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
     return 2.0 * D * fmax(fmin(allowed, 1e-3 * D), rounding);
 }
 
@@ -377,7 +385,7 @@ static void free_panel(March* march, double h) {
 
 // The place of a panel, of its length, from where on a bristle that slips is pushed inwards; 2 for none.
 static double end_of_push(const March* march, const FcPlanePanel* panel) {
-    const double rounding = ROUNDING_OF_PUSH * march->interval->speed;
+    const double rounding = ROUNDING_OF_PUSH * largest_push(march);
     double inwards[POINTS];
     for (int i = 0; i < POINTS; i++) {
         inwards[i] = -panel->to_bound[i];
@@ -398,7 +406,7 @@ static void slip_panel(March* march, double h) {
     }
     if (ends > 0.0) {
         append(march, &panel, h);
-        is_over = is_over && panel.to_bound[STAGES - 1] < LITTLE_PUSH * march->interval->speed;
+        is_over = is_over && panel.to_bound[STAGES - 1] < LITTLE_PUSH * largest_push(march);
     }
     if (is_over) {
         march->motion = FREE;
