@@ -81,7 +81,7 @@ static double stiffness(const FcContactAtModulus* c, double d, double e) {
 }
 
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d) {
-    assert(!(d <= 0.0)); // NaN passes
+    assert(!(d <= 0.0) || (d == 0.0 && c->model == FC_CONTACT_CONSTANT)); // NaN passes
     const double e = exp(-c->decay * d);
     return (FcContactResponse){.sigma = stiffness(c, d, e), .A_r = c->area_0 * e, .F_n = c->load_0 * e};
 }

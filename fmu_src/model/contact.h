@@ -69,7 +69,8 @@ typedef struct {
 // E [Pa] > 0.
 FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E);
 
-// At separation d [m] > 0: all of it, or the stiffness sigma [N/m] alone.
+// At separation d [m] > 0: all of it, or the stiffness sigma [N/m] alone. An open contact of constant stiffness
+// may have d = 0: its stiffness is right, its area and force are not to be used.
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d);
 double fc_contact_stiffness(const FcContactAtModulus* c, double d);
 

@@ -126,7 +126,7 @@ def test_what_the_page_of_the_solver_names_is_there() -> None:
     code = "".join(path.read_text(encoding="utf-8") for path in sources.rglob("*.[ch]"))
     named = set(re.findall(r"`([^`]+)`", page))
     for path in (name for name in named if re.fullmatch(r"[\w/]+\.(h|c|py)", name)):
-        folders = (ROOT, sources, sources / "solver", sources / "solver" / "stick_slip")
+        folders = (ROOT, sources, sources / "solver")
         assert any((folder / path).exists() for folder in folders), path
     for name in named:
         if re.fullmatch(r"(fc_|Fc|FC_|kind_of_panel|end_radau)\w*|[A-Z_]{3,}", name):
