@@ -1,5 +1,6 @@
 #include "hybrid.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -8,24 +9,27 @@
 #include "model/plane.h"
 #include "model/root.h"
 
-// What an event is late by, of the bound and of the velocities. By hand: far above rounding, far below what a host's
-// integrator tells apart.
+// The hysteresis of an event, over the bound and over the velocities: far above rounding, far below the
+// tolerance of a host's integrator. Half or twice of it moves the events by as little.
 static const double HYSTERESIS = 1e-10;
 
-// A bristle of ElasticPlastic that will turn back farther from its bound does not meet it. By hand: less makes more events, more
-// trusts that the inputs stay.
+// The part of its bound below which a bristle of ElasticPlastic that turns back does not meet it. Half of it
+// makes more events; a value nearer to 1 trusts that the inputs stay.
 static const double NEAR_THE_BOUND = 0.9;
 
-// The shortest time, over the time itself, that tells an input's speed. By hand: rounding leaves it four digits.
+// The shortest time that determines an input's speed, over the time itself. Rounding leaves the speed four
+// digits; half of it doubles the error of the speed.
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
 
-// Parts of a vibration period, or changes of V over V_S in Stribeck's peak, within which a push turns once at the most. By hand:
-// two turns nearer than a part bound a slip of under 1e-3 of the vibration's amplitude.
+// Parts of a vibration period, or changes of V over V_S in Stribeck's peak, within which a push turns at most
+// once. Two turns within a part bound a slip of under 1e-3 of the vibration's amplitude; twice the part
+// bounds an eightfold slip, half of it costs twice the evaluations.
 static const double PART_OF_PERIOD = 1.0 / 32.0;
 static const double PART_OF_PEAK = 0.5;
 static const double LEAST_PART_OF_PERIOD = 1e-4;
 
-// Beyond this velocity, over V_S, e^-25 is left of Stribeck's peak. By hand.
+// The velocity over V_S beyond which Stribeck's peak has ended: e^-25 of it remains. At half of it e^-6 would
+// remain.
 static const double END_OF_PEAK = 5.0;
 
 // The slope by which a reversal in the plane is seen: V + SLANT V_y passes 0 there, whatever its direction is. By hand: tan(1/2),
@@ -64,7 +68,7 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
 
 static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
 
-// The contact with its inputs as they are, moving as they were seen to, and its bristle's bound.
+// The contact with its present inputs and their estimated speeds, and its bristle's bound.
 typedef struct {
     FcScene scene;
     FcScene bound; // points to bound_law
@@ -74,6 +78,7 @@ typedef struct {
 
 static void look(FcFrictionContact* contact, View* view) {
     const int slips = contact->state.slips;
+    assert(slips >= -1 && slips <= 1);
     view->scene = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
     view->bound = fc_scene_of_bound(&view->scene, slips, &view->bound_law);
     view->side = slips != 0 ? slips : (int)regime_of(contact);
@@ -226,8 +231,8 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     return sigma != 0.0;
 }
 
-// The rates do not see how inputs move the bound: delta lags behind it. What Q_f lags behind by is the integral of the
-// bristle's force over that lag, here by the trapezoidal rule from step to step.
+// The rates do not contain the motion of the bound by the inputs, so delta lags behind it. Q_f lags by the
+// integral of the bristle's force over that lag, here by the trapezoidal rule from step to step.
 static void look_at_lag(FcFrictionContact* contact) {
     FcHybrid* hybrid = &contact->state.hybrid;
     Slip slip;
@@ -265,7 +270,7 @@ static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
     }
 }
 
-// The state and the regime that the inputs of now make of the past, and the past that they are.
+// Takes the state from the past to the present inputs, and sets the regime and the new past.
 static void begin_regime(FcFrictionContact* contact) {
     FcFrictionState* state = &contact->state;
     View now;
@@ -330,7 +335,7 @@ bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_
     return true;
 }
 
-// The time [s] from t on within which the push turns once at the most.
+// The time [s] from t on within which the push turns at most once.
 static double part_of_period(const View* view, double t, double period) {
     const FcFriction* friction = view->scene.friction;
     double part = PART_OF_PERIOD * period;
@@ -339,10 +344,12 @@ static double part_of_period(const View* view, double t, double period) {
         const double change = fmax(PART_OF_PEAK * friction->V_S, fabs(at.V) - END_OF_PEAK * friction->V_S);
         part = fmin(part, fc_velocity_time_of_change(&at, change));
     }
+    assert(!(part < 0.0) && period > 0.0);
     return fmax(part, LEAST_PART_OF_PERIOD * period);
 }
 
-// The first local time within the period at which the bristle is pushed towards the bound of that side no more; else its end.
+// The first local time within the period at which the push towards the bound of that side ends; else the
+// period's end.
 static double first_turn(const View* view, int side, double start, double period) {
     FcPushed of = {&view->scene, &view->bound, side};
     double evaluations = 0.0;
@@ -352,7 +359,7 @@ static double first_turn(const View* view, int side, double start, double period
         const double next = fmin(period, t + part_of_period(view, t, period));
         const double after = fc_push_at(&of, next);
         if (before > 0.0 && after <= 0.0) {
-            return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, &evaluations);
+            return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, 0.0, &evaluations);
         }
         before = after;
         t = next;
@@ -396,10 +403,11 @@ void fc_hybrid_event_ends(FcFrictionContact* contact) {
     hybrid->seen_time = contact->state.time;
     copy_inputs(&contact->state.variables, hybrid->seen);
     look_at_lag(contact);
-    hybrid->lag_heat = 0.0; // what it starts from
+    hybrid->lag_heat = 0.0; // its start
 }
 
-// The separation [m] whose force an open contact is measured by until it has been closed. By hand: surfaces that just touch.
+// The separation [m] whose force is the nominal one of an open contact until it has closed: the surfaces just
+// touch, with e^-10 of the largest force. At half of it the nominal force would be e^5 times as large.
 static double touching(const FcScene* scene) { return 10.0 / scene->at_E.decay; }
 
 bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message) {

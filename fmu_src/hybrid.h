@@ -1,16 +1,17 @@
 // One contact as a differential equation with events: what FMI for model exchange sees of the physics. The states are delta,
 // W_f, Q_f and delta_y; the inputs are what they are when asked.
 //
-// A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event: it slips once it is
-// beyond its bound and pushed, and is free again once it is pushed no more; with static friction it breaks away and drops to
-// the kinetic bound. A contact opens and closes at events, too. All have a little hysteresis, so that the rounding of an event's
-// time starts no second event. The motion between two events depends on time, states, inputs and regime alone. Inputs that
-// jump at an event do so as between two steps of co-simulation (solver/jump.h).
+// A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event. It
+// slips once it is beyond its bound and pushed. It is free again once the push ends. With static friction it
+// breaks away and drops to the kinetic bound. A contact opens and closes at events, too. All events have a
+// little hysteresis, so that the rounding of an event's time starts no second event. The motion between two
+// events depends on time, states, inputs and regime alone. Inputs that jump at an event do so as between two
+// steps of co-simulation (solver/jump.h).
 //
-// Whether a bristle is still pushed depends besides on how fast the inputs move its bound. That is estimated from the
-// inputs at the end of the last two steps of the integrator; an error of it enters the moment of sticking, and delta and
-// the force by its square. From step to step the heat is summed, too, that the rates of a bristle that slips do not see: the
-// next event gives it to Q_f.
+// The push also depends on the speed at which the inputs move the bound. That speed is estimated from the
+// inputs at the end of the last two steps of the integrator. An error of it enters the moment of sticking,
+// and delta and the force by its square. The rates of a bristle that slips do not contain the heat of that
+// motion. It is summed from step to step, and the next event adds it to Q_f.
 #ifndef FC_HYBRID_H
 #define FC_HYBRID_H
 
@@ -27,7 +28,8 @@ typedef struct {
     double of[FC_EVENT_INDICATOR_COUNT];
 } FcEventIndicators;
 
-// False with *message filled for a law that has no state, and where the nominal values are no finite numbers above 0.
+// False with *message filled for a law without a state, and if the nominal values are not finite numbers
+// above 0.
 bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message);
 
 // After fc_friction_contact_initialize.
@@ -36,30 +38,31 @@ void fc_hybrid_start(FcFrictionContact* contact);
 // Moves the contact to the time [s] of the host's integrator.
 void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 
-// Recomputes the outputs and the rates of the states; false with *message filled where the inputs do not go together or a
-// result is beyond the largest number.
+// Recomputes the outputs and the rates of the states; false with *message filled if the inputs do not go
+// together or a result is beyond the largest number.
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
 //   0   V with its vibration [m/s], where |V| has a kink; in the plane a slanting part of it, which is 0 at any reversal,
 //       and harmlessly elsewhere; 1 in ElasticPlastic, which has no kink
 //   1   (D - |delta|) / D + hysteresis while a bounded bristle is free, else 1
-//   2   what pushes a bristle that slips beyond its bound, with hysteresis [m/s]; 1 where none slips
-//   3   what keeps a closed contact from opening, or an open one from closing: the load [N], or the way of d [m]; 1 where
-//       neither changes anything
+//   2   the push of a bristle that slips, beyond its bound, with hysteresis [m/s]; 1 if it does not slip
+//   3   the distance of a closed contact from opening, or of an open one from closing: in the load [N], or in d [m]; 1 if
+//       neither has an effect
 // The first may have either sign. False as fc_hybrid_refresh.
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message);
 
-// The integrator has completed a step: looks where the inputs are. True if the regime has come to its end; false also where
-// the inputs do not go together, which the next evaluation says.
+// Call after each completed step of the integrator: notes the inputs. True if the regime has ended; false
+// also if the inputs do not go together, which the next evaluation reports.
 bool fc_hybrid_step_completed(FcFrictionContact* contact);
 
-// An event begins, with the inputs as they were before it: a bristle that slips is taken onto its bound, which inputs have
-// moved, and the heat of that way to Q_f. What is left is the past from which inputs and parameters may jump.
+// Begins an event, with the inputs before it. Takes a bristle that slips onto its bound, which the inputs
+// have moved, and adds the heat of that motion to Q_f. Sets the past from which inputs and parameters may
+// jump.
 void fc_hybrid_event_begins(FcFrictionContact* contact);
 
-// The regime after the event. *changed says whether a state has changed since the event began, *nominals_changed whether
-// the nominal values have. False as fc_hybrid_refresh.
+// The regime after the event. *changed says whether a state has changed since the event began,
+// *nominals_changed whether the nominal values have. False as fc_hybrid_refresh.
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
 
 // The time [s] of the next event that the indicators may miss, for a step over two of their zeros: where the vibration, with the
@@ -67,11 +70,12 @@ bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_
 // part of the period ahead. False where there is none.
 bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
 
-// The event is over: the inputs may have jumped in it, which is no motion.
+// Ends an event. A jump of the inputs in it is not a motion.
 void fc_hybrid_event_ends(FcFrictionContact* contact);
 
-// Nominal values at the present inputs: of delta the bound or saturation length F / sigma without vibration, F being the limit
-// of the force; of the energies F times that length, or times the vibration's amplitude V_1 / (2 pi f) where that is larger.
+// Nominal values at the present inputs. With the limit F of the force, that of delta is the bound or
+// saturation length F / sigma without vibration. That of the energies is F times the larger of this length
+// and the vibration's amplitude V_1 / (2 pi f).
 bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message);
 
 #endif

@@ -1,4 +1,4 @@
-// A short text that says what went wrong: which variable, its value, its bound.
+// A short text that names the fault: variable, value, bound.
 // Filled by the function that fails; untouched on success.
 #ifndef FC_MESSAGE_H
 #define FC_MESSAGE_H
@@ -16,7 +16,8 @@ typedef struct {
     char text[320];
 } FcMessage;
 
-// Writes the text, cut off where it is too long. Returns false, so that a function that fails can return the call.
+// Writes the text, cut off if it is too long. Returns false, so that a function that fails can return the
+// call.
 bool fc_message_set(FcMessage* message, const char* format, ...) FC_PRINTF_LIKE(2, 3);
 
 #endif

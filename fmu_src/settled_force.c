@@ -7,21 +7,24 @@
 #include "model/constants.h"
 #include "solver/methods/method.h"
 
-// The tolerance of the forces whose differences make a derivative: as fine as the solver goes (friction_contact.c).
+// The tolerance of the forces whose differences make a derivative: as fine as the solver goes
+// (friction_contact.c).
 static const double TOLERANCE_OF_FORCES = 1e-12;
 
-// A derivative is good where its error is estimated as this part of it, or, over the range, as that part of the force's scale.
-// By hand: a tenth of what the tests ask. Rounding: TOLERANCE_OF_FORCES times 2 POINTS^2, about.
+// The largest estimated error of a derivative that is accepted, over the derivative, or over the force's
+// scale and the range: a tenth of the error that the tests allow. Half of it tries more ranges; below
+// TOLERANCE_OF_FORCES times 2 POINTS^2 rounding limits it.
 static const double GOOD_OVER_SLOPE = 1e-9;
 static const double GOOD_OVER_FORCE = 1e-10;
 
-// What a range is shortened by where it is not good, and how many ranges are tried. By hand: costs tries, not accuracy; the
-// last range is 4^-19 of the first, where rounding rules.
+// The factor by which a range is shortened if it is not accurate, and the number of ranges that are tried.
+// Half or twice of them changes the number of tries. The last range is 4^-19 of the first, at which rounding
+// limits the derivative.
 static const double RANGE_SHORTENED_BY = 0.25;
 enum { MOST_RANGES = 20 };
 
-// The largest scale [m/s] that a range of V is taken from where a bristle is very soft. By hand, below MOST_SPEED
-// (friction_contact.c).
+// The largest scale [m/s] of a range of V, for a very soft bristle. It keeps the range below MOST_SPEED
+// (friction_contact.c); half or twice of it does, too.
 static const double LARGEST_SCALE_OF_V = 1e12;
 
 // The contact at time 0 with its inputs held.
@@ -122,9 +125,10 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, F
     }
 }
 
-// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points of it, and what its
-// last terms come to. With c_k the coefficients of T_k over the range, the derivative there is 2 / range times the sum of
-// (-1)^(k + 1) k^2 c_k. By hand: fewer points need a shorter range, more multiply rounding by more.
+// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points, and
+// the largest of its last terms. With the coefficients c_k of T_k over the range, the derivative there is 2 /
+// range times the sum of (-1)^(k + 1) k^2 c_k. Half the points need a shorter range; twice as many multiply
+// rounding by four.
 enum { POINTS = 8 };
 static bool slope_over(FcFrictionContact* held, FcInput input, double range, FcVector* slope, double* error,
                        double* evaluations, FcMessage* message) {

@@ -21,12 +21,12 @@ typedef struct {
 
 typedef struct FmuRun FmuRun;
 
-// A contact at the start of the scene, to be closed; ends the program where there is no memory.
+// A contact at the start of the scene, for fmu_close. Ends the program if there is no memory.
 FmuRun* fmu_open(const ReferenceScene* scene, int method, double tolerance);
 void fmu_close(FmuRun* run);
 
-// One step with the inputs and the parameters of the scene that are tunable, from where the last one ended. Returns false
-// where the core refuses it, or refused to start.
+// One step with the scene's inputs and tunable parameters, from the end of the last one. Returns false if the
+// core refuses it, or refused to start.
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step);
 
 // F_t_settled and F_y_settled [N] at the inputs that the run was opened with. Returns false where the core refuses it, or

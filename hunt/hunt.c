@@ -1,14 +1,14 @@
-// Hunts for wrong answers: draws sequences of steps at random, takes them with the FMU's core, grades each step by the
-// reference (trial.h has the rule), and prints each step that is not within the tolerance.
+// Hunts for wrong answers: draws sequences of steps at random, takes them with the FMU's core, grades each
+// step by the reference (trial.h has the rule), and prints each step that is not within the tolerance.
 //
 //     cmake --preset default && cmake --build --preset default --target hunt
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
 //     build/hunt/hunt --replay "V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2" --tolerance 1e-6
 //
-// With --plane the scenes slide and vibrate across as well. Each miss is one line: the tolerance, the error over it and of
-// what, the number of the sequence, and the sequence as name=value where it is not the start value, which --replay takes. A
-// sequence is taken with one of the tolerances, in turn. The last lines are tables by law and by kappa = sigma V / (2 pi f limit), and what was hunted. Ends with 1 where
-// something missed.
+// With --plane the scenes slide and vibrate across as well. Each miss is one line: the tolerance, the error over it, the result that missed, the number of the
+// sequence, and the sequence as name=value for each value that is not the start value. --replay takes such a
+// line. The sequences take the tolerances in turn. The last lines are tables by law and by kappa = sigma V /
+// (2 pi f limit), and counts of the kinds of step. Ends with 1 if a step missed.
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>

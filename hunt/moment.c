@@ -394,6 +394,8 @@ void* memory(void* old, size_t size) {
     return found;
 }
 
+const Real MULTIPLES[LEVELS] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
+
 void cut(Cuts* cuts, Real t) {
     if (cuts->count == cuts->room) {
         cuts->room = cuts->room ? 2 * cuts->room : 256;
@@ -596,18 +598,33 @@ static Real lowest(const Held* held, Real a, Real b) {
     return at_a > at_b ? a : b;
 }
 
+// Equal pieces of the ramp, and where V is a multiple of the old or the new V_S.
+static Cuts cuts_of_ramp(const Ramp* ramp, Real V_S_before) {
+    enum { PIECES = 64 };
+    const Real V_S[2] = {V_S_before, ramp->w->scene.V_S}, V = ramp->from.V, change = ramp->to.V - V;
+    Cuts cuts = {0};
+    for (int k = 0; k <= PIECES; k++) {
+        cut(&cuts, (Real)k / PIECES);
+    }
+    for (int m = 0; m < 4 * LEVELS && change != 0.0L; m++) {
+        cut(&cuts, ((m % 2 ? 1.0L : -1.0L) * MULTIPLES[m / 4] * V_S[m / 2 % 2] - V) / change);
+    }
+    tidy(&cuts, (Closed){0.0L, 1.0L});
+    return cuts;
+}
+
 // Moves the bristle along the ramp from before to the start of w; returns the heat.
 static Real ride(const World* before, const World* w, Real* delta, int* slip) {
-    enum { CELLS = 64 };
     const Ramp ramp = {w, corner_of(before), corner_of(w)};
+    const Cuts cuts = cuts_of_ramp(&ramp, before->scene.V_S);
     const int side = sign_of(*delta);
     const bool sticks = w->elastic && w->excess + before->excess > 0.0L && *slip == 0;
     Held held = {&ramp, fabsl(*delta), sticks};
     Real heat = 0.0L;
-    for (int k = 0; k < CELLS; k++) {
-        Real from = (Real)k / CELLS;
+    for (size_t k = 0; k + 1 < cuts.count; k++) {
+        Real from = cuts.time[k];
         for (;;) {
-            const Real to = lowest(&held, from, (Real)(k + 1) / CELLS);
+            const Real to = lowest(&held, from, cuts.time[k + 1]);
             // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
             if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
                 break;
@@ -627,6 +644,7 @@ static Real ride(const World* before, const World* w, Real* delta, int* slip) {
             }
         }
     }
+    free(cuts.time);
     *delta = (Real)side * held.length;
     return heat;
 }
@@ -635,8 +653,9 @@ static Real ride(const World* before, const World* w, Real* delta, int* slip) {
 Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
     const ReferenceScene* s = &w->scene;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
-    if (is_open(w, 0.0L) || is_open(&past, 0.0L)) {
-        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !is_open(&past, 0.0L);
+    const bool was_open = before && is_open(&past, 0.0L); // at the very start something held the bristle
+    if (is_open(w, 0.0L) || was_open) {
+        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !was_open;
         const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
         *delta = 0.0L;
         *slip = 0;

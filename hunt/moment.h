@@ -127,6 +127,10 @@ typedef struct {
 void* memory(void* old, size_t size);
 void cut(Cuts* cuts, Real t);
 
+// Of V_S, where Stribeck's curve is cut.
+enum { LEVELS = 10 };
+extern const Real MULTIPLES[LEVELS];
+
 // Sorted, without repetition, inside the part.
 void tidy(Cuts* cuts, Closed part);
 

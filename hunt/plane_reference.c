@@ -421,7 +421,6 @@ static void cut_where(Cuts* cuts, Function* function, const Zero* zero) {
 
 // Equal pieces of a period; where a load may fall or rise by decades; the extremes of |V|, and multiples of V_S.
 static Cuts all_cuts(const World* w, Closed part) {
-    static const Real MULTIPLES[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
     Cuts cuts = {0};
     const ReferenceScene* s = &w->scene;
     const Real span = part.to - part.from, pieces = 32.0L;
@@ -443,7 +442,7 @@ static Cuts all_cuts(const World* w, Closed part) {
         cut_where(&cuts, change_of_speed, &zero);
         tidy(&cuts, part);
     }
-    for (size_t m = 0; w->excess != 0.0L && m < sizeof MULTIPLES / sizeof *MULTIPLES; m++) {
+    for (size_t m = 0; w->excess != 0.0L && m < LEVELS; m++) {
         const Real level = MULTIPLES[m] * s->V_S;
         const Zero zero = {.w = w, .level = level * level};
         cut_where(&cuts, square_less, &zero);

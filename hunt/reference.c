@@ -36,7 +36,8 @@ typedef struct {
     Real work;    // J
     Real heat;    // J
     Real path;    // m, integral of |V|
-    // What errors of these are measured by: the length is that at the end, or what is kept of a longer one.
+    // The scales of their errors: the length is the deflection at the end, or the remaining part of a longer
+    // one.
     Real length, force, power;
     Real blur; // m, of delta at the end by the rounding of time
 } Sums;
@@ -69,14 +70,15 @@ static void account(const World* w, Sums* sums, Real spring, Real rate, Real V, 
                    (fabsl(V) + (spring == 0.0L ? 0.0L : fabsl(rate)));
 }
 
-// What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound of a side.
+// What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound
+// of a side.
 typedef struct {
     int sign; // of V
     int slip; // 0, +1, -1
 } Motion;
 
-// The deflections at the nodes of a panel by the bristle's own law: delta + Y, Y_i = size sum_j to_ij (V_j - r_j delta -
-// r_j Y_j). Returns the change of delta.
+// The deflections at the nodes of a panel by the bristle's own law: delta + Y, Y_i = size sum_j to_ij (V_j -
+// r_j delta - r_j Y_j). Returns the change of delta.
 static Real collocate(const World* w, const At* at, const Real* r, Real size, Real delta, Real* at_delta) {
     const int n = w->rule->stages;
     Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES] = {0};
@@ -151,10 +153,10 @@ static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
 static const int DEEPEST = 110;
 static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not known
 
-// An error in a panel is left alone when it is less than this share of the panel's mean force acting over the whole step.
+// An error in a panel is left alone when it is less than this share of the panel's mean force acting over the
+// whole step.
 static const Real LEAST = 1e-16L;
 
-// Whether a panel of this size [s] and its halves give the same.
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
@@ -215,8 +217,8 @@ static Real beyond(const void* context, Real t) {
 
 static void go_over(March* march, const Motion* motion, Real a, Real b);
 
-// Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a bristle that is free
-// stops where it meets a bound.
+// Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a
+// bristle that is free stops at a bound.
 static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
@@ -280,7 +282,7 @@ static Real outward_of(const void* context, Real t) {
     return outward(zero->w, t, zero->side, zero->sticks);
 }
 
-// Where dV/dt = 0, where the vibration turns, and equal pieces in between.
+// The zeros of dV/dt, the turns of the vibration, and equal pieces in between.
 static void cut_at_bends(const World* w, Cuts* cuts) {
     const ReferenceScene* s = &w->scene;
     const int pieces = 4 * w->fineness;
@@ -304,8 +306,7 @@ static void cut_at_bends(const World* w, Cuts* cuts) {
 
 // Where V is a multiple of V_S, and 0; V is monotone between the cuts so far.
 static void cut_at_velocities(const World* w, Cuts* cuts) {
-    static const Real MULTIPLES[] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : sizeof MULTIPLES / sizeof *MULTIPLES;
+    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : LEVELS;
     for (size_t k = 0; k + 1 < count; k++) {
         const Real a = cuts->time[k], b = cuts->time[k + 1];
         for (size_t m = 0; m < 2 * levels; m++) {
@@ -317,8 +318,9 @@ static void cut_at_velocities(const World* w, Cuts* cuts) {
     }
 }
 
-// Cuts where a bristle may leave its bound between a and b, as the samples at the ends of cells show, also where it only
-// just passes zero between two of them: the extreme next to a sample is searched.
+// Cuts at the times between a and b at which a bristle may leave its bound, as the samples at the ends of
+// cells show. A push that passes zero only just, between two samples, counts too: the extreme next to a
+// sample is searched.
 static void cut_at_zeros(const Zero* zero, Cuts* cuts, Real a, Real b) {
     const int cells = 12 * zero->w->fineness;
     Real t[3] = {a, a, a}, value[3] = {0.0L, 0.0L, outward_of(zero, a)};
@@ -366,7 +368,9 @@ static Cuts all_cuts(const World* w, Closed part) {
     cut_at_velocities(w, &cuts);
     tidy(&cuts, part);
     const size_t count = cuts.count;
-    const int kinds = w->excess != 0.0L && w->elastic ? 4 : 2; // of both sides; what slips, then what sticks
+    const int kinds = w->excess != 0.0L && w->elastic
+                          ? 4
+                          : 2; // of both sides; the bound that slips, then the one that sticks
     for (size_t k = 0; w->bounded && !w->open && k + 1 < count; k++) {
         for (int kind = 0; kind < kinds; kind++) {
             const Zero zero = {.w = w, .side = kind % 2 ? 1 : -1, .sticks = kind >= 2};
@@ -381,8 +385,8 @@ static Cuts all_cuts(const World* w, Closed part) {
 // The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-// The bristle meets its bound. One that stuck drops to the bound of what slips: the limit of a fast motion, which the
-// damping feels.
+// The bristle meets its bound. One that stuck drops to the kinetic bound: the limit of a fast motion, so the
+// damping does work.
 static void break_away(March* march, Real t, int side) {
     const At at = scene_at(march->w, t, false);
     const Real from = march->delta, to = (Real)side * bound(march->w, &at, false);
@@ -437,7 +441,7 @@ static void march_over(March* march) {
     World* w = march->w;
     const Closed part = closed_part(w);
     march_part(march, (Closed){0.0L, part.from}, true);
-    // what has no load has no rate: the last 1e-18 of the way to it is left out
+    // without a load there is no rate: the last 1e-18 of the way to it is left out
     const Real edge = ldexpl(part.to - part.from, -58);
     march_part(
         march,
@@ -465,8 +469,8 @@ static March one_period(World* w, Real delta, int slip, bool open_ends) {
     return march;
 }
 
-// As long as it touches no bound, a period maps delta in an affine way, and its sums are polynomials of degree 2 in delta:
-// it multiplies (1, x, x^2, impulse, work, heat, path) by a matrix, x = delta / unit.
+// As long as it touches no bound, a period maps delta in an affine way, and its sums are polynomials of
+// degree 2 in delta: it multiplies (1, x, x^2, impulse, work, heat, path) by a matrix, x = delta / unit.
 enum { ROWS = 7, POWERS = 50 };
 typedef struct {
     Real m[ROWS][ROWS];
@@ -565,7 +569,8 @@ typedef struct {
 } Mark;
 
 // Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
-// the state that at the end of the first of them. False where none repeat.
+// the state that at the end of one that slips, that of
+// the smallest deflection. False where none repeat.
 static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle,
                        Real* length) {
     Period p = {.world = *of, .unit = 1.0L};
@@ -608,6 +613,12 @@ static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* su
             add_times(cycle, &marks[k].sums, -1.0L);
             *length = done - marks[k].count;
             if (isinf(n)) {
+                for (; k < count; k++) {
+                    if (fabsl(marks[k].delta) < fabsl(*delta)) {
+                        *delta = marks[k].delta;
+                        *slip = marks[k].slip;
+                    }
+                }
                 break;
             }
             const Real times = floorl((n - done) / *length);
@@ -668,7 +679,7 @@ static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* le
     return true;
 }
 
-// Goes over the step; false where it is more than the reference takes.
+// Goes over the step; false if it needs more than the reference takes.
 static bool advance(World* w, Real* delta, int* slip, Sums* sums) {
     bool known = true;
     World rest = *w;

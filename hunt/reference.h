@@ -1,9 +1,9 @@
-// One communication step of a scene by brute force in extended precision: what the FMU is held against.
+// One communication step of a scene by brute force in extended precision: the reference that grades the FMU.
 //
-// Written from docs/physics.md alone; it shares no line with fmu_src. Time is cut at every reversal of V, at every dip
-// and bend of the velocity, and at the times when a bristle may leave its bound. Between cuts the equation of the bristle
-// is solved by Radau collocation on panels that are halved until one panel and its two halves agree. Many equal periods
-// are taken as one map.
+// Written from docs/physics.md alone; it shares no line with fmu_src. Time is cut at every reversal of V, at
+// every dip and bend of the velocity, and at the times when a bristle may leave its bound. Between cuts the
+// equation of the bristle is solved by Radau collocation on panels that are halved until one panel and its
+// two halves agree. Many equal periods are taken as one map.
 #ifndef HUNT_REFERENCE_H
 #define HUNT_REFERENCE_H
 
@@ -16,7 +16,8 @@ enum { CONTACT_ASPERITIES = 1, CONTACT_CONSTANT = 2, CONTACT_MINDLIN = 3 };
 enum { INPUT_SEPARATION = 1, INPUT_LOAD = 2 };
 enum { START_GIVEN = 1, START_SETTLED = 2 };
 
-// A scene and its step [start, start + h]. Doubles first, so that a table of names finds them all by their index.
+// A scene and its step [start, start + h]. Doubles first, so that a table of names finds them all by their
+// index.
 typedef struct {
     double start;                              // s
     double h;                                  // s
@@ -54,16 +55,16 @@ typedef struct {
 // Scenes with Table 1's surfaces and the start values of modelDescription.xml.
 ReferenceScene reference_scene(void);
 
-// before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for smaller
-// panels with more stages: for checks of the result itself.
+// before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for
+// smaller panels with more stages: for checks of the result itself.
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result);
 
 // Whether the contact is open at the start of a scene.
 bool reference_is_open(const ReferenceScene* scene);
 
-// F_t_settled [N] of the scene's inputs, held, from delta_0; false where no cycle of periods was found. S is that of a step
-// of no length.
+// F_t_settled [N] of the scene's inputs, held, from delta_0; false if no cycle of periods was found. S is
+// that of a step of length 0.
 bool reference_settled_force(const ReferenceScene* scene, double* force, double* S);
 
 #endif

@@ -174,7 +174,7 @@ bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t siz
 // Plainer
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Takes the plainer sequence if it still shows what it is to show.
+// Takes the plainer sequence if it still shows the miss.
 static bool keep(Sequence* plain, const Sequence* plainer, StillShows* shows, double tolerance) {
     const bool kept = shows(plainer, tolerance);
     *plain = kept ? *plainer : *plain;

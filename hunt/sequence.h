@@ -1,5 +1,5 @@
-// A few steps of one contact, its inputs and tunable parameters changed between them: what a hunt draws, replays and makes
-// plain.
+// A few steps of one contact, with inputs and tunable parameters that change between them. A hunt draws,
+// replays and simplifies such sequences.
 #ifndef HUNT_SEQUENCE_H
 #define HUNT_SEQUENCE_H
 
@@ -13,8 +13,8 @@ enum { MOST_STEPS = 10, SEQUENCE_TEXT = 8000 };
 typedef struct {
     int method; // number of solver.method
     int steps;
-    // The first scene is whole. In those after it a number is NaN if it stays as the step before left it; their
-    // enumerations, start and delta_0 are not used.
+    // The first scene is complete. In the others a NaN is a number that keeps its value from the step before;
+    // their enumerations, start and delta_0 are not used.
     ReferenceScene step[MOST_STEPS];
 } Sequence;
 
@@ -31,18 +31,20 @@ ReferenceScene scene_after(const ReferenceScene* before);
 // The scene after that one, with all that the sequence's step k changes.
 ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before);
 
-// A step's changes, all of them NaN (0 for an enumeration), or those that make a scene of the one that was left.
+// A step's changes, all of them NaN (0 for an enumeration), or those that make a scene of the one that was
+// left.
 ReferenceScene changes_between(const ReferenceScene* left, const ReferenceScene* scene);
 
-// A sequence with as few steps, as many start values, and numbers of as few digits, as still show it: greedily, one after
-// the other, until nothing changes any more.
+// A sequence that still shows the miss, with the fewest steps, the most start values and the fewest digits:
+// greedily, one after the other, until nothing changes.
 typedef bool StillShows(const Sequence* sequence, double tolerance);
 Sequence minimized(const Sequence* sequence, StillShows* shows, double tolerance);
 
-// As name=value where it is not the start value; "then" stands before each later step, whose changes are named.
+// As name=value for each value that is not the start value. "then" precedes each later step, which has its
+// changes alone.
 void sequence_text(const Sequence* sequence, char* text, size_t size);
 
-// Returns false where the text names something unknown, which goes into wrong.
+// Returns false if the text has an unknown name, which goes into wrong.
 bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t size);
 
 #endif

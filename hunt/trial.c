@@ -60,7 +60,7 @@ static Verdict verdict_between(const TrialStep* taken, const Values* least, cons
     return worst;
 }
 
-// The step from where the FMU stood before it. A settled start is judged by its own force.
+// The step from the FMU's state before it. A settled start is judged by its own force.
 static void step_of_reference(const ReferenceScene* before, const ReferenceScene* scene, const FmuStep* step,
                               ReferenceStep* truth) {
     const bool planar = plane_is_needed(before, scene);
@@ -79,7 +79,8 @@ static void step_of_reference(const ReferenceScene* before, const ReferenceScene
     }
 }
 
-// The same if the rounding of the step's own times may tell: with start and h moved by two units in their last place.
+// The same if the rounding of the step's own times may tell: with start and h moved by two units in their
+// last place.
 static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
     Values least = of_reference(&taken->truth), largest = least;
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);

@@ -1,4 +1,4 @@
-// A sequence of steps taken by the FMU, each of them graded by the reference from where the FMU stood before it.
+// A sequence of steps taken by the FMU. The reference grades each of them from the FMU's state before it.
 //
 // The rule: with S, the largest force of the step (reference.h), and path, the way of the surfaces and of the bristle
 // (integral of |V| dt + |delta_end - delta_start|),
@@ -6,11 +6,13 @@
 // - the W_f and Q_f of the step are within tolerance S path;
 // - the side along which a bristle with static friction slips is the same at the end;
 // - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
-// Granted is rounding alone: 1e-11 S, or S path; to W_f and Q_f 32 eps S |delta| of both ends, as the state has no more
-// digits of delta; what the step's own start and length, moved by two units in their last place, make of the reference; at
-// the start, what lies within 1e-11 of its bound lies on it. S is at least 1e-20 N, and what an energy may miss 1e-20 J. A step is judged from the FMU's own state
-// before it, a settled start by F_t_start and from its own state. A step of more panels or cycles than the reference takes is
-// counted, and not judged.
+// The allowances are of rounding alone:
+// - 1e-11 S, or S path;
+// - 32 eps S |delta| of both ends for W_f and Q_f, since the state has no more digits of delta;
+// - the change of the reference if the step's own start and length move by two units in their last place;
+// - at the start, a bristle within 1e-11 of its bound lies on it. S is at least 1e-20 N, and the allowed
+//   error of an energy 1e-20 J. A step is judged from the FMU's own state before it, a settled start by
+//   F_t_start. A step with more panels or cycles than the reference takes is counted and not judged.
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 
@@ -37,12 +39,12 @@ typedef struct {
     int of;       // the grade that is the worst
 } Verdict;
 
-// What a step is or does: it has static friction; its contact opens or closes in it or just before it; an input or parameter
-// jumps before it; inputs move through ten periods of a vibration.
+// Properties of a step: it has static friction; its contact opens or closes in it or just before it; an input
+// or parameter jumps before it; inputs move through ten periods of a vibration.
 enum { IS_STATIC, OPENS, CLOSES, JUMPS, LEAPS, KINDS };
 
 typedef struct {
-    ReferenceScene scene; // from where the FMU stood
+    ReferenceScene scene; // from the FMU's state
     FmuStep step;
     ReferenceStep truth;
     double settled[2][2]; // N, F_t_settled and F_y_settled of the FMU and of the reference, at the first step

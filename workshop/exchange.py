@@ -79,8 +79,13 @@ class Host:
             self.close()
             raise
 
-    def _instantiated(self) -> FMU2Model:
-        model = FMU2Model(
+    @property
+    def calls(self) -> int:
+        """Of every function of the FMU since the start."""
+        return self._model.calls
+
+    def _instantiated(self) -> FMU2Counted:
+        model = FMU2Counted(
             guid=self.fmu.description.guid,
             modelIdentifier=self.fmu.description.modelExchange.modelIdentifier,
             unzipDirectory=str(self.fmu.directory),
@@ -186,6 +191,16 @@ class Host:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+class FMU2Counted(FMU2Model):
+    """Counts the calls of the FMU's functions. FMPy loads by the first letters of the class's name."""
+
+    calls = 0
+
+    def _call(self, *arguments: Any) -> Any:
+        self.calls += 1
+        return super()._call(*arguments)
 
 
 class _NoInput:

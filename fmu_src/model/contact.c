@@ -20,7 +20,7 @@ static double relative_critical_interference(const FcContactParameters* p, doubl
 
 static double asperities(const FcContactParameters* p) { return p->eta * p->A_n * p->c; }
 
-// The two terms of F_n at d = 0 and of Mindlin's stiffness at d = 0: what is elastic, and what is plastic.
+// The elastic and the plastic term of F_n, or of Mindlin's stiffness, at d = 0.
 typedef struct {
     double elastic;
     double plastic;
@@ -50,7 +50,7 @@ static Parts radius_parts(const FcContactParameters* p, double x) {
 }
 
 FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E) {
-    assert(!(E <= 0.0)); // no number goes through
+    assert(!(E <= 0.0)); // NaN passes
     const double x = relative_critical_interference(p, E);
     const double beta = p->eta * p->R * p->R_q;
     const Parts load = load_parts(p, E, x);
@@ -81,7 +81,7 @@ static double stiffness(const FcContactAtModulus* c, double d, double e) {
 }
 
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d) {
-    assert(!(d <= 0.0)); // no number goes through
+    assert(!(d <= 0.0)); // NaN passes
     const double e = exp(-c->decay * d);
     return (FcContactResponse){.sigma = stiffness(c, d, e), .A_r = c->area_0 * e, .F_n = c->load_0 * e};
 }
@@ -91,6 +91,7 @@ double fc_contact_stiffness(const FcContactAtModulus* c, double d) {
 }
 
 FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d) {
+    assert(!(d <= 0.0));
     const double sigma = c->model == FC_CONTACT_CONSTANT  ? 0.0
                          : c->model == FC_CONTACT_MINDLIN ? -c->decay
                                                           : -(2.0 * c->decay + 3.0 / d);
@@ -99,6 +100,7 @@ FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d) {
 
 // x ~ E^-2, so dx/dE = -2 x / E.
 FcContactLogSlope fc_contact_slope_by_E(const FcContactParameters* p, double E) {
+    assert(!(E <= 0.0));
     const double x = relative_critical_interference(p, E);
     const double e = exp(-x);
     FcContactLogSlope slope = {.A_r = 2.0 * x * e / ((1.0 + e) * E)};

@@ -1,7 +1,8 @@
 // Two rough surfaces pressed to a separation d: real contact area, normal force, tangential stiffness.
 //
-// Asperity heights s (over R_q) have the density c exp(-lambda s); each asperity is elastic up to the critical
-// interference omega_c and plastic beyond it (Eq. 3-22 of the paper, with the misprints of Eq. 9, 17 and 20 corrected):
+// Asperity heights s (over R_q) have the density c exp(-lambda s); each asperity is elastic up to the
+// critical interference omega_c and plastic beyond it (Eq. 3-22 of the paper, with the misprints of Eq. 9, 17
+// and 20 corrected):
 //
 //     C_v     = 1.234 + 1.256 nu                  p_m = C_v (1 - nu^2) Y
 //     omega_c = (pi p_m / (2 E))^2 R              x = lambda omega_c / R_q          N = eta A_n c
@@ -16,8 +17,8 @@
 //                   + 1/2 (2 / lambda)^3/2 e^(-x/2) Gamma(3/2, x/2)] e^(-lambda d / R_q)
 //     Constant      contact.sigma
 //
-// Mindlin's is the sum over the asperities of a tangential stiffness 2 E [2 (1 - nu) / (2 - nu)] times the contact's
-// radius: (R omega)^1/2 while it is elastic, (R (2 omega - omega_c))^1/2 beyond.
+// Mindlin's is the sum over the asperities of a tangential stiffness 2 E [2 (1 - nu) / (2 - nu)] times the
+// contact's radius: (R omega)^1/2 while it is elastic, (R (2 omega - omega_c))^1/2 beyond.
 //
 // Everything here is a pure function of its arguments and never fails for valid ones.
 #ifndef FC_MODEL_CONTACT_H
@@ -28,9 +29,9 @@ typedef enum { FC_CONTACT_ASPERITIES = 1, FC_CONTACT_CONSTANT = 2, FC_CONTACT_MI
 typedef enum { FC_CONTACT_SEPARATION = 1, FC_CONTACT_LOAD = 2 } FcContactInput;
 
 typedef struct {
-    int model;    // FcContactModel
-    int input;    // FcContactInput: whether the separation is given, or the load that the surfaces rest on
-    double sigma; // N/m   stiffness when model is FC_CONTACT_CONSTANT
+    int model;             // FcContactModel
+    int input;             // FcContactInput: the separation is given, or the load
+    double sigma;          // N/m   stiffness when model is FC_CONTACT_CONSTANT
     double stiffnessScale; // 1     factor on the other stiffnesses
     double R_q;            // m     standard deviation of the asperity heights
     double R;              // m     mean radius of the asperity summits
@@ -42,7 +43,7 @@ typedef struct {
     double lambda;         // 1
 } FcContactParameters;
 
-// The contact at one combined modulus E: what remains to be computed depends on d alone, with e = e^(-decay d).
+// The contact at one combined modulus E. The rest depends on d alone, with e = e^(-decay d).
 //     A_r = area_0 e        F_n = load_0 e        sigma = stiffness_0 e^2 / d^3, stiffness_0 e or stiffness_0
 typedef struct {
     int model;          // FcContactModel
@@ -76,7 +77,8 @@ double fc_contact_stiffness(const FcContactAtModulus* c, double d);
 FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d);
 FcContactLogSlope fc_contact_slope_by_E(const FcContactParameters* p, double E);
 
-// ln of the factor by which a vibration of the separation by a_d [m] >= 0 raises the mean of F_n: ln I_0(decay a_d).
+// ln of the factor by which a vibration of the separation by a_d [m] >= 0 raises the mean of F_n: ln
+// I_0(decay a_d).
 double fc_contact_log_swell(const FcContactAtModulus* c, double a_d);
 
 #endif

@@ -1,4 +1,4 @@
-// How what the contact gives changes with the inputs at the start of a scene.
+// Derivatives of the contact's stiffness, area and force by the inputs at the start of a scene.
 #ifndef FC_MODEL_DERIVATIVES_H
 #define FC_MODEL_DERIVATIVES_H
 
@@ -6,8 +6,8 @@
 
 #include "model/scene.h"
 
-// Derivatives of ln(sigma), ln(A_r) and ln(F_n) with respect to an input, the separation following where it floats: per m,
-// Pa and N. All 0 for an open contact.
+// Derivatives of ln(sigma), ln(A_r) and ln(F_n) with respect to an input [1/m, 1/Pa, 1/N]. With a load they
+// include the motion of the separation. All 0 for an open contact.
 typedef struct {
     FcContactLogSlope by_d, by_E, by_load;
 } FcLogSlopes;

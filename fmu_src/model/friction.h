@@ -14,6 +14,7 @@
 #ifndef FC_MODEL_FRICTION_H
 #define FC_MODEL_FRICTION_H
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -77,6 +78,7 @@ static inline bool fc_is_bounded(const FcFriction* friction) {
 // Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a Stribeck curve.
 static inline double fc_stribeck(const FcFriction* friction, double V) {
     const double ratio = V / friction->V_S;
+    assert(!fc_has_stribeck_curve(friction) || friction->staticRatio >= 1.0);
     return fc_has_stribeck_curve(friction) ? 1.0 + (friction->staticRatio - 1.0) * exp(-ratio * ratio) : 1.0;
 }
 

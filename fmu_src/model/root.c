@@ -1,24 +1,27 @@
 #include "model/root.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
-// Evaluations of one root. By hand: halving alone takes some 60 to rounding; a root that takes more is returned as it is.
+// The largest number of evaluations of one root. Halving alone takes some 60 to rounding, so half of this
+// would do. A root that takes more is returned as it is.
 enum { MOST_ROOT_STEPS = 200 };
 
-// To the nearer root of the parabola; Newton's step where it has none.
+// To the nearer root of the parabola; Newton's step if it has none.
 static double step_to_root(FcRootFunction at) {
     const double discriminant = at.rate * at.rate - 2.0 * at.value * at.curvature;
     const double slope = discriminant > 0.0 ? copysign(sqrt(discriminant), at.rate) : at.rate;
     return -2.0 * at.value / (at.rate + slope);
 }
 
-// The parabola at a is good up to this part of the bracket. By hand: costs evaluations, not accuracy.
+// The part of the bracket up to which the parabola at a is used. Half or twice of it changes the evaluations,
+// not the accuracy.
 static const double PARABOLA_REACH = 0.25;
 
-// From a to the root of the parabola there, if it is near, else to that of the cubic t(f) through both ends, if the slopes
-// agree with the change.
+// From a to the root of the parabola there, if it is near, else to that of the cubic t(f) through both ends,
+// if the slopes agree with the change.
 static double first_step(double duration, FcRootFunction at_a, FcRootFunction at_b) {
     const double change = at_b.value - at_a.value;
     const double nearer = fabs(step_to_root(at_a));
@@ -32,6 +35,7 @@ static double first_step(double duration, FcRootFunction at_a, FcRootFunction at
 
 double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
                FcRootFunction at_b, double last_step, double least_area, double* evaluations) {
+    assert(a <= b && last_step >= 0.0 && least_area >= 0.0);
     const double start = a;
     const bool starts_negative = at_a.value < 0.0;
     FcRootFunction at = at_a;
@@ -47,7 +51,8 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
         }
         step = next - t;
         t = next;
-        // A small step to the parabola's root is a smaller one from f's, a small bracket's middle may be as far from it.
+        // A small step to the parabola's root is a smaller one from f's, a small bracket's middle may be as
+        // far from it.
         const bool is_near =
             i > 0 && !bisects && fabs(step) <= last_step * (t - start) && fabs(step * at.value) <= least_area;
         if (is_near) {
@@ -72,7 +77,7 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
 }
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
-                       double at_b, double close, double* evaluations) {
+                       double at_b, double close, double least_area, double* evaluations) {
     const double rounding = DBL_EPSILON * fmax(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;
@@ -85,11 +90,12 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
     double part = at_b / (at_b - at_a);
     for (int i = 0; i < MOST_ROOT_STEPS; i++) {
         const bool on_side = (at_near < 0.0) == ends_negative;
-        if (at_near == 0.0 || (on_side && fabs(at_near) <= close) || fabs(near - far) <= rounding) {
+        const double width = fabs(near - far);
+        const bool is_close = fabs(at_near) <= close || fabs(at_near) * width <= least_area;
+        if (at_near == 0.0 || (on_side && is_close) || width <= rounding) {
             break;
         }
-        const double least =
-            fmin(0.5, fmax(1e-9, rounding / fabs(near - far))); // so that t is another number
+        const double least = fmin(0.5, fmax(1e-9, rounding / width)); // so that t is another number
         const double t = near + fmax(least, fmin(1.0 - least, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;

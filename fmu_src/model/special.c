@@ -1,11 +1,13 @@
 #include "model/special.h"
 
+#include <assert.h>
 #include <math.h>
 
 static const double SQRT_PI = 1.77245385090551602730; // sqrt(pi), to all digits of a double
 
 // x^a e^-x sum x^k / (a (a+1) ... (a+k)): all terms positive, so nothing cancels.
 static double lower_gamma_series(double a, double x) {
+    assert(!(x < 0.0));
     double term = 1.0 / a;
     double sum = term;
     for (double k = 1.0; term > 1e-17 * sum; k += 1.0) {
@@ -26,6 +28,7 @@ double fc_lower_gamma_5_2(double x) {
 }
 
 double fc_log_bessel_I0(double x) {
+    assert(!(x < 0.0));
     if (x < 20.0) {
         const double y = 0.25 * x * x;
         double term = 1.0;

@@ -5,7 +5,7 @@
 
 FcMap fc_map_identity(void) { return (FcMap){0}; }
 
-// relaxation is 1 - P: composing it, and not P, keeps its digits where hardly anything relaxes.
+// relaxation is 1 - P. Composing it instead of P keeps its digits if hardly anything relaxes.
 void fc_map_append(FcMap* map, const FcMap* next) {
     const double kept = 1.0 - map->relaxation;
     const double offset = map->offset;
@@ -22,7 +22,7 @@ void fc_map_append(FcMap* map, const FcMap* next) {
     map->heat_square += next->heat_square * kept * kept;
 }
 
-// By repeated squaring: composing adds no error that grows with n, so nothing special happens at P near 1.
+// By repeated squaring. Composing adds no error that grows with n, so P near 1 needs no special care.
 FcMap fc_map_power(const FcMap* one, double n) {
     assert(n >= 0.0 && n == floor(n));
     FcMap power = fc_map_identity();
@@ -69,6 +69,7 @@ void fc_map_apply_across(const FcMap* map, FcStepResult* result) {
 // (1/2 - (z - 1 + e^-z) / z^2) / z, which tends to 1/6, for z in [0, 1]: 1/3! - z/4! + z^2/5! - ... TERMS are 1/3! to 1/17!,
 // below which all is rounding.
 static double phi_3(double z) {
+    assert(!(z < 0.0 || z > 1.0));
     // clang-format off
     static const double TERMS[] = {
         1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800,
@@ -82,16 +83,17 @@ static double phi_3(double z) {
     return sum;
 }
 
-// Where sigma and the limit g stand still and V keeps its sign, with z = sigma |displacement| / g: the force is in parts of
-// what it would be at the end without relaxation, sigma times the displacement, or of what it settles to, whichever is less.
+// A path with constant sigma and g on which V keeps its sign, with z = sigma |displacement| / g. The unit of
+// force is the smaller of two: sigma times the displacement, the force at the end without relaxation, and g,
+// the settled force.
 typedef struct {
-    double force;      // N, that unit
-    double stiffness;  // N/m, it over the displacement
+    double force;      // N, the unit
+    double stiffness;  // N/m, the unit over the displacement
     double relaxation; // 1 - e^-z
     double offset;     // m, deflection at the end of a bristle that starts relaxed
-    double end;        // its force then,
-    double mean;       // the mean of its force along the path, and
-    double heat;       // its heat over the displacement, in that unit
+    double end;        // its force then, in the unit
+    double mean;       // the mean of its force along the path, in the unit
+    double heat;       // its heat over the displacement, in the unit
 } PathParts;
 
 static PathParts parts_of_path(double sigma, double limit, double displacement) {
@@ -114,13 +116,16 @@ static PathParts parts_of_path(double sigma, double limit, double displacement) 
         parts.mean = second;
         parts.heat = z * (second - third - 0.5 * z * second * second);
     }
+    assert(!(parts.relaxation < 0.0 || parts.relaxation > 1.0));
+    assert(!(parts.end < 0.0 || parts.end > 1.0 || parts.mean < 0.0 || parts.mean > 1.0));
     return parts;
 }
 
-// With the settled deflection D = s g / sigma, s = sgn V: delta = D + (delta_0 - D) e^-x/|D| along the path x. Work and heat
-// are the integrals of sigma delta and sigma delta |delta| / D over it; drag = V (delta_1 - delta_0).
+// With the settled deflection D = s g / sigma, s = sgn V: delta = D + (delta_0 - D) e^-x/|D| along the path
+// x. Work and heat are the integrals of sigma delta and sigma delta |delta| / D over it; drag = V (delta_1 -
+// delta_0).
 FcMap fc_map_of_constant_scene(const FcCoefficients* at, double h) {
-    assert(!(at->sigma < 0.0) && at->limit > 0.0 && h >= 0.0); // a sigma that is no number goes through
+    assert(!(at->sigma < 0.0) && at->limit > 0.0 && h >= 0.0); // a sigma of NaN passes
     const double displacement = at->V * h;
     const PathParts parts = parts_of_path(at->sigma, at->limit, displacement);
     return (FcMap){

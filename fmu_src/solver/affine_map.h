@@ -1,8 +1,8 @@
-// What an interval of a bristle's motion does to its deflection.
+// The effect of an interval on a bristle's deflection.
 //
-// Its equation is affine in delta, so any interval is an affine map of the deflection at its start; so are the impulse of
-// the force, its work and its drag over the interval, and the heat is quadratic. Maps compose; n equal intervals are the
-// n-th power of one.
+// The bristle's equation is affine in delta, so any interval is an affine map of the deflection at its start.
+// The impulse of the force, its work and its drag over the interval are affine, too. The heat is quadratic.
+// Maps compose, and n equal intervals are the n-th power of one map.
 #ifndef FC_SOLVER_AFFINE_MAP_H
 #define FC_SOLVER_AFFINE_MAP_H
 
@@ -26,10 +26,10 @@ FcMap fc_map_identity(void);
 void fc_map_append(FcMap* map, const FcMap* next); // the map, then the next one
 FcMap fc_map_power(const FcMap* one, double n);    // n a non-negative whole number
 
-// The map of one interval that is known for the start that led to this result alone.
+// The map of an interval for one start alone, the one that led to this result.
 FcMap fc_map_of_one_start(const FcStepResult* result);
 
-// Takes result->delta over the interval and adds what the interval gives.
+// Takes result->delta over the interval and adds the interval's integrals.
 void fc_map_apply(const FcMap* map, FcStepResult* result);
 void fc_map_apply_across(const FcMap* map, FcStepResult* result); // to delta_y
 

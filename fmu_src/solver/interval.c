@@ -6,12 +6,14 @@
 #include <string.h>
 
 double fc_digits(double x) {
+    assert(!(x < 0.0));
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return -0.30103 * ((int)(bits >> 52 & 0x7ff) - 1023); // log10(2) times the exponent
 }
 
 FcPace fc_pace(const FcScene* scene, double h) {
+    assert(h >= 0.0);
     const FcDrive* drive = &scene->drive;
     FcPace pace = {.phase = drive->omega};
     if (!fc_scene_depends_on_d(scene)) {
@@ -23,11 +25,13 @@ FcPace fc_pace(const FcScene* scene, double h) {
     const double by_E = fabs(drive->E.rate) / fc_drive_smallest_E(drive, h);
     pace.log_sigma = (by_decay + by_nearness) * d_rate + by_E;
     if (scene->floats) {
-        // ln F_n moves with ln E by less than 2, and surfaces that float by that and the load over the decay.
+        // d ln F_n / d ln E is below 2. Floating surfaces move by the change of ln F_n and of ln load, over
+        // the decay.
         const double load = fmin(drive->load.value, fc_drive_load(drive, h));
         const double floating = (2.0 * by_E + fabs(drive->load.rate) / load) / scene->at_E.decay;
         pace.log_sigma += (by_decay + by_nearness) * floating;
     }
+    assert(!(pace.phase < 0.0 || pace.log_sigma < 0.0));
     return pace;
 }
 
@@ -49,6 +53,7 @@ FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, d
         .has_peaks = beyond_peaks != scene,
         .moving_limit = fc_limit_follows_load(scene->friction) || beyond_peaks != scene,
     };
+    assert(!(interval.limit > (1.0 + 1e-9) * interval.stiffness * interval.saturation));
     interval.forgotten = 2.0 * 2.302585 * fc_digits(options->tolerance) * interval.saturation;
     return interval;
 }

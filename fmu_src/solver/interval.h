@@ -1,5 +1,5 @@
-// What holds over a whole interval, the part of a communication step that one map is made of: the largest and smallest of
-// what the bristle's equation is made of, and how fast it moves.
+// The properties of a whole interval, the domain of one map: bounds of the coefficients of the bristle's
+// equation, and the pace at which they move.
 #ifndef FC_SOLVER_INTERVAL_H
 #define FC_SOLVER_INTERVAL_H
 
@@ -8,7 +8,7 @@
 #include "model/scene.h"
 #include "solver/solver.h"
 
-// How fast the scene moves, at the most: the one measure of pace of every panel that is planned.
+// An upper bound of how fast the scene moves: the one measure of pace for all plans of panels.
 typedef struct {
     double phase;     // 1/s, of the vibration's angle
     double log_sigma; // 1/s, of ln(sigma) and of ln(g) but for the Stribeck curve
@@ -25,7 +25,7 @@ typedef struct {
     const FcScene* beyond_peaks; // the same without its Stribeck curve
     double duration;             // s
     double tolerance;            // 1, of F_t at the end and of its mean, over the force
-    double force;                // N, what the tolerance is relative to
+    double force;                // N, the scale of the tolerance
     double speed;                // m/s, largest |V|
     double stiffness;            // N/m, largest sigma
     double limit;                // N, smallest g
@@ -33,15 +33,15 @@ typedef struct {
     double forgotten;            // m, over this path they fade below the square of the tolerance
     FcPace pace;
     bool has_peaks;      // g has a Stribeck curve
-    bool moving_limit;   // g is no constant
-    bool constant_sigma; // sigma is one
+    bool moving_limit;   // g is not constant
+    bool constant_sigma; // sigma is
 } FcInterval;
 
 // Keeps the pointers. beyond_peaks is the scene itself if it has no Stribeck curve.
 FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
                             const FcSolverOptions* options);
 
-// What the tolerance allows of a force [N].
+// The allowed error of a force [N].
 static inline double fc_allowed_force(const FcInterval* interval) {
     return interval->tolerance * interval->force;
 }

@@ -1,5 +1,6 @@
 #include "solver/jump.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/plane.h"
@@ -37,7 +38,7 @@ typedef struct {
     FcPast past;
     double d, V, E;                                  // by which they change
     double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
-    int slips;                                       // whose bound is meant
+    int slips;                                       // the bristle's, which chooses the bound
 } Ramp;
 
 typedef struct {
@@ -127,8 +128,10 @@ static double bound_rate(void* context, double s) {
     return at_place(of->ramp, s).rate;
 }
 
-// Between two places over which D falls, or rises: the bristle at |delta| follows where D is lower, for g |dD| of heat.
+// Between two places over which D falls, or rises. The bristle at |delta| follows D once D is lower, with the
+// heat g |dD|.
 static double follow(const Ramp* ramp, double a, double b, double delta, double* heat) {
+    assert(a <= b && !(delta < 0.0));
     const Place end = at_place(ramp, b);
     if (!(end.D < delta)) {
         return delta;
@@ -137,7 +140,7 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     double none = 0.0;
     const double at_a = above_bound(&of, a);
     const double from =
-        at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, &none) : a;
+        at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, 0.0, &none) : a;
     const FcGaussRule* rule = &FC_GAUSS_8;
     for (int i = 0; i < 8; i++) {
         const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
@@ -146,12 +149,14 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     return end.D;
 }
 
-// The ramp is taken in steps over which D and g move by no more than e to this power, Stribeck's curve by a part of V_S.
+// The largest changes over a step of the ramp: of the logarithms of D, g and sigma together, and of V over
+// V_S on Stribeck's curve. Half of them doubles the steps; twice of them leaves twice the change to the 8
+// nodes of a step.
 static const double STEP_OF_LOG = 0.5;
-// By hand: more than there are from the smallest number to the largest.
+// The largest number of steps: more than there are from the smallest number to the largest.
 static const double MOST_STEPS = 1e4;
 static const double STEP_OF_CURVE = 0.5;
-// Beyond this velocity, over V_S, there is no curve.
+// The largest V over V_S with a curve: e^-49 of its peak remains.
 static const double END_OF_CURVE = 7.0;
 
 // The next place to stop at after s.
@@ -163,7 +168,9 @@ static double next_place(const Ramp* ramp, double s, double step) {
         const double beyond = fabs(V) / V_S - END_OF_CURVE;
         next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / fabs(ramp->V));
     }
-    return next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
+    const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
+    assert(place > s && place <= 1.0);
+    return place;
 }
 
 // |delta| at the end of the ramp, from the place s on.
@@ -180,9 +187,9 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
         const double next = next_place(ramp, s, step);
         const double rate = at_place(ramp, s).rate;
         const double rate_next = at_place(ramp, next).rate;
-        double turn = next; // where D goes the other way
+        double turn = next; // of D
         if (rate * rate_next < 0.0) {
-            turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, &none);
+            turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
         }
         delta = follow(ramp, s, turn, delta, heat);
         delta = turn < next ? follow(ramp, turn, next, delta, heat) : delta;
@@ -191,7 +198,7 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
     return delta;
 }
 
-// The first place, of those that are stopped at, by which the static bound is below |delta|; 1 for none.
+// The first place at which the static bound falls below |delta|, as far as the steps show; 1 for none.
 static double where_it_breaks(const Ramp* ramp, double delta) {
     AboveBound of = {ramp, delta};
     double none = 0.0;
@@ -203,7 +210,8 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
         const double next = s + step < 1.0 - 1e-9 ? s + step : 1.0;
         const double at_next = above_bound(&of, next);
         if (at_next > 0.0) {
-            return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, &none) : s;
+            return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, 0.0, &none)
+                              : s;
         }
         s = next;
         at_s = at_next;

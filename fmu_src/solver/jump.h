@@ -1,18 +1,20 @@
-// An input, or a parameter, that jumps between two steps, taken as the limit of a fast ramp. The separation, E and V go along it
-// in straight lines from what the last step left to what the next one begins with; what parameters change goes
-// geometrically. V does not move the bristle meanwhile. Only its bound does, where it comes to lie below |delta|:
+// An input or a parameter that jumps between two steps, as the limit of a fast ramp. The separation, E and V
+// are linear along the ramp, from their values at the end of the last step to those at the start of the next
+// one. Effects of parameters are geometric. V does not move the bristle meanwhile. Only its bound moves it,
+// once the bound falls below |delta|:
 //
-//     heat = integral of g |dD|      from where D = |delta| on
+//     heat = integral of g |dD|      from D = |delta| on
 //
-// With a constant g that is g (|delta| - D), with a constant sigma sigma (delta^2 - D^2) / 2. A bristle of ElasticPlastic that sticks
-// breaks away on the ramp, where the static bound comes to |delta|, and follows the kinetic one from there. What is stored by
-// a contact that opens is heat if its stiffness is constant, and else goes to the normal drive with the stiffness.
+// With a constant g that is g (|delta| - D), with a constant sigma sigma (delta^2 - D^2) / 2. A bristle of
+// ElasticPlastic that sticks breaks away on the ramp when the static bound falls to |delta|, and follows the
+// kinetic bound from there. The stored energy of a contact that opens is heat if its stiffness is constant,
+// and else goes to the normal drive with the stiffness.
 #ifndef FC_SOLVER_JUMP_H
 #define FC_SOLVER_JUMP_H
 
 #include "model/regime.h"
 
-// What a step leaves behind, its vibration included.
+// The inputs and parameters at the end of a step, with its vibration.
 typedef struct {
     double d;     // m
     double V;     // m/s
@@ -26,8 +28,8 @@ typedef struct {
 // Of a scene at its start.
 FcPast fc_past(const FcScene* scene);
 
-// The state with which the scene starts, fc_reach of the bristle but for a bound that has been lower on the way; *heat [J] is what
-// the way there costs. Without a past, sigma has always been what it is.
+// The state at the start of the scene: fc_reach of the bristle, unless the bound was lower on the way. *heat
+// [J] is the heat of the ramp. Without a past, sigma has always had its present value.
 FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat);
 
 #endif

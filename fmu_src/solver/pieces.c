@@ -1,8 +1,10 @@
 #include "solver/pieces.h"
 
+#include <assert.h>
 #include <stddef.h>
 
 void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
+    assert(whole >= 0.0);
     pieces->of = scene;
     pieces->whole = whole;
     pieces->t = 0.0;
@@ -28,6 +30,7 @@ bool fc_next_piece(FcPieces* pieces) {
     const bool is_last = !(pieces->h < rest && next > pieces->t);
     pieces->h = is_last ? rest : pieces->h;
     pieces->t = is_last ? pieces->whole : next;
+    assert(pieces->h >= 0.0 && pieces->t <= pieces->whole);
     return true;
 }
 

@@ -1,5 +1,5 @@
-// The pieces of an interval that are crossed one after the other (fc_scene_piece): a load that moves by decades, and a contact that
-// opens and closes.
+// The pieces of an interval that are crossed one after the other (fc_scene_piece): a load that moves by
+// decades, and a contact that opens and closes.
 #ifndef FC_SOLVER_PIECES_H
 #define FC_SOLVER_PIECES_H
 
@@ -10,7 +10,7 @@
 
 typedef struct {
     const FcScene* of;
-    double whole, t;      // s, the interval, and where the next piece begins
+    double whole, t;      // s, the interval, and the start of the next piece
     const FcScene* scene; // of the piece
     double h;             // s, its length
     FcScene own;          // the piece's, if it is not the interval's
@@ -19,10 +19,11 @@ typedef struct {
 // The interval [0, whole] of the scene. Keeps the pointer, and points into itself.
 void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole);
 
-// Whether there is another piece; then it is there. Even an interval of no length has one.
+// Takes the next piece; false if there is none. Even an interval of no length has one.
 bool fc_next_piece(FcPieces* pieces);
 
-// A step of any length without contact: the bristle is lost, and what a constant stiffness stored in it is heat.
+// A step of any length without contact: the bristle is lost, and the energy that a constant stiffness stored
+// in it is heat.
 void fc_loose_step(const FcScene* scene, FcStepResult* result);
 
 #endif

@@ -1,4 +1,5 @@
-// What every solver method does: take the deflection over one communication step, within a limited amount of work.
+// The task of every solver method: take the deflection over one communication step, within a limited amount
+// of work.
 #ifndef FC_SOLVER_SOLVER_H
 #define FC_SOLVER_SOLVER_H
 
@@ -19,7 +20,7 @@ typedef enum {
 
 typedef struct {
     double tolerance; // 1  bound of the error of F_t and of its mean, over the force
-    double force;     // N  what the tolerance is relative to
+    double force;     // N  the scale of the tolerance
     double step_size; // s  internal step of the fixed-step methods
 } FcSolverOptions;
 
@@ -28,8 +29,8 @@ typedef struct {
     int slips;          //       the other part of the bristle's state (FcBristle)
     int meetings;       //       how often the bristle met its bound, slipping along it at the start included
     double slip_time;   // s     into the interval, a time at which the bristle slipped along a bound, and
-    int slip_side;      //       of which side; of no meaning if it has not
-    double lost;        // m     what opening contacts took from the deflection, which is not motion
+    int slip_side;      //       the side of that bound; both without meaning if it has not slipped
+    double lost;        // m     deflection lost by opening contacts, which is not motion
     double impulse;     // N s   integral of F dt, F being F_t without its parts from sigma_1 and sigma_2
     double work;        // J     integral of F V dt
     double heat;        // J     integral of F (V - delta') dt
@@ -40,8 +41,9 @@ typedef struct {
     double impulse_y;   // N s
 } FcStepResult;
 
-// Evaluations in one communication step. By hand, up to 40 s of computing: a step that needs more is refused, so that none
-// seems to hang. Only inputs that move over many orders of magnitude get there.
+// The largest number of evaluations in one communication step, some 40 s of computing. A step that needs more
+// is refused, so that no host seems to hang. Twice as many would double the wait. Only inputs that move over
+// many orders of magnitude reach it.
 #ifndef FC_MOST_EVALUATIONS
 #define FC_MOST_EVALUATIONS 1e8
 #endif

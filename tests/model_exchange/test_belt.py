@@ -21,13 +21,13 @@ def test_stick_and_slip_against_the_whole_system(fmu: FrictionFmu, law: str) -> 
         assert of_F_t < allowed and of_x < allowed, tolerance
 
 
-def test_the_chart_has_the_error_of_each_tolerance_over_the_time_per_call(fmu: FrictionFmu) -> None:
+def test_the_chart_has_the_error_of_each_tolerance_over_the_time_per_evaluation(fmu: FrictionFmu) -> None:
     belt = LawBelt()
     rows = against_cost(fmu)
     (row,) = (row for row in rows if 1e-4 < float(str(row["error_F_t"])) < 1e-3)  # of 1e-6
     run = exchange(fmu, belt, 1e-6)
     assert (row["error_F_t"], row["error_x"]) == errors(belt, run, reference(belt))
-    assert row["H"] == belt.end / run.calls
+    assert row["H"] == belt.end / run.evaluations
     assert len(rows) == 3 and rows[-1]["error_F_t"] < 1e-5
 
 

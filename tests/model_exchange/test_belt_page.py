@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.exchange import LAWS, LawBelt, Run, errors, exchange, reference, simulate
+from workshop.bench.exchange import CALLS, LAWS, LawBelt, Run, errors, exchange, reference, simulate
 from workshop.project import ROOT
 
 ROW = re.compile(r"\| (\w+) \| ((?:co-simulation|model exchange), .*?) \| (\d+) \| (\S+) \| (\S+) \|")
@@ -23,7 +23,8 @@ def rows() -> Iterator[tuple[str, str, float, float, float]]:
 def again(fmu: FrictionFmu, belt: LawBelt, way: str, calls: float) -> Run:
     interface, how = way.split(", ")
     if interface == "co-simulation":
-        return simulate(fmu, belt, COUPLINGS[how], int(calls))
+        coupling = COUPLINGS[how]
+        return simulate(fmu, belt, coupling, int(calls) // CALLS[coupling])
     return exchange(fmu, belt, float(how.rpartition(" ")[2]))
 
 

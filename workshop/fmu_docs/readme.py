@@ -21,7 +21,7 @@ from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
 from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
-from workshop.fmu_docs import laws, stretch
+from workshop.fmu_docs import directions, laws, stretch
 from workshop.fmu_docs.tutorial import PAGES, blocks
 from workshop.project import ROOT
 
@@ -180,10 +180,11 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         drawing(fmu, folder / f"{drawing.__name__}.png")
     laws.open_contact(fmu, folder / "physics-open-contact.png")
     laws.static_friction(fmu, folder / "physics-static-friction.png")
+    directions.draw(fmu, folder / "three-directions.png")
     stretch.draw(folder / "solver-stretch.png")
     names = (
         "table2", "overview", "fmpy_example", "step_sizes",
-        "physics-open-contact", "physics-static-friction", "solver-stretch",
+        "physics-open-contact", "physics-static-friction", "solver-stretch", "three-directions",
     )  # fmt: skip
     return sorted(folder / f"{name}.png" for name in names)
 

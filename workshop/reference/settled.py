@@ -77,6 +77,7 @@ def _cycle(scene: Scene, t0: Any, delta: Any, slips: int) -> Settled:
             if side == slips and abs(earlier - delta) <= 1e-15 * (abs(delta) + abs(shift)):
                 cycle = seen[k + 1 :]
                 total, count = sum(one[2] for one in cycle), sum(one[3] for one in cycle)
+                delta, slips, *_ = min(cycle, key=lambda one: abs(one[0]))
                 return Settled(delta, slips, total / count * REAL(scene.f))
     raise ArithmeticError("no cycle found")
 

@@ -87,11 +87,17 @@ CONTENTS = {
         "A mass on a belt": "examples/stick-slip/README",
         "A friction law": "examples/friction-law/README",
         "A slow plant": "examples/ultrasonic-slider/README",
+        "An ultrasonic motor": "examples/ultrasonic-motor/README",
         "Validation in CI": "examples/ci-validation/README",
         "A million scenarios": "examples/simulate-many/README",
         "Sweep": "examples/sweep/README",
     },
-    "Model": {"Equations": "docs/physics", "Validation": "docs/validation", "Errata": "docs/errata"},
+    "Model": {
+        "Equations": "docs/physics",
+        "Three directions": "docs/three-directions",
+        "Validation": "docs/validation",
+        "Errata": "docs/errata",
+    },
     "Solver": {"Accuracy, speed, stability": "docs/numerics", "How it works": "docs/solver"},
     "Trust": {
         "Reliability": "docs/reliability",

@@ -32,6 +32,12 @@ static const double SOON = 3.0;
 // sends to and fro.
 enum { MOST_IDLE = 4 };
 
+// What the push may bend between two points, over the most that it bends from point to point there. By hand.
+static const double BENDS = 1.5;
+
+// Halvings in search of a push that dips to 0 between two points. By hand: what is deeper is over in 1e-3 of the way.
+enum { MOST_HALVINGS = 10 };
+
 typedef struct {
     const FcScene* scene;
     FcScene bound; // of a bristle that is free, or slips in Dahl and LuGre
@@ -176,48 +182,73 @@ static void slip_points(March* m, double h, int rule, int side, Slip* slip) {
     }
 }
 
-// The least value of the parabola through three points of the push, the middle one the lowest, and where it is.
-static double dip(const Slip* slip, int i, double* t) {
-    const double a = slip->at.t[i - 1] - slip->at.t[i];
-    const double b = slip->at.t[i + 1] - slip->at.t[i];
-    const double f_a = slip->push[i - 1] - slip->push[i];
-    const double f_b = slip->push[i + 1] - slip->push[i];
-    const double bend = (f_b / b - f_a / a) / (b - a);
-    const double slope = f_a / a - bend * a;
-    const double x = bend > 0.0 ? fmax(a, fmin(b, -0.5 * slope / bend)) : 0.0;
-    *t = slip->at.t[i] + x;
-    return slip->push[i] + x * (slope + x * bend);
+// A distance [m] that is seen neither by the force nor, over the path, by work and heat. With static friction it may decide whether
+// the bristle breaks away: there only rounding is not seen.
+static double unseen(const March* m, double sigma, double D) {
+    if (fc_has_static_friction(m->scene->friction)) {
+        return ROUNDING_OF_BOUND * D;
+    }
+    return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
 }
 
-// A distance [m] that is seen neither by the force nor, over the path, by work and heat.
-static double unseen(const March* m, double sigma, double D) {
-    return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
+// The push between two points, where it is above 0, and its second derivative is at most `bend`.
+typedef struct {
+    FcPushed of;
+    double bend; // m/s3
+    double seen; // m, that an end of the slip may be off
+    double* evaluations;
+} Push;
+
+// Where between a and b it comes to 0, to be seen by halving as long as it may; infinite if nowhere.
+static double dip_of_push(const Push* push, double a, double at_a, double b, double at_b, int halvings) {
+    const double h = b - a;
+    const double slope = (at_b - at_a) / h;
+    const double x = 0.5 * h - slope / push->bend; // of the least that it may be
+    const double least = at_a + x * (slope - 0.5 * push->bend * (h - x));
+    if (!(x > 0.0 && x < h && least <= 0.0) || halvings == 0) {
+        return INFINITY;
+    }
+    FcPushed of = push->of;
+    const double middle = a + 0.5 * h;
+    const double at = fc_push_at(&of, middle);
+    *push->evaluations += 1.0;
+    const double first = dip_of_push(push, a, at_a, middle, at, halvings - 1);
+    if (isfinite(first)) {
+        return first;
+    }
+    return at <= 0.0
+               ? fc_root_between(fc_push_at, &of, a, at_a, middle, at, 0.0, push->seen, push->evaluations)
+               : dip_of_push(push, middle, at, b, at_b, halvings - 1);
+}
+
+// How much the push bends at point i of a panel.
+static double bend_at(const Slip* slip, int i) {
+    const double* t = slip->at.t;
+    const double* f = slip->push;
+    return 2.0 * ((f[i + 1] - f[i]) / (t[i + 1] - t[i]) - (f[i] - f[i - 1]) / (t[i] - t[i - 1])) /
+           (t[i + 1] - t[i - 1]);
 }
 
 // Where in the panel the push comes to 0; infinite if nowhere. At the start it is known to be above.
 static double end_of_push(March* m, int side, const Slip* slip) {
-    FcPushed of = {m->scene, bound_of_slip(m), side};
-    double* evaluations = &m->result->evaluations;
-    double most = 0.0;
-    for (int i = 0; i < slip->at.count; i++) {
-        most = fmax(most, fabs(slip->push[i]));
-    }
-    // What a push that is left over moves the bristle by until it has gone, push^2 / (2 most / h), is not seen.
-    const double near = sqrt(2.0 * unseen(m, slip->at.sigma[0], slip->D[0]) * most / slip->at.h);
-    for (int i = 0; i + 1 < slip->at.count; i++) {
-        if (slip->push[i + 1] <= 0.0) {
-            return fc_root_between(fc_push_at, &of, slip->at.t[i], slip->push[i], slip->at.t[i + 1],
-                                   slip->push[i + 1], near, evaluations);
+    const double* t = slip->at.t;
+    const double* f = slip->push;
+    Push push = {.of = {m->scene, bound_of_slip(m), side},
+                 .seen = unseen(m, slip->at.sigma[0], slip->D[0]),
+                 .evaluations = &m->result->evaluations};
+    const int last = slip->at.count - 1;
+    for (int i = 0; i < last; i++) {
+        push.bend =
+            BENDS * fmax(bend_at(slip, i > 0 ? i : 1), bend_at(slip, i + 1 < last ? i + 1 : last - 1));
+        const double end = push.bend > 0.0 && f[i] > 0.0
+                               ? dip_of_push(&push, t[i], f[i], t[i + 1], f[i + 1], MOST_HALVINGS)
+                               : INFINITY;
+        if (isfinite(end)) {
+            return end;
         }
-        double t;
-        const bool lowest = i > 0 && slip->push[i] < slip->push[i - 1] && slip->push[i] <= slip->push[i + 1];
-        if (lowest && dip(slip, i, &t) <= 0.5 * slip->push[i]) { // it may dip below 0 unseen
-            const double at_dip = fc_push_at(&of, t);
-            *evaluations += 1.0;
-            if (at_dip <= 0.0) {
-                return fc_root_between(fc_push_at, &of, slip->at.t[i - 1], slip->push[i - 1], t, at_dip, near,
-                                       evaluations);
-            }
+        if (f[i + 1] <= 0.0) {
+            return fc_root_between(fc_push_at, &push.of, t[i], f[i], t[i + 1], f[i + 1], 0.0, push.seen,
+                                   push.evaluations);
         }
     }
     return INFINITY;
@@ -275,30 +306,35 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
 }
 
-// In ElasticPlastic a slip ends before V turns back, unless the bound falls: where it does, at `end` at the latest.
-static double end_before_reversal(March* m, double push_now, double end) {
-    const double event = relaxes(m->scene) ? end : fc_drive_next_event(&m->scene->drive, m->t, end).time;
-    FcPushed of = {m->scene, bound_of_slip(m), m->side};
-    const double at_event = event < end ? fc_push_at(&of, event) : 1.0;
-    m->result->evaluations += 1.0;
-    if (at_event > 0.0) {
+// Where a slip ends at the latest, or the way to its bound of a bristle that slips: in ElasticPlastic where V turns back, unless the
+// bound falls there; else at `end`.
+static double latest_end(March* m, double end) {
+    const FcDrive* drive = &m->scene->drive;
+    if (relaxes(m->scene)) {
         return end;
     }
-    const double sigma = fc_scene_stiffness(m->scene, m->t);
-    const double near = sqrt(2.0 * unseen(m, sigma, fabs(m->result->delta)) * push_now / (event - m->t));
-    return fc_root_between(fc_push_at, &of, m->t, push_now, event, at_event, near, &m->result->evaluations);
+    FcDriveEvent event = fc_drive_next_event(drive, m->t, end);
+    while (!event.reversal && event.time < end) {
+        event = fc_drive_event_after(drive, &event, end);
+    }
+    if (!(event.time < end) || bound_stands(&m->bound)) {
+        return event.time;
+    }
+    m->result->evaluations += 1.0;
+    return fc_bound_rate(&m->bound, event.time) < 0.0
+               ? end
+               : event.time; // V is 0, so the kinetic bound is the static one
 }
 
 // Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.
 static void slip(March* m, double end, bool forced) {
     m->result->evaluations += 1.0;
-    const double push_now = forced ? 1.0 : fc_push(m->scene, bound_of_slip(m), m->t, m->side);
-    if (!(push_now > 0.0)) {
+    if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) > 0.0)) {
         end_slip(m);
         return;
     }
     plan(m);
-    const double slip_end = forced ? end : end_before_reversal(m, push_now, end);
+    const double slip_end = forced ? end : latest_end(m, end);
     find_cut(m, slip_end);
     int rule;
     double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
@@ -313,6 +349,9 @@ static void slip(March* m, double end, bool forced) {
         if (leaves > m->t + h) {
             add_slip(m, &panel);
             advance(m, h);
+            if (slip_end < end && m->t >= slip_end) {
+                end_slip(m);
+            }
             return;
         }
         if (leaves > m->t) {
@@ -429,8 +468,15 @@ static void stick(March* m, double end, bool clear) {
     plan(m);
     const int slips = m->result->slips;
     const FcScene* bound = slips != 0 ? m->scene : &m->bound;
+    double slip_end = end;
     if (slips != 0) {
-        find_cut(m, end);
+        m->result->evaluations += 1.0;
+        if (!(fc_push(m->scene, m->scene, m->t, slips) > 0.0)) {
+            end_slip(m);
+            return;
+        }
+        slip_end = latest_end(m, end);
+        find_cut(m, slip_end);
     } else {
         m->cut = end;
     }
@@ -454,15 +500,14 @@ static void stick(March* m, double end, bool clear) {
         const FcCourse course = course_of(m, bound, &at, x);
         FcMeeting met = {0, INFINITY};
         if (!clear) {
-            const double close =
-                fc_has_static_friction(m->scene->friction) ? 0.0 : unseen(m, at.sigma[0], course.D[0]);
-            met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0], close, &m->result->evaluations);
+            met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0],
+                                   unseen(m, at.sigma[0], course.D[0]), &m->result->evaluations);
         }
         if (slips != 0) {
             met.side = met.side == slips ? slips : 0;
             Slip panel;
             slip_points(m, h, rule, slips, &panel);
-            const double sticks = panel.push[0] > 0.0 ? end_of_push(m, slips, &panel) : m->t;
+            const double sticks = end_of_push(m, slips, &panel);
             if (sticks <= m->t + h && !(met.side != 0 && met.t <= sticks)) {
                 stick_until(m, bound, rule, sticks);
                 end_slip(m);
@@ -473,6 +518,9 @@ static void stick(March* m, double end, bool clear) {
             const FcMap map = stuck_map(m, &at, x);
             fc_map_apply(&map, m->result);
             advance(m, h);
+            if (slip_end < end && m->t >= slip_end) {
+                end_slip(m);
+            }
         } else {
             stick_until(m, bound, rule, met.t);
             begin_slip(m, met.side);

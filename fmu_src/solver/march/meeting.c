@@ -74,12 +74,13 @@ static double crossing(const FcCourse* course, int side, int i, double over, dou
     const double p_a = fmin(beyond_at(course, side, i), -over); // below, also if it has just left the bound
     if (course->exact) {
         Of of = {course, side};
-        return fc_root_between(beyond, &of, a, p_a, b, beyond_at(course, side, i + 1), close, evaluations);
+        return fc_root_between(beyond, &of, a, p_a, b, beyond_at(course, side, i + 1), close, 0.0,
+                               evaluations);
     }
     Cubic cubic = cubic_of(course, side, i);
     *evaluations += 2.0;
     double none = 0.0;
-    return a + (b - a) * fc_root_between(of_cubic, &cubic, 0.0, p_a, 1.0, cubic.p_b, 0.0, &none);
+    return a + (b - a) * fc_root_between(of_cubic, &cubic, 0.0, p_a, 1.0, cubic.p_b, 0.0, 0.0, &none);
 }
 
 // How much p moves from point to point near the cell.
@@ -109,24 +110,24 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     if (course->exact) {
         Of of = {course, side};
         const double top =
-            fc_root_between(approach, &of, a, cubic.slope_a, b, cubic.slope_b, 0.0, evaluations);
+            fc_root_between(approach, &of, a, cubic.slope_a, b, cubic.slope_b, 0.0, 0.0, evaluations);
         const double p = beyond(&of, top);
         *evaluations += 1.0;
         if (!(p > over)) {
             return false;
         }
-        *t = p_a < 0.0 ? fc_root_between(beyond, &of, a, p_a, top, p, close, evaluations) : a;
+        *t = p_a < 0.0 ? fc_root_between(beyond, &of, a, p_a, top, p, close, 0.0, evaluations) : a;
         return true;
     }
     double none = 0.0;
     const double top =
-        fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, &none);
+        fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, 0.0, &none);
     const double p = of_cubic(&cubic, top);
     const double at_middle =
         16.0 * top * top * (1.0 - top) * (1.0 - top); // what a cubic misses, over that in the middle
     double part = top;                                // it may be: a panel that is cut at the top says it
     if (p > over) {
-        part = p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, &none) : 0.0;
+        part = p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, 0.0, &none) : 0.0;
     } else if (!(p + MISSED_BY_CUBIC * at_middle * moves(course, side, i) > over)) {
         return false;
     }

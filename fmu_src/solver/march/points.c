@@ -1,6 +1,7 @@
 #include "solver/march/points.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 #include "solver/panels/nodes.h"
@@ -37,7 +38,7 @@ double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, 
 
 double fc_panel_end(double t, double h, double end) {
     const double next = t + h;
-    return end - next < 1e-3 * h || !(next > t) ? end : next;
+    return end - next <= 4.0 * DBL_EPSILON * end || !(next > t) ? end : next;
 }
 
 bool fc_refine_panel(double* h, int* rule, int tries) {

@@ -21,7 +21,7 @@ FcPlanner fc_planner(double tolerance);
 // The length [s] of the next panel of equal ones over `left` [s], of a scene that moves by 1 in smooth_time [s], and its rule.
 double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule);
 
-// Where a panel [t, t + h] of equal ones up to `end` ends: at `end`, if what is left is rounding.
+// Where a panel [t, t + h] on the way to `end` ends: at `end`, if what is left is rounding.
 double fc_panel_end(double t, double h, double end);
 
 const FcGaussRule* fc_rule(int rule);

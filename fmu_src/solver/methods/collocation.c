@@ -1,7 +1,7 @@
-// The default method. Inputs held and no vibration: the closed form. Otherwise the interval is split at the reversals of V,
-// where |V| has a kink, into stretches (stretches/stretch.h), and each stretch is crossed panel by panel
-// (stretches/crossing.h). Every panel's error is bounded or estimated and held against the budget (budget.h), so that F_t at
-// the interval's end and its mean stay within the tolerance.
+// The default method. Held inputs without vibration have a closed form. Otherwise the interval is split into
+// stretches (stretches/stretch.h) at the reversals of V, the kinks of |V|. Each stretch is crossed panel by
+// panel (stretches/crossing.h). Every panel's error is bounded or estimated and compared with the budget
+// (budget.h), so that F_t at the interval's end and its mean stay within the tolerance.
 #include "solver/methods/methods.h"
 
 #include <assert.h>
@@ -11,7 +11,7 @@
 #include "solver/panels/gauss_panel.h"
 #include "solver/stretches/crossing.h"
 
-// Without stiffness there is no force: the bristle goes with V.
+// Without stiffness there is no force: the bristle follows V.
 static FcMap slack_map(const FcScene* scene, double h) {
     FcMap map = fc_map_identity();
     map.offset = fc_drive_displacement(&scene->drive, 0.0, h);
@@ -19,8 +19,8 @@ static FcMap slack_map(const FcScene* scene, double h) {
     return map;
 }
 
-// An interval so short that V, which moves by no more than it is, has no event and meets no Stribeck peak, in one panel, if
-// it can: the daily case of an input that comes in many samples a period.
+// Crosses an interval in one bounded panel if it is so short that V cannot reach 0 or a Stribeck peak: the
+// common case of an input with many samples a period.
 static bool cross_in_one(FcCrossed* crossed, FcPhase phase, double delta_0, FcMapScope scope) {
     const FcInterval* interval = crossed->interval;
     const FcScene* scene = interval->scene;
@@ -54,8 +54,8 @@ static bool cross_in_one(FcCrossed* crossed, FcPhase phase, double delta_0, FcMa
     return true;
 }
 
-// The trajectories of the map are P, started from 1, and Q, started from 0; for one start alone P is 0 from the beginning
-// and Q starts from there.
+// The trajectories of the map are P from the start 1 and Q from the start 0. For one start alone P is 0 from
+// the beginning, and Q starts at delta_0.
 static void cross_stretches(FcCrossed* crossed, FcPhase start_phase, double delta_0, FcMapScope scope) {
     const FcInterval* interval = crossed->interval;
     const FcCoefficients start = fc_scene_coefficients_at_phase(interval->scene, 0.0, start_phase);
@@ -77,9 +77,9 @@ static void cross_stretches(FcCrossed* crossed, FcPhase start_phase, double delt
     }
 }
 
-// Where sigma stands still the work is the heat and what the bristle stores, sigma (delta_1^2 - delta_0^2) / 2: so it keeps
-// its digits deep in presliding, where nearly all of it is given back.
-// start [m] is the deflection that the map begins with where it holds for that alone, else 0.
+// With a constant sigma the work is the heat plus the energy that the bristle stores, sigma (delta_1^2 -
+// delta_0^2) / 2. So it keeps its digits deep in presliding, although nearly all of it comes back. start [m]:
+// the map's only start, or 0 if it holds for any.
 static void take_work_from_heat(FcMap* map, double sigma, double start) {
     map->work_slope = map->heat_slope + sigma * (1.0 - map->relaxation) * map->offset;
     map->work_offset = map->heat_offset + 0.5 * sigma * (map->offset - start) * (map->offset + start);

@@ -1,5 +1,7 @@
-// Coulomb friction has no state, F = g sgn V. Between two reversals of V impulse and work are integrals of g and of g V: closed forms
-// if g is constant, and else quadratures of smooth functions, to the tolerance.
+// Coulomb friction has no state: F = g sgn V. Between two reversals of V impulse and work are integrals of g
+// and of g V. They are closed forms if g is constant, and else quadratures of smooth functions, to the
+// tolerance.
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -11,6 +13,7 @@
 // Adds side times the integrals over [t, end] of g and g V.
 static void add_limit(const FcScene* scene, const FcSolverOptions* options, double duration, double t,
                       double end, FcStepResult* result) {
+    assert(0.0 <= t && t <= end && end <= duration);
     const double side = fc_sign(fc_drive_V(&scene->drive, 0.5 * (t + end)));
     if (fc_scene_limit_is_constant(scene)) {
         const double force = side * fc_scene_coefficients(scene, t).limit;

@@ -2,14 +2,15 @@
 //
 //     y = delta / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
 //
-// L = g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error of F_t / F_C; less
-// if the surfaces move less than that. The step is cut at the reversals of V. CVODE is started anew, in a time that
-// begins at 0, on every piece: it never steps over a kink and no history outlives a step. The error of y is bounded
-// absolutely: y is large where the contact is soft, and an error made there is multiplied when it stiffens. A Stribeck curve
-// is a bump of g around V = 0: steps shrink with |V| so that none goes over it unseen.
+// L is g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
+// of F_t / F_C. It is less if the surfaces move less than that. The step is cut at the reversals of V. CVODE
+// is started anew on every piece, in a time that begins at 0: it never steps over a kink, and no history
+// outlives a step. The error of y has an absolute bound, because y is large in a soft contact, and an error
+// made there is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0: steps
+// shrink with |V| so that none passes it unseen.
 //
-// Impulse, work, heat and drag are quadratures on the dense output. Where delta is smooth, sigma, V or delta^2 need not
-// be as smooth: a step of CVODE is halved until two rules agree, at no cost to CVODE.
+// Impulse, work, heat and drag are quadratures on the dense output. sigma, V or delta^2 may be less smooth
+// than delta. So a step of CVODE is halved until two rules agree, at no cost to CVODE.
 #include <stdio.h>
 
 #include "solver/methods/methods.h"
@@ -24,12 +25,12 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-// All by hand but for the rules of quadrature: finer ones cost steps, coarser ones break the tolerance
-// (tests/solver/test_cvode.py).
-// CVODE bounds the local error of one step: this fraction of solver.tolerance keeps the sum of them within it.
+// All are chosen empirically but for the rules of quadrature: half of a fraction costs steps, twice of it
+// doubles the error that passes (tests/solver/test_cvode.py). CVODE bounds the local error of one step. This
+// fraction of solver.tolerance keeps the sum of the errors within it.
 #define LOCAL_ERROR_FRACTION 0.01
-// Below the smallest, 45 eps, rounding governs: the true error stops following solver.tolerance between 1e-10 and 1e-12. Above
-// the largest an error is no longer small beside the force.
+// Below the smallest, 45 eps, rounding limits the accuracy: the true error stops following solver.tolerance
+// between 1e-10 and 1e-12. Above the largest an error is not small beside the force.
 #define SMALLEST_LOCAL_ERROR 1e-14
 #define LARGEST_LOCAL_ERROR 1e-3
 
@@ -37,17 +38,18 @@
 #define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
 #define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
 
-// A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that steps
-// approach the peak geometrically, and on the peak by this fraction of V_S.
+// A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that
+// steps approach the peak geometrically, and on the peak by this fraction of V_S.
 #define STRIBECK_STEP 0.25
 #define SHORTEST_STRIBECK_STEP 1e-10 // of the piece: a peak that takes less time is not resolved
 
-// Lobatto's rule with four nodes on [-1, 1], exact for the degree 5, which is that of CVODE's dense output, and its
-// Kronrod extension with seven, exact for the degree 9: W. Gander, W. Gautschi, BIT 40 (2000) 84. What counts is the
-// latter; their difference may be this fraction of solver.tolerance, in each quadrature of a piece.
+// Lobatto's rule with four nodes on [-1, 1], exact for the degree 5, which is that of CVODE's dense output,
+// and its Kronrod extension with seven, exact for the degree 9: W. Gander, W. Gautschi, BIT 40 (2000) 84. The
+// result is the latter. Their difference may be this fraction of solver.tolerance, in each quadrature of a
+// piece.
 #define QUADRATURE_FRACTION 0.1
 #define QUADRATURE_ROUNDING 1e-13 // 450 eps, of the integral of the magnitude: less says nothing
-#define MOST_STEP_HALVINGS 40     // of a step of CVODE: what is left is 1e-12 of it
+#define MOST_STEP_HALVINGS 40     // of a step of CVODE, to 1e-12 of it
 enum { KRONROD_NODES = 7 };
 static const double node_at[KRONROD_NODES] = {-1.0, -0.81649658092772603273, -0.44721359549995793928,
                                               0.0,  0.44721359549995793928,  0.81649658092772603273,
@@ -56,7 +58,7 @@ static const double lobatto[KRONROD_NODES] = {1.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 5.
 static const double kronrod[KRONROD_NODES] = {11.0 / 210.0,  72.0 / 245.0, 125.0 / 294.0, 16.0 / 35.0,
                                               125.0 / 294.0, 72.0 / 245.0, 11.0 / 210.0};
 
-// What is integrated besides the deflection; see FcStepResult.
+// The integrals beside the deflection; see FcStepResult.
 enum { IMPULSE, WORK, HEAT, DRAG, INTEGRALS };
 typedef struct {
     double of[INTEGRALS];
@@ -202,8 +204,8 @@ static double local_error_bound(const FcScene* scene, double tolerance, double h
     return fmin(fmax(local_error, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
 }
 
-// First step on a piece: where its layer of width w, sqrt(2 F_C / (sigma |V'|)) after a reversal and
-// F_C / (sigma |V|) elsewhere, lets backward Euler have the asked error.
+// First step on a piece: backward Euler has the required error with it in the layer of width w, which is
+// sqrt(2 F_C / (sigma |V'|)) after a reversal and F_C / (sigma |V|) elsewhere.
 static double initial_step(FcCvode* solver, double duration, double local_error) {
     const FcCoefficients at = coefficients_at(solver, 0.0);
     const double V_rate = fabs(fc_drive_V_rate(&solver->scene->drive, solver->start));
@@ -223,8 +225,8 @@ static double stribeck_step(const FcScene* scene, double t) {
     return V_rate > 0.0 ? change / V_rate : INFINITY;
 }
 
-// The difference that the two rules may have on the piece: the tolerance's part of what a force of the size that the
-// tolerance is relative to would give over the piece. delta' is at most about V in size where it counts.
+// The allowed difference of the two rules on the piece: a part of the tolerance, times the integrals of a
+// force of the size of the tolerance's scale. |delta'| is at most about |V| whenever it counts.
 static Integrals allowed_difference(const FcScene* scene, double start, double duration, double h,
                                     const FcSolverOptions* options) {
     const double path = fabs(fc_drive_displacement(&scene->drive, start, start + duration));
@@ -234,7 +236,7 @@ static Integrals allowed_difference(const FcScene* scene, double start, double d
                         share * path * fc_drive_largest_speed(&scene->drive, h)}};
 }
 
-// The integrands at CVODE's time tau, where the deflection is y.
+// The integrands at CVODE's time tau, for the scaled deflection y.
 static Integrals integrands(FcCvode* solver, double tau, double y) {
     const FcCoefficients at = coefficients_at(solver, tau);
     const double delta = deflection(solver, y);
@@ -243,8 +245,8 @@ static Integrals integrands(FcCvode* solver, double tau, double y) {
     return (Integrals){{F, F * at.V, F * slip, (at.V - slip) * at.V}};
 }
 
-// Adds the integrals over [tau, tau_end], within CVODE's last step, given the integrands at both ends. False where CVODE
-// has no dense output there.
+// Adds the integrals over [tau, tau_end], within CVODE's last step, given the integrands at both ends. False
+// if CVODE has no dense output there.
 static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals first, Integrals last,
                           int halvings) {
     const double half = 0.5 * (tau_end - tau);

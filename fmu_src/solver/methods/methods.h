@@ -4,11 +4,11 @@
 
 #include "solver/methods/periods.h"
 
-// The default: an FcIntervalMap, for the scenes in which something moves, and the closed form for held inputs without
+// The default: the map of an interval in which something moves, and the closed form for held inputs without
 // vibration, exact for any h [s] >= 0.
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations);
-// The same of a bristle that has a bound, up to where the watch sees it met.
+// The same of a bounded bristle, up to its first meeting with the bound.
 struct FcWatch;
 FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration,
                              double delta_0, struct FcWatch* watch, double* evaluations);
@@ -18,13 +18,14 @@ void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcS
 void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                      FcStepResult* result);
 
-// The others take *result over a step of h [s] >= 0. They return false, with *message filled and *result as it was, if they refuse: an
-// explicit method that would be unstable, a number that ceases to be finite, too much work, CVODE failing.
+// The others take *result over a step of h [s] >= 0. They return false, with *message filled and *result
+// unchanged, if they refuse the step: an explicit method would be unstable, a number is not finite, the work
+// is too much, or CVODE fails.
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message);
 
-// SUNDIALS CVODE keeps its memory between steps, never its state. fc_cvode_new gives NULL, with *message filled, without
-// memory or in a build without SUNDIALS; fc_cvode_free takes NULL.
+// SUNDIALS CVODE keeps its memory between steps, never its state. fc_cvode_new gives NULL, with *message
+// filled, without memory or in a build without SUNDIALS; fc_cvode_free takes NULL.
 typedef struct FcCvode FcCvode;
 FcCvode* fc_cvode_new(FcMessage* message);
 void fc_cvode_free(FcCvode* solver);

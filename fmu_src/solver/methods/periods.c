@@ -7,20 +7,24 @@
 #include "solver/methods/leap.h"
 #include "solver/pieces.h"
 
-// More periods than this with moving inputs are refused. By hand: they would take minutes.
+// The largest number of periods with moving inputs. More are refused: they may take minutes.
 static const double MOST_CHANGING_PERIODS = 1e6;
 
-// Two ends of periods that differ by less than this, over the deflection, are the same. By hand: less costs a period, more takes an
-// end that still changes. A bristle that relaxes by a small part of its way in each period has that many times farther to go;
-// LEAST_PART is for ElasticPlastic, whose ends are the same but for rounding.
+// The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
+// costs a part of a period; twice of it accepts ends that still change by twice as much. A bristle that
+// relaxes by a small part of its way in each period has that many times farther to go. LEAST_PART is for
+// ElasticPlastic, whose ends differ by rounding alone.
 static const double SAME_END = 1e-10;
 static const double LEAST_PART = 1e-4;
 
-// This near to the edge of the free starts, over it, a start is at the edge. Rounding: 450 eps.
+// The distance from the edge of the free starts, over it, below which a start is at the edge. Rounding: 450
+// eps.
 static const double ROUNDING_OF_EDGE = 1e-13;
 
-// Periods that meet the bound are followed up to this number for a repetition. With static friction where the bristle sticks again may
-// depend on where it broke away: then periods need not repeat, and the mean over so many meetings is taken. By hand.
+// The largest number of periods that meet the bound before a repetition is given up. With static friction the
+// place of sticking may depend on the place of break-away. Then periods need not repeat, and the mean over
+// the last half of the meetings counts. Half as many would give a mean over fewer periods; twice as many
+// would cost twice the time.
 enum { MOST_MEETINGS = 1000 };
 
 void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
@@ -51,6 +55,8 @@ typedef struct {
     // After a period that met its bound: the last one whose number is a power of 2.
     FcStepResult met;
     double met_at; // periods; negative for none
+    FcBristle
+        least; // the one with the smallest deflection at the end of a period that met its bound since then
 } Walk;
 
 static double size_of(const FcStepResult* result) {
@@ -67,8 +73,9 @@ static FcMap free_map_of(Walk* walk) {
     return walk->free_map;
 }
 
-// The farthest start to that side (1 or -1) that meets no bound, from where the farthest of all ends.
+// The farthest start to that side (1 or -1) that meets no bound, from the end of the farthest start of all.
 static double edge_of(Walk* walk, int side) {
+    assert(side == 1 || side == -1);
     double* edge = &walk->edge[side < 0];
     if (isfinite(*edge)) {
         return *edge;
@@ -168,7 +175,7 @@ static double free_periods(Walk* walk, double left) {
         return left;
     }
     const int side = s > 0.0 ? 1 : -1;
-    const double relaxation = fmin(1.0, map.relaxation); // which rounding may exceed
+    const double relaxation = fmin(1.0, map.relaxation); // rounding may exceed 1
     const double edge = edge_of(walk, side);
     const double room = side * (edge - delta) / fabs(s);
     if (!(room * relaxation < 1.0)) { // never
@@ -178,10 +185,12 @@ static double free_periods(Walk* walk, double left) {
         return 0.0;
     }
     const double n = relaxation > 0.0 ? log1p(-relaxation * room) / log1p(-relaxation) : room;
+    assert(!(n < 0.0));
     return fmin(left, floor(n) + 1.0);
 }
 
 static void repeat(Walk* walk, double times) {
+    assert(times >= 0.0 && walk->met_at >= 0.0 && walk->met_at < walk->done);
     FcStepResult* total = &walk->total;
     const FcStepResult* met = &walk->met;
     total->impulse += times * (total->impulse - met->impulse);
@@ -192,7 +201,7 @@ static void repeat(Walk* walk, double times) {
     walk->done += times * (walk->done - walk->met_at);
 }
 
-// Whether the bristle is where it was after the last period that met its bound.
+// Whether the bristle has returned to its state after the kept period.
 static bool repeats(Walk* walk) {
     const FcStepResult* total = &walk->total;
     const double size = size_of(total);
@@ -205,11 +214,13 @@ static bool repeats(Walk* walk) {
     return changed <= SAME_END * part * size;
 }
 
-// Goes through `periods`, which may be infinitely many. Stops where periods repeat: those since met_at, of which there are none if a
-// single free one repeats. If too many meetings do not repeat, met_at is about half of them ago.
+// Takes `periods`, which may be infinitely many, and stops if periods repeat. Those since met_at do, or a
+// single free one if met_at is negative. If too many meetings do not repeat, met_at is about half of them
+// ago.
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
     walk->met_at = -1.0;
+    walk->least.delta = INFINITY;
     int meetings = 0;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
         const FcStepResult before = *total;
@@ -222,15 +233,21 @@ static void walk_to_repetition(Walk* walk, double periods) {
             return;
         }
         const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
-        if (n == 0.0) { // it has met its bound, or is at the edge of doing so
+        if (n == 0.0) { // it has met its bound, or will in the next period
             meetings++;
+            if (!was_free && (isinf(walk->least.delta) ||
+                              size_of(total) < hypot(walk->least.delta, walk->least.delta_y))) {
+                walk->least =
+                    (FcBristle){.delta = total->delta, .slips = total->slips, .delta_y = total->delta_y};
+            }
             if (repeats(walk)) {
                 return;
             }
-            // Kept ever longer, so that a cycle of any length comes back to it.
+            // Each is kept twice as long as the last, so that a cycle of any length returns to it.
             if ((meetings & (meetings - 1)) == 0) {
                 walk->met = *total;
                 walk->met_at = walk->done;
+                walk->least.delta = INFINITY;
             }
             continue;
         }
@@ -280,7 +297,9 @@ FcPeriods fc_periods_in(const FcScene* scene, double h) {
     assert(h >= 0.0);
     const double f = scene->drive.vibration.f;
     const double count = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
-    return (FcPeriods){.count = count, .rest = count > 0.0 ? fmax(0.0, fma(h, f, -count) / f) : h};
+    const double rest = count > 0.0 ? fmax(0.0, fma(h, f, -count) / f) : h;
+    assert(rest <= h);
+    return (FcPeriods){.count = count, .rest = rest};
 }
 
 bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMessage* message) {
@@ -337,8 +356,13 @@ FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSol
         const double cycle = walk.done - walk.met_at;
         if (walk.met_at >= 0.0 && cycle > 0.0) {
             *end = walk.total;
-            return (FcVector){(end->impulse - walk.met.impulse) / cycle * f,
-                              (end->impulse_y - walk.met.impulse_y) / cycle * f};
+            if (isfinite(walk.least.delta)) {
+                end->delta = walk.least.delta;
+                end->delta_y = walk.least.delta_y;
+                end->slips = walk.least.slips;
+            }
+            return (FcVector){(walk.total.impulse - walk.met.impulse) / cycle * f,
+                              (walk.total.impulse_y - walk.met.impulse_y) / cycle * f};
         }
         free_map_of(&walk);
     } else {

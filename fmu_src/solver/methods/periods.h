@@ -1,15 +1,15 @@
-// Many vibration periods for the price of a few.
+// Many vibration periods at the cost of a few.
 //
-// With the inputs held, every period of the vibration is the same map of the deflection. It is affine unless the bristle meets its
-// bound:
+// With held inputs every period of the vibration is the same map of the deflection, a clamped affine one if
+// the bristle has a bound:
 //
 //     delta -> clamp(P delta + Q, lo, hi),  0 <= P <= 1
 //
-// It rises with delta, so the deflection goes one way from period to period. Until the bristle meets its bound, n periods are the
-// n-th power of the affine map, and n is known in closed form: the highest start that meets none is the one that ends
-// where the highest start of all ends. A period that meets the bound forgets its start, so that periods soon repeat. With
-// static friction, break-away is a drop, and what repeats may be several periods: some that stick, and one that slips.
-// With moving inputs the periods differ (leap.h).
+// The map rises with delta, so the deflection goes one way from period to period. Until the bristle meets its
+// bound, n periods are the n-th power of the affine map, and n has a closed form: the highest start that
+// meets no bound ends at the end of the highest start of all. A period that meets the bound forgets its
+// start, so periods soon repeat. With static friction break-away is a drop, and a cycle of several periods
+// may repeat: some stick, and one slips. With moving inputs the periods differ (leap.h).
 #ifndef FC_SOLVER_PERIODS_H
 #define FC_SOLVER_PERIODS_H
 
@@ -19,10 +19,10 @@
 #include "solver/affine_map.h"
 #include "solver/solver.h"
 
-// What a map must hold for: the deflection delta_0 at the start alone, which is cheaper, or any.
+// The starts for which a map must hold: the deflection delta_0 alone, which is cheaper, or any.
 typedef enum { FC_MAP_THIS_START, FC_MAP_ANY_START } FcMapScope;
 
-// Takes *result over [0, duration] of the scene and adds what the interval gives.
+// Takes *result over [0, duration] of the scene and adds the interval's integrals.
 typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
                        FcStepResult* result);
 
@@ -31,7 +31,7 @@ typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, dou
 typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
                            double delta_0, FcMap* across, double* evaluations);
 
-// How a law is integrated.
+// The integration of a law.
 typedef struct {
     FcStep step;
     FcFreeMap free_map;
@@ -43,19 +43,20 @@ typedef struct {
 void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
                      FcStepResult* total);
 
-// How a step of h [s] >= 0 divides: whole periods of the vibration, and what is left [s]. None without vibration.
+// The parts of a step of h [s] >= 0: whole periods of the vibration, none without vibration, and the rest
+// [s].
 typedef struct {
     double count;
     double rest;
 } FcPeriods;
 FcPeriods fc_periods_in(const FcScene* scene, double h);
 
-// Whether a step of h [s] may be computed and has cost no more evaluations than FC_MOST_EVALUATIONS: false, with
-// *message filled, if not, or if it holds too many periods that differ.
+// False, with *message filled, if a step of h [s] has too many periods that differ, or has taken more than
+// FC_MOST_EVALUATIONS.
 bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMessage* message);
 
-// The step [0, h], h [s] >= 0, from the bristle in *result, to which it is added. Returns false, with *message filled, if the
-// periods or the evaluations are too many.
+// The step [0, h], h [s] >= 0, from the bristle in *result. Adds its integrals to *result. Returns false,
+// with *message filled, if the periods or the evaluations are too many.
 bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
                      FcStepResult* result, FcMessage* message);
 

@@ -1,9 +1,10 @@
-// Arithmetic for the loops over the nodes of a panel: two numbers side by side, which a processor adds and multiplies at
-// once, and e^x - 1 near 0.
+// Arithmetic for the loops over the nodes of a panel: two numbers side by side, which a processor adds and
+// multiplies at once, and e^x - 1 near 0.
 #ifndef FC_SOLVER_ARITHMETIC_H
 #define FC_SOLVER_ARITHMETIC_H
 
-// Compilers do not find all such pairs by themselves. The first has an even place in an array that is FC_PAIRED.
+// Compilers do not find all such pairs by themselves. The first has an even place in an array that is
+// FC_PAIRED.
 typedef double FcPair __attribute__((vector_size(16), may_alias));
 
 #define FC_PAIRED __attribute__((aligned(16))) // the bytes of two
@@ -14,10 +15,12 @@ static inline void fc_pair_put(double* first, FcPair pair) { *(FcPair*)first = p
 
 static inline double fc_pair_sum(FcPair pair) { return pair[0] + pair[1]; }
 
-// Largest argument of this series and of those of nodes.c. Derived: their remainders are then under 1e-17.
+// The largest argument of this series and of those of nodes.c. Derived: their remainders are then below
+// 1e-17.
 static const double FC_SERIES_RANGE = 0.25;
 
-// By Taylor series. In pairs of terms, which a processor adds up side by side, where Horner's scheme waits for each sum.
+// By Taylor series, in pairs of terms. A processor adds them side by side, whereas Horner's scheme waits for
+// each sum.
 static inline double fc_series_exp_less_1(double x) {
     const double x_2 = x * x;
     const double x_4 = x_2 * x_2;

@@ -67,7 +67,7 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
 FC_INLINE void panel_of_nodes(int count, const FcScene* scene, double t, double h, const FcTrajectories* from,
                               bool judged, FcPanel* panel) {
     assert(h > 0.0);
-    switch (count) { // constants where panel_of is inlined
+    switch (count) { // panel_of is inlined with a constant count
     case 4:
         panel_of(&FC_GAUSS_4, 4, scene, t, h, from, judged, panel);
         break;
@@ -88,8 +88,8 @@ void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const F
     panel_of_nodes(count, scene, t, h, from, true, panel);
 }
 
-// n nodes, and K at the most: 1, and what multiplies phi, mu, z and sqrt(z). Fitted by workshop.constants.panel_bound: the upper
-// envelope of what it measured. Its phi mu is mu here.
+// n nodes, and the bound of K: its constant, and the factors of phi, mu, z and sqrt(z). Fitted by
+// workshop.constants.panel_bound as the upper envelope of the errors that it measured. Its phi mu is mu here.
 enum { BOUNDED_RULES = 4 };
 static const struct {
     int n;
@@ -108,9 +108,10 @@ static double to_the_2n(double x, int n) {
     return n == 4 ? x_8 : n == 6 ? x_8 * x_4 : n == 8 ? x_8 * x_8 : x_8 * x_8 * x_8;
 }
 
-// The error of the force at the panel's end, over the least of 1 and z, and of the mean force, work and heat in the panel,
-// over sigma times the deflection, at the most; h [s].
+// Bound of the error of the force at the panel's end, over the least of 1 and z, and of the mean force, work
+// and heat in the panel, all over sigma times the deflection; h [s].
 static double bound(const FcPace* pace, int rule, double h, double z) {
+    assert(rule >= 0 && rule < BOUNDED_RULES && h > 0.0 && !(z < 0.0));
     const double phi = 0.5 * pace->phase * h;
     const double mu = 0.5 * pace->log_sigma * h;
     const double K = BOUND[rule].one + BOUND[rule].phi * phi + BOUND[rule].mu * mu + BOUND[rule].z * z +
@@ -118,8 +119,8 @@ static double bound(const FcPace* pace, int rule, double h, double z) {
     return to_the_2n(K / (2.94 * BOUND[rule].n), BOUND[rule].n);
 }
 
-// What the bound may be: force is that of the deflection in it, of a bristle that settles at |X| / z. Heat goes with the
-// square of a force beyond the limit.
+// The largest bound that is accepted. `force` is that of the largest deflection in the panel, of a bristle
+// that settles at |X| / z. The heat goes with the square of a force beyond the limit.
 static double allowed_bound(const FcInterval* interval, double X, double z, const FcTrajectories* from) {
     const double deflection = fabs(from->delta_0) + from->scale + fabs(X) / fc_most(1.0, z);
     const double force = interval->stiffness * deflection;
@@ -143,7 +144,7 @@ bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t
     panel_of_nodes(BOUND[rule].n, scene, t, h, from, false, panel);
     panel->nodes = BOUND[rule].n;
     *evaluations += BOUND[rule].n;
-    // The displacement is known; a bristle that forgets little would sum up what its quadrature misses.
+    // The displacement is known. A bristle that forgets little would sum up the errors of its quadrature.
     panel->map.offset += (1.0 - panel->map.relaxation) * (X - panel->displacement);
     return panel->z <= z || bound(&interval->pace, rule, h, panel->z) <= allowed_bound(interval, X, z, from);
 }

@@ -1,4 +1,5 @@
-// Quadrature over the nodes of a Gauss rule: integrals up to each node, exponentials of them, and what a rule misses.
+// Quadrature over the nodes of a Gauss rule: integrals up to each node, their exponentials, and the error of
+// a rule.
 #ifndef FC_SOLVER_GAUSS_RULE_H
 #define FC_SOLVER_GAUSS_RULE_H
 
@@ -8,10 +9,10 @@
 #include "solver/panels/panel.h"
 #include "solver/panels/panel_tables.h"
 
-// Nodes of the largest rule. By hand: where these do not suffice a panel is halved.
+// Nodes of the largest rule. If they do not suffice, a panel is halved. Half of them would halve more panels.
 enum { FC_GAUSS_MOST_NODES = 12 };
 
-// The next number of nodes that there is a rule of.
+// The next number of nodes for which there is a rule.
 static inline int fc_gauss_count(double nodes) {
     return nodes <= 4.0 ? 4 : nodes <= 6.0 ? 6 : nodes <= 8.0 ? 8 : FC_GAUSS_MOST_NODES;
 }
@@ -50,8 +51,10 @@ FC_INLINE void fc_exponentials_less_1(int n, const double* x, double largest, do
     }
 }
 
-// Of a quadrature that is exact up to the degree 2 n - 1: the tail, falling on for three quarters of the n degrees that it
-// would fall for if it fell evenly; as it falls there, or as it fell from the largest value on, whichever is less.
+// The estimated error of the quadrature of f over [0, 1]. The rule is exact up to the degree 2 n - 1, n
+// degrees beyond the tail. Coefficients that fell evenly would have fallen by tail.fall^n there. The estimate
+// takes three quarters of that exponent, because they do not fall evenly. It takes the slower of two falls:
+// that of the tail, and the mean fall from the largest value to the tail.
 FC_INLINE double fc_gauss_error(const FcGaussRule* rule, int n, const double* f) {
     const FcTail tail = fc_tail_of(n, rule->tail, f);
     const double largest = fc_largest(n, f);

@@ -23,8 +23,8 @@ static inline double series_cos_less_1(double x) {
     return y * (low + y_2 * y_2 * high);
 }
 
-// How often arguments of this size have to be halved for the series. By hand: each doubling back loses digits, more than these
-// too many.
+// The largest number of halvings of an argument for the series. Each doubling back loses digits: twice as
+// many would lose too many, half as many would call the library more often.
 enum { MOST_SERIES_HALVINGS = 4 };
 typedef struct {
     int count;

@@ -1,7 +1,8 @@
-// What the two kinds of panel share: their maps by quadrature over the nodes, and the tails that tell their errors.
+// The common parts of the two kinds of panel: maps by quadrature over the nodes, and tails that estimate
+// their errors.
 //
-// A panel is an interval of time on which V keeps its sign. The bristle's equation is solved at the panel's nodes for
-// all starts at once, delta = P delta_0 + Q, and everything an interval's map holds follows from P and Q there.
+// A panel is an interval of time on which V keeps its sign. The bristle's equation is solved at the panel's
+// nodes for all starts at once, delta = P delta_0 + Q. All coefficients of the map follow from P and Q there.
 #ifndef FC_SOLVER_PANEL_H
 #define FC_SOLVER_PANEL_H
 
@@ -16,7 +17,7 @@
 typedef struct {
     FcMap map;
     double z;                  // integral of r = sigma |V| / g over the panel
-    double z_from_start;       // what it were if r stayed as it is at the start (of a Gauss panel)
+    double z_from_start;       // h r at the first node (of a Gauss panel)
     double rate, sigma, limit; // r [1/s], sigma [N/m] and g [N] at the end (of a Radau panel)
     double displacement;       // m, of V by the panel's quadrature
     double end_error;          // N, estimated, of the force at the end
@@ -24,7 +25,7 @@ typedef struct {
     int nodes;         // of a bounded Gauss panel
 } FcPanel;
 
-// What a panel knows at its nodes; a Radau panel's start comes last.
+// The values at a panel's nodes; a Radau panel's start comes last.
 typedef struct {
     double V[FC_MOST_NODES];     // m/s
     double sigma[FC_MOST_NODES]; // N/m
@@ -44,21 +45,21 @@ FC_INLINE void fc_keep_nodes(FcPanelNodes* keep, int n, const FcNodeCoefficients
     }
 }
 
-// The trajectories whose errors count: the one that starts at delta_0 [m], and the homogeneous one that starts at
-// scale [m] where the map must hold for any start, else 0. speed [m/s] is what the work is relative to, held [N] the
-// force whose work is put right afterwards.
+// The trajectories whose errors count: the one that starts at delta_0 [m], and the homogeneous one that
+// starts at scale [m] if the map must hold for any start, else 0. speed [m/s] is the scale of V for the work,
+// held [N] the force whose work is corrected afterwards.
 typedef struct {
     double delta_0;
     double scale;
     double speed;
     double held;
-    FcPanelNodes* keep; // where the panel leaves what it knows at its nodes, or NULL
+    FcPanelNodes* keep; // receives the values at the nodes, or NULL
 } FcTrajectories;
 
 FC_INLINE double fc_least(double a, double b) { return a < b ? a : b; }
 FC_INLINE double fc_most(double a, double b) { return a > b ? a : b; }
 
-// n is even here and where pairs are read below.
+// n is even here and in the other functions that read pairs.
 FC_INLINE double fc_dot(int n, const double* a, const double* b) {
     FcPair sum = {0.0, 0.0};
     for (int i = 0; i < n; i += 2) {
@@ -110,7 +111,8 @@ FC_INLINE void fc_panel_integrals(int n, const double* weight, const double* P, 
     map->heat_offset = fc_pair_sum(heat_offset);
 }
 
-// The larger of the two highest Legendre coefficients of a function over the nodes, and by how much they fall per degree.
+// The larger of the two highest Legendre coefficients of a function over the nodes, and their ratio from
+// degree to degree.
 typedef struct {
     double top;
     double fall;
@@ -137,15 +139,14 @@ FC_INLINE double fc_largest(int n, const double* f) {
     return largest;
 }
 
-// Of a tail, what is more than the rounding of a function of that size.
+// The part of a tail above the rounding of a function of that size.
 FC_INLINE double fc_beyond_rounding(double largest, double top) {
     return fc_most(0.0, top - 3e-14 * largest);
 }
 
-// What the quadratures of F, of F V and of the heat F^2 |V| / g are estimated by: one function whose tail has all three.
-// Of the last two, only those of F - held: what the constant force held does is put right by the displacement, which is
-// known.
-// side_per_limit: the sign of V over g.
+// The function f whose tail estimates the quadratures of F, of F V and of the heat F^2 |V| / g together. The
+// last two count for F - held alone, since the known displacement corrects the work of the constant force
+// `held`. side_per_limit: sgn V / g.
 FC_INLINE void fc_panel_force(int n, const FcNodeCoefficients* at, const double* side_per_limit, double side,
                               double speed, double held, const double* u, double* f) {
     const double side_per_speed = side / speed;

@@ -7,7 +7,8 @@
 #include "solver/panels/panel_tables.h"
 #include "solver/panels/radau_error.h"
 
-// The lengths of the loops below are known only once the outer one is unrolled; then they become vector instructions.
+// The lengths of the loops below are known only once the outer one is unrolled; then they become vector
+// instructions.
 #ifdef __clang__
 #define UNROLL _Pragma("unroll")
 #else
@@ -18,8 +19,8 @@
 enum { STAGES = FC_RADAU_STAGES, COUNT = FC_RADAU_POINTS, WIDEST = STAGES + 3 };
 typedef double StageSystem[STAGES][WIDEST] FC_PAIRED;
 
-// Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative. By pairs of columns; those
-// left of the pivot may be touched, they are not read again.
+// Gaussian elimination without pivoting: the matrix is A^-1 plus a diagonal that is not negative. By pairs of
+// columns; those left of the pivot may be touched, they are not read again.
 FC_INLINE void solve(StageSystem row) {
     enum { n = STAGES };
     UNROLL
@@ -111,7 +112,7 @@ void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const
         fc_panel_force(count, &at, side_per_limit, side, from->speed, 0.0, u, f);
         mean_error += fc_radau_quadrature_error(f);
     }
-    // A defect is damped at the end by what relaxes there, inside by the least that does anywhere.
+    // Relaxation damps a defect: at the end by the rate there, inside by the least rate of the panel.
     const double whole = panel->z;
     const double z_last = fc_most(0.0, fc_least(z[last], whole));
     const double z_least = fc_most(fc_least(z_last, z[n]), fc_least(whole, sqrt(whole)));

@@ -4,9 +4,9 @@
 //
 //     (A^-1 + diag(h r_i)) u = A^-1 1 u(0) + h V_i,      r = sigma |V| / g,
 //
-// whose matrix differs from a constant one in the diagonal only. It is solved for two right-hand sides at once: the
-// homogeneous equation started from 1, less that 1 so that a small relaxation keeps its digits, and the full
-// equation started from 0.
+// whose matrix differs from a constant one in the diagonal only. It is solved for two right-hand sides at
+// once: the homogeneous equation from the start 1, less this 1 so that a small relaxation keeps its digits,
+// and the full equation from the start 0.
 #ifndef FC_SOLVER_RADAU_PANEL_H
 #define FC_SOLVER_RADAU_PANEL_H
 

@@ -65,7 +65,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
     double none = 0.0;
     if (a.rate * b.rate > 0.0 && a.bend * b.bend < 0.0 && a.rate * a.bend < 0.0) {
         // The rate comes nearest to 0 inside, and may pass it.
-        const double t = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, &none);
+        const double t = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, 0.0, &none);
         const Sample nearest = sample_at(drive, t);
         if (nearest.rate < 0.0) {
             a = nearest;
@@ -76,7 +76,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
     if (!(a.rate < 0.0 && b.rate >= 0.0)) {
         return false;
     }
-    *center = fc_root_between(rate_of_square, drive, a.t, a.rate, b.t, b.rate, 0.0, &none);
+    *center = fc_root_between(rate_of_square, drive, a.t, a.rate, b.t, b.rate, 0.0, 0.0, &none);
     return true;
 }
 

@@ -15,24 +15,25 @@
 #include "solver/stretches/section.h"
 #include "solver/stretches/settled_panel.h"
 
-// Radau panels that are refused in a row before one is taken as it is. By hand: it is shortened by up to 0.4^12,
-// where rounding rules; fewer would let panels pass that miss the tolerance. And the decades by which refused panels make the
-// next plans finer, at the most. By hand: costs tries, not accuracy.
+// MOST_TRIES: refusals of a Radau panel in a row before it is taken as it is. They shorten it to 0.4^12 of
+// its length, at which rounding limits it. Half as many would let panels pass that miss the tolerance; twice
+// as many would cost time alone. MOST_CAUTION: the largest number of decades by which refused panels make the
+// next plans finer. It decides tries, not accuracy.
 enum { MOST_TRIES = 12, MOST_CAUTION = 6 };
-// The next Gauss panel may be twice as long as one that relaxes by less than this for each node, since it is still resolved
-// (RESOLVED in section.c). By hand: costs tries, not accuracy.
+// The next Gauss panel may be twice as long if this one relaxes by less than this for each node: it is still
+// resolved (RESOLVED in section.c). Half or twice of it changes the number of tries, not the accuracy.
 static const double EASY_Z_PER_NODE = 0.2;
 
 // The kinds of panel, in the order in which they are tried.
 typedef enum { BOUNDED_GAUSS, JUDGED_GAUSS, SETTLED, RADAU } PanelKind;
 
-// What is crossed at hand: a section by Gauss panels, or from where they are refused that and all that follow up to the next
-// soft one by Radau and settled panels.
+// The part that is being crossed: a section by Gauss panels. If they are refused, Radau and settled panels
+// cross the rest of it and all sections up to the next soft one.
 typedef struct {
     FcCrossed* crossed;
     FcStretch* stretch;
     const FcSection* section;
-    double t, end;       // s, reached and to be reached
+    double t, end;       // s, reached, and the goal
     double end_of_radau; // s
     PanelKind first;     // that may still be tried
     FcPanel panel;       // the last one
@@ -43,8 +44,8 @@ typedef struct {
     // Radau and settled panels.
     FcPlace at;
     double missed;   // m, of the path
-    double too_long; // s, span of which the lag could not be told
-    int caution;     // how often panels were refused
+    double too_long; // s, a span whose lag could not be integrated
+    int caution;     // decades by which refused panels make the plans finer
 } Crossing;
 
 FcTrajectories fc_crossed_trajectories(const FcCrossed* crossed) {
@@ -62,8 +63,8 @@ bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajecto
                                              &crossed->evaluations) != FC_UNRESOLVED;
 }
 
-// The kinds that are not refused yet, in their order. Gauss panels serve soft sections alone, a bounded one the whole section: not if
-// it was cut, where the bristle came near to its bound.
+// The next kind that is not refused yet. Gauss panels serve soft sections alone. A bounded one serves the
+// whole section, and none that was cut at a meeting.
 static PanelKind kind_of_panel(const Crossing* crossing) {
     const FcSection* section = crossing->section;
     if (crossing->first <= BOUNDED_GAUSS && section->soft && !section->in_peak &&
@@ -97,7 +98,7 @@ static bool take_bounded_gauss(Crossing* crossing) {
     return true;
 }
 
-// The next panel of those planned for the section; shorter, or with more nodes, where it is not accurate.
+// The next panel of the section's plan; shorter, or with more nodes, if it is not accurate.
 static bool take_judged_gauss(Crossing* crossing) {
     FcCrossed* crossed = crossing->crossed;
     const FcSection* section = crossing->section;
@@ -107,6 +108,7 @@ static bool take_judged_gauss(Crossing* crossing) {
         crossing->nodes = crossing->plan.nodes;
         crossing->h = length / fmax(1.0, crossing->plan.count);
     }
+    assert(crossing->plan.count >= 0 && crossing->t < section->end);
     if (crossing->plan.count == 0) {
         return false;
     }
@@ -140,7 +142,7 @@ static bool take_judged_gauss(Crossing* crossing) {
     }
 }
 
-// What Radau and settled panels start from.
+// Sets the start of Radau and settled panels.
 static void begin_radau(Crossing* crossing) {
     FcStretch* stretch = crossing->stretch;
     if (!(stretch->back > 0.0)) {
@@ -159,7 +161,7 @@ static void begin_radau(Crossing* crossing) {
         .rate = crossing->panel.rate,
         .path = fabs(fc_stretch_displacement(stretch, t, stretch->end)),
         .layer = from_start && stretch->starts_at_reversal
-                     ? stretch->w_a // that of a dip is no time to relax in
+                     ? stretch->w_a // the layer of a dip is not a time to relax in
                      : fc_event_layer(interval->scene, true, t, phase, &start),
     };
     stretch->relaxes = crossing->section->is_measured && from_start ? crossing->section->z.whole : 0.0;
@@ -184,6 +186,7 @@ static void place(Crossing* crossing) {
 
 // Appends the last Radau or settled panel, which ends at the time `end` [s].
 static void append(Crossing* crossing, double end) {
+    assert(end >= crossing->t && end <= crossing->end);
     const FcPanel* panel = &crossing->panel;
     fc_map_append(crossing->crossed->map, &panel->map);
     crossing->at.gone += panel->z;
@@ -204,11 +207,12 @@ static bool take_settled(Crossing* crossing) {
     return true;
 }
 
-// How many times a panel's error is too large.
+// The factor by which a panel's error is too large.
 static double excess_of(const Crossing* crossing, const FcPlan* plan) {
     const FcInterval* interval = crossing->crossed->interval;
     const FcPanel* panel = &crossing->panel;
     const FcPlace* at = &crossing->at;
+    assert(at->t < interval->duration && plan->h <= interval->duration);
     const FcErrorLife life = {
         .lives = fc_least(plan->lives, interval->duration - at->t) / interval->duration,
         .lasts = plan->h / interval->duration,
@@ -224,7 +228,7 @@ static double excess_of(const Crossing* crossing, const FcPlan* plan) {
                    over.end * fc_left_at_end(crossing->stretch, at, at->t + plan->h, at->gone + panel->z));
 }
 
-// Always true: a panel that is refused too often is taken as it is.
+// Always true: a panel that was refused too often is taken as it is.
 static bool take_radau(Crossing* crossing) {
     FcCrossed* crossed = crossing->crossed;
     const FcStretch* stretch = crossing->stretch;
@@ -259,13 +263,13 @@ static bool take_radau(Crossing* crossing) {
     }
     append(crossing, taken < left ? t + taken : crossing->end);
     if (!isfinite(excess)) {
-        crossed->map->offset = NAN; // beyond the largest number, which the step is refused for
+        crossed->map->offset = NAN; // beyond the largest number: the step will be refused
     }
     return true;
 }
 
-// The bristle is settled nearly everywhere: its force is the limit, and what the quadratures of work and heat miss is that
-// force times what they miss of the displacement.
+// The bristle is settled nearly everywhere, and its force is the limit. So the error of the quadratures of
+// work and heat is that force times their error of the displacement.
 static void end_radau(Crossing* crossing) {
     FcCrossed* crossed = crossing->crossed;
     crossed->map->work_offset += crossed->held * crossing->missed;
@@ -273,7 +277,7 @@ static void end_radau(Crossing* crossing) {
     crossed->held = 0.0;
 }
 
-// What takes a panel of each kind; false where it is not accurate.
+// The functions that take a panel of each kind; false if it is not accurate.
 static bool (*const TAKE[])(Crossing*) = {take_bounded_gauss, take_judged_gauss, take_settled, take_radau};
 
 static void cross_part(Crossing* crossing) {
@@ -300,11 +304,11 @@ static void cross_part(Crossing* crossing) {
 void fc_cross(FcCrossed* crossed, FcStretch* stretch) {
     FcSection sections[FC_MOST_SECTIONS];
     const int count = fc_sections(stretch, sections, &crossed->evaluations);
-    assert(count > 0);
+    assert(count > 0 && count <= FC_MOST_SECTIONS);
     double t = stretch->start;
     for (int i = 0; i < count && !fc_has_met(crossed); i++) {
         if (!(t < sections[i].end)) {
-            continue; // Radau panels have gone on through it
+            continue; // Radau panels have crossed it
         }
         int last = i;
         while (last + 1 < count && !sections[last + 1].soft) {
@@ -320,6 +324,7 @@ void fc_cross(FcCrossed* crossed, FcStretch* stretch) {
             .first = BOUNDED_GAUSS,
         };
         cross_part(&crossing);
+        assert(crossing.t >= t);
         t = crossing.t;
     }
 }

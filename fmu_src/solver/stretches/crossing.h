@@ -3,7 +3,7 @@
 //     bounded Gauss   a section over which little relaxes, in one panel; no estimate         (panels/gauss_panel.h)
 //     judged Gauss    the same in a few panels, each judged by its estimate
 //     settled         the bristle follows its limit: up to the next event in closed form     (settled_panel.h)
-//     Radau           everything else, each judged and if need be taken again, shorter       (mesh.h, panels/radau_panel.h)
+//     Radau           everything else, each judged and, if refused, taken again, shorter     (mesh.h, panels/radau_panel.h)
 #ifndef FC_SOLVER_CROSSING_H
 #define FC_SOLVER_CROSSING_H
 
@@ -11,14 +11,14 @@
 #include "solver/stretches/stretch.h"
 #include "solver/stretches/watch.h"
 
-// The map of what has been crossed of an interval, and what it has cost.
+// The map of the crossed part of an interval, and its cost.
 typedef struct {
     const FcInterval* interval;
     FcMap* map;
-    double scale;       // m, size of the deflection at the start where the map must hold for any, else 0
-    double held;        // N, the force whose work is put right by the displacement, or 0
+    double scale;       // m, size of the deflection at the start if the map must hold for any, else 0
+    double held;        // N, the force whose work the displacement corrects, or 0
     double evaluations; // in the communication step so far
-    FcWatch* watch;     // of a bounded bristle, which is crossed up to where it meets its bound; else NULL
+    FcWatch* watch;     // of a bounded bristle, which is crossed up to its meeting with the bound; else NULL
 } FcCrossed;
 
 // Whether the bristle has met its bound.
@@ -26,15 +26,15 @@ static inline bool fc_has_met(const FcCrossed* crossed) {
     return crossed->watch && crossed->watch->met.side != 0;
 }
 
-// Whether the panel that has been taken may stay. *h [s] is its length, less if the bristle meets its bound in it: then the panel
-// is cut there.
+// Whether the taken panel may stay. *h [s] is its length. It is less if the bristle meets its bound in it:
+// then the panel is cut there.
 bool fc_may_keep_panel(FcCrossed* crossed, const FcPanelAt* at, const FcTrajectories* from, FcPanel* panel,
                        double* h);
 
-// The trajectories that the map has come to.
+// The trajectories at the end of the map.
 FcTrajectories fc_crossed_trajectories(const FcCrossed* crossed);
 
-// Crosses the stretch that follows what has been crossed.
+// Crosses the next stretch.
 void fc_cross(FcCrossed* crossed, FcStretch* stretch);
 
 #endif

@@ -1,31 +1,35 @@
 #include "solver/stretches/mesh.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "solver/budget.h"
 #include "solver/panels/radau_panel.h"
 
-// All but LAST are chosen by hand. What plans panels costs tries, not accuracy, since panels are judged afterwards.
+// All but LAST are chosen empirically. Plans cost tries and not accuracy, since panels are judged afterwards:
+// half or twice of a value changes the number of panels and of tries.
 //
-// Plans: where the limit stands still, panels of the lag miss about five times less than DISTANCES says, for errors no smaller
-// than COARSE.
+// Plans: if the limit stands still, panels of the lag miss about five times less than DISTANCES says, for
+// errors of at least COARSE.
 static const double LAG_BEHIND_CONSTANT_LIMIT = 5.0;
 static const double COARSE = 1e-4;
-// Plans: below this tolerance, times the excess of the static ratio over 1 where that is larger than 1, the first panel of a
-// transient in a Stribeck peak, which is no exponential, is a decade finer.
+// Plans: below this tolerance, times the larger of 1 and the excess of the static ratio over 1, the first
+// panel of a transient in a Stribeck peak is a decade finer, since that transient is not exponential.
 static const double FINE_IN_PEAK = 5e-5;
-// Accuracy: the part of a stretch's path that panels may have missed, which decides in the stiffest contacts, and safety factors
-// on how much relaxes until the end of a stretch: on the measured relaxation of the whole stretch, and on what is left of it
-// after what has relaxed so far. Less path or larger factors take errors for forgotten that the end sees.
+// Accuracy: the part of a stretch's path that panels may have missed, which decides in the stiffest contacts,
+// and safety factors on the relaxation until the end of a stretch: on the measured relaxation of the whole
+// stretch, and on the rest of it. Half of MISSED_OF_PATH, or larger factors, treat errors as forgotten that
+// the end sees. Twice of it costs panels.
 static const double MISSED_OF_PATH = 0.1;
 static const double SURE_OF_WHOLE = 0.9;
 static const double SURE_OF_REST = 0.5;
 
-// Plans, by hand: lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST. LAYERS: of a decaying transient, in layers.
-// DISTANCES: of the lag, in distances from its event. SMOOTH: in the time over which a logarithm of the coefficients
-// moves by 1: what order 17 resolves, 10^(-1/18) of it for each decade, but no more than 3.2, and 8 below three decades:
-// longer ones save panels in some scenes and are refused in others. PEAK: in a Stribeck peak, in lengths that resolve it. FINEST:
-// beyond it rounding rules.
+// Plans: lengths of a panel for a relative error of 10^-k, k = 0 .. FINEST, chosen empirically. LAYERS: of a
+// decaying transient, in layers. DISTANCES: of the lag, in distances from its event. SMOOTH: in the time over
+// which the logarithm of a coefficient moves by 1. Order 17 resolves a length that shrinks by 10^(-1/18) for
+// each decade; the table ends at 3.2, and at 8 below three decades. Longer panels would save some in some
+// scenes and be refused in others. PEAK: in a Stribeck peak, in lengths that resolve it. FINEST: beyond it
+// rounding limits a panel.
 enum { FINEST = 15 };
 static const double LAYERS[FINEST + 1] = {25,  14,   9,   6.5, 4.5,  3.5, 2.8, 2.3,
                                           1.9, 1.65, 1.4, 1.2, 1.02, .9,  .8,  .7};
@@ -34,8 +38,9 @@ static const double DISTANCES[FINEST + 1] = {40,  30,  20,  14,  10,  6.5, 4.2, 
 static const double SMOOTH[FINEST + 1] = {8,   8,   8,    3.2,  3.2,  3.2,  3.2,  3.2,
                                           3.2, 3.2, 3.15, 2.78, 2.44, 2.15, 1.89, 1.66};
 static const double PEAK[FINEST + 1] = {4, 3, 1.7, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-// Derived: a panel that ends on a reversal and steps over its layer leaves an error of LAST lags, (9^2 + 1) / 2, the last
-// diagonal entry of the inverse of the method's matrix, at its last node, whose weight is 1 / stages^2.
+// Derived: a panel that ends on a reversal and steps over its layer leaves an error of LAST lags, (9^2 + 1) /
+// 2, the last diagonal entry of the inverse of the method's matrix, at its last node, whose weight is 1 /
+// stages^2.
 static const double LAST = 41.0;
 
 // Decades of accuracy that a panel needs for this allowed relative error.
@@ -43,16 +48,15 @@ static int decades(double allowed) {
     return !(allowed < 0.3) ? 0 : (int)fc_least(FINEST, 0.15 + fc_digits(allowed)); // 0 for no number too
 }
 
-// What limits a panel.
+// The limits of a panel's length.
 typedef struct {
     double left;         // s, to the stretch's end
     double after, ahead; // s, distances from the events, widened by their layers
     double smooth;       // s
     double peak;         // s, that the Stribeck curve allows
     double layer, layer_ahead;
-    int finer; // decades, by which a transient is planned finer
-    bool
-        starts; // with a transient that is seen: it is not stepped over, since what is estimated then is far off
+    int finer;   // decades, by which a transient is planned finer
+    bool starts; // with a transient that is seen. It is not stepped over: the estimate would be far off
     bool ends_at_event;  // or within its layer
     double allowed_last; // relative error of a panel that ends at the event
     int for_transient, for_lag, for_last, for_quadrature;
@@ -64,6 +68,9 @@ static int finest(const Limits* limits) {
 }
 
 static double length(const Limits* limits) {
+    assert(limits->for_transient >= 0 && limits->for_lag >= 0 && limits->for_last >= 0);
+    assert(limits->for_transient <= FINEST && limits->for_lag <= FINEST && limits->for_last <= FINEST);
+    assert(limits->for_quadrature >= 0 && limits->for_quadrature <= FINEST);
     const double distances = DISTANCES[limits->for_lag];
     double h = fc_least(SMOOTH[finest(limits)] * limits->smooth, distances * limits->after);
     h = fc_least(h, limits->peak);
@@ -83,7 +90,7 @@ static double length(const Limits* limits) {
     if (limits->left <= fc_least(h, last)) {
         return limits->left;
     }
-    // Up to where the last panel may begin.
+    // Up to the start of the last panel.
     const double graded =
         fc_most(fc_least(shrink * limits->left, limits->left - 0.95 * last), 0.35 * limits->left);
     return fc_least(h, graded);
@@ -116,21 +123,21 @@ double fc_left_at_end(const FcStretch* stretch, const FcPlace* at, double t, dou
     if (t < stretch->end) {
         const double at_least =
             fabs(fc_drive_displacement(&interval->scene->drive, t, stretch->end)) / interval->saturation;
-        // at_least too where the others are no numbers
+        // at_least, too, if the others are NaN
         relaxes += fc_most(SURE_OF_REST * (SURE_OF_WHOLE * stretch->relaxes - gone), at_least);
     }
+    assert(!(relaxes < 0.0));
     return exp(-relaxes);
 }
 
-// What has relaxed since the stretch's start when a panel of that length has gone by, about.
+// The relaxation from the stretch's start to the end of a panel of that length, about.
 static double gone_after(const FcStretch* stretch, const FcPlace* at, double h) {
     return at->gone + (stretch->relaxes - at->gone) * h / (stretch->end - at->t);
 }
 
-// What the Stribeck curve asks of a panel that begins in its peak.
+// The requirements of the Stribeck curve on a panel that begins in its peak.
 typedef struct {
-    double
-        lasts; // s, in which V moves by about half of itself and a Stribeck velocity, so that g(V) is resolved
+    double lasts;  // s, in which V moves by half of itself and a Stribeck velocity, so that g(V) is resolved
     double tau;    // s, in which it moves by a Stribeck velocity
     double height; // 1, by which g still moves, over g
 } Peak;
@@ -147,7 +154,8 @@ static Peak peak_at(const FcStretch* stretch, double t) {
     };
 }
 
-// Length [s] of a panel that begins in a peak. What it misses of the curve acts while V goes on by V_S, and lives on.
+// Length [s] of a panel that begins in a peak. Its error of the curve acts while V moves on by V_S, and then
+// lives.
 static double length_in_peak(const FcStretch* stretch, const FcPlace* at, const Peak* peak, double lives) {
     const FcInterval* interval = stretch->interval;
     const double tolerance = interval->tolerance;
@@ -161,13 +169,14 @@ static double length_in_peak(const FcStretch* stretch, const FcPlace* at, const 
                                   : INFINITY;
 }
 
-// How long an error made in the next panel lives [s], and that times how long the lag's panel is [s2].
+// The time [s] for which an error made in the next panel lives, and that times the length of the lag's panel
+// [s2].
 typedef struct {
     double lives;
     double lag_counts;
 } Lives;
 
-// The larger of here and at the event ahead, whose part is bounded by what |V| is there and here.
+// The larger of here and at the event ahead. |V| there and here bounds the part of the event.
 static Lives lives_at(const FcStretch* stretch, const FcPlace* at, double after, double smooth) {
     const double rest = stretch->interval->duration - at->t;
     const bool known = isfinite(stretch->event);
@@ -187,6 +196,8 @@ static Lives lives_at(const FcStretch* stretch, const FcPlace* at, double after,
 }
 
 FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
+    assert(stretch->start <= at->t && at->t < stretch->end && stretch->end <= stretch->event);
+    assert(caution >= 0);
     const FcInterval* interval = stretch->interval;
     const double tiny = 1e-300;
     const double tolerance = interval->tolerance;
@@ -201,7 +212,7 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
         fc_most(0.0, 1.0 / smooth - interval->pace.phase) + fc_least(peak.height, 1.0) / peak.lasts;
     const Lives life = lives_at(stretch, at, after, smooth);
     const double transient = fc_least(at->transient, 1e12);
-    const double gone = 0.434 * at->gone; // negative, or no number, where the stiffness overflows
+    const double gone = 0.434 * at->gone; // negative, or NaN, if the stiffness overflows
     const int gone_decades = gone > 0.0 ? (int)fc_least(1e3, gone) : 0;
     const double last_counts = drift * fc_least(stretch->w_b, smooth) + at->lag;
     Limits limits = {
@@ -213,7 +224,8 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
         .layer = at->layer,
         .layer_ahead = stretch->w_b,
         .starts = at->gone == 0.0 && transient > tolerance,
-        // The impulse and the work of a constant force are exact, those of another as good as the quadrature.
+        // Impulse and work of a constant force are exact. Those of another force are as good as the
+        // quadrature.
         .for_quadrature = interval->moving_limit ? decades(tolerance) : 0,
         .ends_at_event = known && stretch->event - stretch->end <= stretch->w_b,
         .allowed_last = for_mean / (stretch->w_b * last_counts + tiny),
@@ -227,7 +239,8 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     double for_lag = of_lag * for_mean / (drift * life.lag_counts + tiny);
     FcPlan plan = {.h = planned_length(&limits, for_transient, for_lag, gone_decades, caution)};
 
-    // A panel that gets longer by being planned for the end is nearer to it, where less fades.
+    // Planned for the end, a panel may get longer. Then it ends nearer to the interval's end, and less of its
+    // error fades.
     for (double judged = 0.0; plan.h > judged;) {
         judged = plan.h;
         const double fades = fc_left_at_end(stretch, at, at->t + plan.h, gone_after(stretch, at, plan.h));
@@ -243,6 +256,7 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     if (at->t < stretch->peaks.before) {
         plan.h = fc_least(plan.h, stretch->peaks.before - at->t);
     }
+    assert(!(plan.h < 0.0) && !(life.lives < 0.0));
     plan.in_peak = in_peak;
     plan.crosses_peak = in_peak && plan.h > peak.tau;
     plan.lives = life.lives;

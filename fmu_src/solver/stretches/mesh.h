@@ -1,29 +1,30 @@
-// How long the next Radau panel is.
+// The length of the next Radau panel.
 //
-// One idea: what may an error of the force be here, so that F_t at the end and its mean stay within the tolerance? The
-// bristle has a fading memory. An error made at t lives for a time K, until it has relaxed: in the mean it counts K / H, H
-// being the interval. The end sees e^-z of it, z being what relaxes in between.
+// One idea: how large may an error of the force be here, so that F_t at the end and its mean stay within the
+// tolerance? The bristle has a fading memory. An error made at t lives for a time K, until it has relaxed. In
+// the mean over the interval H it counts K / H. The end sees e^-z of it, with the relaxation z in between.
 //
-// Two things are to be resolved. What is left of a transient counts while it lives; its panels are measured in layers,
-// the time in which the bristle relaxes after the reversal. The lag behind a moving limit lasts; its panels are measured
-// in distances from the events, where it is largest, and grow geometrically (stretches/stretch.h shows them).
+// A panel resolves two things. The rest of a transient counts while it lives. Its panels are measured in
+// layers, the time in which the bristle relaxes after the reversal. The lag behind a moving limit lasts. It
+// is largest at the events, so its panels are measured in distances from them and grow geometrically
+// (stretches/stretch.h shows them).
 //
-// Lengths are chosen by tables, the accuracy a panel reaches is estimated afterwards (panels/judge.h): a panel that misses
-// what it is allowed is taken again, shorter.
+// Tables give the lengths. The accuracy of a panel is estimated afterwards (panels/judge.h), and a panel that
+// misses it is taken again, shorter.
 #ifndef FC_SOLVER_MESH_H
 #define FC_SOLVER_MESH_H
 
 #include "solver/stretches/stretch.h"
 
-// Where the panels of a stretch have got to.
+// The place that the panels of a stretch have reached.
 typedef struct {
     double t;         // s
     double rate;      // 1/s, sigma |V| / g
-    double lag;       // 1, |force - what it settles to| over the interval's force
-    double transient; // 1, the lag where the panels start
+    double lag;       // 1, |force - settled force| over the interval's force
+    double transient; // 1, the lag at the start of the panels
     double gone;      // 1, integral of the rate since then
     double path;      // m, to the stretch's end
-    double layer;     // s, in which the bristle relaxes by 1 from where the panels start
+    double layer;     // s, in which the bristle relaxes by 1 from the start of the panels
 } FcPlace;
 
 typedef struct {
@@ -37,8 +38,9 @@ typedef struct {
 // The panel from here. Each unit of caution asks for a tenth of the error.
 FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution);
 
-// What is left at the interval's end of an error made at t [s], from here on in the stretch, by when the bristle has relaxed by
-// gone since the panels' start, at the most; 0 for less than the square of what is allowed.
+// The largest part of an error made at t [s], ahead in the stretch, that remains at the interval's end, if
+// the bristle has relaxed by `gone` from the panels' start to t. Less than the square of the tolerance counts
+// as 0.
 double fc_left_at_end(const FcStretch* stretch, const FcPlace* at, double t, double gone);
 
 #endif

@@ -1,5 +1,6 @@
 #include "solver/stretches/settled_lag.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/constants.h"
@@ -35,28 +36,29 @@ static Pole pole_ahead(const FcLagSpan* span, double w) {
     return (Pole){c, distance, c * log1p(T / distance)};
 }
 
-// What a feature of that width is missed by in a span T by the rule, of itself: it is resolved where it is no less than a
-// tenth of T.
+// The part of a feature of that width that the rule misses in a span T. A feature wider than a tenth of T is
+// resolved.
 static double unresolved(double width, double T) {
     const double x = T / (T + 10.0 * width);
+    assert(!(x < 0.0 || x > 1.0));
     return x * x * (x * x);
 }
 
-// What is left of L next to an end of the span, where V comes from a zero or dip not evenly but with V'' as well.
+// The rest of L beside an end of the span, without the pole, if V leaves a zero or dip with a V'' as well.
 static double error_at_end(const FcVelocity* at, double L, double T) {
     const double width = fc_distance_back(at);
     const double bend = fc_least(1.0, fabs(at->V * at->curvature) / (at->rate * at->rate));
     return isfinite(width) ? fabs(L) * width * bend * unresolved(width, T) : 0.0;
 }
 
-// The same ahead of a reversal, where L has that pole, as wide as V' / V''.
+// The same ahead of a reversal with the pole c, as wide as V' / V''.
 static double error_at_reversal(const FcVelocity* at, double c, double T) {
     const double bend = fabs(at->curvature / at->rate); // 1/s
     return fabs(c) * log1p(bend * T) * unresolved(1.0 / bend, T);
 }
 
-// Of 12 nodes, over the size of what they integrate; change is half of what the phase and ln(sigma) move by. The upper
-// envelope that workshop.constants.lag_rule found over stretches of up to 5.4 rad whose ln(sigma) swings by up to 3.
+// Relative error of 12 nodes; change is half the change of the phase and of ln(sigma). The upper envelope
+// that workshop.constants.lag_rule found over stretches of up to 5.4 rad whose ln(sigma) swings by up to 3.
 static double error_of_rule(double change) {
     const double x = (17.5 + 0.33 * change * change) / 35.3;
     const double x_3 = x * x * x;
@@ -65,6 +67,7 @@ static double error_of_rule(double change) {
 
 bool fc_settled_lag(const FcLagSpan* span, FcLag* lag, double* too_long, double* evaluations) {
     enum { N = FC_LAG_NODES };
+    assert(span->t < span->end && span->rate > 0.0 && span->allowed >= 0.0);
     const FcStretch* stretch = span->stretch;
     const FcInterval* interval = stretch->interval;
     const FcGaussRule* rule = &FC_GAUSS_12;
@@ -80,7 +83,7 @@ bool fc_settled_lag(const FcLagSpan* span, FcLag* lag, double* too_long, double*
     const Pole ahead = pole_ahead(span, w);
     const double of_rule = error_of_rule(0.5 * T * R);
     const double poles = fabs(before.integral) + fabs(ahead.integral);
-    // Of second order in the time to relax: after the span's start, and in the layer at its end.
+    // Errors of second order in the time to relax: after the span's start, and in the layer at its end.
     const double after = span->t - stretch->start + stretch->back;
     double error = fabs(at_start) * relaxes * (0.5 + 3.0 * R * after) + error_at_end(here, at_start, T);
     *too_long = T;

@@ -1,42 +1,47 @@
 #include "solver/stretches/settled_panel.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/constants.h"
 #include "solver/budget.h"
 #include "solver/stretches/settled_lag.h"
 
-// Two roundings of the force: no transient is taken to be smaller, and none to be 0, by which is divided.
+// The smallest transient: two roundings of the force. A transient of 0 would be a divisor.
 static const double LEAST_TRANSIENT = 4e-16;
-// The integral of x / (x + tau) over a duration is at least this part of the smaller of x and the duration. Derived: ln 2.
+// The integral of x / (x + tau) over a duration is at least this part of the smaller of x and the duration.
+// Derived: ln 2.
 static const double LEAST_FADING = 0.69;
-// A layer at the end that is no longer than this part of the span may be resolved by the poles of the lag. By hand: costs tries,
-// not accuracy.
+// The longest layer at the end, over the span, that the poles of the lag may resolve. Half or twice of it
+// changes the number of tries, not the accuracy.
 static const double LONGEST_LAYER = 0.02;
 
-// Where and of what the panel begins, and where it ends.
+// The start and the end of the panel.
 typedef struct {
     const FcInterval* interval;
     const FcStretch* stretch;
     const FcPlace* at;
-    double end;          // s, of the stretch, or where V enters the peak before it
+    double end;          // s, of the stretch, or the edge of the peak at its end
     double sign;         // of V
     double sigma, limit; // N/m, N, at the start
     double drift;        // 1/s, |rho| at the most
     bool ends_at_event;
 } Span;
 
-// The integral of x / (x + tau) over a duration [s]; the duration where x is infinite.
-static double fading(double x, double duration) { return isfinite(x) ? x * log1p(duration / x) : duration; }
+// The integral of x / (x + tau) over a duration [s]; the duration if x is infinite.
+static double fading(double x, double duration) {
+    assert(!(x < 0.0) && duration >= 0.0);
+    return isfinite(x) ? x * log1p(duration / x) : duration;
+}
 
-// |V| [m/s] at the start, and the time [s] since what the panels are graded away from.
+// |V| [m/s] at the start, and the time [s] since the event from which the panels grow.
 static double speed_at_start(const Span* span) { return span->at->rate * span->limit / span->sigma; }
 static double time_after(const Span* span, double t) {
     return t - span->stretch->start + span->stretch->back;
 }
 
-// Integral of 1 / |V| [s2/m] over the span, at the most but for a factor of 2: |V| grows about linearly from what it came
-// from and falls so towards the reversal, whose layer is w_b wide.
+// Bound of the integral of 1 / |V| [s2/m] over the span, but for a factor of 2: |V| grows about linearly from
+// the last event and falls likewise towards the reversal, whose layer is w_b wide.
 static double slowness(const Span* span, const FcVelocity* end) {
     const FcStretch* stretch = span->stretch;
     const double duration = span->end - span->at->t;
@@ -55,7 +60,7 @@ static double error_at_end(const Span* span, const FcVelocity* end) {
     const FcStretch* stretch = span->stretch;
     const double pace = span->interval->pace.phase + span->drift;
     if (span->ends_at_event) {
-        // The lag there is that of a linear V: bent, it is another by about half of V'' w / V'.
+        // The formula of the lag there is for a linear V. A curved V changes it by about half of V'' w / V'.
         const double lag = span->drift * stretch->w_b;
         const double bent = fabs(end->curvature / end->rate);
         return lag * (lag + (pace + bent) * stretch->w_b);
@@ -67,7 +72,8 @@ static double error_at_end(const Span* span, const FcVelocity* end) {
     return span->drift * relaxes * relaxes * changes;
 }
 
-// What the interval's end or its mean see of the error at the end, over the limit: at a reversal it fades.
+// The effect of the error at the end on the interval's end or mean, over the limit. At a reversal the error
+// fades.
 static double seen_at_end(const Span* span, const FcVelocity* end) {
     const FcInterval* interval = span->interval;
     const double part = span->ends_at_event ? exp(-span->stretch->path_after / interval->saturation) +
@@ -82,7 +88,8 @@ static bool is_possible(const Span* span) {
            isfinite(interval->saturation) && (!span->ends_at_event || span->stretch->reversal);
 }
 
-// Whether it is not worth while to integrate the lag: at half of its largest the second order is too large.
+// Whether the lag is too large to be integrated: its second order at half of its largest value exceeds the
+// share.
 static bool is_lag_too_large(const Span* span, double too_long, double allowed) {
     const double pace = span->interval->pace.phase + span->drift;
     const double w_b = span->ends_at_event ? span->stretch->w_b : 0.0;
@@ -95,11 +102,11 @@ static bool is_lag_too_large(const Span* span, double too_long, double allowed) 
 
 typedef enum {
     NOT_SETTLED,
-    LAG_UNSEEN, // or known: the mean is the limit's
+    LAG_UNSEEN, // by the mean, or its integral is known
     LAG_SEEN,   // by the mean
 } Settled;
 
-// What a span that may be settled was found to go through.
+// The motion over a span that may be settled.
 typedef struct {
     double displacement;         // m
     FcVelocity at_start, at_end; // V
@@ -128,7 +135,7 @@ static Settled settled(const Span* span, double too_long, Course* course) {
     if (seen && is_lag_too_large(span, too_long, allowed)) {
         return NOT_SETTLED;
     }
-    // What is left of the Stribeck curve counts as a transient.
+    // The rest of the Stribeck curve counts as a transient.
     const double lag = at->lag + fabs(span->limit / interval->scene->F_C - 1.0);
     const double of_heat = fc_most(1.0, lag); // which goes with the square of the force
     const double allowed_changes =
@@ -157,7 +164,7 @@ static Settled settled(const Span* span, double too_long, Course* course) {
     return is_lag_too_large(span, too_long, allowed) ? NOT_SETTLED : LAG_SEEN;
 }
 
-// What the force lags behind the limit at the end, over the limit. The layer is that of the static limit.
+// The lag of the force behind the limit at the end, over the limit. The layer is that of the static limit.
 static double lag_at_end(const Span* span, const FcCoefficients* end, double rho) {
     return span->ends_at_event ? rho * span->stretch->w_b * 0.5 *
                                      sqrt(FC_PI / fc_stribeck(span->interval->scene->friction, 0.0))
@@ -174,7 +181,7 @@ static FcCoefficients coefficients_at_end(const Span* span, FcPhase end_phase) {
     return end;
 }
 
-// The integral of the lag, and of what it does to the drag; false where it can't be told.
+// The integral of the lag and its effect on the drag; false if the lag cannot be integrated.
 static bool find_lag(const Span* span, Settled as, const Course* course, const FcCoefficients* end,
                      double rho, double* too_long, FcLag* lag, double* evaluations) {
     *lag = (FcLag){0.0, 0.0};
@@ -218,7 +225,7 @@ static bool follow(const Span* span, double* too_long, FcPanel* panel, double* e
     const double D = force / span->sigma;
     const double V = span->sign * speed_at_start(span);
     const double relaxes = 1.0 / span->at->rate; // s
-    const double lags = D - force / end.sigma;   // m, what D goes back by: the integral of V times the lag
+    const double lags = D - force / end.sigma;   // m, the decrease of D: the integral of V times the lag
     *panel = (FcPanel){
         .z = fabs(X) / span->interval->saturation,
         .rate = fc_relaxation_rate(&end),
@@ -243,7 +250,7 @@ static bool follow(const Span* span, double* too_long, FcPanel* panel, double* e
     return true;
 }
 
-// Whether the mean sees what is left of the curve in the peak after a reversal, where the limit is that [N].
+// Whether the mean sees the rest of the curve in the peak after a reversal, at this limit [N].
 static bool is_curve_seen(const FcStretch* stretch, const FcPlace* at, double limit) {
     const FcInterval* interval = stretch->interval;
     const double lasts = stretch->peaks.tau + (at->t - stretch->start) + stretch->back + 1.0 / at->rate; // s
@@ -269,6 +276,7 @@ bool fc_settled_panel(const FcStretch* stretch, const FcPlace* at, double* end, 
         .drift = stretch->interval->pace.log_sigma,
         .ends_at_event = stretch->event <= peaks->before,
     };
+    assert(at->t < span.end && span.end <= stretch->end);
     if (!follow(&span, too_long, panel, evaluations)) {
         return false;
     }

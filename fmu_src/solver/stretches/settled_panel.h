@@ -4,21 +4,22 @@
 //
 //     y' = rho (s g + y) - r y,     r = sigma |V| / g,     rho = sigma' / sigma
 //
-// A transient y decays with r; what stays is the lag s g rho / r, and next to it a part of about 1 / (r T), T being the
-// time over which r or rho change. Where the mean of the lag over the interval is within the tolerance, only the end and
-// the transient are left to be told; else stretches/settled_lag.h integrates the lag. Without vibration of the stiffness
-// there is no lag at all; where V is constant, its integral is s g (|D| at the start - |D| at the end) / |V|, and what is
-// missed is of second order. The panel goes from where the Stribeck curve is not seen any more to where its next peak begins.
+// A transient y decays with r. The lag s g rho / r stays, and beside it a part of about 1 / (r T), with the
+// time T over which r or rho change. If the mean of the lag over the interval is within the tolerance, only
+// the end and the transient need formulas. Else stretches/settled_lag.h integrates the lag. A constant
+// stiffness has no lag. With a constant V the integral of the lag is s g (|D| at the start - |D| at the end)
+// / |V|, with an error of second order. The panel begins as soon as the Stribeck curve is not seen, and ends
+// at its next peak.
 #ifndef FC_SOLVER_SETTLED_PANEL_H
 #define FC_SOLVER_SETTLED_PANEL_H
 
 #include "solver/panels/panel.h"
 #include "solver/stretches/mesh.h"
 
-// Whether the bristle may be followed from that place in the stretch to `end` [s] or the next peak with an error that is
-// small enough for what the interval is allowed; if so, the panel, and *end is where it ends. *panel holds the panel before.
-// *too_long [s] is a span in which the lag could not be told, at first infinite: half as long is tried next. Adds to
-// *evaluations what it takes.
+// Follows the bristle from that place in the stretch to `end` [s] or the next peak; false if the error may
+// exceed the interval's share. *panel holds the panel before and becomes the new one, and *end becomes its
+// end. *too_long [s] is a span whose lag could not be integrated, at first infinite: half as long is tried
+// next. Adds its evaluations to *evaluations.
 bool fc_settled_panel(const FcStretch* stretch, const FcPlace* at, double* end, double* too_long,
                       FcPanel* panel, double* evaluations);
 

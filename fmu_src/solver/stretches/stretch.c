@@ -8,6 +8,7 @@ double fc_layer(const FcVelocity* at, double per_path) {
     const double r = per_path * fabs(at->V);
     const double r_rate = per_path * fabs(at->rate);
     const double r_curvature = per_path * fabs(at->curvature);
+    assert(!(per_path < 0.0));
     const double root = fc_time_to_move(r, r_rate, 1.0);
     return r_curvature * root * root * root <= 6.0 ? root : cbrt(6.0 / r_curvature);
 }
@@ -107,7 +108,8 @@ bool fc_stretches_next(FcStretches* stretches, double deflection, FcStretch* str
         stretch->peaks = fc_peaks(interval, &first, &stretches->edge, deflection, stretch->displacement,
                                   stretch->path_after);
     }
-    assert(stretch->start < stretch->end);
+    assert(stretch->start < stretch->end && stretch->end <= interval->duration);
+    assert(stretch->end <= stretch->event);
     return true;
 }
 

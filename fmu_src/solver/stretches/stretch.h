@@ -1,6 +1,6 @@
-// A stretch of an interval: the time between two events, on which V keeps its sign. An event is a reversal of V, where |V|
-// has a kink, or a dip of |V|. Panels are graded towards the events on both sides; the one ahead may lie beyond the end of
-// the interval.
+// A stretch of an interval: the time between two events, on which V keeps its sign. An event is a reversal of
+// V, a kink of |V|, or a dip of |V|. Panels shrink towards the events on both sides. The event ahead may lie
+// beyond the end of the interval.
 //
 //        reversal                                        reversal
 //     |V|   |.  '   '      '         '         '      '   '  .|
@@ -23,13 +23,13 @@ typedef struct {
     FcPhase start_phase, end_phase, event_phase; // of the vibration
     double displacement;                         // m
     double path_after; // m, path from the end to the next event or the interval's end
-    double per_path;   // 1/m, sigma / g at the interval's start: what relaxes on a path, about
+    double per_path;   // 1/m, sigma / g at the interval's start: the relaxation on a path, about
     FcPeaks peaks;     // of the Stribeck curve
-    // The rest is there once fc_stretch_add_layers has been called.
+    // fc_stretch_add_layers sets the rest.
     double w_a, w_b; // s, layers at the start and at the event, in which the bristle relaxes by 1
-    double back;     // s, from the start back to what the panels are graded away from
-    FcCoefficients at_start, at_end; // at the end where there is an event
-    double relaxes; // 1, by how much the bristle does in it, about; 0 where that is not known
+    double back;     // s, from the start back to the event from which the panels grow
+    FcCoefficients at_start, at_end; // at_end if there is an event
+    double relaxes;                  // 1, the relaxation in the stretch, about; 0 if it is not known
 } FcStretch;
 
 // Goes through an interval stretch by stretch.
@@ -45,7 +45,7 @@ typedef struct {
 // Before the first stretch, which *stretch is made to come after.
 void fc_stretches_start(FcStretches* stretches, const FcInterval* interval, FcCoefficients start,
                         FcPhase start_phase, FcStretch* stretch);
-// Makes *stretch the one after it, for a deflection [m] of at most that; false where the interval ends.
+// Makes *stretch the one after it, for a deflection [m] of at most that; false at the interval's end.
 bool fc_stretches_next(FcStretches* stretches, double deflection, FcStretch* stretch);
 
 void fc_stretch_add_layers(FcStretch* stretch);
@@ -56,16 +56,17 @@ FcPhase fc_stretch_phase(const FcStretch* stretch, double t);
 // Displacement [m] of V between two times [s] in the stretch.
 double fc_stretch_displacement(const FcStretch* stretch, double t, double end);
 
-// Width [s] of the layer around a reversal, or a dip, at t, with sigma and g as they are near it: beyond the interval the
-// inputs are not known.
+// Width [s] of the layer around a reversal, or a dip, at t, with sigma and g as they are near it: beyond the
+// interval the inputs are not known.
 double fc_event_layer(const FcScene* scene, bool reversal, double t, FcPhase at_t,
                       const FcCoefficients* near);
 
-// Time [s] in which a bristle that relaxes by per_path [1/m], sigma / g, does so by 1 from where V is that on: about the
-// least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts where V only touches zero.
+// Time [s] in which a bristle with the relaxation per_path [1/m], sigma / g, relaxes by 1 from that velocity
+// on: about the least root of r x + r' x^2 / 2 = 1 and r'' x^3 / 6 = 1. The last one counts if V only touches
+// zero.
 double fc_layer(const FcVelocity* at, double per_path);
 
-// Distance [s] of what V last came from, a reversal or a dip.
+// Distance [s] of the last event, a reversal or a dip.
 double fc_distance_back(const FcVelocity* at);
 
 #endif

@@ -6,11 +6,12 @@
 #include "solver/budget.h"
 #include "solver/panels/panel.h"
 
-// A width that was estimated too short grows at most this often, by half each time. By hand: to 4e5 times; then the peak is
-// taken to reach as far as it can.
+// The largest number of times that a width estimated too short grows, by half each time: to 4e5 times in all.
+// Then the peak takes the whole stretch. Half as many would stop at 7e2 times.
 enum { MOST_GROWTHS = 32 };
 
 bool fc_is_beyond_peaks(const FcFriction* friction, double speed, double force, double tolerance) {
+    assert(!(speed < 0.0 || force < 0.0));
     if (!fc_has_stribeck_curve(friction)) {
         return true;
     }
@@ -41,10 +42,11 @@ static double width(const FcDrive* drive, const FcPeakEdge* edge, double side, d
     return most;
 }
 
-// |V| over V_S beyond which the rest of the curve, excess e^(-(V / V_S)^2), is not seen by a bristle whose force is up to
-// `force` limits and that forgets, up to 1, so much until the event after next. While V goes through the peak the bristle
-// relaxes by dz at the most, and by that part of the excess the force then differs, which adds up until it is forgotten.
-// The heat sigma r delta^2 goes with 1 / g: the part of it that is made in the peak counts at once.
+// |V| over V_S beyond which a bristle does not see the rest of the curve, excess e^(-(V / V_S)^2). Its force
+// is up to `force` limits, and it relaxes by `forgets`, up to 1, until the event after next. While V passes
+// the peak the bristle relaxes by dz at most. The force then differs by that part of the excess, and the
+// differences add up until they are forgotten. The heat sigma r delta^2 goes with 1 / g: the part of it in
+// the peak counts at once.
 static double reach(const FcInterval* interval, double force, double forgets, const FcPeakEdge* edge) {
     const FcFriction* friction = interval->scene->friction;
     const double through = friction->V_S * edge->tau; // m
@@ -55,7 +57,8 @@ static double reach(const FcInterval* interval, double force, double forgets, co
     return sqrt(log(fc_most(1.0, seen / (FC_SHARE_BEYOND_PEAK * interval->tolerance))));
 }
 
-// Whether |V| may fall below the speed between the edges. Minima that are no events lie above half of |V| and V_1.
+// Whether |V| may fall below the speed between the edges. Minima that are not events lie above half of |V| +
+// V_1.
 static bool may_dip_inside(const FcDrive* drive, double start, double end, double speed) {
     const double V_1 = drive->vibration.V_1;
     const double V_start = drive->V.value + drive->V.rate * start;
@@ -91,5 +94,6 @@ FcPeaks fc_peaks(const FcInterval* interval, const FcPeakEdge* start, const FcPe
         peaks.after = inner_start;
         peaks.before = inner_end;
     }
+    assert(start->t <= peaks.after && peaks.after <= peaks.before && peaks.before <= end->t);
     return peaks;
 }

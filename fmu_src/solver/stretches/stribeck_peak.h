@@ -1,4 +1,4 @@
-// Where in a stretch the Stribeck curve matters: in peaks near its ends, where |V| is small.
+// The parts of a stretch in which the Stribeck curve matters: peaks near its ends, with a small |V|.
 //
 //     g / g_C
 //     static |\            /|
@@ -7,7 +7,7 @@
 //            start          end of the stretch
 //              after  before
 //
-// Beyond the peaks the limit is Coulomb's but for what the tolerance does not see. No panel steps over an edge of a peak.
+// Beyond the peaks the limit is Coulomb's, within the tolerance. No panel steps into a peak.
 #ifndef FC_SOLVER_STRIBECK_PEAK_H
 #define FC_SOLVER_STRIBECK_PEAK_H
 
@@ -15,7 +15,7 @@
 
 #include "solver/interval.h"
 
-// Whether the curve is not seen by a force of up to `force` limits where |V| is at least the speed [m/s].
+// Whether a force of up to `force` limits does not see the curve while |V| is at least the speed [m/s].
 bool fc_is_beyond_peaks(const FcFriction* friction, double speed, double force, double tolerance);
 
 // One end of a stretch.
@@ -26,8 +26,8 @@ typedef struct {
 } FcPeakEdge;
 FcPeakEdge fc_peak_edge(const FcScene* scene, double t);
 
-// Peaks at the start and at the end of a stretch: [start, after] and [before, end]. Without any, after = start and
-// before = end; where |V| stays within one, after = end.
+// Peaks at the start and at the end of a stretch: [start, after] and [before, end]. Without any, after =
+// start and before = end. If |V| stays within one, after = end.
 typedef struct {
     double after, before; // s
     double tau;           // s, of the edge at the start
@@ -39,8 +39,8 @@ static inline FcPeaks fc_no_peaks(double start, double end) {
     return (FcPeaks){.after = start, .before = end};
 }
 
-// For a deflection [m] at the start of at most that, the displacement [m] of the stretch, and the path [m] from its end to
-// the next event or the interval's end. The scene must have a Stribeck curve.
+// For a deflection [m] at the start of at most that, the displacement [m] of the stretch, and the path [m]
+// from its end to the next event or the interval's end. The scene must have a Stribeck curve.
 FcPeaks fc_peaks(const FcInterval* interval, const FcPeakEdge* start, const FcPeakEdge* end,
                  double deflection, double displacement, double path_after);
 

@@ -1,5 +1,6 @@
 #include "solver/stretches/watch.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "model/regime.h"
@@ -8,10 +9,12 @@
 #include "solver/panels/gauss_rule.h"
 #include "solver/panels/radau_panel.h"
 
-// Cuts of one panel. By hand: Newton's method takes three.
+// The largest number of cuts of one panel. Newton's method takes three; half as many would leave no room for
+// bisections.
 enum { MOST_CUTS = 12 };
 
-// A bristle that comes this near to its bound, in estimated errors, is not known to stay below it. By hand.
+// A bristle that comes this near to its bound, in estimated errors, may touch it. Half of it trusts estimates
+// that may be too small by as much; twice of it refuses more panels.
 static const double NEAR_BOUND = 3.0;
 
 static double deflection(const FcMap* map, double delta_0) {
@@ -23,7 +26,7 @@ static double bound_over_limit(const FcWatch* watch, const FcScene* scene, doubl
     return watch->bound->friction->mu / (scene->friction->mu * fc_stribeck(scene->friction, V));
 }
 
-// The point number i of the course from what the panel kept of its node k.
+// The point number i of the course from the panel's node k.
 static void set_node(const FcWatch* watch, const FcScene* scene, double delta_0, int k, int i, double t,
                      FcCourse* course) {
     const FcPanelNodes* nodes = &watch->nodes;
@@ -52,6 +55,7 @@ static const FcGaussRule* rule_of(int nodes) {
 static FcCourse course_of(const FcWatch* watch, const FcPanelAt* at, double delta_0, const FcPanel* panel,
                           double* evaluations) {
     const int n = at->nodes;
+    assert(n == 0 || n == 4 || n == 6 || n == 8 || n == 12);
     FcCourse course = {.scene = at->scene, .bound = watch->bound, .left = at->t == 0.0 ? watch->left : 0};
     if (n == 0) {
         course.count = FC_RADAU_STAGES + 1;
@@ -73,7 +77,7 @@ static FcCourse course_of(const FcWatch* watch, const FcPanelAt* at, double delt
     return course;
 }
 
-// By how much of the bound the polynomial through the nodes may miss the deflection between them.
+// The largest error of the polynomial through the nodes, between them, over the bound.
 static double missed_between(const FcPanelAt* at, const FcCourse* course) {
     double FC_PAIRED part[FC_MOST_NODES];
     if (at->nodes == 0) {
@@ -117,6 +121,7 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
     *h = at->h;
     FcCourse course = course_of(watch, at, from->delta_0, panel, evaluations);
     const int last = course.count - 1;
+    assert(at->h > 0.0 && course.count <= FC_MOST_POINTS);
     const double sigma = interval->stiffness;
     const double may = fc_allowed_force(interval) / sigma * fc_least(1.0, watch->reach / course.D[last]); // m
     const double missed = missed_between(at, &course) * course.D[last];
@@ -158,6 +163,7 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
             return FC_MEETS_NONE;
         }
     }
+    assert(cut <= at->h);
     *h = cut;
     if (!(cut > 0.0)) {
         panel->map = fc_map_identity();

@@ -1,9 +1,9 @@
-// Watches a bounded bristle of Dahl or LuGre while it is crossed by panels, for the first meeting with its bound.
+// Watches a bounded bristle of Dahl or LuGre, panel by panel, for the first meeting with its bound.
 //
-// A panel's nodes give delta and D there (march/meeting.h). The polynomial through n nodes has the order n, the panel itself 2 n.
-// That is enough if the bound is crossed cleanly: an error of the time enters squared, and the panel that is cut there says
-// on which side of the bound it ends. If the bound may only be grazed the error enters as it is: then a panel whose nodes do
-// not tell is refused.
+// A panel's nodes give delta and D there (march/meeting.h). The polynomial through n nodes has the order n,
+// the panel itself 2 n. That suffices if the bristle crosses its bound: an error of the time enters squared,
+// and the panel that is cut there shows on which side of the bound it ends. If the bristle may graze its
+// bound, the error enters linearly. Then a panel whose nodes are not accurate enough is refused.
 #ifndef FC_SOLVER_WATCH_H
 #define FC_SOLVER_WATCH_H
 
@@ -13,8 +13,8 @@
 
 typedef struct FcWatch {
     const FcScene* bound; // model/regime.h
-    double reach;         // m, the path of the step at the most: energies are relative to it
-    int left;             // the side of the bound that it has just left at the start, else 0
+    double reach;         // m, the largest path of the step: the scale of energies
+    int left;             // the side of the bound that the bristle has just left at the start, else 0
     FcMeeting met;        // side 0 until then
     FcPanelNodes nodes;   // of the last panel
 } FcWatch;
@@ -29,8 +29,9 @@ typedef struct {
 
 typedef enum { FC_MEETS_NONE, FC_MEETS, FC_UNRESOLVED } FcWatched;
 
-// What the panel that has been taken from there does. FC_MEETS: *panel becomes the one that is cut at the meeting, *h its length, and
-// watch->met says which bound. FC_MEETS_NONE: *h is the panel's length, or less if the panel was cut where it only seemed to meet.
+// Watches the panel taken from there. FC_MEETS: *panel becomes the panel that is cut at the meeting, *h its
+// length, and watch->met the meeting. FC_MEETS_NONE: *h is the panel's length, or less if the panel was cut
+// at a meeting that was none. FC_UNRESOLVED: refused.
 FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPanelAt* at,
                          const FcTrajectories* from, FcPanel* panel, double* h, double* evaluations);
 

@@ -1,0 +1,97 @@
+"""The numbers of docs/three-directions.md: by formulas, and by the contact of its picture in the FMU."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipk, i0
+
+from frictioncontact.fmu import FrictionFmu, Value
+from workshop.fmu_docs.directions import AMPLITUDE, DIRECTIONS, HEIGHT, mean, scene
+from workshop.project import ROOT
+
+TEXT = (ROOT / "docs" / "three-directions.md").read_text(encoding="utf-8")
+PAGE = " ".join(TEXT.split())
+X = 3.0 * HEIGHT / 6e-6  # lambda a_d / R_q
+SLOW = 1e-6  # m/s
+
+
+def along(zeta: float) -> float:
+    return 2.0 / math.pi * math.asin(min(zeta, 1.0))
+
+
+def transverse(zeta: float) -> float:
+    return float(2.0 / math.pi * zeta / math.hypot(1.0, zeta) * ellipk(1.0 / (1.0 + zeta**2)))
+
+
+def one(fmu: FrictionFmu, V: float, start_values: dict[str, Value]) -> float:
+    return float(mean(fmu, start_values, np.array([V]))[0])
+
+
+def test_a_rigid_contact(fmu: FrictionFmu) -> None:
+    """The table, the crossing and the gain in slow sliding."""
+    places, *rows = (
+        [float(cell) for cell in re.search(rf"^\| {name} \|([ .\d|]+)\|$", TEXT, re.MULTILINE)[1].split("|")]
+        for name in ("ζ", "along", "transverse")
+    )
+    for direction, formula, row in zip(("along", "transverse"), (along, transverse), rows, strict=True):
+        truth = [formula(zeta) for zeta in places]
+        assert row == pytest.approx(truth, abs=5e-4)
+        V = AMPLITUDE * np.array(places)
+        assert mean(fmu, scene("Coulomb", 3.0, direction), V) == pytest.approx(truth, abs=1e-5)
+    assert one(fmu, 0.1, scene("Coulomb", 3.0, "normal")) == pytest.approx(1.0, abs=1e-6)
+    crossing = brentq(lambda zeta: along(zeta) - transverse(zeta), 0.5, 0.9999)
+    assert f"Below ζ = {crossing:.3f}" in PAGE
+    assert transverse(1e-4) / along(1e-4) == pytest.approx(math.log(4e4), rel=1e-6)
+
+
+def test_a_contact_that_yields(fmu: FrictionFmu) -> None:
+    coulomb, dahl, lugre, elastic = (
+        one(fmu, 0.1, scene(law, 3.0, "transverse")) for law in ("Coulomb", "Dahl", "LuGre", "ElasticPlastic")
+    )
+    assert f"is {coulomb:.2f} F_C in Coulomb, {dahl:.2f} in Dahl and {elastic:.2f} in ElasticPlastic" in PAGE
+    assert lugre == pytest.approx(dahl, abs=1e-4)
+    for direction, left in (("along", 1.0 - 0.5), ("transverse", math.sqrt(1.0 - 0.5**2))):
+        assert one(fmu, SLOW, scene("ElasticPlastic", 0.5, direction)) == pytest.approx(left, abs=1e-4)
+        assert f"{left:.3g}" in PAGE
+        for law in ("Dahl", "LuGre"):
+            assert one(fmu, SLOW, scene(law, 0.5, direction)) < 1e-4
+
+
+@pytest.mark.parametrize("kappa", [0.5, 3.0])
+def test_a_normal_vibration(fmu: FrictionFmu, kappa: float) -> None:
+    least = math.exp(-X) / float(i0(X))
+    assert f"which is {least:.3f} at 1.1 µm" in PAGE
+    for law, ratio in (("Dahl", 1.0), ("ElasticPlastic", 1.0), ("LuGre", 1.5)):
+        assert one(fmu, SLOW, scene(law, kappa, "normal")) == pytest.approx(ratio * least, abs=1e-3)
+    # sigma V is as fast as the limit F_C e^(-x cos) / I0(x) at its fastest.
+    phase = np.linspace(0.0, 2.0 * np.pi, 100_001)
+    rate = (X * np.sin(phase) * np.exp(-X * np.cos(phase))).max() / float(i0(X))
+    V = rate * AMPLITUDE / kappa
+    assert f"{V:.2f} m/s on at κ = {kappa:g}" in PAGE
+    elastic = scene("ElasticPlastic", kappa, "normal")
+    assert one(fmu, 1.001 * V, elastic) == pytest.approx(1.0, abs=1e-6)
+    assert one(fmu, 0.9 * V, elastic) < 0.999
+
+
+def test_what_the_stiffness_does_under_a_normal_vibration(fmu: FrictionFmu) -> None:
+    assert f"{one(fmu, 1.0, scene('Dahl', 3.0, 'normal')):.2f} F_C at 1 m/s" in PAGE
+    least = math.exp(-1.0) / float(i0(1.0))  # an amplitude of R_q / 3, and lambda = 3
+    assert f"a third of R_q leaves {least:.2f} F_C" in PAGE
+    scale = 14.4e6 / 5.743e12
+    for law in ("Dahl", "ElasticPlastic"):
+        normal = scene(law, 3.0, "normal") | {"contact.stiffnessScale": scale}
+        assert one(fmu, 0.01, normal | {"contact.model": "Mindlin"}) == pytest.approx(1.0, abs=1e-5)
+        left = one(fmu, SLOW, normal | {"contact.model": "Asperities"})
+        assert f"paper's Eq. 3 they keep {left:.3f} in slow sliding" in PAGE
+        constant = normal | {"friction.limit": "Constant"}
+        assert one(fmu, 0.01, constant) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_directions_are_those_of_the_page() -> None:
+    for direction, amplitude in DIRECTIONS.items():
+        assert re.search(rf"\| {direction} \|[^|]*\|[^|]*`{next(iter(amplitude))}`", PAGE)
