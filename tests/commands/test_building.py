@@ -118,12 +118,12 @@ def test_renamed_project(project: Path, tmp_path: Path) -> None:
 
 def interrupted(process: subprocess.Popen[str], reached: Path) -> str:
     """What the command says when Control-C on a terminal reaches its group, once the file is there."""
-    end = time.monotonic() + 60.0
+    end = time.monotonic() + 600.0
     while not reached.exists():
         assert process.poll() is None and time.monotonic() < end, "waited in vain"
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)
-    output, errors = process.communicate(timeout=60)
+    output, errors = process.communicate(timeout=600)
     assert (process.returncode, output) == (130, "")
     return errors
 
@@ -131,27 +131,27 @@ def interrupted(process: subprocess.Popen[str], reached: Path) -> str:
 @LINUX_ONLY
 def test_interrupted_while_building(project: Path, tmp_path: Path) -> None:
     compiler, reached = tmp_path / "compiler", tmp_path / "reached"
-    compiler.write_text(f"#!/bin/bash\ntouch {reached}\nsleep 60\n")
+    compiler.write_text(f"#!/bin/bash\ntouch {reached}\nsleep 3600\n")
     compiler.chmod(0o755)
     assert interrupted(start(project, CC=str(compiler)), reached) == "stopped\n"
 
 
 # What they reach is a folder: a file has a destructor, in which Control-C would be lost.
-SLOW = "import os, time\nos.mkdir({reached!r})\ntime.sleep(60)\n"
+SLOW = "import os, time\nos.mkdir({reached!r})\ntime.sleep(3600)\n"
 SLOW_DESTRUCTOR = """\
 import os, time
 class Slow:
     def __del__(self):
         os.mkdir({reached!r})
-        time.sleep(60)
+        time.sleep(3600)
 Slow()
-time.sleep(60)
+time.sleep(3600)
 """
 CHANGED = """\
 import os, time
 try:
     os.mkdir({reached!r})
-    time.sleep(60)
+    time.sleep(3600)
 except KeyboardInterrupt:
     raise ImportError("numpy's own words for it") from None
 """
@@ -159,7 +159,7 @@ CAUGHT = """\
 import importlib, os, sys, time
 try:
     os.mkdir({reached!r})
-    time.sleep(60)
+    time.sleep(3600)
 except KeyboardInterrupt:
     sys.path.remove({folder!r})
     del sys.modules["numpy"]

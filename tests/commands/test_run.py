@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [str(ROOT / "scripts" / "run"), *map(str, arguments)]
     return subprocess.run(
-        command, capture_output=True, text=True, timeout=300, cwd=ROOT, env={**os.environ, "COLUMNS": "100"}
+        command, capture_output=True, text=True, timeout=600, cwd=ROOT, env={**os.environ, "COLUMNS": "100"}
     )
 
 

@@ -150,17 +150,6 @@ def test_cycle_identity_where_the_velocity_keeps_its_sign(
 
 
 @every_scene
-@given(data=st.data(), values=scenes(), h=durations, deflection=fractions, share=st.floats(0.001, 0.999))
-def test_a_step_in_two_parts(
-    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float, share: float
-) -> None:
-    rates = data.draw(ramps(values, h))
-    whole = run(fmu, values, deflection, [h], rates)
-    parts = run(fmu, values, deflection, [share * h, h - share * h], rates)
-    assert_same(whole, parts, values)
-
-
-@every_scene
 @given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
 def test_a_step_in_a_hundred_parts(
     fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
