@@ -66,15 +66,7 @@ def check_loads(project: Path, folder: Path) -> None:
 
 @LINUX_ONLY
 @pytest.mark.slow
-def test_commands_at_once(project: Path, tmp_path: Path) -> None:
-    for process in [start(project) for _ in range(3)]:
-        check_built(process)
-    check_loads(project, tmp_path)
-
-
-@LINUX_ONLY
-@pytest.mark.slow
-def test_killed_while_linking(project: Path, tmp_path: Path) -> None:
+def test_killed_while_linking_and_three_at_once(project: Path, tmp_path: Path) -> None:
     compiler, kill = tmp_path / "compiler", tmp_path / "kill"
     compiler.write_text(COMPILER)
     compiler.chmod(0o755)
@@ -85,13 +77,14 @@ def test_killed_while_linking(project: Path, tmp_path: Path) -> None:
     assert killed.returncode == -9
     assert not (project / "build/debug/FrictionContact.so").exists()
     kill.unlink()
-    check_built(start(project, **variables))
+    for process in [start(project, **variables) for _ in range(3)]:
+        check_built(process)
     check_loads(project, tmp_path)
 
 
 @LINUX_ONLY
 @pytest.mark.slow
-def test_cut_files_of_a_killed_build(project: Path, tmp_path: Path) -> None:
+def test_cut_files_of_a_killed_build_and_another_name(project: Path, tmp_path: Path) -> None:
     """What a kill can leave of an object and of an archive, and make takes for current."""
     check_built(start(project))
     folder = project / "build/debug"
@@ -101,15 +94,7 @@ def test_cut_files_of_a_killed_build(project: Path, tmp_path: Path) -> None:
     (project / FMU).unlink()
     check_built(start(project))
     check_loads(project, tmp_path)
-
-
-@LINUX_ONLY
-@pytest.mark.slow
-def test_renamed_project(project: Path, tmp_path: Path) -> None:
-    check_built(start(project))
     renamed = project.rename(tmp_path / "renamed")
-    check_built(start(renamed))
-    (renamed / FMU).unlink()
     check_built(start(renamed))
     check_loads(renamed, tmp_path)
     cache = (renamed / "build/debug/CMakeCache.txt").read_text()

@@ -41,7 +41,7 @@ from workshop.validate.measurements import sliding
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 
-SEEDS = 50
+SEEDS = 100
 LEAST = stats.binom.ppf(0.001, SEEDS, 0.95)  # of 95 % intervals hold the truth, with a probability of 99.9 %
 ROWS = {  # uncertainty that is stated, relative error of V_1
     "scatter estimated": (None, 0.0),
