@@ -93,10 +93,10 @@ def test_cut_files_of_a_killed_build_and_another_name(project: Path, tmp_path: P
         path.write_bytes(path.read_bytes()[:100])
     (project / FMU).unlink()
     check_built(start(project))
-    check_loads(project, tmp_path)
+    check_loads(project, tmp_path / "before")
     renamed = project.rename(tmp_path / "renamed")
     check_built(start(renamed))
-    check_loads(renamed, tmp_path)
+    check_loads(renamed, tmp_path / "after")
     cache = (renamed / "build/debug/CMakeCache.txt").read_text()
     assert f"{project}/" not in cache
 
