@@ -274,18 +274,6 @@ def test_a_load_drives_limit_and_stiffness(fmu: FrictionFmu, tmp_path: Path) -> 
     assert result.values[0] == pytest.approx(line, rel=1e-6)
 
 
-def test_a_soft_contact_is_never_half_settled(fmu: FrictionFmu) -> None:
-    """It takes 10^8 periods to settle; the mean is that of Eq. 2 in closed form."""
-    rows = Measurements(
-        ("V",),
-        [{"V": 0.2, "vibration.V_1": 0.6, "contact.model": "Constant", "contact.sigma": 600.0}],
-        [27.0],
-        None,
-    )
-    experiment = Rows(fmu, rows, [parameter(fmu, "F_C", 55.0, None, {})])
-    assert experiment.means([math.log(55.0)]) == pytest.approx([27.2685], abs=1e-4)
-
-
 def test_warns_that_soft_contacts_do_not_show_their_stiffness(fmu: FrictionFmu) -> None:
     conditions = [{"V": V, "vibration.V_1": 1.0, "contact.model": "Constant"} for V in (0.2, 0.4, 0.6, 0.8)]
     forces = [

@@ -20,11 +20,8 @@ from scipy.integrate import quad
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.parameters import IDENTIFIED, TABLE_2, start_values
 from frictioncontact.sweeps.group import RESULTS
 from frictioncontact.sweeps.run import sweep
-from workshop.reference.solution import periodic_mean
-from workshop.reference.start_values import scene_of
 
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
@@ -131,34 +128,6 @@ class TestScenario:
         # Sliding dissipates F_C times the path, but for the two reversals.
         assert row["W_period"] == pytest.approx(55.0 * path[0] / 20e3, rel=1e-3)
 
-    def test_moving_separation(self, fmu_path: Path, tmp_path: Path) -> None:
-        """Row 2 of Table 2, identified; the mean stiffness is 1.5068 times that at rest."""
-        start = start_values(TABLE_2[1], IDENTIFIED)
-        row = evaluate(fmu_path, tmp_path, start, 64)
-        assert row["F_mean"] == pytest.approx(21.56, abs=0.01)
-        at_rest = evaluate(fmu_path, tmp_path, {**start, "vibration.a_d": 0.0}, 4)["sigma_mean"]
-        assert row["sigma_mean"] / at_rest == pytest.approx(1.506797919, rel=1e-8)
-        assert row["F_min"] < row["F_mean"] < row["F_max"]
-
-    @pytest.mark.parametrize(
-        "values",
-        [
-            {"V": 0.3, "vibration.V_1": 0.9, "vibration.a_d": 0.8e-6, "contact.stiffnessScale": 1e-6},
-            {"V": -0.02, "vibration.V_1": 1.1, "vibration.phase_d": 2.0, "vibration.a_d": 0.4e-6},
-            # V > 0 throughout, yet the mean is 1.2 F_C: V and the stiffness vary together.
-            {"V": 0.013, "vibration.V_1": 0.0091, "d": 16.7e-6, "vibration.a_d": 0.5e-6,
-             "contact.stiffnessScale": 1e-3},
-        ],
-    )  # fmt: skip
-    def test_mean_of_the_reference(self, fmu_path: Path, tmp_path: Path, values: dict[str, float]) -> None:
-        mean = float(periodic_mean(scene_of(values)))
-        assert evaluate(fmu_path, tmp_path, values, 8)["F_mean"] == pytest.approx(mean, abs=55e-6)
-
-    def test_number_of_samples_leaves_the_mean(self, fmu_path: Path, tmp_path: Path) -> None:
-        start = start_values(TABLE_2[1], IDENTIFIED)
-        means = [evaluate(fmu_path, tmp_path, start, samples)["F_mean"] for samples in (1, 7, 64)]
-        assert means == pytest.approx([means[0]] * 3, abs=55e-6)
-
 
 class TestRuns:
     def test_refused_scenarios_are_kept_apart(self, fmu_path: Path, tmp_path: Path) -> None:
@@ -235,24 +204,6 @@ class TestRuns:
         coulomb = good[good["friction.model"] == "Coulomb"]
         expected = 55.0 * 2 / np.pi * np.arcsin(coulomb["V"] / 1.44)
         assert np.allclose(coulomb["F_mean"], expected, rtol=1e-9, atol=0.0)
-
-    def test_killed_sweep_loses_a_group_of_each_worker(
-        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
-    ) -> None:
-        output, arguments = tmp_path / "sweep", (*GRID, "--group", "10", "--samples", "16", "--workers", "2")
-        first = started(command(fmu_path, output, *arguments))
-        wait_for(lambda: len(parts(output)) >= 3)
-        first.kill()
-        first.wait()
-        kept = kept_rows(output)
-        assert 30 <= kept < 1000
-        assert not (output / "results.parquet").exists()
-        second = run(fmu_path, output, *arguments)
-        assert second.returncode == 0, second.stderr
-        assert f"{kept} scenarios were there from an earlier run" in second.stdout
-        assert f"\n{1000 - kept} scenarios in" in second.stdout
-        check_grid(output, fmu)
-        assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
 
     def test_missing_part_is_run_again(self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path) -> None:
         """Cut short, in a whole sweep; and refused scenarios that are gone."""

@@ -80,23 +80,6 @@ def test_how_far_the_time_of_a_host_may_be_off(
         assert instance.step(start + side * allowed, h) == OK, instance.messages
 
 
-def test_a_step_of_no_length_changes_no_output(instance: Instance) -> None:
-    instance.initialize()
-    assert instance.step(0.0, 1e-4) == OK
-    before = instance.get("F_t", "W_f", "sigma", "A_r", "delta")
-    assert instance.step(1e-4, 0.0) == OK
-    assert instance.get("F_t", "W_f", "sigma", "A_r", "delta") == before
-
-
-def test_a_step_of_1e9_seconds(instance: Instance) -> None:
-    instance.initialize()
-    assert instance.step(0.0, 1e9) == OK
-    force, mean, work = instance.get("F_t", "F_t_mean", "W_f")
-    assert force == pytest.approx(55.0, rel=1e-12)
-    assert mean == pytest.approx(55.0, rel=1e-12)
-    assert work == pytest.approx(55.0 * 0.005 * 1e9, rel=1e-12)
-
-
 def test_the_stop_time_is_the_last_end(instance: Instance) -> None:
     instance.initialize(start=0.0, stop=0.3)
     for step in range(3):
