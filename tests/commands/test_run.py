@@ -88,12 +88,6 @@ def test_quick_writes_the_table_without_the_picture(fmu_path: Path, tmp_path: Pa
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["table2.csv"]
 
 
-def test_help_names_the_options() -> None:
-    finished = run("--help")
-    assert finished.returncode == 0
-    assert all(option in finished.stdout for option in ("--quick", "--fmu", "--output"))
-
-
 @pytest.mark.parametrize("case", ["missing FMU", "not an FMU", "output is a file"])
 def test_bad_input_is_one_clear_line(fmu_path: Path, tmp_path: Path, case: str) -> None:
     fmu, output = fmu_path, tmp_path

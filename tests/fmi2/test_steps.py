@@ -6,10 +6,10 @@ import math
 import random
 import sys
 from collections.abc import Callable
-from ctypes import c_double, c_int
+from ctypes import c_double
 
 import pytest
-from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED_STATUS, WARNING, Instance
+from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, WARNING, Instance
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
@@ -30,13 +30,6 @@ def test_the_last_successful_time_is_the_end_of_the_step(instance: Instance) -> 
         assert reached(instance) == t
     assert instance.step(t, -1.0) == ERROR
     assert reached(instance) == t
-
-
-def test_the_contact_never_asks_to_terminate(instance: Instance) -> None:
-    instance.initialize()
-    value = (c_int * 1)(7)
-    assert instance.call("fmi2GetBooleanStatus", TERMINATED_STATUS, value) == OK
-    assert value[0] == 0
 
 
 @pytest.mark.parametrize("start", [0.0, -3.7, 1e-9, 12345.678, 1e9, -1e12])

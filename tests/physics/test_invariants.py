@@ -216,18 +216,6 @@ def test_the_force_stays_within_coulomb_friction_at_constant_stiffness(
             assert abs(session.get("F_t_mean")) <= F_C * (1 + TOLERANCE)
 
 
-def test_the_force_passes_coulomb_friction_when_the_separation_moves(fmu: FrictionFmu) -> None:
-    """The model, not an error: delta lags while sigma rises."""
-    values = {"V": 0.005, "vibration.a_d": 1.1e-6, "contact.stiffnessScale": 1e-6}
-    with fmu.session(values) as session:
-        session.step(1e4 / 20e3)
-        largest = 0.0
-        for _ in range(200):
-            session.step(1 / 20e3 / 200)
-            largest = max(largest, session.get("F_t"))
-    assert largest > 2 * 55.0
-
-
 @every_scene
 @given(
     values=scenes(),
