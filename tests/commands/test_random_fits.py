@@ -16,7 +16,7 @@ from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import fit
 from frictioncontact.identification.parameter import parameter
 
-SEEDS = 12
+SEEDS = 5
 QUICK = 2  # of the seeds that are no slow test
 TRUTHS = {  # ranges that true values are drawn from, by their logarithms
     "F_C": (20.0, 150.0),

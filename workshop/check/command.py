@@ -52,7 +52,7 @@ class Extent:
 
 FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
 QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
-CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 5, 10_000_000, ("1e6", "1e2"), 0.2)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
