@@ -170,8 +170,8 @@ def scenes() -> list[Preset]:
             "ellipse",
             group,
             "Ellipse in the plane, under oblique sliding",
-            "The surfaces vibrate in an ellipse of the plane while they slide at an angle. The mean force has "
-            "a transverse part, and it need not point against the sliding.",
+            "The surfaces vibrate in an ellipse of the plane while they slide at an angle. The mean force "
+            "has a transverse part, and it need not point against the sliding.",
             SETTLED
             | {
                 "contact.model": "Constant",
