@@ -10,6 +10,7 @@ import math
 import numpy as np
 import pytest
 
+from frictioncontact.errors import quiet
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification.data import Measurements
 from frictioncontact.identification.experiment import Rows
@@ -66,5 +67,6 @@ def test_ends_with_no_more_misfit_than_the_truth_has(fmu: FrictionFmu, law: str,
     noise = random.choice([0.01, 0.3, 2.0])
     force = exact + noise * random.standard_normal(count)
     stated = [noise] * count if random.random() < 0.5 else None
-    result = fit(Rows(fmu, Measurements(columns, conditions, force.tolist(), stated), named))
+    with quiet():
+        result = fit(Rows(fmu, Measurements(columns, conditions, force.tolist(), stated), named))
     assert np.sum(result.residuals**2) <= 1.001 * np.sum((force - exact) ** 2)

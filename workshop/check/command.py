@@ -96,7 +96,9 @@ def _runtimes(*names: str) -> str:
 def check_sanitize(extent: Extent) -> None:
     """The library's tests and the C unit tests with AddressSanitizer and UndefinedBehaviorSanitizer."""
     folder = build_targets("asan", ["unit_tests"])
-    _run([str(Path(sys.executable).with_name("ctest")), "--test-dir", str(folder), "--output-on-failure"])
+    ctest = str(Path(sys.executable).with_name("ctest"))
+    cores = str(os.cpu_count() or 1)
+    _run([ctest, "--test-dir", str(folder), "--output-on-failure", "--parallel", cores])
     runtimes = _runtimes("libasan.so", "libubsan.so")
     environment = {
         "LD_PRELOAD": runtimes,
