@@ -256,13 +256,17 @@ static double first_rise(const double* f, double over) {
     return 2.0;
 }
 
-// |delta|^2 - D^2 at the points of a free panel.
-static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+// |delta|^2 / D^2 - 1 at the points of a free panel: the bound of a contact that opens or closes moves by decades. Returns D at the
+// panel's end [m].
+static double find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    double at_end = 0.0;
     for (int i = 0; i < POINTS; i++) {
         const double D =
             fc_plane_bound(march->plane, &nodes->at[i], march->slips, nodes->t[i], nodes->phase[i]).D;
-        panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
+        panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) / (D * D) - 1.0;
+        at_end = i == STAGES - 1 ? D : at_end;
     }
+    return at_end;
 }
 
 static void set_delta(March* march, FcVector delta) {
@@ -328,7 +332,7 @@ static bool begins_to_slip(March* march) {
     return true;
 }
 
-// What is within rounding of the bound, or within what heat and force may miss [m2], of |delta|^2 - D^2.
+// What is within rounding of the bound, or within what heat and force may miss, of |delta|^2 / D^2 - 1.
 static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
     // What it goes too far costs heat at break-away, which is held to the path.
@@ -336,7 +340,7 @@ static double close_to_bound(const March* march, double D) {
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
-    return 2.0 * D * fmax(fmin(allowed, 1e-3 * D), rounding);
+    return 2.0 / D * fmin(fmax(allowed, rounding), 1e-3 * D); // a bound without limit is none
 }
 
 static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
@@ -364,10 +368,7 @@ static void free_panel(March* march, double h) {
     bool is_cut = false;
     double over = 0.0;
     for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
-        find_to_bound(march, &nodes, &panel);
-        const FcVector delta = panel.delta[STAGES - 1];
-        over =
-            close_to_bound(march, sqrt(fmax(1e-300, fc_product(delta, delta) - panel.to_bound[STAGES - 1])));
+        over = close_to_bound(march, find_to_bound(march, &nodes, &panel));
         const double meets = first_rise(panel.to_bound, over);
         if (meets > 1.0) {
             break;
