@@ -490,6 +490,11 @@ static void change_motion(March* march) {
     march->slipped = true;
 }
 
+static bool pushes(const World* w, Real t, Vector delta) {
+    const At at = scene_at(w, t, true);
+    return outward(w, &at, delta) > 0.0L;
+}
+
 static void march_part(March* march, Closed part, bool open) {
     World* w = march->w;
     if (!(part.to > part.from)) {
@@ -500,6 +505,10 @@ static void march_part(March* march, Closed part, bool open) {
     for (size_t k = 0; k + 1 < cuts.count; k++) {
         Real a = cuts.time[k];
         for (const Real b = cuts.time[k + 1]; a < b && w->panels <= MOST_PANELS;) {
+            if (march->broke && !pushes(w, a, march->delta) && !pushes(w, 0.5L * (a + b), march->delta)) {
+                march->motion = STICKS; // nothing moves, or it turns back
+                march->broke = false;
+            }
             const Panel one = panel(march, a, b, march->delta);
             march->met = false;
             go_on(march, a, b, &one, 0);

@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 ROOT = Path(__file__).resolve().parent.parent
+LONGEST = {"release", "unit", "site", "test_identify.py", "test_wheel.py"}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest files first, so that no core waits for another at the end: those that compile releases."""
-    items.sort(key=lambda item: "release" not in item.path.parts)
+    """The longest files first, so that no core waits for another at the end."""
+    items.sort(key=lambda item: LONGEST.isdisjoint(item.path.parts))
 
 
 @pytest.fixture(scope="session")

@@ -11,6 +11,7 @@ from playwright.sync_api import Browser, Error, Page, Playwright, sync_playwrigh
 
 from frictioncontact.errors import UserError
 
+PATIENCE = 300_000.0  # ms, for a page: the machine may have much other work
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
@@ -41,13 +42,17 @@ def _launched(playwright: Playwright, executable: str) -> Browser:
 
 
 def watch(page: Page, home: Path, heard: list[str]) -> None:
-    """Adds to heard what pages of a file or folder must not do: errors, warnings, requests beyond it."""
+    """Adds to heard what pages of a file or folder must not do: errors, warnings, requests beyond it.
+
+    They may take PATIENCE.
+    """
     own = (home.resolve().as_uri(), "blob:", "data:")
 
     def hear(wrong: bool, what: str) -> None:
         if wrong:
             heard.append(f"{page.url}: {what}")
 
+    page.set_default_timeout(PATIENCE)
     page.on("pageerror", lambda error: hear(True, f"script error: {error}"))
     page.on("console", lambda said: hear(said.type in ("error", "warning"), f"console: {said.text}"))
     page.on("request", lambda asked: hear(not asked.url.startswith(own), f"request: {asked.url}"))

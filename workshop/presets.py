@@ -75,7 +75,7 @@ def table_2(parameters: ParameterSet) -> list[Preset]:
 def _conditions(row: Row) -> str:
     parts = [
         *(["E₁ −30 %"] if row.softened else []),
-        *([f"{1e6 * row.a_d:g} µm across"] if row.a_d else []),
+        *([f"{1e6 * row.a_d:g} µm normal"] if row.a_d else []),
         *([f"{row.V_1:g} m/s along"] if row.V_1 else []),
     ]
     return ", ".join(parts) or "no vibration"
@@ -150,6 +150,37 @@ def scenes() -> list[Preset]:
                 "V": 0.01,
                 "vibration.V_1": 0.05,
                 "vibration.f": 2.0,
+            },
+        ),
+        Preset(
+            "transverse",
+            group,
+            "Transverse vibration: the velocity turns and never reverses",
+            "The vibration of 1.44 m/s is transverse to the sliding. The force turns after the velocity "
+            "(figure b), so little is left of it along the sliding.",
+            SETTLED
+            | {
+                "contact.model": "Constant",
+                "contact.sigma": 14.4e6,
+                "V": 0.144,
+                "vibration.V_2": 1.44,
+            },
+        ),
+        Preset(
+            "ellipse",
+            group,
+            "Ellipse in the plane, under oblique sliding",
+            "The surfaces vibrate in an ellipse of the plane while they slide at an angle. The mean force "
+            "has a transverse part, and it need not point against the sliding.",
+            SETTLED
+            | {
+                "contact.model": "Constant",
+                "contact.sigma": 14.4e6,
+                "V": 0.3,
+                "V_y": 0.2,
+                "vibration.V_1": 1.44,
+                "vibration.V_2": 0.9,
+                "vibration.phase_2": 1.1,
             },
         ),
         Preset(

@@ -151,17 +151,17 @@ def draw(path: Path) -> None:
 def table() -> str:
     """Stall force, no-load speed, largest output and its efficiency, over the stiffness."""
     rows = [
-        "| κ | stiffness | stall force | no-load speed | largest output | efficiency there |",
+        "| κ | stiffness [N/µm] | stall force [N] | no-load [mm/s] | most output [W] | efficiency [%] |",
         "|---|---|---|---|---|---|",
     ]
-    contacts = [(f"{kappa:g} | {1e-6 * stiffness(kappa):.0f} N/µm", scene(kappa)) for kappa in KAPPA]
+    contacts = [(f"{kappa:g} | {1e-6 * stiffness(kappa):.0f}", scene(kappa)) for kappa in KAPPA]
     for name, start_values in [*contacts, ("rigid |", scene(1.0, "Coulomb"))]:
         fastest = speed_at(start_values)
         output, efficiency = power(start_values, np.linspace(0.0, fastest, 201)[1:-1])
         best = int(output.argmax())
         rows.append(
-            f"| {name} | {float(thrust(start_values, 0.0)):.2f} N | {1e3 * fastest:.1f} mm/s "
-            f"| {output[best]:.3f} W | {100.0 * efficiency[best]:.0f} % |"
+            f"| {name} | {float(thrust(start_values, 0.0)):.2f} | {1e3 * fastest:.1f} "
+            f"| {output[best]:.3f} | {100.0 * efficiency[best]:.0f} |"
         )
     return "\n".join(rows)
 

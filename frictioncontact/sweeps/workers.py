@@ -15,7 +15,7 @@ from itertools import islice
 from frictioncontact.errors import UserError
 from frictioncontact.sweeps.group import Group, Job, Part, run_group
 
-CONNECT_SECONDS = 5.0
+CONNECT_SECONDS = 10.0
 GOES_ON = "what was computed is kept; the same sweep without --fresh goes on from there"
 WAIT = 1.0  # s, between which Windows lets a Control-C through
 

@@ -343,7 +343,7 @@ class TestStops:
         )  # fmt: skip
         assert process.stdout.readline() == "running\n"
         os.killpg(process.pid, signal.SIGINT)
-        printed, said = process.communicate(timeout=60)
+        printed, said = process.communicate(timeout=600)
         assert printed.endswith("interrupted\n")
         assert said == ""
         assert process.returncode == 0

@@ -68,7 +68,7 @@ def test_python_examples_run(fmu_path: Path, tmp_path: Path, code: str) -> None:
     if "libcosimpy" in code:
         pytest.importorskip("libcosimpy")
     command = [sys.executable, "-W", "error", "-c", code]
-    finished = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    finished = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600)
     assert finished.returncode == 0, finished.stderr
 
 
@@ -83,7 +83,7 @@ def test_fmpy_example_of_the_readme_runs_the_scene_of_its_picture(fmu: FrictionF
         cwd=ROOT,
         check=True,
         capture_output=True,
-        timeout=60,
+        timeout=600,
     )
     rows = np.genfromtxt(result, delimiter=",", names=True)
     drawn = simulate(fmu, SCENE, 5e-7, 400)

@@ -66,7 +66,7 @@ def test_scripts_build_before_unless_an_fmu_is_named(
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "frictioncontact", *arguments], capture_output=True, text=True, timeout=120
+        [sys.executable, "-m", "frictioncontact", *arguments], capture_output=True, text=True, timeout=600
     )
 
 

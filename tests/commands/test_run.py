@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [str(ROOT / "scripts" / "run"), *map(str, arguments)]
     return subprocess.run(
-        command, capture_output=True, text=True, timeout=300, cwd=ROOT, env={**os.environ, "COLUMNS": "100"}
+        command, capture_output=True, text=True, timeout=600, cwd=ROOT, env={**os.environ, "COLUMNS": "100"}
     )
 
 
@@ -86,12 +86,6 @@ def test_quick_writes_the_table_without_the_picture(fmu_path: Path, tmp_path: Pa
     finished = run("--quick", "--fmu", fmu_path, "--output", tmp_path / "new")
     assert finished.returncode == 0, finished.stderr
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["table2.csv"]
-
-
-def test_help_names_the_options() -> None:
-    finished = run("--help")
-    assert finished.returncode == 0
-    assert all(option in finished.stdout for option in ("--quick", "--fmu", "--output"))
 
 
 @pytest.mark.parametrize("case", ["missing FMU", "not an FMU", "output is a file"])

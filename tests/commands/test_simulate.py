@@ -120,11 +120,6 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"fmu": "absent.fmu"}, "absent.fmu: No such file"),
         ({"fmu": "."}, ".: Is a directory"),
         ({"start": [("V", 1.0)]}, "start = \"[('V', 1.0)]\": must be a mapping of names to values"),
-        (
-            {"start": {"V": 10**400}},
-            f"start: V: '{10**39}...' is not a finite number",
-        ),
-        ({"step": 5e-324}, "step = 4.94066e-324 s: stop / step must be at most"),
         ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence of names"),
         ({"outputs": None}, "outputs = None: must be a sequence of names"),
         ({"outputs": [3]}, "outputs: 3 is no variable of the FMU"),

@@ -52,8 +52,8 @@ class Cluster:
         )  # fmt: skip
 
     def wait_for_workers(self, count: int) -> None:
-        with Client(self.address, timeout=10) as client:
-            client.wait_for_workers(count, timeout=60)
+        with Client(self.address, timeout=600) as client:
+            client.wait_for_workers(count, timeout=600)
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def test_cluster_that_loses_a_worker(
     wait_for(lambda: len(parts(output)) >= 6)
     one.kill()
     assert kept_rows(output) < 900
-    printed, _ = sweeping.communicate(timeout=120)
+    printed, _ = sweeping.communicate(timeout=600)
     assert sweeping.returncode == 0
     assert "1000 scenarios in" in printed and "on 2 workers" in printed
     assert two.poll() is None
@@ -121,7 +121,7 @@ def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Pa
     )
     wait_for(lambda: len(parts(output)) >= 3)
     cluster.scheduler.kill()
-    _, said = sweeping.communicate(timeout=120)
+    _, said = sweeping.communicate(timeout=600)
     assert sweeping.returncode == 1
     assert len(said.strip().splitlines()) == 1, said
     lost = f"error: --cluster {cluster.address}: the connection was lost; what was computed is kept; the same"

@@ -71,7 +71,6 @@ def test_csv(fmu_path: Path, tmp_path: Path) -> None:
     ("content", "message"),
     [
         ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
-        ("V,d\n0.1,\n", "row 2, column d: '' is not a number"),
         ("V\nnan\n", "row 2, column V: nan is not a finite number"),
         ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
         ("V,V\n1,2\n", "row 1, column 2: V is there twice"),
@@ -79,7 +78,6 @@ def test_csv(fmu_path: Path, tmp_path: Path) -> None:
         ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
         ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
         (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
-        (f"V\n{'x' * 131070}\n", f"row 2, column V: '{'x' * 40}...' is not a number"),
         ("V\n", "has no row below the header"),
         ("", "is empty; row 1 must name the variables"),
         ('V\n"0.1\n', "is not a CSV file"),
@@ -103,7 +101,6 @@ def test_malformed_csv_names_row_and_column(
         (["--vary", "V=1:2"], "'1:2' is neither low:high:count"),
         (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
         (["--vary", "V=0:1:3:log"], "must begin above 0"),
-        (["--vary", "V=0:1:²"], "the count '²' is not a whole number"),
         (["--vary", f"V=0:1:{'9' * 5000}"], "is not a whole number"),
         (
             ["--vary", "V=1", "--samples", "100000000000"],

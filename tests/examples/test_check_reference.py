@@ -15,7 +15,7 @@ FOLDER = Path("extra") / "org.fmi-standard.fmi-ls-ref"
 
 def check(fmu: Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, str(SCRIPT), str(fmu)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+    return subprocess.run(command, capture_output=True, text=True, timeout=600)
 
 
 @pytest.fixture

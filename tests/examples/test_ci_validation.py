@@ -22,7 +22,7 @@ def validate(fmu: Path, folder: Path, *arguments: str) -> subprocess.CompletedPr
         "--picture",
         str(folder / "bands.png"),
     ]
-    return subprocess.run([*command, *arguments], capture_output=True, text=True, timeout=120)
+    return subprocess.run([*command, *arguments], capture_output=True, text=True, timeout=600)
 
 
 def test_passes(fmu_path: Path, tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ def test_map(fmu_path: Path, tmp_path: Path) -> None:
     picture = tmp_path / "map.png"
     done = subprocess.run(
         [sys.executable, SCRIPT, "--quick", "--fmu", fmu_path, "--output", picture],
-        capture_output=True, text=True, timeout=120,
+        capture_output=True, text=True, timeout=600,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("3600 scenarios in ")

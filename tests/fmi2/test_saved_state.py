@@ -1,16 +1,15 @@
-"""Saving, restoring and serializing the state: replay to the last bit, and bytes that can't be fooled."""
+"""Saving, restoring and serializing the state: replay to the last bit. tests/unit damages the bytes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from ctypes import byref, c_void_p, create_string_buffer
+from ctypes import byref, c_void_p
 
 import pytest
 from fmi_library import ERROR, OK, Instance
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta", "solver.evaluations", "V", "d", "E")
 METHODS = {"collocation": 1, "cvode": 2, "backwardEuler": 3, "trapezoid": 4, "rk4": 5, "explicitEuler": 6}
-GUID_AT, BODY_AT, HASH_SIZE = 16, 54, 8
 
 
 def vibrating(new_instance: Callable[..., Instance], method: int = 1) -> Instance:
@@ -120,46 +119,12 @@ def test_names_and_log_switches_are_not_part_of_a_state(new_instance: Callable[.
     assert quiet.fingerprint() == loud.fingerprint()
 
 
-def test_every_damaged_byte_is_noticed(instance: Instance) -> None:
-    instance.initialize()
-    assert instance.step(0.0, 1e-5) == OK
-    good = instance.fingerprint()
-    for position in range(len(good)):
-        for flip in (0x01, 0x80, 0xFF):
-            bad = bytearray(good)
-            bad[position] ^= flip
-            instance.messages.clear()
-            status, state = instance.deserialize(bytes(bad))
-            assert (status, state.value) == (ERROR, None), position
-            assert len(instance.messages) == 1
-    assert instance.fingerprint() == good
-
-
-def test_every_truncation_is_noticed(instance: Instance) -> None:
-    good = instance.fingerprint()
-    for size in range(len(good)):
-        status, state = instance.deserialize(good[:size])
-        assert (status, state.value) == (ERROR, None), size
-        assert "cut off" in instance.last_message.text
-    assert instance.deserialize(good + b"\0")[0] == ERROR
-
-
 def test_a_refused_state_leaves_the_buffer_alone(instance: Instance) -> None:
     instance.initialize()
     state = instance.save()
     before = instance.serialize(state)
     assert instance.call("fmi2DeSerializeFMUstate", b"FRICTION" * 50, 400, byref(state)) == ERROR
     assert instance.serialize(state) == before
-    assert instance.drop(state) == OK
-
-
-def test_too_small_a_buffer_is_refused_untouched(instance: Instance) -> None:
-    state = instance.save()
-    size = len(instance.serialize(state))
-    buffer = create_string_buffer(b"\x55" * (size - 1), size - 1)
-    assert instance.call("fmi2SerializeFMUstate", state, buffer, size - 1) == ERROR
-    assert str(size) in instance.last_message.text
-    assert buffer.raw == b"\x55" * (size - 1)
     assert instance.drop(state) == OK
 
 

@@ -6,10 +6,10 @@ import math
 import random
 import sys
 from collections.abc import Callable
-from ctypes import c_double, c_int
+from ctypes import c_double
 
 import pytest
-from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, TERMINATED_STATUS, WARNING, Instance
+from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, WARNING, Instance
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
@@ -30,13 +30,6 @@ def test_the_last_successful_time_is_the_end_of_the_step(instance: Instance) -> 
         assert reached(instance) == t
     assert instance.step(t, -1.0) == ERROR
     assert reached(instance) == t
-
-
-def test_the_contact_never_asks_to_terminate(instance: Instance) -> None:
-    instance.initialize()
-    value = (c_int * 1)(7)
-    assert instance.call("fmi2GetBooleanStatus", TERMINATED_STATUS, value) == OK
-    assert value[0] == 0
 
 
 @pytest.mark.parametrize("start", [0.0, -3.7, 1e-9, 12345.678, 1e9, -1e12])
@@ -78,23 +71,6 @@ def test_how_far_the_time_of_a_host_may_be_off(
         assert instance.step(start + side * refused, h) == ERROR
         assert "but the instance is at" in instance.last_message.text
         assert instance.step(start + side * allowed, h) == OK, instance.messages
-
-
-def test_a_step_of_no_length_changes_no_output(instance: Instance) -> None:
-    instance.initialize()
-    assert instance.step(0.0, 1e-4) == OK
-    before = instance.get("F_t", "W_f", "sigma", "A_r", "delta")
-    assert instance.step(1e-4, 0.0) == OK
-    assert instance.get("F_t", "W_f", "sigma", "A_r", "delta") == before
-
-
-def test_a_step_of_1e9_seconds(instance: Instance) -> None:
-    instance.initialize()
-    assert instance.step(0.0, 1e9) == OK
-    force, mean, work = instance.get("F_t", "F_t_mean", "W_f")
-    assert force == pytest.approx(55.0, rel=1e-12)
-    assert mean == pytest.approx(55.0, rel=1e-12)
-    assert work == pytest.approx(55.0 * 0.005 * 1e9, rel=1e-12)
 
 
 def test_the_stop_time_is_the_last_end(instance: Instance) -> None:

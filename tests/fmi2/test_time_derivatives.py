@@ -123,3 +123,15 @@ def test_slope_sees_an_input_set_since_the_step(new_instance: Callable[..., Inst
     status, slope = instance.output_rate("F_t")
     assert status == OK
     assert slope == pytest.approx(expected, rel=1e-5)
+
+
+def test_slope_at_a_reversal_is_the_mean_of_both_sides(new_instance: Callable[..., Instance]) -> None:
+    """V = 0 that moves at 7 m/s^2: the dampers alone, since sigma V is 0 on either side."""
+    instance = new_instance()
+    assert instance.choose({"contact.model": 2}) == OK
+    assert instance.set({"delta_0": 1e-6, "V": 0.0, "friction.sigma_1": 20.0, "friction.sigma_2": 30.0}) == OK
+    instance.initialize()
+    assert instance.set_input_rates({"V": 7.0}) == OK
+    status, slope = instance.output_rate("F_t")
+    assert status == OK
+    assert slope == pytest.approx((20.0 + 30.0) * 7.0, rel=1e-14)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from functools import cache
 from pathlib import Path
 
 from workshop.build import build_targets
@@ -10,9 +11,13 @@ from workshop.build import build_targets
 SCENES = Path(__file__).with_name("scenes.txt")
 
 
+@cache
+def program() -> str:
+    return str(build_targets("default", ["hunt"]) / "hunt/hunt")
+
+
 def hunt(*options: str) -> subprocess.CompletedProcess[str]:
-    program = build_targets("default", ["hunt"]) / "hunt/hunt"
-    return subprocess.run([str(program), *options], capture_output=True, text=True, check=False)
+    return subprocess.run([program(), *options], capture_output=True, text=True, check=False)
 
 
 def test_scenes_that_were_found() -> None:

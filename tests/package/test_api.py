@@ -27,13 +27,6 @@ def dry(fmu_path: Path) -> fc.Identification:
     return fc.identify(DRY, fit="contact.sigma", start=LAW, fmu=fmu_path)
 
 
-def test_a_fit_finds_the_stiffness_of_the_documents(dry: fc.Identification) -> None:
-    """7.76 MN/m (7.56 to 7.96), as docs/validation.md has it by another route: a search over stiffnesses."""
-    assert dry.values["contact.sigma"] == pytest.approx(7.76e6, rel=1e-3)
-    assert dry.intervals["contact.sigma"] == pytest.approx((7.56e6, 7.96e6), rel=1e-3)
-    assert list(dry.values) == ["contact.sigma"]
-
-
 def test_a_law_that_misses_everything_is_told(dry: fc.Identification, fmu_path: Path) -> None:
     """0.391 of 0.406 N (docs/validation.md), though no uncertainty is stated."""
     dahl = fc.identify(DRY, "contact.sigma", start={"contact.model": "Constant"}, fmu=fmu_path)
@@ -75,7 +68,6 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
         ({"fit": ["F_t"]}, "F_t can't be fitted; did you mean F_C? these can: V, d"),
         ({"fit": ["contact.sigma", "contact.sigma"]}, "contact.sigma is to be fitted twice"),
         ({"fit": {"contact.sigma": (2.0, 1.0)}}, "contact.sigma = 2..1: the range is empty"),
-        ({"start": {"friction.modl": 1}}, "start: friction.modl is no variable of the FMU; did you mean"),
         (
             {"uncertain": {"speed": 1.0}},
             "the uncertainty of speed: speed is no variable that a file may hold",
@@ -84,13 +76,10 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
         ({"bootstrap": "100"}, "bootstrap = '100': must be a whole number"),
         ({"fit": []}, "fit: names no parameter"),
         ({"fit": 3}, "fit = 3: must be a name, names, or a mapping of names"),
-        ({"fit": {"F_C": "x"}}, "F_C = 'x' is not a number"),
         ({"fit": {"F_C": (1.0, 2.0, 3.0)}}, "F_C = (1.0, 2.0, 3.0): a range is (low, high)"),
-        ({"start": "V"}, "start = 'V': must be a mapping of names to values"),
         ({"data": {"V [m/s]": [1.0]}}, "data: must be the path of a CSV file, or a pandas frame"),
         ({"data": "a\0.csv"}, "data = 'a\\x00.csv': is no path"),
         ({"fit": {"F_C": True}}, "F_C = 'True' is not a number"),
-        ({"start": {"V": True}}, "start: V: 'True' is not a number"),
     ],
 )
 def test_wrong_fits_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
@@ -113,7 +102,6 @@ def test_advice_is_what_the_command_prints(fmu_path: Path, capsys: pytest.Captur
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"scene": {"v": 1.0}}, "scene: v is no variable of the FMU; did you mean V?"),
         ({"scene": {"solver.tolerance": 1e-3}}, "solver.tolerance does not describe a scene; these do: V, d"),
         ({"accuracy": 2.0}, "accuracy 2: must lie between 1e-08 and 1"),
         ({"output": "W_f"}, "output W_f: must be one of both, F_t, F_t_mean"),

@@ -76,34 +76,38 @@ def python_of_all() -> str:
 def user(wheel: Path) -> Iterator[User]:
     """With the wheel and libcosim installed, their dependencies as the clone pins them."""
     with tempfile.TemporaryDirectory(prefix="frictioncontact-user-") as temporary:
-        yield installed(wheel, Path(temporary))
+        folder = Path(temporary)
+        folder.chmod(0o755)  # pytest's own folders are closed to others
+        user = User(folder / "home")
+        install(user, str(wheel), "libcosimpy")
+        yield user
 
 
 @pytest.fixture(scope="module")
-def newcomer(wheel: Path) -> Iterator[User]:
-    """With what page 1 of the tutorial installs."""
-    with tempfile.TemporaryDirectory(prefix="frictioncontact-newcomer-") as temporary:
-        yield installed(wheel, Path(temporary), "matplotlib")
+def newcomer(user: User) -> User:
+    """With matplotlib too, as page 1 of the tutorial says; the tests further up need a user without it."""
+    install(user, "matplotlib")
+    return user
 
 
-def installed(wheel: Path, folder: Path, besides: str = "libcosimpy") -> User:
-    folder.chmod(0o755)  # pytest's own folders are closed to others
-    user, found = User(folder / "home"), folder / "found"
+def install(user: User, *packages: str) -> None:
+    found = user.work.parent.parent / "found"
     pins = [
         line
         for name in ("requirements.txt", "requirements-dev.txt", "constraints.txt")
         for line in (ROOT / name).read_text(encoding="utf-8").splitlines()
         if "==" in line
     ]
-    constraints = folder / "constraints.txt"
+    constraints = found.with_name("constraints.txt")
     constraints.write_text("\n".join(pins) + "\n")
-    pip = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "-d", str(found), "-c", str(constraints), str(wheel), besides], check=True)
+    quiet = ["--quiet", "--disable-pip-version-check"]
+    pip = [sys.executable, "-m", "pip", "download", *quiet, "-d", str(found), "-c", str(constraints)]
+    subprocess.run([*pip, *packages], check=True)
+    names = [str(found / Path(package).name) if "/" in package else package for package in packages]
     user.run(
-        "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index",
-        "--no-compile", "--find-links", str(found), str(found / wheel.name), besides,
+        "python", "-m", "pip", "install", *quiet, "--no-index", "--no-compile", "--find-links", str(found),
+        *names,
     )  # fmt: skip
-    return user
 
 
 def test_what_is_inside(wheel: Path) -> None:

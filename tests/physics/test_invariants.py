@@ -150,17 +150,6 @@ def test_cycle_identity_where_the_velocity_keeps_its_sign(
 
 
 @every_scene
-@given(data=st.data(), values=scenes(), h=durations, deflection=fractions, share=st.floats(0.001, 0.999))
-def test_a_step_in_two_parts(
-    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float, share: float
-) -> None:
-    rates = data.draw(ramps(values, h))
-    whole = run(fmu, values, deflection, [h], rates)
-    parts = run(fmu, values, deflection, [share * h, h - share * h], rates)
-    assert_same(whole, parts, values)
-
-
-@every_scene
 @given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
 def test_a_step_in_a_hundred_parts(
     fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
@@ -225,18 +214,6 @@ def test_the_force_stays_within_coulomb_friction_at_constant_stiffness(
             session.step(part * PERIOD)
             assert abs(session.get("F_t")) <= F_C * (1 + TOLERANCE)
             assert abs(session.get("F_t_mean")) <= F_C * (1 + TOLERANCE)
-
-
-def test_the_force_passes_coulomb_friction_when_the_separation_moves(fmu: FrictionFmu) -> None:
-    """The model, not an error: delta lags while sigma rises."""
-    values = {"V": 0.005, "vibration.a_d": 1.1e-6, "contact.stiffnessScale": 1e-6}
-    with fmu.session(values) as session:
-        session.step(1e4 / 20e3)
-        largest = 0.0
-        for _ in range(200):
-            session.step(1 / 20e3 / 200)
-            largest = max(largest, session.get("F_t"))
-    assert largest > 2 * 55.0
 
 
 @every_scene

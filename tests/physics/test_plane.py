@@ -186,7 +186,8 @@ def test_a_million_periods_are_settled(fmu: FrictionFmu, law: str, kappa: float)
         few = session.get("solver.evaluations")
         session.step(1e6 / F)
         assert means(session) == pytest.approx(settled(fmu, values), abs=1e-6)
-        assert session.get("solver.evaluations") - few < 10 * few
+        # ElasticPlastic forgets its direction in some 30 periods
+        assert session.get("solver.evaluations") - few < 15 * few
 
 
 # One step, by formulas

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from frictioncontact.fmu import FrictionFmu, Value
 
 SAMPLES = 240  # a period
@@ -14,7 +16,9 @@ PERIODS = 2
 @dataclass(frozen=True)
 class Wave:
     force: list[float]  # N
+    transverse: list[float]  # N
     mean: float  # N
+    transverse_mean: float  # N
     work: float  # J a period
     heat: float  # J a period
 
@@ -23,10 +27,12 @@ def wave(fmu: FrictionFmu, values: Mapping[str, Value]) -> Wave:
     with fmu.session(values) as session:
         f = session.get("vibration.f")
         work, heat = session.read(["W_f", "Q_f"])
-        force, means = [session.get("F_t")], []
+        force, transverse, means = [session.get("F_t")], [session.get("F_y")], []
         for _ in range(PERIODS * SAMPLES):
             session.step(1.0 / f / SAMPLES)
             force.append(session.get("F_t"))
-            means.append(session.get("F_t_mean"))
+            transverse.append(session.get("F_y"))
+            means.append(session.read(["F_t_mean", "F_y_mean"]))
         work, heat = (session.read(["W_f", "Q_f"]) - [work, heat]) / PERIODS
-    return Wave(force, sum(means) / len(means), work, heat)
+    mean, transverse_mean = np.mean(means, axis=0)
+    return Wave(force, transverse, mean, transverse_mean, work, heat)

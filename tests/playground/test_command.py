@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -49,9 +48,3 @@ def test_a_missing_compiler_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_pat
     with pytest.raises(SystemExit, match="error: the cross compiler is missing: install it"):
         run(monkeypatch, "-o", str(tmp_path / "page.html"))
     assert list(tmp_path.iterdir()) == []
-
-
-def test_help_is_a_screen() -> None:
-    words = [sys.executable, "-m", "workshop.playground.command", "--help"]
-    text = subprocess.run(words, check=True, capture_output=True, text=True).stdout
-    assert "scripts/playground" in text and "--output" in text

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from native_wave import wave
 from playground_page import Playground
+from scipy.special import ellipk
 
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.periodic import periodic_mean
@@ -33,11 +34,18 @@ def test_every_preset_equals_the_shared_library(
     for preset in offered:
         playground.choose(preset)
         native = wave(fmu, preset.values)
-        size = max(map(abs, native.force))
-        np.testing.assert_allclose(playground.wave()["F_t_N"], native.force, rtol=0, atol=LIMIT * size)
+        size = max(map(math.hypot, native.force, native.transverse))
+        shown = playground.wave()
+        np.testing.assert_allclose(shown["F_t_N"], native.force, rtol=0, atol=LIMIT * size)
+        np.testing.assert_allclose(shown["F_y_N"], native.transverse, rtol=0, atol=LIMIT * size)
         assert playground.number("mean-force") == pytest.approx(native.mean, abs=LIMIT * size), preset.id
-        path = abs(preset.values["V"]) + preset.values.get("vibration.V_1", 0.0)  # m/s, at most
-        energy = size * path / preset.values["vibration.f"]  # J a period, at most
+        found = playground.number("transverse-mean")
+        assert found == pytest.approx(native.transverse_mean, abs=3e-6 * size), preset.id  # 0 below
+        if abs(native.transverse_mean) > 1e-3 * size:
+            assert found == pytest.approx(native.transverse_mean, abs=LIMIT * size), preset.id
+        speeds = ("V", "V_y", "vibration.V_1", "vibration.V_2")
+        path = sum(abs(preset.values.get(name, 0.0)) for name in speeds)  # m/s, at most
+        energy = size * path / preset.values.get("vibration.f", 20e3)  # J a period, at most
         assert playground.number("work") == pytest.approx(native.work, abs=LIMIT * energy), preset.id
         assert playground.number("heat") == pytest.approx(native.heat, abs=LIMIT * energy), preset.id
 
@@ -68,18 +76,59 @@ def test_curve_and_map_go_through_the_exact_means(playground: Playground) -> Non
         assert found[2] / found[3] == pytest.approx(mean, abs=TOLERANCE)
 
 
+def test_the_curves_of_a_rigid_contact_are_the_formulas(playground: Playground) -> None:
+    places = np.geomspace(1e-4, 10.0, 9)
+    for scene, formula in (
+        ({"vibration.V_1": 1.0}, 2 / np.pi * np.arcsin(np.minimum(places, 1.0))),
+        (
+            {"vibration.V_2": 1.0},
+            2 / np.pi * places / np.hypot(1.0, places) * ellipk(1.0 / (1.0 + places**2)),
+        ),
+    ):
+        found = playground.page.evaluate(
+            "([values, places]) => places.map(rigid(values).mean)", [scene, places.tolist()]
+        )
+        assert found == pytest.approx(formula, rel=1e-12)
+    for scene in ({}, {"vibration.V_1": 1.0, "vibration.V_2": 1.0}, {"vibration.V_1": 1.0, "V_y": 0.1}):
+        assert playground.page.evaluate("values => rigid(values)", scene) is None
+
+
+@pytest.mark.parametrize("V_y", [0.0, 0.4])
+def test_a_transverse_vibration_has_its_curve_and_its_map(
+    playground: Playground, fmu: FrictionFmu, V_y: float
+) -> None:
+    """Both are over the friction of steady sliding, which with oblique sliding is 55 N in the plane."""
+    scene = CONSTANT_STIFFNESS | {"vibration.V_1": 0.0, "vibration.V_2": 1.0, "V_y": V_y}
+    curve, cells = playground.page.evaluate(
+        f"""async (values) => {{
+            const fmu = await {CORE};
+            const found = curve(fmu, values, 4);
+            return [[[...found.x], [...found.y]], [...regimeMap(fmu, values, 2, 2)]];
+        }}""",
+        scene,
+    )
+    corners = [
+        {"V": zeta, "contact.sigma": kappa * 2 * math.pi * 20e3 * 55.0}
+        for zeta in (1e-4, 10.0)
+        for kappa in (1e-2, 1e7)
+    ]
+    for changed, found in zip([*({"V": V} for V in curve[0]), *corners], [*curve[1], *cells], strict=True):
+        with fmu.session(scene | changed) as session:
+            assert found == pytest.approx(session.get("F_t_settled") / 55.0, abs=4 * TOLERANCE)
+
+
 def test_the_map_is_the_mean_at_each_of_its_places(playground: Playground, fmu: FrictionFmu) -> None:
     columns, rows = 4, 3
-    rows_found = playground.page.evaluate(
+    cells = playground.page.evaluate(
         f"""async ([values, columns, rows]) => {{
             const fmu = await {CORE};
-            return [...regimeMap(fmu, values, columns, rows)].map((row) => [...row]);
+            return [...regimeMap(fmu, values, columns, rows)];
         }}""",
         [CONSTANT_STIFFNESS, columns, rows],
     )
     kappas = np.geomspace(1e-2, 1e7, columns)
     zetas = np.geomspace(1e-4, 10.0, rows)
-    for zeta, row in zip(zetas, rows_found, strict=True):
+    for zeta, row in zip(zetas, np.reshape(cells, (rows, columns)), strict=True):
         for kappa, found in zip(kappas, row, strict=True):
             sigma = kappa * 2 * math.pi * 20e3 * 55.0
             expected = periodic_mean(fmu, CONSTANT_STIFFNESS | {"V": zeta, "contact.sigma": sigma})

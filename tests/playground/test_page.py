@@ -114,6 +114,22 @@ def test_axes_have_labels_and_no_reduction_is_rounding(playground: Playground, o
         assert "·10" not in playground.page.locator("#reduction").inner_text(), preset.id
 
 
+def test_the_plane_is_shown_when_something_moves_in_it(playground: Playground) -> None:
+    """The path of the force in place of the loop, the transverse force beside the one along."""
+    for scene, is_plane in (({"V": 0.3, "V_y": 0.1}, True), ({"V": 0.3, "vibration.V_1": 1.0}, False)):
+        playground.load({"contact.stiffnessScale": 5e-7} | scene)
+        assert ("Path of the force" in playground.page.locator("#loop-title").inner_text()) == is_plane
+        assert playground.page.locator("#force .line.transverse").count() == int(is_plane)
+        for name in ("#transverse-mean", "#transverse-key"):
+            assert playground.page.locator(name).is_visible() == is_plane
+    playground.load({"V": 0.3, "vibration.V_2": 1.0, "contact.stiffnessScale": 5e-7})
+    ring = playground.page.locator("#loop .line.coulomb").bounding_box()
+    assert ring is not None and ring["width"] == pytest.approx(ring["height"], abs=1.0)
+    playground.finish()
+    assert playground.page.locator("#map-none").is_hidden()
+    assert "V2" in playground.page.locator("#map-y").inner_text().replace("\n", "")
+
+
 def test_the_laws_with_a_static_friction_show_it(playground: Playground) -> None:
     for law, has in (("Dahl", False), ("LuGre", True), ("ElasticPlastic", True)):
         playground.pick("friction.model", law)

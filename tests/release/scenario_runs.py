@@ -68,7 +68,7 @@ def run(start: list[str], library: Path, description: ModelDescription) -> dict[
     """Runs all scenarios with a host program; one array a scenario, columns time and OUTPUTS."""
     text = commands(description)
     done = subprocess.run(
-        [*start, str(library), description.guid], input=text, capture_output=True, text=True, timeout=300
+        [*start, str(library), description.guid], input=text, capture_output=True, text=True, timeout=600
     )
     assert done.returncode == 0, done.stderr[-2000:]
     rows: dict[str, list[list[float]]] = {}

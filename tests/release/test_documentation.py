@@ -97,7 +97,7 @@ def test_page_fits_the_window(page: str, tmp_path: Path, width: int) -> None:
         [str(CHROMIUM), *options, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", outer.as_uri()],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     found = re.search(r'data-widths="(\d+) (\d+)" data-formulas="(\d+)"', done.stdout)
     assert found, done.stderr[-500:]

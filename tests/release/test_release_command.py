@@ -148,21 +148,6 @@ def test_missing_toolchain(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> N
     assert not output.parent.exists()
 
 
-def test_missing_toolchain_from_the_command_line(tmp_path: Path) -> None:
-    """One line on stderr and a failing exit status."""
-    (tmp_path / "ziglang").mkdir()
-    (tmp_path / "ziglang" / "__init__.py").touch()
-    run = subprocess.run(
-        [sys.executable, "-m", "workshop.release.command", "-o", str(tmp_path / "a.fmu")],
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-    )
-    assert run.returncode == 1 and run.stdout == ""
-    assert run.stderr.startswith("error: the cross compiler is missing") and run.stderr.count("\n") == 1
-    assert not (tmp_path / "a.fmu").exists()
-
-
 def test_output_that_is_a_folder(tmp_path: Path) -> None:
     assert "it is a folder" in refuse(tmp_path)
     assert list(tmp_path.iterdir()) == []

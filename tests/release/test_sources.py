@@ -39,7 +39,7 @@ def test_fmpy_compile(without_binaries: Path, fmu: FrictionFmu) -> None:
     command = [sys.executable, "-m", "fmpy", "compile", str(without_binaries)]
     folder = Path(sys.executable).parent  # fmpy calls cmake from the path
     done = subprocess.run(
-        command, env={"PATH": f"{folder}:/usr/bin:/bin"}, capture_output=True, text=True, timeout=300
+        command, env={"PATH": f"{folder}:/usr/bin:/bin"}, capture_output=True, text=True, timeout=600
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     check_runs_without_cvode(without_binaries, fmu)

@@ -12,14 +12,14 @@ from playwright.sync_api import Browser, Page, expect
 
 from frictioncontact.errors import UserError
 from workshop import description
-from workshop.browser import watch
+from workshop.browser import PATIENCE, watch
 from workshop.project import ROOT
 from workshop.site.check import SIZES, broken_links, complaints, context, pages
 from workshop.site.command import build
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 pytestmark = pytest.mark.filterwarnings("ignore::sphinx.deprecation.RemovedInSphinx11Warning")  # of the theme
-expect.set_options(timeout=30_000)  # ms; the machine may have much other work
+expect.set_options(timeout=PATIENCE)
 
 
 @pytest.fixture(scope="module")

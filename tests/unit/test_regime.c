@@ -115,56 +115,8 @@ static void derivatives(void) {
           slope.rates.Q_f == 0.0);
 }
 
-// While V, d, E and the load, given by this, move and the surfaces vibrate.
-static FcScene moving_scene(const Case* one, const double at[4]) {
-    const FcVibration vibration = {.f = 20e3, .V_1 = 0.1, .a_d = 0.4e-6, .phase_d = 0.7};
-    const FcDrive drive =
-        fc_drive_make((FcLinearInput){at[0], 50.0}, (FcLinearInput){at[1], 3e-3},
-                      (FcLinearInput){at[2], 2e15}, (FcLinearInput){at[3], 4e6}, vibration, 0.0, 0.0);
-    const FcContactAtModulus at_E = fc_contact_at_modulus(&one->contact, at[2]);
-    return fc_scene_make(&one->contact, &at_E, &one->friction, F_C, &drive);
-}
-
-static FcMotion moved(const Case* one, const double at[4], int input, double change) {
-    double there[4] = {at[0], at[1], at[2], at[3]};
-    there[input] += change;
-    const FcScene scene = moving_scene(one, there);
-    return fc_motion(&scene, FC_SLIPS_FORWARD, (FcBristle){0});
-}
-
-// Of a bristle that slips along a bound that every input moves: against differences of the motion, of second order.
-static void derivatives_of_slipping(void) {
-    const double at[4] = {0.3, 14e-6, 58e9, 312.0};
-    for (int k = 0; k < 2 * 2 * 4; k++) {
-        const int input = k / 4;
-        Case one;
-        make(&one, k % 2 == 0 ? FC_DAHL : FC_ELASTIC_PLASTIC, at[0]);
-        one.contact =
-            table_1(FC_CONTACT_ASPERITIES, k / 2 % 2 == 0 ? FC_CONTACT_SEPARATION : FC_CONTACT_LOAD);
-        one.friction.limit = FC_LIMIT_LOAD;
-        one.friction.staticRatio = k % 2 == 0 ? 1.0 : 1.3;
-        one.friction.V_S = 0.3;
-        const FcScene scene = moving_scene(&one, at);
-        double by[4] = {0.0};
-        by[input] = 1.0;
-        const FcDirection along = {.V = by[0], .d = by[1], .E = by[2], .load = by[3]};
-        const FcMotion slope = fc_motion_along(&scene, FC_SLIPS_FORWARD, (FcBristle){0}, &along);
-        const FcMotion now = fc_motion(&scene, FC_SLIPS_FORWARD, (FcBristle){0});
-        const double change = 3e-5 * at[input];
-        const FcMotion after = moved(&one, at, input, change);
-        const FcMotion before = moved(&one, at, input, -change);
-        const double of_force = (after.force.x - before.force.x) / (2.0 * change);
-        const double of_rate = (after.rates.delta - before.rates.delta) / (2.0 * change);
-        const double of_heat = (after.rates.Q_f - before.rates.Q_f) / (2.0 * change);
-        CHECK_WITHIN(slope.force.x, of_force, 1e-6 * (fabs(of_force) + fabs(now.force.x) / at[input]));
-        CHECK_WITHIN(slope.rates.delta, of_rate, 1e-6 * (fabs(of_rate) + fabs(now.rates.delta) / at[input]));
-        CHECK_WITHIN(slope.rates.Q_f, of_heat, 1e-6 * (fabs(of_heat) + fabs(now.rates.Q_f) / at[input]));
-    }
-}
-
 int main(void) {
     closed_forms();
-    derivatives_of_slipping();
     a_bound_that_moves();
     derivatives();
     return check_result();

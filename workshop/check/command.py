@@ -52,7 +52,7 @@ class Extent:
 
 FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
 QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
-CI = Extent(("tests/fmi2", "-m", "not slow"), 15, 10_000_000, ("1e6", "1e2"), 0.2)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 5, 10_000_000, ("1e6", "1e2"), 0.2)
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -96,7 +96,9 @@ def _runtimes(*names: str) -> str:
 def check_sanitize(extent: Extent) -> None:
     """The library's tests and the C unit tests with AddressSanitizer and UndefinedBehaviorSanitizer."""
     folder = build_targets("asan", ["unit_tests"])
-    _run([str(Path(sys.executable).with_name("ctest")), "--test-dir", str(folder), "--output-on-failure"])
+    ctest = str(Path(sys.executable).with_name("ctest"))
+    cores = str(os.cpu_count() or 1)
+    _run([ctest, "--test-dir", str(folder), "--output-on-failure", "--parallel", cores])
     runtimes = _runtimes("libasan.so", "libubsan.so")
     environment = {
         "LD_PRELOAD": runtimes,

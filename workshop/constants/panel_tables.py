@@ -2,7 +2,7 @@
 
     .venv/bin/python -m workshop.constants.panel_tables
 
-They are kept with the sources, so that a build needs no mpmath; tests/unit/test_panel_tables.c holds them to
+They are kept with the sources, so that a build needs no mpmath. tests/solver/test_panel_tables.py has
 other formulas. All follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for
 Gauss and of P_n - P_(n-1) for Radau: the integrals and slopes of the polynomials through values at the
 nodes, their Legendre coefficients, their value at 0.

@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import fmpy
 import lief
 
 from frictioncontact.errors import UserError
@@ -55,6 +56,12 @@ def inspect(path: Path) -> Library:
     raise UserError(f"{path} is no shared library")
 
 
+def fmi2_functions() -> set[str]:
+    """As the standard's header declares them."""
+    declared = (Path(fmpy.__file__).parent / "c-code" / "fmi2Functions.h").read_text()
+    return set(re.findall(r"FMI2_Export\s+fmi2\w+TYPE\s+(fmi2\w+)\s*;", declared))
+
+
 def check(platform: str, path: Path, prefix: str = "fmi2") -> Library:
     """The facts of a library of the release; UserError names the first that is not as it must be.
 
@@ -65,6 +72,8 @@ def check(platform: str, path: Path, prefix: str = "fmi2") -> Library:
     foreign = {name for name in library.exports if not name.startswith(prefix)}
     if foreign:
         raise UserError(f"{platform}: {sorted(foreign)[0]} is exported, and only {prefix} functions may be")
+    if prefix == "fmi2" and (missing := fmi2_functions() - library.exports):
+        raise UserError(f"{platform}: {sorted(missing)[0]} is not exported")
     if library.processor != PROCESSORS[platform]:
         raise UserError(f"{platform}: built for {library.processor}, not for {PROCESSORS[platform]}")
     if library.glibc > NEWEST_GLIBC:

@@ -8,6 +8,7 @@
 #include "solver/methods/methods.h"
 #include "solver/pieces.h"
 #include "solver/plane/plane_march.h"
+#include "solver/plane/plane_still.h"
 
 static FcMap coulomb_map(const FcScene* scene, const FcSolverOptions* options, double duration,
                          double delta_0, FcMap* across, double* evaluations) {

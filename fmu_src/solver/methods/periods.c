@@ -214,6 +214,38 @@ static bool repeats(Walk* walk) {
     return changed <= SAME_END * part * size;
 }
 
+// In the plane a bristle that slips little in each period forgets its direction slowly: its ends converge by a ratio near 1, and are
+// extrapolated to where they lead (Aitken), from the last three of four.
+typedef struct {
+    FcVector end[3];
+    int count;
+} Ends;
+
+static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
+    const int place = ends->count++ % 4 - 1; // the first after an extrapolation is left out
+    if (place < 0) {
+        return;
+    }
+    ends->end[place] = (FcVector){total->delta, total->delta_y};
+    if (place < 2) {
+        return;
+    }
+    const FcVector* end = ends->end;
+    const FcVector before = {end[1].x - end[0].x, end[1].y - end[0].y};
+    const FcVector last = {end[2].x - end[1].x, end[2].y - end[1].y};
+    const double ratio = fc_product(before, last) / fc_product(before, before);
+    if (!(ratio > 0.0 && ratio < 1.0)) {
+        return;
+    }
+    const double more = ratio / (1.0 - ratio);
+    const FcBristle there = {.delta = total->delta + more * last.x,
+                             .slips = total->slips,
+                             .delta_y = total->delta_y + more * last.y};
+    const FcBristle reached = fc_plane_reach(scene, there);
+    total->delta = reached.delta;
+    total->delta_y = reached.delta_y;
+}
+
 // Takes `periods`, which may be infinitely many, and stops if periods repeat. Those since met_at do, or a
 // single free one if met_at is negative. If too many meetings do not repeat, met_at is about half of them
 // ago.
@@ -222,6 +254,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
     walk->met_at = -1.0;
     walk->least.delta = INFINITY;
     int meetings = 0;
+    Ends ends = {.count = 0};
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
         const FcStepResult before = *total;
         total->meetings = 0;
@@ -248,6 +281,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
+            } else if (walk->law.is_planar && isinf(periods)) {
+                extrapolate(walk->scene, &ends, total);
             }
             continue;
         }

@@ -1,6 +1,5 @@
 #include "solver/plane/plane_march.h"
 
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -9,6 +8,7 @@
 #include "solver/interval.h"
 #include "solver/panels/judge.h"
 #include "solver/plane/plane_panel.h"
+#include "solver/plane/rise.h"
 
 enum { POINTS = FC_RADAU_POINTS, STAGES = FC_RADAU_STAGES };
 
@@ -191,82 +191,13 @@ static void append(March* march, const FcPlanePanel* panel, double h) {
     march->u = march->end - next < 1e-12 * h ? march->end : next;
 }
 
-// The polynomial through the points of a panel, in barycentric form.
-typedef struct {
-    const double* f;
-    double weight[POINTS];
-} Through;
-
-static double value_at(const Through* through, double x) {
-    double above = 0.0;
-    double below = 0.0;
-    for (int i = 0; i < POINTS; i++) {
-        const double away = x - (0.5 + FC_RADAU_9.node[i]);
-        if (away == 0.0) {
-            return through->f[i];
-        }
-        above += through->weight[i] / away * through->f[i];
-        below += through->weight[i] / away;
-    }
-    return above / below;
-}
-
-// The place of a panel, of its length, at which a function that is known at its points rises above 0, and then above `over`; 2 for none.
-// One that begins above `over` has to come down first.
-static double first_rise(const double* f, double over) {
-    enum { SAMPLES = 32, HALVINGS = 50 };
-    double largest = f[0];
-    double smallest = f[0];
-    for (int i = 1; i < POINTS; i++) {
-        largest = fmax(largest, f[i]);
-        smallest = fmin(smallest, f[i]);
-    }
-    if (largest + 0.25 * (largest - smallest) < 0.0) {
-        return 2.0;
-    }
-    Through through = {.f = f};
-    for (int i = 0; i < POINTS; i++) {
-        double product = 1.0;
-        for (int j = 0; j < POINTS; j++) {
-            product *= j == i ? 1.0 : 4.0 * (FC_RADAU_9.node[i] - FC_RADAU_9.node[j]);
-        }
-        through.weight[i] = 1.0 / product;
-    }
-    bool is_below = f[STAGES] <= over;
-    double a = 0.0; // the last place at which it was below 0
-    for (int k = 1; k <= SAMPLES; k++) {
-        const double x = (double)k / SAMPLES;
-        const double value = value_at(&through, x);
-        if (value <= over || !is_below) {
-            is_below = is_below || value <= over;
-            a = value <= 0.0 ? x : a;
-            continue;
-        }
-        double b = x;
-        for (int i = 0; i < HALVINGS; i++) {
-            const double middle = 0.5 * (a + b);
-            if (value_at(&through, middle) > 0.0) {
-                b = middle;
-            } else {
-                a = middle;
-            }
-        }
-        return b;
-    }
-    return 2.0;
-}
-
-// |delta|^2 / D^2 - 1 at the points of a free panel: the bound of a contact that opens or closes moves by decades. Returns D at the
-// panel's end [m].
-static double find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
-    double at_end = 0.0;
+// |delta|^2 - D^2 at the points of a free panel.
+static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
     for (int i = 0; i < POINTS; i++) {
         const double D =
             fc_plane_bound(march->plane, &nodes->at[i], march->slips, nodes->t[i], nodes->phase[i]).D;
-        panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) / (D * D) - 1.0;
-        at_end = i == STAGES - 1 ? D : at_end;
+        panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
     }
-    return at_end;
 }
 
 static void set_delta(March* march, FcVector delta) {
@@ -332,7 +263,7 @@ static bool begins_to_slip(March* march) {
     return true;
 }
 
-// What is within rounding of the bound, or within what heat and force may miss, of |delta|^2 / D^2 - 1.
+// What is within rounding of the bound, or within what heat and force may miss [m2], of |delta|^2 - D^2.
 static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
     // What it goes too far costs heat at break-away, which is held to the path.
@@ -340,7 +271,7 @@ static double close_to_bound(const March* march, double D) {
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
-    return 2.0 / D * fmin(fmax(allowed, rounding), 1e-3 * D); // a bound without limit is none
+    return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // where D moves by decades nothing is near it
 }
 
 static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
@@ -368,8 +299,11 @@ static void free_panel(March* march, double h) {
     bool is_cut = false;
     double over = 0.0;
     for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
-        over = close_to_bound(march, find_to_bound(march, &nodes, &panel));
-        const double meets = first_rise(panel.to_bound, over);
+        find_to_bound(march, &nodes, &panel);
+        const FcVector delta = panel.delta[STAGES - 1];
+        over =
+            close_to_bound(march, sqrt(fmax(1e-300, fc_product(delta, delta) - panel.to_bound[STAGES - 1])));
+        const double meets = fc_first_rise(panel.to_bound, over);
         if (meets > 1.0) {
             break;
         }
@@ -391,7 +325,7 @@ static double end_of_push(const March* march, const FcPlanePanel* panel) {
     for (int i = 0; i < POINTS; i++) {
         inwards[i] = -panel->to_bound[i];
     }
-    return inwards[STAGES] > rounding ? 0.0 : first_rise(inwards, rounding);
+    return inwards[STAGES] > rounding ? 0.0 : fc_first_rise(inwards, rounding);
 }
 
 static void slip_panel(March* march, double h) {
@@ -522,43 +456,4 @@ FcMap fc_plane_map(const FcScene* scene, const FcSolverOptions* options, double 
     *evaluations = march.evaluations;
     *across = march.across;
     return march.along;
-}
-
-// Along V as along a line, across it by relaxation alone.
-void fc_plane_constant(const FcScene* scene, double h, FcStepResult* result) {
-    FcPlane plane;
-    fc_plane_make(&plane, scene);
-    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
-    const FcVector n =
-        at.speed > 0.0 ? (FcVector){at.V.x / at.speed, at.V.y / at.speed} : (FcVector){1.0, 0.0};
-    const FcMap along = fc_map_of_constant_scene(&(FcCoefficients){at.speed, at.sigma, at.limit}, h);
-    const FcMap across = {.relaxation = along.relaxation,
-                          .impulse_slope = along.impulse_slope,
-                          .heat_square = along.heat_square};
-    FcStepResult turned = {.delta = n.x * result->delta + n.y * result->delta_y,
-                           .delta_y = n.x * result->delta_y - n.y * result->delta,
-                           .evaluations = 1.0};
-    fc_map_apply(&along, &turned);
-    fc_map_apply_across(&across, &turned);
-    *result = turned;
-    result->delta = n.x * turned.delta - n.y * turned.delta_y;
-    result->delta_y = n.y * turned.delta + n.x * turned.delta_y;
-    result->impulse = n.x * turned.impulse - n.y * turned.impulse_y;
-    result->impulse_y = n.y * turned.impulse + n.x * turned.impulse_y;
-}
-
-FcBristle fc_plane_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force) {
-    FcPlane plane;
-    fc_plane_make(&plane, scene);
-    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
-    const bool has_bristle = scene->friction->model != FC_COULOMB;
-    if (at.speed == 0.0) {
-        *force = (FcVector){at.sigma * from.delta, at.sigma * from.delta_y};
-        return from;
-    }
-    *force = (FcVector){at.limit * at.V.x / at.speed, at.limit * at.V.y / at.speed};
-    return has_bristle ? (FcBristle){.delta = force->x / at.sigma,
-                                     .slips = fc_has_static_friction(scene->friction),
-                                     .delta_y = force->y / at.sigma}
-                       : from;
 }

@@ -16,10 +16,4 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
 FcMap fc_plane_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
                    FcMap* across, double* evaluations);
 
-// A step of h [s] >= 0 in which nothing moves, of Dahl's or LuGre's law without a bound: exact.
-void fc_plane_constant(const FcScene* scene, double h, FcStepResult* result);
-
-// What a bristle that is within its bound tends to without vibration, sliding for ever, and its force [N]; itself if nothing moves.
-FcBristle fc_plane_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force);
-
 #endif

@@ -34,7 +34,7 @@ typedef struct {
     FcPanel along;                    // its map, and the panel's errors
     FcMap across;                     // the map of delta_y
     FcVector delta[FC_RADAU_POINTS];  // m
-    double to_bound[FC_RADAU_POINTS]; // |delta|^2 / D^2 - 1 of a free panel; m/s, the push of one that slips
+    double to_bound[FC_RADAU_POINTS]; // m2, |delta|^2 - D^2 of a free panel; m/s, the push of one that slips
 } FcPlanePanel;
 
 // The estimated errors of a panel whose force is known at its points.

@@ -72,17 +72,19 @@ class Chart {
     return { width: width - MARGIN.left - MARGIN.right, height: height - MARGIN.top - MARGIN.bottom };
   }
 
-  // content: {x: [low, high], y: [low, high], bands: [[from, to]], lines: [{x, y, kind}],
-  // rules: [{y, kind, text}], points: [{x, y, kind, title}], summary}
+  // content: {x: [low, high], y: [low, high], isSquare, bands: [[from, to]], lines: [{x, y, kind}],
+  // rules: [{y, kind, text}], points: [{x, y, kind, title}], summary}. isSquare: a unit is as long on both axes,
+  // about the origin; x is not given.
   draw(content) {
     this.content = content;
     if (!this.size) return;
     const { width, height } = this.size;
-    const x = this.scale(this.axes.x, content.x, MARGIN.left, width - MARGIN.right);
-    const y = this.scale(this.axes.y, content.y, height - MARGIN.bottom, MARGIN.top);
+    this.ranges = content.isSquare ? this.square(content.y[1]) : content;
+    const x = this.scale(this.axes.x, this.ranges.x, MARGIN.left, width - MARGIN.right);
+    const y = this.scale(this.axes.y, this.ranges.y, height - MARGIN.bottom, MARGIN.top);
     this.x = x;
     this.y = y;
-    this.drawGrid(content, width, height);
+    this.drawGrid(this.ranges, width, height);
     this.data.replaceChildren();
     this.marks.replaceChildren();
     for (const [from, to] of content.bands ?? []) {
@@ -95,6 +97,13 @@ class Chart {
     }
     for (const point of content.points ?? []) this.drawPoint(point);
     this.svg.setAttribute("aria-label", content.summary ?? "");
+  }
+
+  // Ranges about the origin that contain reach in every direction.
+  square(reach) {
+    const { width, height } = this.inner();
+    const unit = reach / Math.min(width, height);
+    return { x: [-unit * width, unit * width], y: [-unit * height, unit * height] };
   }
 
   scale({ log }, [low, high], from, to) {
@@ -149,7 +158,7 @@ class Chart {
   // A point beyond the axes is drawn at their edge.
   drawPoint({ x, y, kind, title }) {
     const inside = (value, [low, high]) => Math.min(Math.max(value, low), high);
-    const at = { cx: this.x(inside(x, this.content.x)), cy: this.y(inside(y, this.content.y)) };
+    const at = { cx: this.x(inside(x, this.ranges.x)), cy: this.y(inside(y, this.ranges.y)) };
     const circle = svg("circle", { ...at, r: kind === "here" ? 6 : 4.5, class: `point ${kind}` }, this.marks);
     if (title) svg("title", {}, circle).textContent = title;
   }

@@ -58,8 +58,12 @@ const COPIES = {
   },
 
   CSV: ({ wave }) =>
-    ["time_s,velocity_m_per_s,displacement_m,F_t_N"]
-      .concat(Array.from(wave.time, (t, k) => [t, wave.velocity[k], wave.displacement[k], wave.force[k]].join(",")))
+    ["time_s,velocity_m_per_s,displacement_m,F_t_N,F_y_N"]
+      .concat(
+        Array.from(wave.time, (t, k) =>
+          [t, wave.velocity[k], wave.displacement[k], wave.force[k], wave.transverse[k]].join(","),
+        ),
+      )
       .join("\n"),
 
   Link: ({ hash }) => location.href.split("#")[0] + hash,

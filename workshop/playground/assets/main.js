@@ -124,11 +124,11 @@ class Page {
   }
 
   drag(kind, { x, y }) {
-    const V_1 = this.valueOf("vibration.V_1");
+    const amplitude = swing(this.full());
     const inside = (value, [low, high]) => Math.min(Math.max(value, low), high);
     if (kind === "mean") {
-      this.set("V", V_1 > 0 ? inside(x, [CURVE_LOW, CURVE_HIGH]) * V_1 : inside(x, [1e-6, 10]));
-    } else if (V_1 > 0) {
+      this.set("V", amplitude > 0 ? inside(x, [CURVE_LOW, CURVE_HIGH]) * amplitude : inside(x, [1e-6, 10]));
+    } else if (amplitude > 0) {
       const moved = this.unlessRefused(() => sceneAt(this.fmu, this.full(), inside(x, MAP.kappa), inside(y, MAP.zeta)));
       if (!moved) return; // the scene that was to be moved is refused
       for (const name of ["V", stiffnessName(moved)]) this.keep(name, moved[name]);
@@ -140,7 +140,7 @@ class Page {
 
   // The scene with the variables that the figures ask for by name, also where they are at their start.
   full() {
-    const named = ["vibration.V_1", "friction.limit", "contact.model"];
+    const named = ["vibration.V_1", "vibration.V_2", "friction.limit", "contact.model"];
     return { ...Object.fromEntries(named.map((name) => [name, this.valueOf(name)])), ...this.values };
   }
 
@@ -183,15 +183,16 @@ class Page {
     const values = this.full();
     const shown = wave(this.fmu, values);
     const here = regime(this.fmu, values);
-    const without = meanForce(this.fmu, withoutVibration(values));
+    const without = steadyForce(this.fmu, values);
     const V_1 = this.valueOf("vibration.V_1");
     const V = this.valueOf("V");
-    const isCoulombs = V_1 > 0 && this.hasConstantLimit();
-    this.state = { wave: shown, here: { ratio: V / V_1, V, mean: shown.mean, without, isCoulombs } };
-    this.figures.showNumbers(shown, here, without);
-    this.figures.showWave(shown, here, V_1);
+    const amplitude = V_1 || !swing(values) ? "1" : "2";
+    const known = this.hasConstantLimit() ? rigid(values) : null;
+    this.state = { wave: shown, here: { ratio: here.zeta, V, mean: shown.mean, without, amplitude, rigid: known } };
+    this.figures.showNumbers(shown, here, without, isPlane(values));
+    this.figures.showWave(shown, here, V_1, isPlane(values));
     this.figures.showMean(this.state.here, this.preset?.measured);
-    this.figures.showRegime(here);
+    this.figures.showRegime(here, amplitude);
     this.ask(values);
     return this.state;
   }

@@ -3,6 +3,7 @@
 
 const LEVELS = [[19, 11], [37, 21], [73, 41]]; // columns and rows of the map, from coarse to fine
 const SLICE = 8; // ms of work between two looks at the mail
+const PATIENCE = 1000; // ms: a map that takes longer does not stay that of the scene before, and is not refined
 
 let fmu = null;
 let latest = null;
@@ -47,18 +48,24 @@ async function work() {
     const key = keyOf(values);
     if (key === mapKey) return;
     mapKey = null;
-    if (!((values["vibration.V_1"] ?? 0) > 0)) {
+    if (!(swing(values) > 0)) {
       postMessage({ id, map: null });
       mapKey = key;
       return;
     }
+    let isOld = true; // the map that the page shows
     for (const [columns, rows] of LEVELS) {
       const cells = new Float64Array(columns * rows);
-      let row = 0;
-      let begin = performance.now();
-      for (const line of regimeMap(fmu, values, columns, rows)) {
-        cells.set(line, columns * row++);
+      let count = 0;
+      const start = performance.now();
+      let begin = start;
+      for (const cell of regimeMap(fmu, values, columns, rows)) {
+        cells[count++] = cell;
         if (performance.now() - begin > SLICE) {
+          if (isOld && begin - start > PATIENCE) {
+            postMessage({ id, map: null });
+            isOld = false;
+          }
           await mail();
           if (latest && keyOf(latest.values) !== key) return;
           if (latest) {
@@ -69,6 +76,8 @@ async function work() {
         }
       }
       postMessage({ id, map: { columns, rows, cells } });
+      isOld = false;
+      if (performance.now() - start > PATIENCE) break;
     }
     mapKey = key;
   } catch (error) {
