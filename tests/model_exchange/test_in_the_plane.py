@@ -102,7 +102,7 @@ def test_both_interfaces_agree(fmu: FrictionFmu) -> None:
 
 
 def test_a_slip_turns_towards_the_velocity(fmu: FrictionFmu) -> None:
-    """D theta' = -V sin theta, so tan(theta / 2) falls by e^(-V t / D); the heat is F_C D ln(1 / sin theta)."""
+    """D theta' = -V sin theta, so tan(theta / 2) falls by e^(-V t / D); the heat is F_C D times a log."""
     V, theta, t = 0.1, 1.3, 1.5 * D / 0.1
     start = {"delta_0": D * math.cos(theta), "delta_y_0": D * math.sin(theta)}
     with Host(

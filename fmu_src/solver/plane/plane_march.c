@@ -271,7 +271,7 @@ static double close_to_bound(const March* march, double D) {
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
-    return 2.0 * D * fmax(fmin(allowed, 1e-3 * D), rounding);
+    return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // where D moves by decades nothing is near it
 }
 
 static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
