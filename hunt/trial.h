@@ -7,8 +7,8 @@
 // - the side along which a bristle with static friction slips is the same at the end;
 // - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
 // Granted is rounding alone: 1e-11 S, or S path; to W_f and Q_f 32 eps S |delta| of both ends, as the state has no more
-// digits of delta; what the step's own start and length, moved by two units in their last place, make of the reference; at
-// the start, what lies within 1e-11 of its bound lies on it. S is at least 1e-20 N, and what an energy may miss 1e-20 J. A step is judged from the FMU's own state
+// digits of delta; what the step's own start and length, moved by two units in their last place, and delta before the step, moved
+// by 2e-11 of itself, make of the reference: a bristle that lies at its static bound may have broken away or not. S is at least 1e-20 N, and what an energy may miss 1e-20 J. A step is judged from the FMU's own state
 // before it, a settled start by F_t_start and from its own state. A step of more panels or cycles than the reference takes is
 // counted, and not judged.
 #ifndef HUNT_TRIAL_H
