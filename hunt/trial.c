@@ -79,15 +79,18 @@ static void step_of_reference(const ReferenceScene* before, const ReferenceScene
     }
 }
 
-// The same if the rounding of the step's own times may tell: with start and h moved by two units in their
-// last place.
-static Verdict verdict_by_clock(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
+// The same if the rounding of the step's own times, or of a deflection at its bound, may tell: with start and h moved by two
+// units in their last place, and the deflection before by 2e-11 of itself.
+static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
     Values least = of_reference(&taken->truth), largest = least;
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
-    for (int k = 0; k < 4; k++) {
+    const double of_delta = 2e-11 * taken->scene.delta_0;
+    for (int k = 0; k < 6; k++) {
         ReferenceScene moved = taken->scene, past = before ? *before : moved;
         ReferenceStep found;
-        *(k < 2 ? &moved.start : &moved.h) += k % 2 ? ulp : -ulp;
+        *(k < 2   ? &moved.start
+          : k < 4 ? &moved.h
+                  : &moved.delta_0) += (k % 2 ? 1.0 : -1.0) * (k < 4 ? ulp : of_delta);
         past.start = moved.start;
         if (!(moved.h > 0.0)) {
             continue;
@@ -132,7 +135,7 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
     const Values truth = of_reference(&taken->truth);
     taken->verdict = verdict_between(taken, &truth, &truth, tolerance);
     if (!(taken->verdict.ratio <= 1.0)) {
-        taken->verdict = verdict_by_clock(before, taken, tolerance);
+        taken->verdict = verdict_by_rounding(before, taken, tolerance);
     }
     const double settled = before == NULL ? settled_ratio(taken, method, tolerance) : -1.0;
     if (settled > taken->verdict.ratio) {

@@ -387,10 +387,9 @@ def test_a_measured_loop(fmu: FrictionFmu) -> None:
     assert np.sqrt(np.mean(result.residuals**2)) == pytest.approx(rms, rel=1e-4)
     times = rms / (np.std(np.diff(series.force, 2)) / math.sqrt(6.0))
     assert f"{times:.3g} times the scatter" in result.misfits[0]
-    assert (
-        f"{1e-6 * result.values[0]:.4f} MN/m and {result.values[1]:.3f}, and a misfit of {rms:.2f} N, "
-        f"{times:.0f} times the scatter"
-    ) in " ".join(GUIDE.split())
+    page = " ".join(GUIDE.split())
+    assert f"{1e-6 * result.values[0]:.4f} MN/m and {result.values[1]:.3f}" in page
+    assert f"a misfit of {rms:.2f} N, {times:.0f} times the scatter" in page
 
 
 @pytest.mark.parametrize(

@@ -96,7 +96,7 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"start": {"friction.model": "Dal"}}, "start: friction.model: 'Dal' is not one of Dahl, "),
         ({"start": {"friction.model": 9}}, "start: friction.model: 9 is not one of Dahl, "),
         ({"start": {"d": -1e-6}}, "d = -1e-06 m is below its minimum"),
-        ({"outputs": ["F"]}, "outputs: F is no variable of the FMU; did you mean F_t?"),
+        ({"outputs": ["F_tt"]}, "outputs: F_tt is no variable of the FMU; did you mean F_t?"),
         (
             {"outputs": ["friction.model"]},
             "outputs: friction.model is of type Enumeration; only Real is read",
