@@ -141,7 +141,9 @@ static double free_periods_in_plane(Walk* walk, double left) {
     const FcMap map = free_map_of(walk);
     const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
-    if (moved <= ROUNDING_OF_EDGE * size_of(&walk->total) ||
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
+    if (moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0) ||
         (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0))) {
         return left;
     }

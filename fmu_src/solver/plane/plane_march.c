@@ -183,12 +183,19 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
     }
 }
 
-static void append(March* march, const FcPlanePanel* panel, double h) {
+static void append(March* march, FcPlanePanel* panel, double h) {
+    const double next = march->u + h;
+    const double end = march->end - next < 1e-12 * h ? march->end : next;
+    if (is_stuck(march)) { // it goes as the surfaces do: a drift over many periods is told to rounding
+        const double t_0 = fc_straight_time(&march->half->in, march->u);
+        const double t_1 = fc_straight_time(&march->half->in, end);
+        panel->along.map.offset = fc_drive_displacement(&march->interval->scene->drive, t_0, t_1);
+        panel->across.offset = fc_drive_displacement(&march->across_drive, t_0, t_1);
+    }
     fc_map_append(&march->along, &panel->along.map);
     fc_map_append(&march->across, &panel->across);
     march->transient *= exp(-fmax(0.0, panel->along.z));
-    const double next = march->u + h;
-    march->u = march->end - next < 1e-12 * h ? march->end : next;
+    march->u = end;
 }
 
 // |delta|^2 - D^2 at the points of a free panel.
