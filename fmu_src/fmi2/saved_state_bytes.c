@@ -36,7 +36,7 @@ static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
 _Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
                "a new member of FcHybrid must be added to transfer_hybrid");
-_Static_assert(sizeof(FcPast) == 7 * sizeof(double), "a new member of FcPast must be added to transfer_past");
+_Static_assert(sizeof(FcPast) == 8 * sizeof(double), "a new member of FcPast must be added to transfer_past");
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
                                               2 * sizeof(int) + sizeof(FcPast) + sizeof(FcHybrid),
                "a new member of FcFrictionState must be added to transfer_state");
@@ -100,6 +100,7 @@ static void transfer_inputs(Cursor* cursor, double of[FC_INPUT_COUNT]) {
 static void transfer_past(Cursor* cursor, FcPast* past) {
     transfer_real(cursor, &past->d);
     transfer_real(cursor, &past->V);
+    transfer_real(cursor, &past->V_y);
     transfer_real(cursor, &past->E);
     transfer_real(cursor, &past->limit);
     transfer_real(cursor, &past->ratio);
@@ -295,8 +296,9 @@ static const char* unsound_part(FcSavedState* saved) {
     }
     const FcPast* past = &friction->past;
     if (friction->slips < -1 || friction->slips > 1 ||
-        !all_finite((double[]){past->d, past->V, past->E, past->limit, past->ratio, past->V_S, past->sigma},
-                    7)) {
+        !all_finite((double[]){past->d, past->V, past->V_y, past->E, past->limit, past->ratio, past->V_S,
+                               past->sigma},
+                    8)) {
         return "what the last step left";
     }
     if (!hybrid_is_sound(friction)) {

@@ -7,24 +7,17 @@
 #include "model/root.h"
 #include "solver/panels/panel_tables.h"
 
-// V, or |V| in the plane, which Stribeck's curve is one of.
-static double velocity(const FcScene* scene, double V) {
-    const FcDrive* drive = &scene->drive;
-    return fc_drive_is_planar(drive) ? hypot(V, fc_drive_V_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)))
-                                     : V;
-}
-
-static FcBristle reach(const FcScene* scene, FcBristle bristle) {
-    return fc_is_planar(scene, bristle) ? fc_plane_reach(scene, bristle) : fc_reach(scene, bristle);
-}
-
 FcPast fc_past(const FcScene* scene) {
     if (fc_scene_is_loose(scene)) {
         return (FcPast){.sigma = 0.0};
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+    const FcDrive* drive = &scene->drive;
+    const double V_y =
+        fc_drive_is_planar(drive) ? fc_drive_V_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)) : 0.0;
     return (FcPast){.d = fc_scene_depends_on_d(scene) ? fc_scene_d(scene, 0.0) : 0.0,
-                    .V = velocity(scene, at.V),
+                    .V = at.V,
+                    .V_y = V_y,
                     .E = scene->drive.E.value,
                     .limit = at.limit / fc_stribeck(scene->friction, at.V),
                     .ratio = fc_static_ratio(scene->friction),
@@ -36,7 +29,7 @@ FcPast fc_past(const FcScene* scene) {
 typedef struct {
     const FcScene* scene;
     FcPast past;
-    double d, V, E;                                  // by which they change
+    double d, V, V_y, E;                             // by which they change
     double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
     int slips;                                       // the bristle's, which chooses the bound
 } Ramp;
@@ -58,10 +51,12 @@ static double curve_at(const Ramp* ramp, double s, double* log_rate) {
     }
     const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
     const double x = (ramp->past.V + s * ramp->V) / V_S;
-    const double peak = exp(-x * x);
+    const double y = (ramp->past.V_y + s * ramp->V_y) / V_S;
+    const double peak = exp(-x * x - y * y);
     const double curve = 1.0 + (ratio - 1.0) * peak;
-    *log_rate = peak / curve *
-                (ratio * ramp->log_ratio - 2.0 * (ratio - 1.0) * x * (ramp->V / V_S - x * ramp->log_V_S));
+    const double along = x * (ramp->V / V_S - x * ramp->log_V_S);
+    const double across = y * (ramp->V_y / V_S - y * ramp->log_V_S);
+    *log_rate = peak / curve * (ratio * ramp->log_ratio - 2.0 * (ratio - 1.0) * (along + across));
     return curve;
 }
 
@@ -103,6 +98,7 @@ static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
     Ramp ramp = {.scene = scene, .past = *past};
     ramp.d = now.d - past->d;
     ramp.V = now.V - past->V;
+    ramp.V_y = now.V_y - past->V_y;
     ramp.E = now.E - past->E;
     ramp.log_ratio = log(now.ratio / past->ratio);
     ramp.log_V_S = log(now.V_S / past->V_S);
@@ -162,11 +158,12 @@ static const double END_OF_CURVE = 7.0;
 // The next place to stop at after s.
 static double next_place(const Ramp* ramp, double s, double step) {
     const double V_S = fmin(ramp->scene->friction->V_S, ramp->past.V_S);
-    const double V = ramp->past.V + s * ramp->V;
+    const double V = hypot(ramp->past.V + s * ramp->V, ramp->past.V_y + s * ramp->V_y);
+    const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
-    if (ramp->slips != 0 && fc_has_static_friction(ramp->scene->friction) && ramp->V != 0.0) {
-        const double beyond = fabs(V) / V_S - END_OF_CURVE;
-        next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / fabs(ramp->V));
+    if (ramp->slips != 0 && fc_has_static_friction(ramp->scene->friction) && change != 0.0) {
+        const double beyond = V / V_S - END_OF_CURVE;
+        next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / change);
     }
     const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
     assert(place > s && place <= 1.0);
@@ -227,7 +224,7 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     }
     if (past->sigma == 0.0 ||
         fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
-        const FcBristle reached = reach(scene, bristle);
+        const FcBristle reached = fc_reach(scene, bristle);
         const double sigma = fc_scene_contact(scene, 0.0).sigma;
         const double end =
             reached.delta_y == 0.0 ? fabs(reached.delta) : hypot(reached.delta, reached.delta_y);
@@ -235,9 +232,10 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         return reached;
     }
     const FcPast now = fc_past(scene);
-    if (now.d == past->d && now.V == past->V && now.E == past->E && now.sigma == past->sigma &&
-        now.limit == past->limit && now.ratio == past->ratio && now.V_S == past->V_S) {
-        return reach(scene, bristle);
+    if (now.d == past->d && now.V == past->V && now.V_y == past->V_y && now.E == past->E &&
+        now.sigma == past->sigma && now.limit == past->limit && now.ratio == past->ratio &&
+        now.V_S == past->V_S) {
+        return fc_reach(scene, bristle);
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;
     Ramp ramp = ramp_from(scene, past, bristle.slips);
@@ -260,5 +258,5 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         bristle.delta *= reached / delta;
         bristle.delta_y *= reached / delta;
     }
-    return reach(scene, bristle);
+    return fc_reach(scene, bristle);
 }

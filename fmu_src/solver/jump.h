@@ -18,6 +18,7 @@
 typedef struct {
     double d;     // m
     double V;     // m/s
+    double V_y;   // m/s
     double E;     // Pa
     double limit; // N, F_C or mu F_n
     double ratio; // 1, static over Coulomb friction

@@ -283,7 +283,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
-            } else if (walk->law.is_planar && isinf(periods)) {
+            } else if (walk->law.is_planar && isinf(periods) &&
+                       !fc_has_static_friction(walk->scene->friction)) {
                 extrapolate(walk->scene, &ends, total);
             }
             continue;

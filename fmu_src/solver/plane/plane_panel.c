@@ -4,12 +4,12 @@
 
 enum { STAGES = FC_RADAU_STAGES, POINTS = FC_RADAU_POINTS, LAST = STAGES - 1, MOST_SIDES = 3 };
 
-void fc_plane_nodes(const FcPlane* plane, const FcStraight* in, double u, double h, FcPlaneNodes* nodes) {
+void fc_plane_nodes(const FcPlane* plane, const FcHalf* half, double u, double h, FcPlaneNodes* nodes) {
     nodes->duration = 0.0;
     for (int i = 0; i < POINTS; i++) {
         const double place = u + (0.5 + FC_RADAU_9.node[i]) * h;
-        nodes->t[i] = fc_straight_time(in, place);
-        nodes->tau[i] = h * fc_straight_pace(in, place);
+        nodes->t[i] = fmin(fmax(fc_straight_time(&half->in, place), half->start), half->end);
+        nodes->tau[i] = h * fc_straight_pace(&half->in, place);
         nodes->phase[i] = fc_drive_phase(&plane->scene->drive, nodes->t[i]);
         nodes->at[i] = fc_plane_coefficients(plane, nodes->t[i], nodes->phase[i]);
         nodes->duration += FC_RADAU_9.weight[i] * nodes->tau[i];
@@ -67,7 +67,8 @@ static double error_of_direction(const FcPlaneNodes* nodes, double speed, const 
     double f[POINTS];
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients* at = &nodes->at[i];
-        f[i] = F[i] * (1.0 + V[i] / speed + F[i] / at->limit * (at->speed / speed));
+        const double of_limit = at->limit > 0.0 ? F[i] / at->limit : 0.0;
+        f[i] = F[i] * (1.0 + V[i] / speed + of_limit * (at->speed / speed));
     }
     return error_of_mean(nodes, f);
 }
@@ -95,10 +96,16 @@ void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
                          FcPlanePanel* panel) {
     const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
     double z[POINTS]; // of the panel's variable
-    double FC_PAIRED weight[POINTS], P[POINTS], Q_x[POINTS], Q_y[POINTS], V_x[POINTS], V_y[POINTS],
-        sigma[POINTS];
+    double FC_PAIRED weight[POINTS];
+    double FC_PAIRED P[POINTS];
+    double FC_PAIRED Q_x[POINTS];
+    double FC_PAIRED Q_y[POINTS];
+    double FC_PAIRED V_x[POINTS];
+    double FC_PAIRED V_y[POINTS];
+    double FC_PAIRED sigma[POINTS];
     double FC_PAIRED rate[POINTS]; // r times the duration
-    double F_x[POINTS], F_y[POINTS];
+    double F_x[POINTS];
+    double F_y[POINTS];
     System system;
     panel->along.z = 0.0;
     for (int i = 0; i < POINTS; i++) {
@@ -137,7 +144,9 @@ void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     panel->along.limit = nodes->at[LAST].limit;
     panel->along.rate = rate[LAST] / nodes->duration;
 
-    double FC_PAIRED slope_x[POINTS], slope_y[POINTS], slope_P[POINTS];
+    double FC_PAIRED slope_x[POINTS];
+    double FC_PAIRED slope_y[POINTS];
+    double FC_PAIRED slope_P[POINTS];
     for (int i = 0; i < POINTS; i++) {
         slope_x[i] = nodes->tau[i] * V_x[i] - z[i] * panel->delta[i].x;
         slope_y[i] = nodes->tau[i] * V_y[i] - z[i] * panel->delta[i].y;
@@ -211,7 +220,11 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     }
     a[STAGES] = a_0;
     double FC_PAIRED slope[POINTS];
-    double z[POINTS], F_x[POINTS], F_y[POINTS], V_x[POINTS], V_y[POINTS];
+    double z[POINTS];
+    double F_x[POINTS];
+    double F_y[POINTS];
+    double V_x[POINTS];
+    double V_y[POINTS];
     FcMap* map = &panel->along.map;
     *map = (FcMap){.relaxation = 1.0};
     panel->across = (FcMap){.relaxation = 1.0};
