@@ -200,25 +200,36 @@ typedef struct {
 } Push;
 
 // Where between a and b it comes to 0, to be seen by halving as long as it may; infinite if nowhere.
-static double dip_of_push(const Push* push, double a, double at_a, double b, double at_b, int halvings) {
-    const double h = b - a;
-    const double slope = (at_b - at_a) / h;
-    const double x = 0.5 * h - slope / push->bend; // of the least that it may be
-    const double least = at_a + x * (slope - 0.5 * push->bend * (h - x));
-    if (!(x > 0.0 && x < h && least <= 0.0) || halvings == 0) {
-        return INFINITY;
-    }
+static double dip_of_push(const Push* push, double a, double at_a, double b, double at_b) {
+    typedef struct {
+        double t, push;
+        int halvings; // that are left
+    } End;
+    End ends[MOST_HALVINGS + 1] = {{b, at_b, MOST_HALVINGS}}; // of the parts that are left, the next one last
     FcPushed of = push->of;
-    const double middle = a + 0.5 * h;
-    const double at = fc_push_at(&of, middle);
-    *push->evaluations += 1.0;
-    const double first = dip_of_push(push, a, at_a, middle, at, halvings - 1);
-    if (isfinite(first)) {
-        return first;
+    for (int count = 1; count > 0;) {
+        End* end = &ends[count - 1];
+        const double h = end->t - a;
+        const double slope = (end->push - at_a) / h;
+        const double x = 0.5 * h - slope / push->bend; // of the least that it may be
+        const double least = at_a + x * (slope - 0.5 * push->bend * (h - x));
+        if (x > 0.0 && x < h && least <= 0.0 && end->halvings > 0) {
+            const double middle = a + 0.5 * h;
+            end->halvings--;
+            ends[count] = (End){middle, fc_push_at(&of, middle), end->halvings};
+            *push->evaluations += 1.0;
+            count++;
+            continue;
+        }
+        if (end->push <= 0.0 && count > 1) {
+            return fc_root_between(fc_push_at, &of, a, at_a, end->t, end->push, 0.0, push->seen,
+                                   push->evaluations);
+        }
+        a = end->t;
+        at_a = end->push;
+        count--;
     }
-    return at <= 0.0
-               ? fc_root_between(fc_push_at, &of, a, at_a, middle, at, 0.0, push->seen, push->evaluations)
-               : dip_of_push(push, middle, at, b, at_b, halvings - 1);
+    return INFINITY;
 }
 
 // How much the push bends at point i of a panel.
@@ -240,9 +251,8 @@ static double end_of_push(March* m, int side, const Slip* slip) {
     for (int i = 0; i < last; i++) {
         push.bend =
             BENDS * fmax(bend_at(slip, i > 0 ? i : 1), bend_at(slip, i + 1 < last ? i + 1 : last - 1));
-        const double end = push.bend > 0.0 && f[i] > 0.0
-                               ? dip_of_push(&push, t[i], f[i], t[i + 1], f[i + 1], MOST_HALVINGS)
-                               : INFINITY;
+        const double end =
+            push.bend > 0.0 && f[i] > 0.0 ? dip_of_push(&push, t[i], f[i], t[i + 1], f[i + 1]) : INFINITY;
         if (isfinite(end)) {
             return end;
         }

@@ -19,7 +19,7 @@ typedef struct {
     const FcPlane* plane;
     const FcInterval* interval;
     FcDrive across_drive; // fc_drive_across
-    const FcHalf* half;
+    FcHalf half;
     double u, end;     // reached in the half, and to be reached
     double path_after; // m, at least, from the end of the half to that of the interval
     double h;          // of the next panel, in u; 0 before the first of a half
@@ -90,9 +90,9 @@ static bool is_stuck(const March* march) {
 // The length in u of the next panel.
 static double planned(const March* march) {
     const FcInterval* interval = march->interval;
-    const FcStraight* in = &march->half->in;
+    const FcStraight* in = &march->half.in;
     const double left = march->end - march->u;
-    const double t = fmin(fmax(fc_straight_time(in, march->u), march->half->start), march->half->end);
+    const double t = fmin(fmax(fc_straight_time(in, march->u), march->half.start), march->half.end);
     const double resolves = pow(interval->tolerance, 1.0 / ORDER);     // 1 / rho
     double span = SMOOTH * resolves * fc_smooth_time(&interval->pace); // s
     const FcPlaneCoefficients at = coefficients_at(march, t);
@@ -132,7 +132,7 @@ static const double LEAST_SHARE = 1e-5;
 static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcPanel* panel) {
     const FcInterval* interval = march->interval;
     const double end = nodes->t[STAGES - 1];
-    const double length = march->half->in.length;
+    const double length = march->half.in.length;
     const double forgets =
         panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
     const bool has_peak = fc_has_stribeck_curve(interval->scene->friction);
@@ -149,7 +149,7 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
     }
     whole.z = fmax(LEAST_SHARE, whole.z);
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
-    const double path = march->path_after + straight_way(march, end, march->half->end);
+    const double path = march->path_after + straight_way(march, end, march->half.end);
     const double left_at_end = exp(-path / interval->saturation);
     const double sure = has_peak && march->motion == SLIPS ? SURE_IN_PEAK : SURE;
     return sure * fmax(over.mean, over.end * left_at_end);
@@ -175,7 +175,7 @@ static bool make_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePan
 // The panel from the place reached, of the length h, or shorter until it is accurate; its length.
 static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
     for (int tries = 0;; tries++) {
-        fc_plane_nodes(march->plane, march->half, march->u, h, nodes);
+        fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
         march->evaluations += STAGES;
         const bool is_solved = make_panel(march, nodes, panel);
         const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
@@ -192,8 +192,8 @@ static void append(March* march, FcPlanePanel* panel, double h) {
     const double next = march->u + h;
     const double end = march->end - next < 1e-12 * h ? march->end : next;
     if (is_stuck(march)) { // it goes as the surfaces do: a drift over many periods is told to rounding
-        const double t_0 = fc_straight_time(&march->half->in, march->u);
-        const double t_1 = fc_straight_time(&march->half->in, end);
+        const double t_0 = fc_straight_time(&march->half.in, march->u);
+        const double t_1 = fc_straight_time(&march->half.in, end);
         panel->along.map.offset = fc_drive_displacement(&march->interval->scene->drive, t_0, t_1);
         panel->across.offset = fc_drive_displacement(&march->across_drive, t_0, t_1);
     }
@@ -236,8 +236,8 @@ typedef struct {
 } Place;
 
 static Place place_of(const March* march) {
-    const double t = fc_straight_time(&march->half->in, march->u);
-    Place place = {.t = fmin(fmax(t, march->half->start), march->half->end)};
+    const double t = fc_straight_time(&march->half.in, march->u);
+    Place place = {.t = fmin(fmax(t, march->half.start), march->half.end)};
     place.phase = fc_drive_phase(&march->interval->scene->drive, place.t);
     place.at = fc_plane_coefficients(march->plane, place.t, place.phase);
     place.bound = fc_plane_bound(march->plane, &place.at, 1, place.t, place.phase);
@@ -282,13 +282,13 @@ static double close_to_bound(const March* march, double D) {
     // What it goes too far costs heat at break-away, which is held to the path.
     const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
-    const double of_time = fabs(march->u) * fc_straight_pace(&march->half->in, march->u) + interval->duration;
+    const double of_time = fabs(march->u) * fc_straight_pace(&march->half.in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
     return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // where D moves by decades nothing is near it
 }
 
 static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
-    fc_plane_nodes(march->plane, march->half, march->u, h, nodes);
+    fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
     march->evaluations += STAGES;
     if (!make_panel(march, nodes, panel)) {
         march->along.offset = NAN; // a part of a panel that was solved is, too
@@ -416,8 +416,8 @@ static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlane
 }
 
 static void cross_half(March* march) {
-    march->u = fc_straight_place(&march->half->in, march->half->start);
-    march->end = fc_straight_place(&march->half->in, march->half->end);
+    march->u = fc_straight_place(&march->half.in, march->half.start);
+    march->end = fc_straight_place(&march->half.in, march->half.end);
     march->h = 0.0;
     int stalled = 0; // panels in a row that did not get on
     while (march->u < march->end && march->evaluations <= FC_MOST_EVALUATIONS &&
@@ -449,17 +449,17 @@ static void cross(March* march) {
         after += straight_way(march, halves[i].start, halves[i].end);
     }
     for (int i = 0; i < count; i++) {
-        march->half = &halves[i];
+        march->half = halves[i];
         march->path_after = way[i];
         cross_half(march);
     }
 }
 
-static March march_over(const FcPlane* plane, const FcInterval* interval, double evaluations) {
-    return (March){.plane = plane,
-                   .interval = interval,
-                   .motion = plane->scene->friction->model == FC_COULOMB ? NO_BRISTLE : FREE,
-                   .evaluations = evaluations};
+static void start_march(March* march, const FcPlane* plane, const FcInterval* interval, double evaluations) {
+    *march = (March){.plane = plane,
+                     .interval = interval,
+                     .motion = plane->scene->friction->model == FC_COULOMB ? NO_BRISTLE : FREE,
+                     .evaluations = evaluations};
 }
 
 void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double duration,
@@ -470,12 +470,12 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     FcPlane plane;
     fc_plane_make(&plane, scene);
     const FcInterval interval = fc_interval_make(scene, scene, duration, options);
-    March march = march_over(&plane, &interval, result->evaluations);
+    March march;
+    start_march(&march, &plane, &interval, result->evaluations);
     march.is_bounded = fc_is_bounded(scene->friction);
     march.slips = result->slips;
     set_delta(&march, (FcVector){result->delta, result->delta_y});
-    const FcHalf whole = {0.0, duration, {0.0, INFINITY}};
-    march.half = &whole;
+    march.half = (FcHalf){0.0, duration, {0.0, INFINITY}};
     if (march.is_bounded) {
         const Place place = place_of(&march);
         const bool is_on = place.size >= (1.0 - 1e-10) * place.bound.D;
@@ -494,16 +494,25 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     result->evaluations = march.evaluations;
 }
 
+static void find_maps(const FcPlane* plane, const FcSolverOptions* options, double duration, double start,
+                      FcMap* along, FcMap* across, double* evaluations) {
+    const FcScene* scene = plane->scene;
+    const FcInterval interval = fc_interval_make(scene, scene, duration, options);
+    March march;
+    start_march(&march, plane, &interval, *evaluations);
+    const FcPlaneCoefficients at = coefficients_at(&march, 0.0);
+    march.scale = fmax(start, at.limit / at.sigma);
+    cross(&march);
+    *evaluations = march.evaluations;
+    *along = march.along;
+    *across = march.across;
+}
+
 FcMap fc_plane_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
                    FcMap* across, double* evaluations) {
     FcPlane plane;
     fc_plane_make(&plane, scene);
-    const FcInterval interval = fc_interval_make(scene, scene, duration, options);
-    March march = march_over(&plane, &interval, *evaluations);
-    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
-    march.scale = fmax(start, at.limit / at.sigma);
-    cross(&march);
-    *evaluations = march.evaluations;
-    *across = march.across;
-    return march.along;
+    FcMap along;
+    find_maps(&plane, options, duration, start, &along, across, evaluations);
+    return along;
 }
