@@ -37,8 +37,8 @@ static FcSavedState full_state(void) {
     }
     friction->next_rate_set = 1;
     friction->slips = -1;
-    friction->past =
-        (FcPast){.d = 1e-5, .V = -2.0, .E = 3e9, .limit = 4.0, .ratio = 5.0, .V_S = 6.0, .sigma = 7e6};
+    friction->past = (FcPast){
+        .d = 1e-5, .V = -2.0, .V_y = 2.5, .E = 3e9, .limit = 4.0, .ratio = 5.0, .V_S = 6.0, .sigma = 7e6};
     FcHybrid* hybrid = &friction->hybrid;
     hybrid->seen_time = 0.75;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
@@ -170,8 +170,8 @@ static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size
     put(&layout, (unsigned)friction->next_rate_set, 4);
     put(&layout, (unsigned)friction->slips, 4);
     const FcPast* of = &friction->past;
-    const double past[] = {of->d, of->V, of->E, of->limit, of->ratio, of->V_S, of->sigma};
-    for (int k = 0; k < 7; k++) {
+    const double past[] = {of->d, of->V, of->V_y, of->E, of->limit, of->ratio, of->V_S, of->sigma};
+    for (int k = 0; k < 8; k++) {
         put_real(&layout, past[k]);
     }
     const FcHybrid* hybrid = &friction->hybrid;
