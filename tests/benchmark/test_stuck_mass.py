@@ -157,8 +157,15 @@ def test_damping_swings_the_force_of_a_contact_that_slides_under_vibration(fmu: 
             heats.append(session.get("Q_f"))
             session.step(5e-5)
             means.append(session.get("F_t_mean"))
-    said = re.search(r"(\S+) to (\S+) `F_C` instead of (\S+) to (\S+), (\S+) times the heat", GUIDE)
-    low, high, plain_low, plain_high, heat = (float(word.replace("−", "-")) for word in said.groups())
+    number = r"([−\d.]+)"
+    said = re.search(
+        rf"swings from {number} to {number} `F_C` instead of {number} to {number}\. "
+        rf"The heat is {number} times",
+        " ".join(GUIDE.split()),
+    )
+    low, high, plain_low, plain_high, heat = (
+        float(word.replace("−", "-").rstrip(".")) for word in said.groups()
+    )
     assert ranges[1] == pytest.approx((low, high), abs=0.05)
     assert ranges[0] == pytest.approx((plain_low, plain_high), abs=0.005)
     assert heats[1] / heats[0] == pytest.approx(heat, abs=0.5)

@@ -97,7 +97,7 @@ def test_the_page_has_what_long_steps_cost(bench: Bench) -> None:
 
 def test_the_table_of_long_steps_is_renewed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     page = tmp_path / "numerics.md"
-    page.write_text("of one period with held inputs:\n\n| old |\n| 1 |\n\nmore\n")
+    page.write_text("of one does so with the CPU time:\n\n| old |\n| 1 |\n\nmore\n")
     monkeypatch.setattr(work_precision, "PAGE", page)
     rows = [
         {

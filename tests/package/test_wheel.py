@@ -204,6 +204,7 @@ def test_every_line_of_the_pages_runs(user: User, line: str) -> None:
 @pytest.mark.parametrize("page", tutorial.PAGES, ids=lambda page: page.stem)
 def test_a_page_of_the_tutorial_prints_and_draws_what_it_shows(newcomer: User, page: Path) -> None:
     code, printed = tutorial.blocks(page)
+    (newcomer.work / "mine.csv").unlink(missing_ok=True)  # the lines of the pages have another of that name
     (newcomer.work / "page.py").write_text(code, encoding="utf-8")
     assert newcomer.run("python", "-W", "error::UserWarning:__main__", "page.py") == printed
     assert (newcomer.work / f"{page.stem}.png").is_file()

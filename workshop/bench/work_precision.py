@@ -327,7 +327,7 @@ def renew_periods(rows: Sequence[Mapping[str, Any]]) -> Path:
     """The table of docs/numerics.md on long steps."""
     heading = ["law", "limit", "held", "moving", "moving, CPU time"]
     lines = [heading, ["---"] * len(heading), *period_cells(rows)]
-    text = with_table(PAGE.read_text(encoding="utf-8"), "period with held inputs:", lines)
+    text = with_table(PAGE.read_text(encoding="utf-8"), "does so with the CPU time:", lines)
     PAGE.write_text(text, encoding="utf-8")
     return PAGE
 
