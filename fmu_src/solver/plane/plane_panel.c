@@ -249,9 +249,15 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         map->impulse_offset += weight * F_x[i];
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
-        map->heat_offset += weight * force * (outwards - bound[i].rate);
+        // The heat is the work less what the bristle stores, whose rate follows Stribeck's curve at once, and what the stiffness takes.
+        const double log_rate =
+            fc_scene_log_rates_at_phase(&plane->of_static_limit, nodes->t[i], nodes->phase[i]).sigma;
+        map->heat_offset += weight * force * (outwards + 0.5 * D * log_rate);
         map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
     }
+    const double start = bound[STAGES].D;
+    const double end = bound[LAST].D;
+    map->heat_offset -= 0.5 * (nodes->at[LAST].sigma * end * end - nodes->at[STAGES].sigma * start * start);
     map->offset = panel->delta[LAST].x;
     panel->across.offset = panel->delta[LAST].y;
     panel->along.sigma = nodes->at[LAST].sigma;
