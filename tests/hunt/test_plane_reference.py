@@ -7,8 +7,8 @@ import random
 from typing import Any
 
 import pytest
+from data.plane_means import MEANS, ZETA, coulomb_across, coulomb_around, soft_dahl
 from hunt_library import CHOICES, LAWS_WITH_A_STATE, Scene, plane_settled, plane_step, scene, step
-from scipy.special import ellipe, ellipk
 
 F, F_C, V_2 = 2e4, 55.0, 0.8
 RESULTS = ("F_t", "F_y", "F_t_mean", "F_y_mean", "work", "heat")
@@ -27,25 +27,15 @@ def mean(*arguments: Any, **values: Any) -> float:
     return plane_settled(vibrating(*arguments, **values))[0] / F_C
 
 
-ZETA = (0.02, 0.1, 0.5, 2.0)
-
-
 @pytest.mark.parametrize("zeta", ZETA)
 def test_coulomb_by_elliptic_integrals(zeta: float) -> None:
-    m = 1 / (1 + zeta**2)
-    assert mean("Coulomb", 1, zeta) == pytest.approx(2 / math.pi * zeta * math.sqrt(m) * ellipk(m), rel=1e-14)
-    # circular: the derivative of (2 / pi) (1 + zeta) E(m) by zeta, m as below, with dE/dm = (E - K) / (2 m)
-    m = 4 * zeta / (1 + zeta) ** 2
-    slope = (ellipe(m) - ellipk(m)) * (1 - zeta) / (2 * zeta)
-    circular = 2 / math.pi * (ellipe(m) + slope)
-    assert mean("Coulomb", 1, zeta, circular=True) == pytest.approx(circular, rel=1e-13)
+    assert mean("Coulomb", 1, zeta) == pytest.approx(coulomb_across(zeta), rel=1e-14)
+    assert mean("Coulomb", 1, zeta, circular=True) == pytest.approx(coulomb_around(zeta), rel=1e-13)
 
 
 @pytest.mark.parametrize("zeta", ZETA)
 def test_a_soft_dahl_bristle_averages(zeta: float) -> None:
-    m = 1 / (1 + zeta**2)
-    averaged = zeta / (2 / math.pi / math.sqrt(m) * ellipe(m))
-    error = [mean("Dahl", kappa, zeta) - averaged for kappa in (1e-3, 3e-4)]
+    error = [mean("Dahl", kappa, zeta) - soft_dahl(zeta) for kappa in (1e-3, 3e-4)]
     assert abs(error[1]) < 0.1 * abs(error[0]) + 1e-14 and abs(error[0]) < 1e-5
 
 
@@ -56,19 +46,8 @@ def test_sticking_limits_of_the_elastic_plastic_law(kappa: float) -> None:
     assert around == pytest.approx(1 - kappa, abs=2e-7)
 
 
-# law, kappa, circular, and the mean of F_t over F_C at ZETA: the table of docs/physics.md
-TABLE = [
-    ("Dahl", 1, False, (0.032034, 0.156855, 0.601966, 0.944313)),
-    ("Dahl", 100, False, (0.055108, 0.229942, 0.642583, 0.945006)),
-    ("ElasticPlastic", 3, False, (0.059552, 0.283433, 0.689144, 0.946266)),
-    ("ElasticPlastic", 30, False, (0.066647, 0.256176, 0.643465, 0.945019)),
-    ("Dahl", 1, True, (0.015000, 0.075031, 0.377154, 0.932768)),
-    ("ElasticPlastic", 3, True, (0.009428, 0.047134, 0.233663, 0.937656)),
-]
-
-
-@pytest.mark.parametrize(("law", "kappa", "circular", "means"), TABLE)
-def test_means_of_the_pages(law: str, kappa: float, circular: bool, means: tuple[float, ...]) -> None:
+@pytest.mark.parametrize(("law", "kappa", "circular", "means"), MEANS)
+def test_means_to_six_digits(law: str, kappa: float, circular: bool, means: tuple[float, ...]) -> None:
     assert [mean(law, kappa, zeta, circular) for zeta in ZETA] == pytest.approx(means, abs=6e-7)
 
 

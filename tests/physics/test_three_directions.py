@@ -7,8 +7,9 @@ import re
 
 import numpy as np
 import pytest
+from data.plane_means import coulomb_across
 from scipy.optimize import brentq
-from scipy.special import ellipk, i0
+from scipy.special import i0
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.fmu_docs.directions import AMPLITUDE, DIRECTIONS, HEIGHT, mean, scene
@@ -24,10 +25,6 @@ def along(zeta: float) -> float:
     return 2.0 / math.pi * math.asin(min(zeta, 1.0))
 
 
-def transverse(zeta: float) -> float:
-    return float(2.0 / math.pi * zeta / math.hypot(1.0, zeta) * ellipk(1.0 / (1.0 + zeta**2)))
-
-
 def one(fmu: FrictionFmu, V: float, start_values: dict[str, Value]) -> float:
     return float(mean(fmu, start_values, np.array([V]))[0])
 
@@ -38,15 +35,15 @@ def test_a_rigid_contact(fmu: FrictionFmu) -> None:
         [float(cell) for cell in re.search(rf"^\| {name} \|([ .\d|]+)\|$", TEXT, re.MULTILINE)[1].split("|")]
         for name in ("ζ", "along", "transverse")
     )
-    for direction, formula, row in zip(("along", "transverse"), (along, transverse), rows, strict=True):
+    for direction, formula, row in zip(("along", "transverse"), (along, coulomb_across), rows, strict=True):
         truth = [formula(zeta) for zeta in places]
         assert row == pytest.approx(truth, abs=5e-4)
         V = AMPLITUDE * np.array(places)
         assert mean(fmu, scene("Coulomb", 3.0, direction), V) == pytest.approx(truth, abs=1e-5)
     assert one(fmu, 0.1, scene("Coulomb", 3.0, "normal")) == pytest.approx(1.0, abs=1e-6)
-    crossing = brentq(lambda zeta: along(zeta) - transverse(zeta), 0.5, 0.9999)
+    crossing = brentq(lambda zeta: along(zeta) - coulomb_across(zeta), 0.5, 0.9999)
     assert f"Below ζ = {crossing:.3f}" in PAGE
-    assert transverse(1e-4) / along(1e-4) == pytest.approx(math.log(4e4), rel=1e-6)
+    assert coulomb_across(1e-4) / along(1e-4) == pytest.approx(math.log(4e4), rel=1e-6)
 
 
 def test_a_contact_that_yields(fmu: FrictionFmu) -> None:
