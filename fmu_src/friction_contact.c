@@ -448,7 +448,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
     Outputs now;
-    const FcBristle reached = {.delta = result.delta, .slips = result.slips, .delta_y = result.delta_y};
+    const FcBristle reached = fc_bristle_of(&result);
     if (!find_outputs(&end, reached, &now, message)) {
         return false;
     }

@@ -160,7 +160,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
         if (v->friction.model != FC_ELASTIC_PLASTIC) {
             const FcDrive* drive = &now.scene.drive;
             z[0] = fc_drive_V(drive, 0.0);
-            z[0] += planar ? SLANT * fc_drive_V_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)) : 0.0;
+            z[0] += planar ? SLANT * fc_drive_V_y(drive, 0.0) : 0.0;
         }
         if (fc_is_bounded(&v->friction) && planar) {
             find_indicators_in_plane(&now, regime_of(contact), bristle, z);
@@ -293,8 +293,7 @@ static void add_drop(FcFrictionContact* contact, FcVector before) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     double work = v->friction.sigma_1 * (v->delta - before.x) * fc_drive_V(&scene.drive, 0.0);
     if (v->delta_y != before.y) {
-        const FcDrive across = fc_drive_across(&scene.drive);
-        work += v->friction.sigma_1 * (v->delta_y - before.y) * fc_drive_V(&across, 0.0);
+        work += v->friction.sigma_1 * (v->delta_y - before.y) * fc_drive_V_y(&scene.drive, 0.0);
     }
     if (fc_has_static_friction(&v->friction) && !fc_scene_is_loose(&scene) && isfinite(v->W_f + work)) {
         v->W_f += work;

@@ -91,9 +91,23 @@ double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
            (drive->V.rate * t - turn * (at_t.sine * at_t.sine / (1.0 + fabs(cosine))));
 }
 
+// Of the angle of the vibration across.
+static FcPhase phase_across(const FcDrive* drive, FcPhase at_t) {
+    return (FcPhase){.sine = at_t.sine * drive->cos_phase_2 + at_t.cosine * drive->sin_phase_2,
+                     .cosine = at_t.cosine * drive->cos_phase_2 - at_t.sine * drive->sin_phase_2};
+}
+
 double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
-    return linear(drive->V_y, t) +
-           drive->vibration.V_2 * (at_t.cosine * drive->cos_phase_2 - at_t.sine * drive->sin_phase_2);
+    return linear(drive->V_y, t) + drive->vibration.V_2 * phase_across(drive, at_t).cosine;
+}
+
+FcVelocity fc_drive_velocity_y_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
+    const FcPhase across = phase_across(drive, at_t);
+    const double V_2 = drive->vibration.V_2;
+    const double omega = drive->omega;
+    return (FcVelocity){.V = fc_drive_V_y_at_phase(drive, t, at_t),
+                        .rate = drive->V_y.rate - V_2 * omega * across.sine,
+                        .curvature = -V_2 * omega * omega * across.cosine};
 }
 
 FcDrive fc_drive_across(const FcDrive* drive) {
@@ -122,6 +136,10 @@ FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
 double fc_drive_V(const FcDrive* drive, double t) {
     return drive->vibration.V_1 == 0.0 ? linear(drive->V, t)
                                        : fc_drive_V_at_phase(drive, t, fc_drive_phase(drive, t));
+}
+
+double fc_drive_V_y(const FcDrive* drive, double t) {
+    return fc_drive_is_planar(drive) ? fc_drive_V_y_at_phase(drive, t, fc_drive_phase(drive, t)) : 0.0;
 }
 
 double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }

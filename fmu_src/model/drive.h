@@ -80,6 +80,7 @@ double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m
 FcDrive fc_drive_across(const FcDrive* drive);
 
 double fc_drive_V(const FcDrive* drive, double t);           // m/s
+double fc_drive_V_y(const FcDrive* drive, double t);         // m/s
 double fc_drive_d(const FcDrive* drive, double t);           // m
 double fc_drive_E(const FcDrive* drive, double t);           // Pa
 double fc_drive_load(const FcDrive* drive, double t);        // N
@@ -108,6 +109,7 @@ typedef struct {
 } FcVelocity;
 FcVelocity fc_drive_velocity(const FcDrive* drive, double t);
 FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t);
+FcVelocity fc_drive_velocity_y_at_phase(const FcDrive* drive, double t, FcPhase at_t); // of V_y
 
 // Time [s] in which V moves by change [m/s], fc_time_to_move of |V'| and |V''|.
 double fc_velocity_time_of_change(const FcVelocity* at, double change);

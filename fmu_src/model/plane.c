@@ -22,29 +22,32 @@ FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhas
 }
 
 // Rate of ln s(|V|), Stribeck's curve: s' / s times the rate of |V|.
-static double log_curve_rate(const FcPlane* plane, const FcPlaneCoefficients* at, FcPhase at_t) {
+static double log_curve_rate(const FcPlane* plane, const FcPlaneCoefficients* at, double t, FcPhase at_t) {
     const FcFriction* friction = plane->scene->friction;
     const FcDrive* drive = &plane->scene->drive;
     if (at->speed == 0.0) {
         return 0.0;
     }
-    const FcVibration* v = &drive->vibration;
-    const double sine_across = at_t.sine * drive->cos_phase_2 + at_t.cosine * drive->sin_phase_2;
-    const FcVector V_rate = {drive->V.rate - v->V_1 * drive->omega * at_t.sine,
-                             drive->V_y.rate - v->V_2 * drive->omega * sine_across};
+    const FcVector V_rate = {fc_drive_velocity_at_phase(drive, t, at_t).rate,
+                             fc_drive_velocity_y_at_phase(drive, t, at_t).rate};
     const double speed_rate = fc_product(at->V, V_rate) / at->speed;
     return fc_stribeck_slope(friction, at->speed) / fc_stribeck(friction, at->speed) * speed_rate;
 }
 
+static bool is_kinetic(const FcPlane* plane, int slips) {
+    return slips != 0 && fc_has_static_friction(plane->scene->friction);
+}
+
+double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int slips) {
+    return (is_kinetic(plane, slips) ? at->limit : at->static_limit) / at->sigma;
+}
+
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t) {
-    double log_rate = fc_scene_log_rates_at_phase(&plane->of_static_limit, t, at_t).ratio;
-    if (slips == 0 || !fc_has_static_friction(plane->scene->friction)) {
-        const double D = at->static_limit / at->sigma;
-        return (FcPlaneBound){D, D * log_rate};
-    }
-    const double D = at->limit / at->sigma;
-    return (FcPlaneBound){D, D * (log_rate + log_curve_rate(plane, at, at_t))};
+    const FcLogRates rates = fc_scene_log_rates_at_phase(&plane->of_static_limit, t, at_t);
+    const double by_curve = is_kinetic(plane, slips) ? log_curve_rate(plane, at, t, at_t) : 0.0;
+    const double D = fc_plane_radius(plane, at, slips);
+    return (FcPlaneBound){.D = D, .rate = D * (rates.ratio + by_curve), .log_sigma_rate = rates.sigma};
 }
 
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,

@@ -41,9 +41,20 @@ typedef struct {
 } FcPlaneCoefficients;
 FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhase at_t);
 
-// The radius [m] of the bound of a bristle that slips or does not, and its rate [m/s].
+// The force [N] of Coulomb's law, g V / |V|; 0 if nothing moves.
+static inline FcVector fc_plane_coulomb(const FcPlaneCoefficients* at) {
+    const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
+    return (FcVector){over_speed * at->V.x, over_speed * at->V.y};
+}
+
+// The radius D [m] of the bound of a bristle that slips or does not.
+double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int slips);
+
+// The same with its rate, and that of ln sigma.
 typedef struct {
-    double D, rate;
+    double D;              // m
+    double rate;           // m/s
+    double log_sigma_rate; // 1/s
 } FcPlaneBound;
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t);

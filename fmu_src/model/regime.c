@@ -408,7 +408,6 @@ static double bound_acceleration(const FcScene* bound) {
 
 FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
     const FcDrive* drive = &scene->drive;
-    const FcDrive across = fc_drive_across(drive);
     const FcRegime regime = fc_regime(scene, bristle);
     const FcStateRates rates = fc_motion(scene, regime, bristle).rates;
     const FcDirection in_time = {
@@ -417,7 +416,7 @@ FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
         .E = drive->E.rate,
         .load = drive->load.rate,
         .delta = rates.delta,
-        .V_y = fc_drive_V_rate(&across, 0.0),
+        .V_y = fc_drive_velocity_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)).rate,
         .delta_y = rates.delta_y,
     };
     if (fc_scene_is_loose(scene)) {

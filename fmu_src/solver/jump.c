@@ -12,12 +12,9 @@ FcPast fc_past(const FcScene* scene) {
         return (FcPast){.sigma = 0.0};
     }
     const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const FcDrive* drive = &scene->drive;
-    const double V_y =
-        fc_drive_is_planar(drive) ? fc_drive_V_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)) : 0.0;
     return (FcPast){.d = fc_scene_depends_on_d(scene) ? fc_scene_d(scene, 0.0) : 0.0,
                     .V = at.V,
-                    .V_y = V_y,
+                    .V_y = fc_drive_V_y(&scene->drive, 0.0),
                     .E = scene->drive.E.value,
                     .limit = at.limit / fc_stribeck(scene->friction, at.V),
                     .ratio = fc_static_ratio(scene->friction),

@@ -41,6 +41,16 @@ typedef struct {
     double impulse_y;   // N s
 } FcStepResult;
 
+static inline FcBristle fc_bristle_of(const FcStepResult* result) {
+    return (FcBristle){.delta = result->delta, .slips = result->slips, .delta_y = result->delta_y};
+}
+
+// The result with which a step begins, after so many evaluations.
+static inline FcStepResult fc_result_from(FcBristle start, double evaluations) {
+    return (FcStepResult){
+        .delta = start.delta, .slips = start.slips, .evaluations = evaluations, .delta_y = start.delta_y};
+}
+
 // The largest number of evaluations in one communication step, some 40 s of computing. A step that needs more
 // is refused, so that no host seems to hang. Twice as many would double the wait. Only inputs that move over
 // many orders of magnitude reach it.

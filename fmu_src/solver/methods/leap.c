@@ -66,18 +66,23 @@ static bool lies_on_bound(const Block* block, double k, double delta) {
     return fabs(on_bound(&scene, block->side).delta - delta) * fc_scene_stiffness(&scene, 0.0) <= allowed;
 }
 
+// A period of a scene from a bristle.
+static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
+    FcStepResult result = fc_result_from(start, *block->evaluations);
+    block->law->step(scene, block->options, block->period, &result);
+    *block->evaluations = result.evaluations;
+    return result;
+}
+
 // The bristle `periods` after period k - periods of the block.
 static FcBristle warmed_up(const Block* block, double k, int periods) {
-    FcStepResult result = {.delta = block->start.delta,
-                           .slips = block->start.slips,
-                           .evaluations = *block->evaluations,
-                           .delta_y = block->start.delta_y};
+    FcBristle bristle = block->start;
     for (int before = periods; before > 0; before--) {
         const FcScene scene = scene_at(block, k - before);
-        block->law->step(&scene, block->options, block->period, &result);
+        const FcStepResult result = take_period(block, &scene, bristle);
+        bristle = fc_bristle_of(&result);
     }
-    *block->evaluations = result.evaluations;
-    return (FcBristle){.delta = result.delta, .slips = result.slips, .delta_y = result.delta_y};
+    return bristle;
 }
 
 // The result of period k in the plane, if the period before leaves the same whatever the bristle began with earlier.
@@ -90,12 +95,7 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
           allowed)) {
         return false;
     }
-    FcStepResult result = {.delta = start.delta,
-                           .slips = start.slips,
-                           .evaluations = *block->evaluations,
-                           .delta_y = start.delta_y};
-    block->law->step(scene, block->options, block->period, &result);
-    *block->evaluations = result.evaluations;
+    const FcStepResult result = take_period(block, scene, start);
     numbers->map = fc_map_of_one_start(&result);
     numbers->across =
         (FcMap){.relaxation = 1.0, .offset = result.delta_y, .impulse_offset = result.impulse_y};
@@ -121,9 +121,7 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
     if (fc_regime(&scene, start) != (FcRegime)block->side) {
         return false;
     }
-    FcStepResult result = {.delta = start.delta, .slips = start.slips, .evaluations = *block->evaluations};
-    block->law->step(&scene, block->options, block->period, &result);
-    *block->evaluations = result.evaluations;
+    const FcStepResult result = take_period(block, &scene, start);
     numbers->map = fc_map_of_one_start(&result);
     return lies_on_bound(block, k + 1.0, result.delta);
 }
@@ -242,11 +240,7 @@ static bool meets(const Block* block, double k, const FcStepResult* at) {
     if (reached.delta != start.delta || reached.delta_y != start.delta_y) {
         return true;
     }
-    FcStepResult result = {
-        .delta = start.delta, .evaluations = *block->evaluations, .delta_y = start.delta_y};
-    block->law->step(&scene, block->options, block->period, &result);
-    *block->evaluations = result.evaluations;
-    return result.meetings > 0;
+    return take_period(block, &scene, start).meetings > 0;
 }
 
 // Takes *total through the block; false, with *total as it was, if the block is not smooth or a free bristle meets its bound.
@@ -335,7 +329,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                        .phase = on_line ? total->slip_time : 0.0,
                        .side = on_line ? total->slip_side : 0,
                        .warm_up = slipped && law.is_planar ? WARM_UP : 0,
-                       .start = {.delta = total->delta, .slips = total->slips, .delta_y = total->delta_y},
+                       .start = fc_bristle_of(total),
                        .delta = hypot(total->delta, total->delta_y),
                        .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};

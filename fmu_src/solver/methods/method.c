@@ -70,7 +70,7 @@ static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, co
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, FcBristle from, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
-    *result = (FcStepResult){.delta = from.delta, .slips = from.slips, .delta_y = from.delta_y};
+    *result = fc_result_from(from, 0.0);
     const bool is_planar = fc_is_planar(scene, from);
     const bool is_affine = scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
     if (is_affine && method != FC_METHOD_COLLOCATION &&
@@ -105,12 +105,11 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     }
     const bool is_planar = fc_is_planar(scene, from);
     if (fc_drive_vibrates(&scene->drive)) {
-        FcStepResult end = {
-            .delta = from.delta, .slips = from.slips, .evaluations = *evaluations, .delta_y = from.delta_y};
+        FcStepResult end = fc_result_from(from, *evaluations);
         *force = fc_periods_settled(integration(scene, is_planar), scene, options, &end);
         *evaluations = end.evaluations;
         // What rounding leaves beyond a bound would be heat of the first step.
-        const FcBristle bristle = {.delta = end.delta, .slips = end.slips, .delta_y = end.delta_y};
+        const FcBristle bristle = fc_bristle_of(&end);
         return is_planar ? fc_plane_reach(scene, bristle) : fc_reach(scene, bristle);
     }
     if (is_planar) {

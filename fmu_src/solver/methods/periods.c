@@ -240,9 +240,9 @@ static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
         return;
     }
     const double more = ratio / (1.0 - ratio);
-    const FcBristle there = {.delta = total->delta + more * last.x,
-                             .slips = total->slips,
-                             .delta_y = total->delta_y + more * last.y};
+    FcBristle there = fc_bristle_of(total);
+    there.delta += more * last.x;
+    there.delta_y += more * last.y;
     const FcBristle reached = fc_plane_reach(scene, there);
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
@@ -272,8 +272,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
             meetings++;
             if (!was_free && (isinf(walk->least.delta) ||
                               size_of(total) < hypot(walk->least.delta, walk->least.delta_y))) {
-                walk->least =
-                    (FcBristle){.delta = total->delta, .slips = total->slips, .delta_y = total->delta_y};
+                walk->least = fc_bristle_of(total);
             }
             if (repeats(walk)) {
                 return;

@@ -14,51 +14,36 @@ double fc_straight_pace(const FcStraight* in, double u) {
     return isinf(in->length) ? 1.0 : in->length * cosh(u);
 }
 
+double fc_half_time(const FcHalf* half, double u) {
+    return fmin(fmax(fc_straight_time(&half->in, u), half->start), half->end);
+}
+
 double fc_straight_place(const FcStraight* in, double t) {
     const double x = t - in->center;
     return isinf(in->length) ? x : asinh(x / in->length);
 }
 
+// Half of |V|^2 at a time, its rate, and the rate of that.
 typedef struct {
-    FcVector V, rate, curvature; // m/s, m/s2, m/s3
-} Motion;
+    double t, half, rate, bend; // s, m2/s2 and so on
+} Sample;
 
-static Motion motion_at(const FcDrive* drive, double t) {
+static Sample sample_at(const FcDrive* drive, double t) {
     const FcPhase at_t = fc_drive_phase(drive, t);
-    const FcVibration* v = &drive->vibration;
-    const double omega = drive->omega;
-    const double cosine = at_t.cosine * drive->cos_phase_2 - at_t.sine * drive->sin_phase_2;
-    const double sine = at_t.sine * drive->cos_phase_2 + at_t.cosine * drive->sin_phase_2;
-    return (Motion){
-        .V = {fc_drive_V_at_phase(drive, t, at_t), fc_drive_V_y_at_phase(drive, t, at_t)},
-        .rate = {drive->V.rate - v->V_1 * omega * at_t.sine, drive->V_y.rate - v->V_2 * omega * sine},
-        .curvature = {-v->V_1 * omega * omega * at_t.cosine, -v->V_2 * omega * omega * cosine},
-    };
+    const FcVelocity x = fc_drive_velocity_at_phase(drive, t, at_t);
+    const FcVelocity y = fc_drive_velocity_y_at_phase(drive, t, at_t);
+    return (Sample){.t = t,
+                    .half = 0.5 * (x.V * x.V + y.V * y.V),
+                    .rate = x.V * x.rate + y.V * y.rate,
+                    .bend = (x.rate * x.rate + y.rate * y.rate) + (x.V * x.curvature + y.V * y.curvature)};
 }
 
-// Half the rate of |V|^2, and the rate of that.
-static double rate_of_square(void* drive, double t) {
-    const Motion at = motion_at(drive, t);
-    return fc_product(at.V, at.rate);
-}
+static double rate_of_square(void* drive, double t) { return sample_at(drive, t).rate; }
 
-static double bend_of_square(void* drive, double t) {
-    const Motion at = motion_at(drive, t);
-    return fc_product(at.rate, at.rate) + fc_product(at.V, at.curvature);
-}
+static double bend_of_square(void* drive, double t) { return sample_at(drive, t).bend; }
 
 // Samples in a period. By hand: the rate of |V|^2, of two harmonics, has at most one extremum between two of them.
 enum { SAMPLES = 16, MOST_CENTERS = FC_MOST_HALVES / 2 };
-
-typedef struct {
-    double t, rate, bend; // of half of |V|^2
-} Sample;
-
-static Sample sample_at(FcDrive* drive, double t) {
-    const Motion at = motion_at(drive, t);
-    return (Sample){t, fc_product(at.V, at.rate),
-                    fc_product(at.rate, at.rate) + fc_product(at.V, at.curvature)};
-}
 
 // Whether |V| has a least between two samples; its time [s] in *center.
 static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
@@ -85,9 +70,8 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     FcDrive drive = *of;
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
-        const Motion at = motion_at(&drive, 0.0);
-        const double square = fc_product(at.rate, at.rate);
-        const double center = -fc_product(at.V, at.rate) / square;
+        const Sample at = sample_at(&drive, 0.0);
+        const double center = -at.rate / at.bend;
         if (center > -h && center < 2.0 * h) { // not if nothing moves
             centers[count++] = center;
         }
@@ -106,16 +90,14 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
 // L of the center; infinite for a dip that is too flat.
 static double length_of(const FcPlane* plane, double center, double h, double tolerance) {
     const FcDrive* drive = &plane->scene->drive;
-    const Motion at = motion_at(drive, center);
-    const double square = fc_product(at.V, at.V);
-    const double bend = fc_product(at.rate, at.rate) + fc_product(at.V, at.curvature); // c^2
-    const double eps = sqrt(square / bend);
-    if (!(bend > 0.0) || eps * drive->omega > 3.0) {
+    const Sample at = sample_at(drive, center);
+    const double eps = sqrt(2.0 * at.half / at.bend); // bend is c^2
+    if (!(at.bend > 0.0) || eps * drive->omega > 3.0) {
         return INFINITY;
     }
     const double t = fmin(fmax(center, 0.0), h);
     const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
-    const double layer = sqrt(2.0 * near.limit / (near.sigma * sqrt(bend)));
+    const double layer = sqrt(2.0 * near.limit / (near.sigma * sqrt(at.bend)));
     const bool has_layer = plane->scene->friction->model != FC_COULOMB;
     const double least = has_layer ? sqrt(tolerance) * layer : 0.0;
     return fmax(fmax(eps, least), 0x1p-40 * fmax(h, fabs(center)));

@@ -26,6 +26,8 @@ typedef struct {
     FcStraight in;
 } FcHalf;
 
+double fc_half_time(const FcHalf* half, double u); // s; rounding takes it out of no half
+
 // Up to two near-zeros a period, over less than three periods.
 enum { FC_MOST_HALVES = 24 };
 

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/constants.h"
+#include "model/regime.h"
 #include "solver/budget.h"
 #include "solver/interval.h"
 #include "solver/panels/judge.h"
@@ -56,12 +57,6 @@ static const double SMOOTH = 7.0;
 // A panel whose points do not tell what happens near its start is shortened by this. By hand: costs tries, not accuracy.
 static const double SHORTENED_BY = 1.0 / 32.0;
 
-// The force [N] of Coulomb's law.
-static FcVector coulomb(const FcPlaneCoefficients* at) {
-    const double over_speed = at->speed > 0.0 ? at->limit / at->speed : 0.0;
-    return (FcVector){over_speed * at->V.x, over_speed * at->V.y};
-}
-
 static FcPlaneCoefficients coefficients_at(const March* march, double t) {
     return fc_plane_coefficients(march->plane, t, fc_drive_phase(&march->interval->scene->drive, t));
 }
@@ -71,12 +66,12 @@ static FcPlaneCoefficients coefficients_at(const March* march, double t) {
 static double first_transient(const March* march) {
     const FcPlaneFrom from = from_of(march);
     const FcPlaneCoefficients at = coefficients_at(march, 0.0);
-    const FcVector now = coulomb(&at);
+    const FcVector now = fc_plane_coulomb(&at);
     const double r = at.sigma * at.speed / at.limit;
     FcVector next = now;
     if (r * march->interval->duration > 1.0) {
         const FcPlaneCoefficients after = coefficients_at(march, 1.0 / r);
-        next = coulomb(&after);
+        next = fc_plane_coulomb(&after);
     }
     return hypot(at.sigma * from.delta.x - (2.0 * now.x - next.x),
                  at.sigma * from.delta.y - (2.0 * now.y - next.y)) +
@@ -92,7 +87,7 @@ static double planned(const March* march) {
     const FcInterval* interval = march->interval;
     const FcStraight* in = &march->half.in;
     const double left = march->end - march->u;
-    const double t = fmin(fmax(fc_straight_time(in, march->u), march->half.start), march->half.end);
+    const double t = fc_half_time(&march->half, march->u);
     const double resolves = pow(interval->tolerance, 1.0 / ORDER);     // 1 / rho
     double span = SMOOTH * resolves * fc_smooth_time(&interval->pace); // s
     const FcPlaneCoefficients at = coefficients_at(march, t);
@@ -158,8 +153,11 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
 // Coulomb's law: the force is known.
 static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel);
 
-static bool make_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+// The panel from the place reached, of the length h; false if it is too long to be solved.
+static bool make_panel(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
     const FcPlaneFrom from = from_of(march);
+    fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
+    march->evaluations += STAGES;
     switch (march->motion) {
     case SLIPS:
         return fc_plane_slip_panel(march->plane, nodes, &from, panel);
@@ -175,9 +173,7 @@ static bool make_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePan
 // The panel from the place reached, of the length h, or shorter until it is accurate; its length.
 static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
     for (int tries = 0;; tries++) {
-        fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
-        march->evaluations += STAGES;
-        const bool is_solved = make_panel(march, nodes, panel);
+        const bool is_solved = make_panel(march, h, nodes, panel);
         const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= MOST_TRIES) {
             const double grows = tries == 0 ? 4.0 : fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER));
@@ -206,8 +202,7 @@ static void append(March* march, FcPlanePanel* panel, double h) {
 // |delta|^2 - D^2 at the points of a free panel.
 static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
     for (int i = 0; i < POINTS; i++) {
-        const double D =
-            fc_plane_bound(march->plane, &nodes->at[i], march->slips, nodes->t[i], nodes->phase[i]).D;
+        const double D = fc_plane_radius(march->plane, &nodes->at[i], march->slips);
         panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
     }
 }
@@ -236,8 +231,7 @@ typedef struct {
 } Place;
 
 static Place place_of(const March* march) {
-    const double t = fc_straight_time(&march->half.in, march->u);
-    Place place = {.t = fmin(fmax(t, march->half.start), march->half.end)};
+    Place place = {.t = fc_half_time(&march->half, march->u)};
     place.phase = fc_drive_phase(&march->interval->scene->drive, place.t);
     place.at = fc_plane_coefficients(march->plane, place.t, place.phase);
     place.bound = fc_plane_bound(march->plane, &place.at, 1, place.t, place.phase);
@@ -288,9 +282,7 @@ static double close_to_bound(const March* march, double D) {
 }
 
 static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
-    fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
-    march->evaluations += STAGES;
-    if (!make_panel(march, nodes, panel)) {
+    if (!make_panel(march, h, nodes, panel)) {
         march->along.offset = NAN; // a part of a panel that was solved is, too
     }
 }
@@ -400,7 +392,7 @@ static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlane
     *panel = (FcPlanePanel){.along = {.z = 1.0, .sigma = march->interval->stiffness}};
     for (int i = 0; i < POINTS; i++) {
         const FcPlaneCoefficients* at = &nodes->at[i];
-        const FcVector F = coulomb(at);
+        const FcVector F = fc_plane_coulomb(at);
         const double weight = FC_RADAU_9.weight[i] * nodes->tau[i];
         V_x[i] = at->V.x;
         V_y[i] = at->V.y;
@@ -475,15 +467,8 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     march.is_bounded = fc_is_bounded(scene->friction);
     march.slips = result->slips;
     set_delta(&march, (FcVector){result->delta, result->delta_y});
-    march.half = (FcHalf){0.0, duration, {0.0, INFINITY}};
-    if (march.is_bounded) {
-        const Place place = place_of(&march);
-        const bool is_on = place.size >= (1.0 - 1e-10) * place.bound.D;
-        const bool may_slip = march.slips != 0 || !fc_has_static_friction(scene->friction);
-        march.motion = is_on && may_slip && place.push > 0.0 ? SLIPS : FREE;
-        march.meetings = march.motion == SLIPS;
-        march.touches = is_on && may_slip;
-    }
+    march.motion = fc_regime(scene, fc_bristle_of(result)) != FC_FREE ? SLIPS : march.motion;
+    march.meetings = march.motion == SLIPS;
     cross(&march);
     fc_map_apply(&march.along, result);
     fc_map_apply_across(&march.across, result);

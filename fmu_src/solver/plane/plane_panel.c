@@ -8,7 +8,7 @@ void fc_plane_nodes(const FcPlane* plane, const FcHalf* half, double u, double h
     nodes->duration = 0.0;
     for (int i = 0; i < POINTS; i++) {
         const double place = u + (0.5 + FC_RADAU_9.node[i]) * h;
-        nodes->t[i] = fmin(fmax(fc_straight_time(&half->in, place), half->start), half->end);
+        nodes->t[i] = fc_half_time(half, place);
         nodes->tau[i] = h * fc_straight_pace(&half->in, place);
         nodes->phase[i] = fc_drive_phase(&plane->scene->drive, nodes->t[i]);
         nodes->at[i] = fc_plane_coefficients(plane, nodes->t[i], nodes->phase[i]);
@@ -250,9 +250,7 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
         // The heat is the work less what the bristle stores, whose rate follows Stribeck's curve at once, and what the stiffness takes.
-        const double log_rate =
-            fc_scene_log_rates_at_phase(&plane->of_static_limit, nodes->t[i], nodes->phase[i]).sigma;
-        map->heat_offset += weight * force * (outwards + 0.5 * D * log_rate);
+        map->heat_offset += weight * force * (outwards + 0.5 * D * bound[i].log_sigma_rate);
         map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
     }
     const double start = bound[STAGES].D;

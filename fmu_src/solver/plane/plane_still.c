@@ -38,7 +38,7 @@ FcBristle fc_plane_slides_for_ever(const FcScene* scene, FcBristle from, FcVecto
         *force = (FcVector){at.sigma * from.delta, at.sigma * from.delta_y};
         return from;
     }
-    *force = (FcVector){at.limit * at.V.x / at.speed, at.limit * at.V.y / at.speed};
+    *force = fc_plane_coulomb(&at);
     return has_bristle ? (FcBristle){.delta = force->x / at.sigma,
                                      .slips = fc_has_static_friction(scene->friction),
                                      .delta_y = force->y / at.sigma}
