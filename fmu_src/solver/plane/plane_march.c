@@ -176,6 +176,9 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
         const bool is_solved = make_panel(march, h, nodes, panel);
         const double excess = is_solved ? excess_of(march, nodes, &panel->along) : HUGE_VAL;
         if ((is_solved && excess <= 1.0) || tries >= MOST_TRIES) {
+            if (!is_solved) {
+                march->along.offset = NAN; // no number, which the step is refused for
+            }
             const double grows = tries == 0 ? 4.0 : fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER));
             march->h = tries > 0 || march->h > 0.0 ? h * grows : 0.0;
             return h;
@@ -365,6 +368,9 @@ static void slip_panel(March* march, double h) {
     FcPlaneNodes nodes;
     FcPlanePanel panel;
     h = take_accurate(march, h, &nodes, &panel);
+    if (isnan(march->along.offset)) {
+        return;
+    }
     double ends = end_of_push(march, &panel);
     bool is_over = ends < 1.0;
     for (int cuts = 0; cuts < MOST_TRIES && ends > 0.0 && ends < 1.0; cuts++) {
