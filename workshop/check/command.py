@@ -73,7 +73,8 @@ def _tool(name: str, package: str) -> str:
 
 
 def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | None = None) -> None:
-    parallel = ("-n", "logical", "--maxprocesses", "8", "--dist", "loadfile")
+    # A worker that dies ends the run: with new ones in its place, pytest-xdist may wait without end.
+    parallel = ("-n", "logical", "--maxprocesses", "8", "--dist", "loadfile", "--max-worker-restart", "0")
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *parallel, *tests]
     _run(command, {"FRICTION_FMU": str(fmu), **(environment or {})})
 

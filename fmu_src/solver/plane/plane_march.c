@@ -132,8 +132,8 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
         panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
     const bool has_peak = fc_has_stribeck_curve(interval->scene->friction);
     const FcErrorLife life = {
-        .lives = fmin(interval->duration - end, forgets) / interval->duration,
-        .lasts = nodes->duration / interval->duration,
+        .lives = fmax(0.0, fmin(interval->duration - end, forgets)) / interval->duration,
+        .lasts = fmin(1.0, nodes->duration / interval->duration), // the nodes' times are rounded
         .grows = fmax(1.0, interval->stiffness / panel->sigma),
         .in_peak = has_peak,
         .crosses_peak = has_peak || march->motion == NO_BRISTLE, // a force that turns by itself, as in a peak
