@@ -43,6 +43,12 @@ static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E
     return &contact->at_E;
 }
 
+// The load after a step in which it moves: 0 if the step opens the contact at its very end (fc_scene_piece).
+static double load_after(FcLinearInput load, double h) {
+    const double after = fc_input_after(load, h);
+    return load.rate < 0.0 && after <= -FC_NEARLY_OPEN * load.rate * h ? fmin(after, 0.0) : after;
+}
+
 // The scene from the absolute time start + rest on, the inputs moving at these rates for ahead [s] before it begins.
 static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
                           const double rate[FC_INPUT_COUNT], double ahead) {
@@ -52,7 +58,7 @@ static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
     FcLinearInput E = {v->E, rate[FC_INPUT_E]};
     FcLinearInput load = {v->load, rate[FC_INPUT_LOAD]};
     E.value = fc_input_after(E, ahead);
-    load.value = fc_input_after(load, ahead);
+    load.value = load_after(load, ahead);
     FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
     drive.V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
     return fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
@@ -403,7 +409,7 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result,
     v->V_y += state->next_rate[FC_INPUT_V_Y] * h;
     v->d += state->next_rate[FC_INPUT_D] * h;
     v->E = fc_input_after((FcLinearInput){v->E, state->next_rate[FC_INPUT_E]}, h);
-    v->load = fc_input_after((FcLinearInput){v->load, state->next_rate[FC_INPUT_LOAD]}, h);
+    v->load = load_after((FcLinearInput){v->load, state->next_rate[FC_INPUT_LOAD]}, h);
     v->delta = reached.delta;
     v->delta_y = reached.delta_y;
     v->solver.evaluations += result->evaluations;

@@ -8,6 +8,9 @@
 
 typedef long double Real;
 
+// By how much of its bound a bristle that slips may be inside it: what the rounding of a phase leaves.
+#define ON_BOUND 1e-10L
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
 // ---------------------------------------------------------------------------------------------------------------------

@@ -723,7 +723,7 @@ static Vector force_at(const World* w, Real t, State state) {
     Vector rate = plus(V, -relaxation(w, &at), state.delta);
     const Real lies = bound(w, &at, false), length = length_of(state.delta);
     const bool may_slip = w->bounded && (state.broke || !w->elastic || w->excess == 0.0L);
-    if (may_slip && length >= (1.0L - 1e-11L) * lies && outward(w, &at, state.delta) > 0.0L) {
+    if (may_slip && length >= (1.0L - ON_BOUND) * lies && outward(w, &at, state.delta) > 0.0L) {
         const Vector n = along(state.delta, 1.0L), t_at = {-n.y, n.x};
         rate = plus(times(bound_rate(w, &at, false), n), dot(V, t_at), t_at);
     }

@@ -722,7 +722,7 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     int slip_start = slip;
     if (w.bounded && !(w.elastic && w.excess != 0.0L) && !is_open(&w, 0.0L)) {
         const At at = scene_at(&w, 0.0L, false); // a state that was rounded may lie next to its bound
-        slip_start = fabsl(delta) >= (1.0L - 1e-11L) * bound(&w, &at, true) ? sign_of(delta) : 0;
+        slip_start = fabsl(delta) >= (1.0L - ON_BOUND) * bound(&w, &at, true) ? sign_of(delta) : 0;
     }
     result->F_t_start = (double)force_at(&held, 0.0L, delta, slip_start);
     result->known = advance(&w, &delta, &slip, &sums) && result->known;

@@ -80,17 +80,20 @@ static void step_of_reference(const ReferenceScene* before, const ReferenceScene
 }
 
 // The same if the rounding of the step's own times, or of a deflection at its bound, may tell: with start and h moved by two
-// units in their last place, and the deflection before by 2e-11 of itself.
+// units in their last place, and the deflection before by 2e-10 of itself.
 static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
     Values least = of_reference(&taken->truth), largest = least;
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
-    const double of_delta = 2e-11 * taken->scene.delta_0;
     for (int k = 0; k < 6; k++) {
         ReferenceScene moved = taken->scene, past = before ? *before : moved;
         ReferenceStep found;
-        *(k < 2   ? &moved.start
-          : k < 4 ? &moved.h
-                  : &moved.delta_0) += (k % 2 ? 1.0 : -1.0) * (k < 4 ? ulp : of_delta);
+        const double way = k % 2 ? 1.0 : -1.0;
+        if (k < 4) {
+            *(k < 2 ? &moved.start : &moved.h) += way * ulp;
+        } else {
+            moved.delta_0 *= 1.0 + way * 2e-10;
+            moved.delta_y_0 *= 1.0 + way * 2e-10;
+        }
         past.start = moved.start;
         if (!(moved.h > 0.0)) {
             continue;

@@ -72,7 +72,8 @@ FcBristle fc_plane_reach(const FcScene* scene, FcBristle bristle) {
     FcPlaneBound bound = fc_plane_bound(&plane, &at, bristle.slips, 0.0, phase);
     const FcVector n = {bristle.delta / size, bristle.delta_y / size};
     if (size > bound.D) {
-        if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
+        if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
+            size > (1.0 + FC_ROUNDING_OF_BOUND) * bound.D) {
             bristle.slips = 1;
             bound = fc_plane_bound(&plane, &at, 1, 0.0, phase);
         }

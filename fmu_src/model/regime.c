@@ -91,7 +91,8 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     double D = bound_of(scene, &at, bristle.slips);
     const int side = bristle.delta < 0.0 ? -1 : 1;
     if (fabs(bristle.delta) > D) {
-        if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
+        if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
+            fabs(bristle.delta) > (1.0 + FC_ROUNDING_OF_BOUND) * D) {
             bristle.slips = side;
             D = bound_of(scene, &at, side);
         }

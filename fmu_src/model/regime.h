@@ -46,6 +46,10 @@ typedef struct {
 } FcPushed;
 double fc_push_at(void* context, double t);
 
+// By how much of its static bound a stuck bristle may be beyond it and not break away. By hand: some times the rounding of a
+// bound and of the length of a deflection.
+#define FC_ROUNDING_OF_BOUND 1e-12
+
 // What the state is at the start of the scene: one beyond its bound is taken onto it, one that has lost its contact is 0, one
 // that slips sticks if it is not pushed.
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle);

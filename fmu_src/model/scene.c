@@ -60,9 +60,6 @@ double fc_scene_closed_by(const FcScene* scene) {
 
 // By this factor a load may move in a piece. By hand: more needs finer panels, less more pieces.
 static const double LOAD_OF_PIECE = 4.0;
-// A contact opens earlier and closes later by this part of the step. Derived: what the bristle does in that time goes with
-// its square.
-static const double NEARLY_OPEN = 0x1p-44;
 
 double fc_scene_piece(FcScene* scene, double rest, double whole) {
     const FcDrive* drive = &scene->drive;
@@ -78,7 +75,7 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     const double to_edge = by_load  ? -drive->load.value / rate
                            : is_far ? (open_separation(&scene->at_E) - drive->d.value) / rate
                                     : HUGE_VAL;
-    const double room = NEARLY_OPEN * whole;
+    const double room = FC_NEARLY_OPEN * whole;
     scene->is_open = scene->is_open || (opens && to_edge <= room);
     if (scene->is_open) {
         return opens ? rest : fmin(rest, to_edge + room);

@@ -53,6 +53,10 @@ static inline bool fc_scene_has_pieces(const FcScene* scene) {
     return fc_scene_depends_on_d(scene) && (scene->drive.load.rate != 0.0 || scene->drive.d.rate != 0.0);
 }
 
+// A contact opens earlier and closes later by this part of the step. Derived: what the bristle does in that time goes with
+// its square.
+#define FC_NEARLY_OPEN 0x1p-44
+
 // What keeps the contact closed at the start: the load [N], or the way to the separation at which it opens [m]. Open at 0 and below.
 double fc_scene_closed_by(const FcScene* scene);
 

@@ -194,7 +194,7 @@ static double follow_from(const Ramp* ramp, double s, double delta, double* heat
 
 // The first place at which the static bound falls below |delta|, as far as the steps show; 1 for none.
 static double where_it_breaks(const Ramp* ramp, double delta) {
-    AboveBound of = {ramp, delta};
+    AboveBound of = {ramp, (1.0 - FC_ROUNDING_OF_BOUND) * delta};
     double none = 0.0;
     double s = 0.0;
     double at_s = above_bound(&of, s);

@@ -99,7 +99,7 @@ static double length_of(const FcPlane* plane, double center, double h, double to
     const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
     const double layer = sqrt(2.0 * near.limit / (near.sigma * sqrt(at.bend)));
     const bool has_layer = plane->scene->friction->model != FC_COULOMB;
-    const double least = has_layer ? sqrt(tolerance) * layer : 0.0;
+    const double least = has_layer ? sqrt(tolerance) * fmin(layer, h) : 0.0;
     return fmax(fmax(eps, least), 0x1p-40 * fmax(h, fabs(center)));
 }
 

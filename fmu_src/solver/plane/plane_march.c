@@ -120,7 +120,7 @@ static double straight_way(const March* march, double start, double end) {
 static const double SURE = 2.0;
 static const double SURE_IN_PEAK = 10.0;
 
-// Of a share that falls with what relaxes in the panel. By hand: below it rounding rules.
+// The least of a share that falls with what relaxes in the panel, over what relaxes in the interval. By hand: below it rounding rules.
 static const double LEAST_SHARE = 1e-5;
 
 // How many times the panel's errors are too large.
@@ -142,7 +142,7 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
     if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V asks for the whole share
         whole.z = fmax(1.0, panel->z);
     }
-    whole.z = fmax(LEAST_SHARE, whole.z);
+    whole.z = fmax(LEAST_SHARE * fmin(1.0, interval->speed * interval->duration / interval->saturation), whole.z);
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
     const double path = march->path_after + straight_way(march, end, march->half.end);
     const double left_at_end = exp(-path / interval->saturation);
@@ -291,7 +291,7 @@ static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel
 }
 
 // Whether a bristle that slips, and lies inside its bound since an input has jumped, is not pushed outwards any more within the panel,
-// which then ends there: it sticks.
+// which then ends there: it sticks, if it has not met its bound before.
 static bool catches_up(March* march, FcPlaneNodes* nodes, FcPlanePanel* panel, double* h) {
     const double rounding = ROUNDING_OF_PUSH * largest_push(march);
     for (int cuts = 0;; cuts++) {
@@ -324,11 +324,7 @@ static void free_panel(March* march, double h) {
         append(march, &panel, h);
         return;
     }
-    if (march->slips != 0 && catches_up(march, &nodes, &panel, &h)) {
-        append(march, &panel, h);
-        march->slips = 0;
-        return;
-    }
+    const bool gives_up = march->slips != 0 && catches_up(march, &nodes, &panel, &h);
     // The panel is taken again up to where it meets the bound, which its own points tell better; one that dips inside the bound between
     // them is shortened.
     enum { MOST_CUTS = 40 };
@@ -349,6 +345,10 @@ static void free_panel(March* march, double h) {
     }
     append(march, &panel, h);
     march->touches = panel.to_bound[STAGES - 1] >= -over;
+    if (gives_up && !is_cut) {
+        march->slips = 0;
+        march->touches = false;
+    }
     if (is_cut && !march->touches) {
         march->h = 4.0 * h; // the panel was too long for its points to tell
     }

@@ -225,6 +225,7 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     double F_y[POINTS];
     double V_x[POINTS];
     double V_y[POINTS];
+    double heat[POINTS]; // W over a speed, N
     FcMap* map = &panel->along.map;
     *map = (FcMap){.relaxation = 1.0};
     panel->across = (FcMap){.relaxation = 1.0};
@@ -250,7 +251,8 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
         // The heat is the work less what the bristle stores, whose rate follows Stribeck's curve at once, and what the stiffness takes.
-        map->heat_offset += weight * force * (outwards + 0.5 * D * bound[i].log_sigma_rate);
+        heat[i] = force * (outwards + 0.5 * D * bound[i].log_sigma_rate) / from->speed;
+        map->heat_offset += weight * from->speed * heat[i];
         map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
     }
     const double start = bound[STAGES].D;
@@ -263,7 +265,7 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     panel->along.rate = z[LAST] / nodes->tau[LAST];
     const double force = panel->along.sigma * bound[LAST].D;
     const double quadrature =
-        error_of_direction(nodes, from->speed, F_x, V_x) + error_of_direction(nodes, from->speed, F_y, V_y);
+        error_of_direction(nodes, from->speed, F_x, V_x) + error_of_direction(nodes, from->speed, F_y, V_y) + error_of_mean(nodes, heat);
     set_errors(nodes, z, force * fc_radau_unresolved(slope, fmax(0.0, panel->along.z)), quadrature,
                &panel->along);
     return true;
