@@ -6,7 +6,7 @@
 
 static const double TURN = 6.283185307179586;
 // The domain of docs/numerics.md.
-static const double LEAST_KAPPA = 1e-3, MOST_KAPPA = 1e8;
+static const double MOST_KAPPA = 1e8;
 static const double LEAST_PLANAR_KAPPA = 1e-2, MOST_PLANAR_KAPPA = 1e6;
 static const double MOST_PLANAR = 30.0;   // periods of a step
 static const double SHORTEST = 1e-9;      // s, of a step

@@ -12,4 +12,7 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane);
 // sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
 double scene_kappa(const ReferenceScene* scene);
 
+// The least kappa of a vibration that the promise covers.
+#define LEAST_KAPPA 1e-3
+
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "plane_reference.h"
+#include "scenes.h"
 
 const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f",       "Q_f",  "F_t_start",
                                          "F_y", "F_y_mean", "F_y_start", "side", "settled"};
@@ -140,7 +141,10 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
     if (!(taken->verdict.ratio <= 1.0)) {
         taken->verdict = verdict_by_rounding(before, taken, tolerance);
     }
-    const double settled = before == NULL ? settled_ratio(taken, method, tolerance) : -1.0;
+    const ReferenceScene* s = &taken->scene;
+    const bool settles = s->law == LAW_COULOMB || (s->V_1 == 0.0 && s->V_2 == 0.0 && s->a_d == 0.0) ||
+                         scene_kappa(s) >= LEAST_KAPPA;
+    const double settled = before == NULL && settles ? settled_ratio(taken, method, tolerance) : -1.0;
     if (settled > taken->verdict.ratio) {
         taken->verdict = (Verdict){settled, OF_SETTLED};
     }

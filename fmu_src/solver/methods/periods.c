@@ -143,8 +143,10 @@ static double free_periods_in_plane(Walk* walk, double left) {
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
-    if (moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0) ||
-        (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0))) {
+    if (moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0)) {
+        return map.relaxation > 0.0 && meets_after(walk, 0.0) ? 0.0 : left;
+    }
+    if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {
         return left;
     }
     double free = 0.0; // that many are, and
