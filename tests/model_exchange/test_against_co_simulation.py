@@ -71,10 +71,8 @@ def test_a_load_that_falls_to_zero_and_comes_back(
     fmu: FrictionFmu, law: str, ratio: float, limit: str, contact: str, across: float
 ) -> None:
     """While V turns. How fast they move a bound, and its part of Q_f, is taken from the host's steps."""
-    if across and limit == "Load" and contact != "Asperities":
-        pytest.skip(
-            "a contact that closes in the plane with a bound of no or of constant length is not graded"
-        )
+    if across and limit == "Load" and contact == "Constant":
+        pytest.skip("the host's first step after the contact closes chooses the direction of the bristle")
     corners = np.array([0.0, 0.4, 0.6, 1.0]) * 4 * PERIOD
     times = np.linspace(0.0, 1.0, 101) * 4 * PERIOD
 
