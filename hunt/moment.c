@@ -598,13 +598,18 @@ static Real lowest(const Held* held, Real a, Real b) {
     return at_a > at_b ? a : b;
 }
 
-// Equal pieces of the ramp, and where V is a multiple of the old or the new V_S.
+// Equal pieces of the ramp, pieces by halves towards its ends, where V and V_S change together, and where V is a multiple of the old
+// or the new V_S.
 static Cuts cuts_of_ramp(const Ramp* ramp, Real V_S_before) {
-    enum { PIECES = 64 };
+    enum { PIECES = 64, HALVES = 40 };
     const Real V_S[2] = {V_S_before, ramp->w->scene.V_S}, V = ramp->from.V, change = ramp->to.V - V;
     Cuts cuts = {0};
     for (int k = 0; k <= PIECES; k++) {
         cut(&cuts, (Real)k / PIECES);
+    }
+    for (int k = 7; k < HALVES; k++) {
+        cut(&cuts, ldexpl(1.0L, -k));
+        cut(&cuts, 1.0L - ldexpl(1.0L, -k));
     }
     for (int m = 0; m < 4 * LEVELS && change != 0.0L; m++) {
         cut(&cuts, ((m % 2 ? 1.0L : -1.0L) * MULTIPLES[m / 4] * V_S[m / 2 % 2] - V) / change);

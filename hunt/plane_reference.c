@@ -776,7 +776,6 @@ void plane_step(const ReferenceScene* before, const ReferenceScene* scene, int f
     if (scene->law != LAW_COULOMB && scene->initial == START_SETTLED) {
         Vector mean;
         jump_to(NULL, &held, &state);
-        state.broke = false;
         result->known = settle(&held, &state, &mean);
     } else if (scene->law != LAW_COULOMB) {
         sums.heat = jump_to(before, &w, &state);
@@ -805,7 +804,6 @@ bool plane_settled_force(const ReferenceScene* scene, double force[2], double* S
     Vector mean = {0};
     w.S = largest_force(&w, length_of(state.delta));
     jump_to(NULL, &w, &state);
-    state.broke = false;
     const bool known = settle(&w, &state, &mean);
     *S = (double)w.S;
     force[0] = (double)mean.x, force[1] = (double)mean.y;

@@ -714,7 +714,6 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
         Sums cycle = {0};
         Real length;
         jump(NULL, &held, &delta, &slip);
-        slip = 0;
         result->known = settle(&w, &delta, &slip, &cycle, &length);
     } else if (scene->law != LAW_COULOMB) {
         sums.heat = jump(before, &w, &delta, &slip);
@@ -746,7 +745,6 @@ bool reference_settled_force(const ReferenceScene* scene, double* force, double*
     Real length = 1.0L, delta = still.law == LAW_COULOMB ? 0.0L : still.delta_0;
     int slip = 0;
     jump(NULL, &w, &delta, &slip);
-    slip = 0;
     const bool known = settle(&w, &delta, &slip, &cycle, &length);
     *force = (double)(cycle.impulse / (length / still.f));
     return known;

@@ -130,6 +130,15 @@ double scene_kappa(const ReferenceScene* s) {
     return stiffness_now(s) * top_speed(s) / (TURN * s->f * fmax(limit_now(s), 1e-250));
 }
 
+double scene_gain(const ReferenceScene* s) {
+    const double swing = hypot(s->V_1, s->V_2), turns = TURN * s->f;
+    if (s->law != LAW_ELASTIC_PLASTIC || swing == 0.0) {
+        return 0.0;
+    }
+    const double D = top_speed(s) / (turns * scene_kappa(s));
+    return 2.0 * D * (s->staticRatio - 1.0) * turns * swing / (s->V_S * s->V_S);
+}
+
 static void friction(Draw* draw, int law, ReferenceScene* s) {
     s->law = law ? law : 1 + pick(draw, 4);
     s->limit = chance(draw, 0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;

@@ -12,6 +12,9 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane);
 // sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
 double scene_kappa(const ReferenceScene* scene);
 
+// By how much a drop at break-away that sticks at once multiplies an error of the deflection (docs/reliability.md).
+double scene_gain(const ReferenceScene* scene);
+
 // The least kappa of a vibration that the promise covers.
 #define LEAST_KAPPA 1e-3
 

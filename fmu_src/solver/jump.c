@@ -167,41 +167,50 @@ static double next_place(const Ramp* ramp, double s, double step) {
     return place;
 }
 
-// |delta| at the end of the ramp, from the place s on.
-static double follow_from(const Ramp* ramp, double s, double delta, double* heat) {
+// The length of equal steps over the ramp from the place s on.
+static double step_from(const Ramp* ramp, double s) {
     const Place first = at_place(ramp, s);
     const Place last = at_place(ramp, 1.0);
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
                          fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
                          fabs(ramp->log_V_S);
-    const double step = (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
-    AboveBound of = {ramp, delta};
+    return (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
+}
+
+// The next place to stop at after s, or the one before it at which D turns.
+static double next_stop(const Ramp* ramp, double s, double step) {
+    const double next = next_place(ramp, s, step);
+    const double rate = at_place(ramp, s).rate;
+    const double rate_next = at_place(ramp, next).rate;
+    if (!(rate * rate_next < 0.0)) {
+        return next;
+    }
+    AboveBound of = {ramp, 0.0};
     double none = 0.0;
+    const double turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
+    return turn > s + 1e-9 ? turn : next;
+}
+
+// |delta| at the end of the ramp, from the place s on.
+static double follow_from(const Ramp* ramp, double s, double delta, double* heat) {
+    const double step = step_from(ramp, s);
     while (s < 1.0) {
-        const double next = next_place(ramp, s, step);
-        const double rate = at_place(ramp, s).rate;
-        const double rate_next = at_place(ramp, next).rate;
-        double turn = next; // of D
-        if (rate * rate_next < 0.0) {
-            turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
-        }
-        delta = follow(ramp, s, turn, delta, heat);
-        delta = turn < next ? follow(ramp, turn, next, delta, heat) : delta;
+        const double next = next_stop(ramp, s, step);
+        delta = follow(ramp, s, next, delta, heat);
         s = next;
     }
     return delta;
 }
 
-// The first place at which the static bound falls below |delta|, as far as the steps show; 1 for none.
+// The first place at which the static bound falls below |delta|; 1 for none.
 static double where_it_breaks(const Ramp* ramp, double delta) {
     AboveBound of = {ramp, (1.0 - FC_ROUNDING_OF_BOUND) * delta};
     double none = 0.0;
     double s = 0.0;
     double at_s = above_bound(&of, s);
-    const double moves = 1.0 + fmin(fabs(ramp->d) * ramp->scene->at_E.decay / STEP_OF_LOG, MOST_STEPS);
-    const double step = 1.0 / ceil(moves);
+    const double step = step_from(ramp, s);
     while (s < 1.0 && at_s <= 0.0) {
-        const double next = s + step < 1.0 - 1e-9 ? s + step : 1.0;
+        const double next = next_stop(ramp, s, step);
         const double at_next = above_bound(&of, next);
         if (at_next > 0.0) {
             return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, 0.0, &none)

@@ -223,7 +223,11 @@ static bool repeats(Walk* walk) {
 typedef struct {
     FcVector end[3];
     int count;
+    double ratio; // the last that was known; 0 for none
 } Ends;
+
+// Of the deflection: a smaller change tells no ratio. Rounding: 4500 eps.
+static const double LEAST_CHANGE = 1e-12;
 
 static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
     const int place = ends->count++ % 4 - 1; // the first after an extrapolation is left out
@@ -238,10 +242,10 @@ static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
     const FcVector before = {end[1].x - end[0].x, end[1].y - end[0].y};
     const FcVector last = {end[2].x - end[1].x, end[2].y - end[1].y};
     const double ratio = fc_product(before, last) / fc_product(before, before);
-    if (!(ratio > 0.0 && ratio < 1.0)) {
-        return;
+    if (ratio > 0.0 && ratio < 1.0 && hypot(last.x, last.y) > LEAST_CHANGE * size_of(total)) {
+        ends->ratio = ratio;
     }
-    const double more = ratio / (1.0 - ratio);
+    const double more = ends->ratio / (1.0 - ends->ratio);
     FcBristle there = fc_bristle_of(total);
     there.delta += more * last.x;
     there.delta_y += more * last.y;
