@@ -10,7 +10,7 @@
 // - 1e-11 S, or S path;
 // - 32 eps S |delta| of both ends for W_f and Q_f, since the state has no more digits of delta;
 // - the change of the reference if the step's own start and length move by two units in their last place;
-// - the same if the deflection before the step moves by 2e-11 of itself: at its static bound a bristle may have
+// - the same if the deflection before the step moves by 2e-10 of itself: at its static bound a bristle may have
 //   broken away or not;
 // - at the start, a bristle within 1e-11 of its bound lies on it. S is at least 1e-20 N, and the allowed
 //   error of an energy 1e-20 J. A step is judged from the FMU's own state before it, a settled start by
