@@ -26,7 +26,8 @@ from frictioncontact.parameters import (
     Surfaces,
 )
 from frictioncontact.periodic import periodic_mean, periodic_waves
-from workshop.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel
+from frictioncontact.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from workshop.figure import Figure, Level, Line, Panel
 from workshop.paper.equations import force_eq_23, force_eq_25
 
 A_D = 1.1e-6  # m, amplitude of the separation in the paper's section 3.2
@@ -34,7 +35,7 @@ PRINTED_AREA, PRINTED_MEAN_AREA = 1.397e-7, 1.341e-7  # m2, section 3.2
 PRINTED_SIGMA, PRINTED_MEAN_SIGMA = 2.326e11, 2.07e11  # N/m, section 3.2 (the print has 2.07e-7)
 FROZEN = 5.1  # sigma V t / F_C at which Eq. 23 gives the paper's 48 and 54 N
 
-PAPER, MODEL, MEAN, FORMULA = INK, BLUE, BLUE, ORANGE
+PAPER, MODEL, MEAN, FORMULA = BLACK, BLUE, BLUE, ORANGE
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ def _steady(fmu: FrictionFmu, key: str, number: int, V: float) -> Figure:
                         force_eq_23(COULOMB_FORCE, contact.sigma, V, t),
                         "Eq. 23",
                         FORMULA,
-                        "dot",
+                        "dotted",
                     ),
                     Level(COULOMB_FORCE, "F_C"),
                 ],
@@ -153,8 +154,8 @@ def _vibrating(fmu: FrictionFmu, key: str, number: int, V: float, V_1: float) ->
                 "friction force F_t [N]",
                 [
                     Line(1e6 * t, run["F_t"], "FMU", MODEL, width=2.4),
-                    Line(1e6 * t, formula, "Eq. 25", FORMULA, "dash", 1.4),
-                    Level(mean, f"FMU, periodic mean {mean:.3g} N", MEAN, "dot"),
+                    Line(1e6 * t, formula, "Eq. 25", FORMULA, "dashed", 1.4),
+                    Level(mean, f"FMU, periodic mean {mean:.3g} N", MEAN, "dotted"),
                 ],
                 y_range=(-62.0, 62.0),
             )
@@ -182,7 +183,7 @@ def figure_8(fmu: FrictionFmu) -> Figure:
             [1e6 * area(surfaces, d, model="gaussian") for d in gaps],
             "Gaussian heights",
             GREEN,
-            "dash",
+            "dashed",
         ),
         Line([14.0], [1e6 * PRINTED_AREA], "paper, as printed", PAPER, markers=True),
     ]
@@ -205,7 +206,7 @@ def figure_10(fmu: FrictionFmu) -> Figure:
             [stiffness(surfaces, d, model="gaussian") for d in gaps],
             "Gaussian heights",
             GREEN,
-            "dash",
+            "dashed",
         ),
         Line([14.0], [PRINTED_SIGMA], "paper, as printed", PAPER, markers=True),
     ]
@@ -251,9 +252,9 @@ def _over_time(
     change, printed_change = 100.0 * (mean - 1.0), 100.0 * (printed - 1.0)
     items = [
         Line(1e6 * run["time"], run[name] / still, "FMU", MODEL, width=2.4),
-        Level(mean, f"FMU, mean ({change:+.1f} %)", MEAN, "dash"),
-        Level(1.0, "without vibration", GREY, "dot"),
-        Level(printed, f"paper, mean (−{-printed_change:.0f} %)", PAPER, "dash"),
+        Level(mean, f"FMU, mean ({change:+.1f} %)", MEAN, "dashed"),
+        Level(1.0, "without vibration", GREY, "dotted"),
+        Level(printed, f"paper, mean (−{-printed_change:.0f} %)", PAPER, "dashed"),
     ]
     caption = (
         f"d = 14 µm ± 1.1 µm at 20 kHz. The {words} is convex in d, so by Jensen's inequality its mean over "
@@ -287,7 +288,7 @@ def figure_12(fmu: FrictionFmu) -> Figure:
             "separation d [µm]",
             "friction force F_t [N]",
             [
-                Line(1e6 * gaps, formula, "Eq. 23", FORMULA, "dash"),
+                Line(1e6 * gaps, formula, "Eq. 23", FORMULA, "dashed"),
                 Line(1e6 * gaps, of_fmu, "FMU, d constant", MODEL, markers=True),
                 Level(COULOMB_FORCE, "FMU, d constant, later"),
             ],
@@ -324,9 +325,9 @@ def figure_13(fmu: FrictionFmu) -> Figure:
             "friction force F_t [N]",
             [
                 Line(1e6 * run["time"], run["F_t"], "FMU", MODEL, width=2.4),
-                Line(1e6 * run["time"], formula, "Eq. 23 at σ V t / F_C = 5.1", FORMULA, "dash"),
-                Level(middle, f"its (max + min) / 2: {middle:.2f} N", FORMULA, "dot"),
-                Level(48.0, "paper's mean: 48 N", PAPER, "dot"),
+                Line(1e6 * run["time"], formula, "Eq. 23 at σ V t / F_C = 5.1", FORMULA, "dashed"),
+                Level(middle, f"its (max + min) / 2: {middle:.2f} N", FORMULA, "dotted"),
+                Level(48.0, "paper's mean: 48 N", PAPER, "dotted"),
             ],
         ),
         Panel(
@@ -335,8 +336,8 @@ def figure_13(fmu: FrictionFmu) -> Figure:
             "friction force F_t [N]",
             [
                 Line(1e6 * soft["time"], soft["F_t"], "FMU", MODEL, width=2.4),
-                Level(mean, f"FMU, mean {mean:.3f} N", MEAN, "dot"),
-                Level(48.0, "paper's mean: 48 N", PAPER, "dot"),
+                Level(mean, f"FMU, mean {mean:.3f} N", MEAN, "dotted"),
+                Level(48.0, "paper's mean: 48 N", PAPER, "dotted"),
             ],
         ),
     ]

@@ -6,23 +6,8 @@ import math
 
 import numpy as np
 
-from workshop.figure import (
-    AMBER,
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    ORANGE,
-    PINK,
-    SKY,
-    Classes,
-    Figure,
-    Level,
-    Line,
-    Map,
-    Panel,
-    Span,
-)
+from frictioncontact.style import AMBER, BLACK, BLUE, GREEN, GREY, ORANGE, PINK, SKY
+from workshop.figure import Classes, Figure, Level, Line, Map, Panel, Span
 from workshop.regimes.mean import (
     REGIMES,
     Probe,
@@ -59,8 +44,8 @@ def means(probe: Probe, quick: bool) -> Figure:
     for kappa, colour in zip((0.3, 1.0, 3.0, 10.0), (SKY, GREEN, AMBER, PINK), strict=True):
         cuts.append(Line(fine, probe.mean(Regime(kappa, fine)), f"FMU, κ = {kappa:g}", colour))
     cuts += [
-        Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dash"),
-        Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", INK, "dash"),
+        Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dashed"),
+        Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", BLACK, "dashed"),
     ]
     panels = [
         Panel(
@@ -111,8 +96,8 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
             )
             limits = soft_sensitivity(zeta, name, ALPHA, PHASE), coulomb_sensitivity(zeta, name)
             for x, y in zip(ends, limits, strict=True):
-                items.append(Line(x, [y, y], "", INK, "dash", 2.4))
-        items.append(Line([1.0], [np.nan], "limits in closed form", INK, "dash", 2.4))
+                items.append(Line(x, [y, y], "", BLACK, "dashed", 2.4))
+        items.append(Line([1.0], [np.nan], "limits in closed form", BLACK, "dashed", 2.4))
         title = "To " + ", ".join(SYMBOLS[name] for name in names)
         panels.append(Panel(title, KAPPA, "of F_C per 100 % or rad", items, True))
     caption = (
@@ -151,7 +136,7 @@ def _table_2_points() -> list[Line]:
     from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
 
     points = []
-    for parameters, colour in ((PRINTED, INK), (IDENTIFIED, ORANGE)):
+    for parameters, colour in ((PRINTED, BLACK), (IDENTIFIED, ORANGE)):
         V_1 = TABLE_2[2].V_1
         kappa = parameters.stiffness * V_1 / (2.0 * math.pi * FREQUENCY * COULOMB_FORCE)
         label = f"row 3 of Table 2, {parameters.name}"
@@ -171,13 +156,15 @@ def reduction(probe: Probe, quick: bool) -> Figure:
     """Friction reduction over V / V_1 with the limits, and what others measured."""
     zetas = np.geomspace(1e-3, 2.0, 60 if quick else 160)
     lines = [
-        Line(zetas, [100.0 * (1.0 - coulomb_limit(z)) for z in zetas], "Coulomb limit, κ → ∞", INK, "dash")
+        Line(
+            zetas, [100.0 * (1.0 - coulomb_limit(z)) for z in zetas], "Coulomb limit, κ → ∞", BLACK, "dashed"
+        )
     ]
     for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY)):
         values = 100.0 * (1.0 - probe.mean(Regime(kappa, zetas)))
         lines.append(Line(zetas, values, f"FMU, κ = {kappa:g}", colour))
     lines.append(
-        Line(zetas, [100.0 * (1.0 - soft_limit(z)) for z in zetas], "soft limit, κ → 0", BLUE, "dash")
+        Line(zetas, [100.0 * (1.0 - soft_limit(z)) for z in zetas], "soft limit, κ → 0", BLUE, "dashed")
     )
     lines.append(Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True))
     model = Panel(
@@ -192,9 +179,9 @@ def reduction(probe: Probe, quick: bool) -> Figure:
     wide = np.linspace(0.01, 1.2, 80)
     measured = [
         *MEASURED,
-        Line(wide, [100.0 * (1.0 - coulomb_limit(z)) for z in wide], "Coulomb limit, κ → ∞", INK, "dash"),
-        Line(wide, [100.0 * (1.0 - soft_limit(z)) for z in wide], "soft limit, κ → 0", BLUE, "dash"),
-        Level(UP_TO[0], UP_TO[1], ORANGE, "dot"),
+        Line(wide, [100.0 * (1.0 - coulomb_limit(z)) for z in wide], "Coulomb limit, κ → ∞", BLACK, "dashed"),
+        Line(wide, [100.0 * (1.0 - soft_limit(z)) for z in wide], "soft limit, κ → 0", BLUE, "dashed"),
+        Level(UP_TO[0], UP_TO[1], ORANGE, "dotted"),
     ]
     against = Panel(
         "Measured headline ranges",

@@ -22,7 +22,7 @@ from workshop.paper.claims import claims
 from workshop.project import ROOT
 from workshop.regimes import figures as regime_figures
 from workshop.regimes.mean import Probe
-from workshop.report import images, recovery, text
+from workshop.report import recovery, text
 from workshop.report.page import Section, page
 
 DESCRIPTION = """\
@@ -110,7 +110,7 @@ def _draw(figures: dict[str, Figure], options: argparse.Namespace, progress: Pro
             paths.append(options.output / f"{key}.png")
         if options.docs and key in IN_DOCS:
             paths.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
-        images.draw(figure, *paths)
+        figure.draw(*paths)
         written += paths
         progress.advance(task)
     progress.remove_task(task)

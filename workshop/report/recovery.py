@@ -15,7 +15,8 @@ from frictioncontact.identification.parameter import Parameter, parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import search
 from frictioncontact.identification.series import Record
-from workshop.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
+from frictioncontact.style import BLACK, BLUE, ORANGE
+from workshop.figure import Figure, Level, Line, Panel
 
 TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
 NOISE = 0.5  # N, standard deviation of one mean
@@ -131,7 +132,7 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
             y += [*(factor * np.array(found.fits[seed].profiles[k])), np.nan]
         items = [
             Line(*good, f"holds the truth: {sum(held)} of {seeds}", BLUE),
-            Level(factor * TRUTH[name], "truth", INK, "dash"),
+            Level(factor * TRUTH[name], "truth", BLACK, "dashed"),
         ]
         if missed[0]:
             items.insert(1, Line(*missed, "misses it", ORANGE, width=2.4))
