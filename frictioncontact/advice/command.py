@@ -115,7 +115,3 @@ def stiffest(session: Session) -> float:
 
 def main(argv: Sequence[str] | None = None) -> None:
     finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -112,7 +112,3 @@ def as_text(surfaces: Surfaces, gaps: Sequence[float], E: float, model: str) -> 
             f"{stiffness(surfaces, d, E, model):.4g}",
         )
     return text
-
-
-if __name__ == "__main__":
-    main()

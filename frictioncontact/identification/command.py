@@ -120,7 +120,3 @@ def fit_of(words: Sequence[str] | None) -> dict[str, float | tuple[float, float]
 
 def main(argv: Sequence[str] | None = None) -> None:
     finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -27,7 +27,3 @@ def run(options: argparse.Namespace) -> None:
 
 def main(argv: Sequence[str] | None = None) -> None:
     finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -80,7 +80,3 @@ def read_inputs(path: Path, fmu: FrictionFmu) -> dict[str, list[float]]:
 
 def main(argv: Sequence[str] | None = None) -> None:
     finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

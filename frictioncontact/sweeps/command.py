@@ -79,7 +79,3 @@ def main(argv: Sequence[str] | None = None) -> None:
         finish(run, options)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"stopped; {GOES_ON}") from None
-
-
-if __name__ == "__main__":
-    main()

@@ -115,7 +115,3 @@ identified  Eq. 1-2 with {fitted}, and V {IDENTIFIED.V} m/s, the velocity of Fig
             equations can reach these rows, which does not show that they are right. Rows 4 and 5
             are out of their reach: with V constant and positive the mean is F_C.
 """
-
-
-if __name__ == "__main__":
-    main()

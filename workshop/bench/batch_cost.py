@@ -207,7 +207,3 @@ def run(options: argparse.Namespace) -> None:
     measure(
         fmu, ROOT / "build" / "bench" / "bare_loop", count, 1 if options.quick else TURNS, not options.quick
     )
-
-
-if __name__ == "__main__":
-    main()

@@ -111,7 +111,3 @@ def _table(title: str, rows: Sequence[dict[str, object]]) -> Table:
     for row in rows:
         table.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value) for value in row.values()))
     return table
-
-
-if __name__ == "__main__":
-    main()

@@ -410,7 +410,3 @@ QUICK_CASES = (
     f"vibrating-{SIGMAS[4]:.0e}".replace("+", ""),
     "held",
 )
-
-
-if __name__ == "__main__":
-    main()

@@ -249,7 +249,3 @@ def main() -> None:
         print(f"== {name}: {result} ({time.monotonic() - begin:.0f} s)", flush=True)
     if failed:
         sys.exit(f"error: {', '.join(failed)} failed")
-
-
-if __name__ == "__main__":
-    main()

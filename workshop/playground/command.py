@@ -41,7 +41,3 @@ def main() -> None:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {options.output} can't be written: {error.strerror}")
-
-
-if __name__ == "__main__":
-    main()

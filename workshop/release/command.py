@@ -210,7 +210,3 @@ def _release(options: argparse.Namespace) -> None:
     for line in output.with_name(SUMS).read_text().splitlines():
         checksum, _, name = line.partition("  ")
         print(f"{shown(output.with_name(name))} (sha256 {checksum})")
-
-
-if __name__ == "__main__":
-    main()

@@ -115,7 +115,3 @@ def _draw(figures: dict[str, Figure], options: argparse.Namespace, progress: Pro
         progress.advance(task)
     progress.remove_task(task)
     return written
-
-
-if __name__ == "__main__":
-    main()

@@ -65,7 +65,3 @@ def run(options: argparse.Namespace) -> None:
 
 def main() -> None:
     finish(run, arguments())
-
-
-if __name__ == "__main__":
-    main()
