@@ -44,11 +44,9 @@ def accepted(fmu: FrictionFmu) -> list[str]:
 def units(fmu: FrictionFmu, name: str) -> dict[str, float]:
     """The units that a variable may be given in, each with its factor to SI."""
     variable = fmu.variables[name]
-    known = {variable.unit: 1.0}
-    for unit in fmu.description.unitDefinitions:
-        if unit.name == variable.unit:
-            known |= {display.name: 1.0 / display.factor for display in unit.displayUnits}
-    return known | (FORCES if variable.unit == "N" else {})
+    factors = fmu.known.factors.items()
+    known = {display: 1.0 / factor for (unit, display), factor in factors if unit == variable.unit}
+    return {variable.unit: 1.0} | known | (FORCES if variable.unit == "N" else {})
 
 
 def columns_of(fmu: FrictionFmu, path: Path, line: int, header: Sequence[str]) -> list[Column]:

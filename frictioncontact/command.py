@@ -8,13 +8,15 @@ import importlib.util
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
 
 from frictioncontact import resources
 from frictioncontact.errors import FrictionWarning, UserError
@@ -98,6 +100,18 @@ def can_draw() -> bool:
 def table_console() -> Console:
     """Standard output, for tables: wide enough to cut none off, whatever the terminal says of its width."""
     return Console(width=max(TABLE, Console().width))
+
+
+def as_table(
+    headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, names: int = 1
+) -> Table:
+    """A table of numbers, as texts; the first columns, as many as names says, hold words."""
+    table = Table(title=title and escape(title), title_justify="left")
+    for k, heading in enumerate(headings):
+        table.add_column(escape(heading), justify="left" if k < names else "right", no_wrap=k < names)
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 @contextmanager

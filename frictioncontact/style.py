@@ -27,16 +27,6 @@ CYCLE = (BLUE, ORANGE, GREEN, PINK, SKY, AMBER, BLACK)
 # Where a number of Table 2 comes from.
 SOURCE = {"paper": BLACK, "exact": BLUE, "identified": ORANGE}
 
-# solver.method, and the peers that it is compared with.
-METHOD = {
-    "collocation": BLUE,
-    "cvode": ORANGE,
-    "backwardEuler": GREEN,
-    "trapezoid": PINK,
-    "rk4": SKY,
-    "explicitEuler": AMBER,
-}
-
 _SETTINGS: dict[str, Any] = {
     "figure.dpi": 100,
     "figure.facecolor": "white",

@@ -7,6 +7,7 @@ from typing import Any
 
 from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
 
+from frictioncontact.values import Variables
 from workshop.project import ROOT
 
 XML = ROOT / "modelDescription.xml"
@@ -21,13 +22,7 @@ def display_unit(model: ModelDescription, variable: ScalarVariable) -> tuple[str
     """The unit that people use for a Real, and the factor to it from SI."""
     own = variable.unit or ""
     name = variable.displayUnit or own
-    factors = {
-        display.name: display.factor
-        for unit in model.unitDefinitions
-        if unit.name == own
-        for display in unit.displayUnits
-    }
-    return name, factors.get(name, 1.0)
+    return name, Variables(model).factors.get((own, name), 1.0)
 
 
 def description(xml: Path = XML) -> dict[str, Any]:

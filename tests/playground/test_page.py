@@ -10,8 +10,9 @@ from axe_playwright_python.sync_playwright import Axe
 from playground_page import Playground
 from playwright.sync_api import Browser
 
+from workshop.browser import SIZES
 from workshop.description import description
-from workshop.playground.browser import PAINTED, SCHEMES, SIZES
+from workshop.playground.browser import PAINTED, SCHEMES
 from workshop.playground.page import XML
 from workshop.presets import Preset
 

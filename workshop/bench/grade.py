@@ -12,7 +12,6 @@ from frictioncontact.parameters import PERIOD
 from workshop.bench.cases import Case
 from workshop.bench.driver import Outcome
 
-FIXED_STEP = ("backwardEuler", "trapezoid", "rk4", "explicitEuler")
 References = dict[float, tuple[np.ndarray, np.ndarray]]  # start [s]: F and F_mean [N] after each step
 
 

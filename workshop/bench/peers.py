@@ -47,7 +47,7 @@ def plain_values(case: Case, tolerance: float) -> dict[str, float]:
     }
 
 
-def plain(bench: Bench, method: str, case: Case, start: float, tolerance: float, budget: float) -> Outcome:
+def plain(bench: Bench, method: str, case: Case, tolerance: float, budget: float, start: float) -> Outcome:
     """One of PLAIN_PROGRAMS."""
     return bench.run_plain(PLAIN_PROGRAMS[method], case.job(start, budget), plain_values(case, tolerance))
 
@@ -84,7 +84,7 @@ class Equation:
         return (V - abs(V) * ratio) * v["sigma"] / v["F_C"], ratio
 
 
-def scipy_radau(case: Case, start: float, tolerance: float, most_evaluations: int) -> Outcome:
+def scipy_radau(case: Case, tolerance: float, most_evaluations: int, start: float) -> Outcome:
     """solve_ivp with Radau over each communication step; started anew only if inputs jump or bend there."""
     equation = Equation(plain_values(case, tolerance), most_evaluations)
     ends = start + case.step * np.arange(1, case.count + 1)
