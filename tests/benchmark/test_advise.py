@@ -13,8 +13,8 @@ from frictioncontact.advice import command as advise
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
 from workshop.reference.coulomb import coulomb
-from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of, start_values_of
 
 ALONG = {"V_y": 0.0, "vibration.V_2": 0.0}

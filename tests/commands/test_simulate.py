@@ -15,7 +15,7 @@ import frictioncontact as fc
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.simulation import command
 from workshop.reference import solution as reference
-from workshop.reference.solution import MP
+from workshop.reference.arithmetic import MP
 from workshop.reference.start_values import scene_of
 
 SOFT: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 2.5e6, "solver.tolerance": 1e-8}

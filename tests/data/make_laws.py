@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import multiprecision
-from workshop.reference.contact import normal_force, rest_separation, stiffness
+from workshop.reference.arithmetic import MP, multiprecision
+from workshop.reference.contact import Contact, normal_force, rest_separation, stiffness
 from workshop.reference.course import Course
+from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
-from workshop.reference.solution import MP, Contact, Scene
 
 SEEDS = {"Dahl": 11, "LuGre": 12, "ElasticPlastic": 13, "Coulomb": 14, "Settled": 15}
 COUNT, SETTLED_COUNT = 200, 60

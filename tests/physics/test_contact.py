@@ -8,7 +8,8 @@ import pytest
 from frictioncontact import parameters as scenarios
 from frictioncontact.fmu import FrictionFmu, Session, simulate
 from workshop.reference import contact as reference_contact
-from workshop.reference.solution import MP, Contact
+from workshop.reference.arithmetic import MP
+from workshop.reference.contact import Contact
 
 E_FULL, E_REDUCED = scenarios.E_FULL, scenarios.E_REDUCED
 UM = 1e-6

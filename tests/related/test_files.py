@@ -100,7 +100,7 @@ def test_the_results_are_the_reference_s(run: Experiment) -> None:
     assert stored.dtype.names == COLUMNS
     assert len(stored) == round(run.stop / run.step) + 1
     for computed, line in zip(rows(run), stored[:8], strict=False):
-        np.testing.assert_allclose(computed, list(line), rtol=1e-14)
+        np.testing.assert_allclose(list(computed.values()), list(line), rtol=1e-14)
 
 
 @pytest.mark.parametrize("run", RUNS)

@@ -28,8 +28,8 @@ from workshop.bench.coupling import Belt, monolithic
 from workshop.bench.driver import REPORT
 from workshop.build import build_fmu
 from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
 from workshop.reference.settled import settled
-from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of
 
 

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from workshop.bench.cases import Case
 from workshop.bench.driver import Bench, Outcome, failed
-from workshop.reference.solution import stiffness
+from workshop.reference.contact import stiffness
 from workshop.reference.start_values import scene_of
 
 PLAIN_PROGRAMS = {

@@ -7,7 +7,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -175,18 +176,20 @@ def draw_tutorial(folder: Path) -> list[Path]:
 
 def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     """All pictures; gives their paths."""
-    table2_figure.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
-    for drawing in (overview, fmpy_example, step_sizes):
-        drawing(fmu, folder / f"{drawing.__name__}.png")
-    laws.open_contact(fmu, folder / "physics-open-contact.png")
-    laws.static_friction(fmu, folder / "physics-static-friction.png")
-    directions.draw(fmu, folder / "three-directions.png")
-    stretch.draw(folder / "solver-stretch.png")
-    names = (
-        "table2", "overview", "fmpy_example", "step_sizes",
-        "physics-open-contact", "physics-static-friction", "solver-stretch", "three-directions",
-    )  # fmt: skip
-    return sorted(folder / f"{name}.png" for name in names)
+    drawings: dict[str, Callable[[Path], None]] = {
+        "table2": partial(table2_figure.draw, fmu, list(table2.results(fmu))),
+        "overview": partial(overview, fmu),
+        "fmpy_example": partial(fmpy_example, fmu),
+        "step_sizes": partial(step_sizes, fmu),
+        "physics-open-contact": partial(laws.open_contact, fmu),
+        "physics-static-friction": partial(laws.static_friction, fmu),
+        "solver-stretch": stretch.draw,
+        "three-directions": partial(directions.draw, fmu),
+    }
+    paths = [folder / f"{name}.png" for name in drawings]
+    for path, drawing in zip(paths, drawings.values(), strict=True):
+        drawing(path)
+    return paths
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:

@@ -12,7 +12,9 @@ from collections.abc import Iterator
 
 from frictioncontact.command import write_csv
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP, multiprecision
+from workshop.reference.arithmetic import MP, MULTIPRECISION, multiprecision
+from workshop.reference.contact import area
+from workshop.reference.scene import Drive
 from workshop.reference.start_values import scene_of
 from workshop.related.experiments import Experiment, experiments
 
@@ -32,10 +34,10 @@ def rows(experiment: Experiment) -> Iterator[dict[str, float]]:
             before = experiment.step * (k - 1)
             delta, impulse, step_work = map(multiprecision, reference.solve(scene, before, t, delta))
             mean, work = impulse / (MP.mpf(t) - MP.mpf(before)), work + step_work
-        drive = reference.Drive(scene, t, reference.MULTIPRECISION)
+        drive = Drive(scene, t, MULTIPRECISION)
         force = reference.force(scene, t, delta)
-        area = reference.area(scene.contact, drive.d(MP.mpf(0)), drive.E(MP.mpf(0)))
-        values = (t, force, mean, work, reference.sigma(scene, t), area, delta)
+        A_r = area(scene.contact, drive.d(MP.mpf(0)), drive.E(MP.mpf(0)))
+        values = (t, force, mean, work, reference.sigma(scene, t), A_r, delta)
         yield dict(zip(COLUMNS, map(float, values), strict=True))
 
 
