@@ -18,6 +18,7 @@ from frictioncontact.errors import UserError, indefinite, shown, unknown_variabl
 
 Value = float | str
 SETTABLE = ("input", "parameter")
+LARGEST = 1e50  # of a table: differences and squares are finite; and of a value without a bound
 
 
 def number(text: str, where: str) -> float:

@@ -18,7 +18,8 @@ import numpy as np
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.identification.data import Measurements
-from frictioncontact.identification.parameter import LARGEST, Parameter
+from frictioncontact.identification.parameter import Parameter
+from frictioncontact.values import LARGEST
 
 TOLERANCE = 1e-6  # of the FMU's solver: far below what differences of forces over DIFFERENCE need
 TIGHT = 1e-10  # where a fit ends

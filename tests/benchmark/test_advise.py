@@ -123,7 +123,7 @@ def test_bad_questions_get_one_line(
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("time,V\n0,0.1\n1e-5,x\n", "line 3, V: 'x' is not a number"),
+        ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
         (
             "time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n",
             "inputs: time must grow in even steps, and does not at sample ",

@@ -18,7 +18,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
 from frictioncontact.identification.bootstrap import bootstrap
-from frictioncontact.identification.data import Measurements, Uncertain, read
+from frictioncontact.identification.data import Measurements, Series, Uncertain, read
 from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import Fit, fit
 from frictioncontact.identification.parameter import parameter
@@ -26,13 +26,12 @@ from frictioncontact.identification.series import Record
 from frictioncontact.parameters import STIFFNESS_PRINTED
 from workshop.project import ROOT
 from workshop.report.recovery import (
-    LOOP_TRUTH,
     NOISE,
     TRUTH,
     Recovered,
-    from_loops,
     from_rows,
     measurements,
+    recovered,
     true_forces,
 )
 from workshop.validate import longitudinal
@@ -49,7 +48,29 @@ ROWS = {  # uncertainty that is stated, relative error of V_1
 }
 
 
+LOOP_TRUTH = {"contact.sigma": 2.5e6, "F_C": 48.0}
+LOOP_START = 5.0  # N, the force that a loop begins with
+LOOP_NOISE = 0.3  # N, standard deviation of one sample
 LOOPS = {"Dahl": True, "ElasticPlastic": False}  # law, whether the uncertainty is stated
+
+
+def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> Recovered:
+    """From one noisy loop per seed: presliding at first, sliding at its ends later."""
+    time = np.linspace(0.0, 2.0, 160)
+    position = 60e-6 * np.sin(2.0 * np.pi * time) * (0.3 + 0.5 * time)
+    constants = {"contact.model": "Constant", "friction.model": law}
+    series = Series(
+        time, np.diff(position) / np.diff(time), {}, np.zeros(len(time)), constants,
+        np.full(len(time), LOOP_NOISE) if stated else None, position,
+    )  # fmt: skip
+    named = [
+        parameter(fmu, "contact.sigma", None, (1e3, 1e9), constants),
+        parameter(fmu, "F_C", None, None, constants),
+    ]
+    first = Record(fmu, series, named)
+    truth = [p.to_coordinate(LOOP_TRUTH[p.name]) for p in named]
+    forces = first.forces(np.array([[*truth, LOOP_START]]))[0]
+    return recovered(Record(fmu, replace(series, force=forces), named), LOOP_TRUTH, forces, LOOP_NOISE, seeds)
 
 
 @pytest.fixture(scope="module")
@@ -382,7 +403,7 @@ def test_a_measured_loop(fmu: FrictionFmu) -> None:
         parameter(fmu, "friction.mu", None, None, constants),
     ]
     result = fit(Record(fmu, series, named))
-    rms = math.sqrt(2.0 * expected.cost / len(series))
+    rms = math.sqrt(2.0 * expected.cost / len(series.force))
     assert result.values == pytest.approx([math.exp(expected.x[0]), expected.x[1]], rel=1e-3)
     assert np.sqrt(np.mean(result.residuals**2)) == pytest.approx(rms, rel=1e-4)
     times = rms / (np.std(np.diff(series.force, 2)) / math.sqrt(6.0))

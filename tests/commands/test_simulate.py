@@ -159,11 +159,11 @@ def test_the_command_prints_or_writes_the_same_table(
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("time,V\n0,0.1\n1e-5,x\n", "line 3, V: 'x' is not a number"),
+        ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
         ("time [s],V [km/h]\n0,0.1\n", "line 1, column 2: V is in m/s or mm/s"),
-        ("time,V\n0\n", "line 2: has 1 cells where the header has 2"),
+        ("time,V\n0\n", "row 1 (line 2), column 'V': no value"),
         ("", "no header row"),
-        ("time,V,V\n0,1,2\n", "a column is there twice"),
+        ("time,V,V\n0,1,2\n", "column V is there twice"),
         ("time,speed\n0,1\n", "line 1, column 2: there is no variable 'speed'; columns may be"),
     ],
 )

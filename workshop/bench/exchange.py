@@ -147,13 +147,8 @@ def table(fmu: FrictionFmu) -> Iterator[tuple[str, str, int, float, float, int]]
         for coupling in ("F_t held", "F_t linear"):
             for count in STEPS:
                 run = simulate(fmu, belt, coupling, count)
-                yield (
-                    law,
-                    f"co-simulation, {coupling}, {count} steps",
-                    run.calls,
-                    *errors(belt, run, truth),
-                    0,
-                )
+                way = f"co-simulation, {coupling}, {count} steps"
+                yield law, way, run.calls, *errors(belt, run, truth), 0
         for tolerance in TOLERANCES:
             run = exchange(fmu, belt, tolerance)
             way = f"model exchange, tolerance {tolerance:g}"

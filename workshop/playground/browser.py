@@ -9,12 +9,6 @@ from playwright.sync_api import Browser, Page
 from workshop.browser import SIZES, window
 
 SCHEMES = ("light", "dark")
-PAINTED = """() => new Promise((resolve) => {
-    new PerformanceObserver((list) => {
-        const picture = list.getEntries().find(({ identifier }) => identifier === "first picture");
-        if (picture) resolve(picture.renderTime);
-    }).observe({ type: "element", buffered: true });
-})"""
 
 
 def opened(browser: Browser, html: Path, size: str, scheme: str) -> Page:

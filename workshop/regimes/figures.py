@@ -152,21 +152,26 @@ MEASURED = (
 UP_TO = (60.0, "Dong, Dapino 2014 [9]: up to 60 %, both directions")
 
 
+def _limits(zetas: np.ndarray) -> list[Line]:
+    """Of the friction reduction: of stiff and of soft contacts."""
+    return [
+        Line(zetas, [100.0 * (1.0 - limit(z)) for z in zetas], label, colour, "dashed")
+        for limit, label, colour in (
+            (coulomb_limit, "Coulomb limit, κ → ∞", BLACK),
+            (soft_limit, "soft limit, κ → 0", BLUE),
+        )
+    ]
+
+
 def reduction(probe: Probe, quick: bool) -> Figure:
     """Friction reduction over V / V_1 with the limits, and what others measured."""
     zetas = np.geomspace(1e-3, 2.0, 60 if quick else 160)
-    lines = [
-        Line(
-            zetas, [100.0 * (1.0 - coulomb_limit(z)) for z in zetas], "Coulomb limit, κ → ∞", BLACK, "dashed"
-        )
-    ]
+    coulomb, soft = _limits(zetas)
+    lines = [coulomb]
     for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY)):
         values = 100.0 * (1.0 - probe.mean(Regime(kappa, zetas)))
         lines.append(Line(zetas, values, f"FMU, κ = {kappa:g}", colour))
-    lines.append(
-        Line(zetas, [100.0 * (1.0 - soft_limit(z)) for z in zetas], "soft limit, κ → 0", BLUE, "dashed")
-    )
-    lines.append(Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True))
+    lines += [soft, Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True)]
     model = Panel(
         "Tangential vibration, d constant",
         "V / V_1",
@@ -176,13 +181,7 @@ def reduction(probe: Probe, quick: bool) -> Figure:
         y_range=(0.0, 105.0),
         x_range=(1e-3, 2.0),
     )
-    wide = np.linspace(0.01, 1.2, 80)
-    measured = [
-        *MEASURED,
-        Line(wide, [100.0 * (1.0 - coulomb_limit(z)) for z in wide], "Coulomb limit, κ → ∞", BLACK, "dashed"),
-        Line(wide, [100.0 * (1.0 - soft_limit(z)) for z in wide], "soft limit, κ → 0", BLUE, "dashed"),
-        Level(UP_TO[0], UP_TO[1], ORANGE, "dotted"),
-    ]
+    measured = [*MEASURED, *_limits(np.linspace(0.01, 1.2, 80)), Level(*UP_TO, ORANGE, "dotted")]
     against = Panel(
         "Measured headline ranges",
         "V / V_1 of the limits",

@@ -39,10 +39,10 @@ class Library:
     processor: str
     exports: set[str]
     needs: set[str]
-    glibc: tuple[int, ...]  # newest symbol version needed; empty where there is no glibc
-    minimum_macos: tuple[int, ...]
-    signature: str  # "none", "ad hoc" or "broken"
     debug_sections: set[str]
+    glibc: tuple[int, ...] = ()  # newest symbol version needed; empty where there is no glibc
+    minimum_macos: tuple[int, ...] = ()
+    signature: str = "none"  # or "ad hoc", "broken"
 
 
 def inspect(path: Path) -> Library:
@@ -102,8 +102,6 @@ def _elf(binary: lief.ELF.Binary) -> Library:
         exports={str(symbol.name) for symbol in binary.exported_symbols},
         needs=set(map(str, binary.libraries)),
         glibc=max(versions, default=()),
-        minimum_macos=(),
-        signature="none",
         debug_sections={
             str(section.name)
             for section in binary.sections
@@ -117,9 +115,6 @@ def _pe(binary: lief.PE.Binary) -> Library:
         processor=str(binary.header.machine).rpartition(".")[2],
         exports={str(function.name) for function in binary.exported_functions},
         needs=set(map(str, binary.libraries)),
-        glibc=(),
-        minimum_macos=(),
-        signature="none",
         debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},
     )
 
@@ -130,7 +125,6 @@ def _macho(binary: lief.MachO.Binary, content: bytes) -> Library:
         processor=str(binary.header.cpu_type).rpartition(".")[2],
         exports={name.removeprefix("_") for name in exported - IMAGE_SYMBOLS},
         needs={str(library.name) for library in binary.libraries} - {f"@rpath/{_install_name(binary)}"},
-        glibc=(),
         minimum_macos=tuple(binary.build_version.minos)[:2],
         signature=_signature(binary, content),
         debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -65,22 +66,23 @@ def run(options: argparse.Namespace) -> None:
     print(f"Written: {index} and {len(written)} figures")
 
 
-def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Figure]]:
-    for draw in paper_figures.FIGURES:
-        yield lambda draw=draw: draw(fmu)
-    yield contact_figures.areas
-    for draw in (
+def _jobs(fmu: FrictionFmu, quick: bool) -> list[Callable[[], Figure]]:
+    of_regimes = (
         regime_figures.means,
         regime_figures.regimes,
         regime_figures.reduction,
         regime_figures.sensitivity_cuts,
-    ):
-        yield lambda draw=draw: draw(probe, quick)
-    yield lambda: recovery.figure(fmu, 20 if quick else 100)
+    )
+    return [
+        *(partial(draw, fmu) for draw in paper_figures.FIGURES),
+        contact_figures.areas,
+        *(partial(draw, Probe(fmu.path), quick) for draw in of_regimes),
+        partial(recovery.figure, fmu, 20 if quick else 100),
+    ]
 
 
 def _figures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Figure]:
-    jobs = list(_jobs(fmu, Probe(fmu.path), quick))
+    jobs = _jobs(fmu, quick)
     task = progress.add_task("Simulating", total=len(jobs))
     found = {}
     for job in jobs:

@@ -50,7 +50,7 @@ def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[lon
                 fit.law,
                 stiffness(fit),
                 *(f"{force:.4f}" for force in fit.model),
-                *(f"{longitudinal.rms(model, data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
+                *(f"{measurements.rms(model - data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
             ]
             for fit in fits
         ],
@@ -76,7 +76,7 @@ def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) ->
         for fit in fits
     ]
     same, later = record.repeated(data), record.predicted_cycles(data)
-    error = record.rms(same.friction - later.friction) / record.sliding_friction(data)
+    error = measurements.rms(same.friction - later.friction) / record.sliding_friction(data)
     ratio = record.work(same.friction, later) / record.work(later.friction, later)
     return as_table(
         ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"],

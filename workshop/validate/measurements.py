@@ -80,3 +80,7 @@ class NormalVibration:
 def normal_vibration() -> NormalVibration:
     rows = _table("dong2015.csv")
     return NormalVibration(rows["V_m_per_s"], rows["reduction"])
+
+
+def rms(error: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(error**2)))
