@@ -1,7 +1,5 @@
 """The command `frictioncontact NAME ARGS`, which runs the command of that name."""
 
-from __future__ import annotations
-
 import argparse
 import importlib
 import os

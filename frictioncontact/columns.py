@@ -1,7 +1,5 @@
 """Tables with headings: "NAME [UNIT]", with the factor of the unit to SI, or "NAME" in SI units."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass

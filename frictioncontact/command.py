@@ -1,7 +1,5 @@
 """What all commands share: options, the one line that an error becomes, progress, shown paths, CSV files."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 import importlib.util

@@ -8,8 +8,6 @@ Colours are those of Okabe and Ito, which people with any colour vision can tell
 identified; each solver) has the same colour in every picture.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

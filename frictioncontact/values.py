@@ -1,7 +1,5 @@
 """Is this a value of that variable? The one answer, for Python, command lines and CSV files."""
 
-from __future__ import annotations
-
 import csv
 import math
 import numbers

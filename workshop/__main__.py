@@ -7,8 +7,6 @@ What users install takes the FMU as it finds it. From here it is called scripts/
 before, unless the command needs none or --fmu names another.
 """
 
-from __future__ import annotations
-
 import importlib
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The headless Chromium in which the pages are looked at."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager

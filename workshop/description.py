@@ -1,7 +1,5 @@
 """modelDescription.xml as FMPy reads it, and as plain values for pages."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -3,8 +3,6 @@
 Labels write subscripts as F_t or V_1; pictures and the page turn them into their own form.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Scenes that the page of the live FMU offers and the FMU holds as parameter sets: the one place for them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Both are Jacobi masters: in every step all FMUs advance by themselves with the i
 are passed on. Times of libcosim are whole nanoseconds.
 """
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path

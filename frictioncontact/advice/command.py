@@ -1,7 +1,5 @@
 """What to set for a scene and an accuracy, and how to couple the contact to a mass."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path

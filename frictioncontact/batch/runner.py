@@ -1,7 +1,5 @@
 """The batch runner of host/batch.h through ctypes: loaded once, its structures declared."""
 
-from __future__ import annotations
-
 import ctypes
 import tempfile
 from ctypes import POINTER, c_char_p, c_int, c_size_t, c_uint, c_void_p

@@ -1,7 +1,5 @@
 """Separation for a normal load, and normal load for a separation: users know the load, the FMU takes d."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Sequence

@@ -9,8 +9,6 @@ Three contacts over the same two surfaces, all by quadrature of the same integra
 s = z / R_q is the height, h = d / R_q the separation, w = omega_c / R_q the critical interference.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Fits named parameters of the FMU to a CSV of measured friction: steady means, or a series in time."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

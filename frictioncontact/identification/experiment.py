@@ -5,8 +5,6 @@ that is not known exactly, in standard deviations where it was measured (then it
 what was measured), or in its unit where it is free.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence

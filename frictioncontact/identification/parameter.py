@@ -1,7 +1,5 @@
 """A parameter that is fitted, and the coordinate it is fitted in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A measured series in time, for example a loop of presliding and sliding, replayed in the FMU."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

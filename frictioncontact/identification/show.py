@@ -1,7 +1,5 @@
 """What a fit found, on the terminal: first whether the law fits, then numbers, then what they can't tell."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

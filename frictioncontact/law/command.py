@@ -1,7 +1,5 @@
 """The friction law of a contact as a table, a CSV file or a picture."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Lists the measured contacts, or says all of one."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Opens the page with the FMU alive in it, or copies it."""
 
-from __future__ import annotations
-
 import argparse
 import webbrowser
 from collections.abc import Sequence

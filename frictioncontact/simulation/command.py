@@ -1,7 +1,5 @@
 """One scene over time: a table on the terminal, or a CSV file."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

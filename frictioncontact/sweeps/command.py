@@ -1,7 +1,5 @@
 """Many scenarios on many processors: friction means, extremes and work over any parameters, into Parquet."""
 
-from __future__ import annotations
-
 import argparse
 import signal
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The main job: simulates the six rows of Table 2 through fmpy and prints the table."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The picture of Table 2: friction over time for each row, and the means against the paper's."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

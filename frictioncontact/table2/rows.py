@@ -5,8 +5,6 @@ identified one, with three numbers (stiffness, phase, V) adjusted to the three i
 shows that the equations can reach those rows. It does not show that they are right.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

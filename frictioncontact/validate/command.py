@@ -1,7 +1,5 @@
 """Holds the measured contacts against the means that they were fitted to."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 

@@ -5,8 +5,6 @@ The cost of a sweep is that of all its processes: what N scenarios more take, so
 count.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re

@@ -1,7 +1,5 @@
 """The scenes of the benchmarks, and what is right in each: the reference at every communication point."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 

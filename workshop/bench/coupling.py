@@ -7,8 +7,6 @@
 Within a step the mass is integrated exactly (matrix exponential), so that the coupling alone is seen.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

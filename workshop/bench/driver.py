@@ -7,8 +7,6 @@ initialization, of one run that is repeated until its median is steady, from a s
 derivatives. Errors are those of the timed run's own outputs, so that no second run is needed for them.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -7,8 +7,6 @@ exchange a host's CVODE takes bristle and mass together. Cost is the number of c
 FMU. Errors are the largest at 250 points: of F_t over F_C, of x over F_C / k.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

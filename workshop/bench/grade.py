@@ -1,7 +1,5 @@
 """How far one method at one setting is from the reference on a case, and what it costs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Levels of the model: how far simpler laws and contacts are from the scene's own, for typical scenes."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

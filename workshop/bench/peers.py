@@ -5,8 +5,6 @@ All solve y = (sigma_ref delta / F_C, integral of F_t dt / F_C) or its equal. CV
 V reverses.
 """
 
-from __future__ import annotations
-
 import math
 import time
 import warnings

@@ -1,7 +1,5 @@
 """What the default costs in this build and in another release, both taking turns."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import replace

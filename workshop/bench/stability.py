@@ -1,7 +1,5 @@
 """Where each method is stable: alone, over z = sigma |V| h / F_C, and coupled to a mass on a belt."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 

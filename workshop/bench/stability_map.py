@@ -8,8 +8,6 @@ The force starts at 0 and should rise to F_C without passing it. With e = 1 - F_
     refuses    fmi2Error
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from frictioncontact.fmu import FrictionError, FrictionFmu

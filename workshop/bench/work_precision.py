@@ -1,7 +1,5 @@
 """Speed against accuracy: every method of the FMU and its peers, scene by scene."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import re

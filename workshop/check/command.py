@@ -9,8 +9,6 @@
 Each prints its figures and the command behind them. docs/reliability.md says what they found.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import random

@@ -8,8 +8,6 @@ Gauss and of P_n - P_(n-1) for Radau: the integrals and slopes of the polynomial
 nodes, their Legendre coefficients, their value at 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

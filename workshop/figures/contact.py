@@ -1,7 +1,5 @@
 """Figure of the height statistics: what the exponential density costs."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from frictioncontact.gap.heights import area, gaussian

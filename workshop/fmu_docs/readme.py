@@ -1,7 +1,5 @@
 """The pictures of README.md, the tutorial and the pages on use, equations and solver, into docs/pictures/."""
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import subprocess

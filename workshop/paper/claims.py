@@ -1,7 +1,5 @@
 """The paper's numbers against what its own equations give: the abstract's claims, from the FMU."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ The paper's axes are not stated in its text, so times are chosen to show what ea
 scene is drawn at the printed parameters (sigma = 5.743e12 N/m) and at the identified stiffness.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

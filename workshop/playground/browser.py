@@ -1,7 +1,5 @@
 """The page in a headless Chromium, for pictures of it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from playwright.sync_api import Browser, Page

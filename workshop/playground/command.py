@@ -1,7 +1,5 @@
 """One HTML file with the FMU alive in it: `scripts/playground`."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

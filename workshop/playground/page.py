@@ -1,7 +1,5 @@
 """The page from its parts: one HTML file that loads nothing."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

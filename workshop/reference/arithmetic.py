@@ -4,8 +4,6 @@ The quadrature of ``quadrature`` is written once for arrays of either kind. Exte
 digits on x86-64) serves sweeps of many scenes; it is itself graded against the 40 digits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache

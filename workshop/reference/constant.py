@@ -3,8 +3,6 @@
 Between reversals F relaxes toward s F_C over the path: F_1 = s F_C + (F_0 - s F_C) e^(-sigma L / F_C).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from workshop.reference.arithmetic import MP

@@ -1,7 +1,5 @@
 """Real contact area and stiffness from the formulas (Eq. 3, 12-14, 20-22, corrected), at 40 digits."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

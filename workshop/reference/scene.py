@@ -9,8 +9,6 @@ Where the load is given, the surfaces rest where the time mean of F_n over a per
 d = d_rest(t) + a_d cos(2 pi f t + phase_d),    d_rest = (R_q / lambda) ln(F_n(0) I0(lambda a_d / R_q) / load)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

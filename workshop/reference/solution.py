@@ -4,8 +4,6 @@
 period, where 40 digits take 10 s.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Figures of the regimes: mean friction, sensitivities, friction reduction, and which model is enough."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

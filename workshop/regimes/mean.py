@@ -7,8 +7,6 @@ Three numbers say where a vibrating contact is:
     alpha = a_d / R_q                  how much the separation moves
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -6,8 +6,6 @@ Parameter sets are those of the System Structure Parameterization standard (SSP 
 FMI-LS-REF 1.0.0-alpha.1. The build makes them.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -5,8 +5,6 @@
 The build makes the page.
 """
 
-from __future__ import annotations
-
 import sys
 from html import escape
 from itertools import groupby

@@ -6,8 +6,6 @@ Takes a minute. The reference solves Eq. 1-4, 12-14, 20-22 and 24 by itself, in 
 is the FMU's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from frictioncontact.command import write_csv

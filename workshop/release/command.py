@@ -5,8 +5,6 @@ appears under its name only when it is complete and the FMI validator finds noth
 same bytes.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.metadata
 import re

@@ -1,7 +1,5 @@
 """What a library shows to the loader, read from its file: format, processor, exports, needs, signature."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from dataclasses import dataclass

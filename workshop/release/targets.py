@@ -1,7 +1,5 @@
 """The platforms of a release; cmake/zig.cmake holds how each is compiled, CMakeLists.txt what."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import re

@@ -1,7 +1,5 @@
 """Wheels with the FMU inside: scripts/wheel makes this platform's, scripts/release those of all platforms."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The paper's figures, tables and claims from the FMU, the regimes and the identification on one page."""
 
-from __future__ import annotations
-
 import argparse
 import platform
 from collections.abc import Callable, Sequence

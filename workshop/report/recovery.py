@@ -1,7 +1,5 @@
 """Does an identification recover what made the data? Synthetic noisy measurements, fitted again and again."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether the site holds together: its links, and what its pages do in a browser opened from the folder."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """scripts/site: the project's pages as a web site that works from a folder, without a server."""
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Every law of friction against measurements that others published."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 

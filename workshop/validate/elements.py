@@ -6,8 +6,6 @@ on the way to and fro, proportional to the load, tilts the friction instead. Eac
 that the laws are fitted to, and predicts the others.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ sliding. Fitted: one tangential stiffness, by least squares on the vibrated rows
 the stiffness fitted to the others.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -6,8 +6,6 @@ which the load falls from 5 N to 0 while the contact creeps. One run from the fi
 end of the unloading gives all of it: nothing is adjusted or started anew on the way.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
