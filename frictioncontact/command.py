@@ -8,7 +8,9 @@ import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import NoReturn
 
 from rich.console import Console
@@ -75,6 +77,16 @@ def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespac
     except OSError as error:
         where = error.filename or ("standard output" if _stdout_fails() else getattr(options, "output", None))
         sys.exit(f"error: {f'{where}: ' if where else ''}{error.strerror or error}")
+
+
+def main(command: ModuleType, argv: Sequence[str] | None = None) -> None:
+    """Runs a command, a module with arguments() and run(), with these words or those of the command line."""
+    finish(command.run, command.arguments(argv))
+
+
+def main_of(command: ModuleType) -> Callable[[], None]:
+    """What runs a command: its own main(), or the one of all."""
+    return getattr(command, "main", partial(main, command))
 
 
 def _stdout_fails() -> bool:

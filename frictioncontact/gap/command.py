@@ -7,7 +7,7 @@ from dataclasses import fields
 
 from rich.table import Table
 
-from frictioncontact.command import add_set, as_table, command_line, finish, table_console
+from frictioncontact.command import add_set, as_table, command_line, table_console
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.gap.heights import MODELS, area, load, separation, stiffness
@@ -54,10 +54,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         "--quick", action="store_true", help="accepted like by all commands; nothing here is slow"
     )
     return parser.parse_args(argv)
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
 
 
 def run(options: argparse.Namespace) -> None:

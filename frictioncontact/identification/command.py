@@ -11,7 +11,6 @@ from frictioncontact.command import (
     add_set,
     can_draw,
     command_line,
-    finish,
     progress_bar,
     table_console,
 )
@@ -114,7 +113,3 @@ def fit_of(words: Sequence[str] | None) -> dict[str, float | tuple[float, float]
         parts = [number(part, f"--fit {text}") for part in value.split("..", 1)] if value else [None]
         asked[name] = (parts[0], parts[1]) if len(parts) == 2 else parts[0]
     return asked
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))

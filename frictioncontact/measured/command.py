@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Sequence
 
-from frictioncontact.command import command_line, finish
+from frictioncontact.command import command_line
 from frictioncontact.measured.contacts import contacts
 
 DESCRIPTION = """\
@@ -21,7 +21,3 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> None:
     print(contacts()[options.name] if options.name else contacts())
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from frictioncontact.columns import MEASURED, columns_of, numbers_below
-from frictioncontact.command import add_fmu, add_set, command_line, finish, say_written
+from frictioncontact.command import add_fmu, add_set, command_line, say_written
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, FrictionFmu, opened
 from frictioncontact.simulation.run import simulate
@@ -62,7 +62,3 @@ def read_inputs(path: Path, fmu: FrictionFmu) -> dict[str, list[float]]:
     lines = list(csv_rows(path))
     table = numbers_below(path, columns_of(fmu, path, lines), lines[1:])
     return {name: values for name, values in table.items() if name not in MEASURED}
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))

@@ -12,7 +12,6 @@ from frictioncontact.command import (
     add_output,
     can_draw,
     command_line,
-    finish,
     progress_bar,
     say_written,
     shown,
@@ -36,10 +35,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     add_fmu(parser)
     add_output(parser, resources.output())
     return parser.parse_args(argv)
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
 
 
 def run(options: argparse.Namespace) -> None:

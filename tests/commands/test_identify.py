@@ -14,6 +14,7 @@ import pytest
 from scipy import stats
 from scipy.optimize import least_squares
 
+from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
@@ -319,8 +320,9 @@ def _soft_limit(zeta: float) -> float:
 def test_misfit_is_said_first(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "misfit.csv"
     path.write_text("V [m/s],vibration.V_1 [m/s],F_t_mean [N]\n0.1,1,10\n0.2,1,40\n0.3,1,5\n")
-    identify.main(
-        [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "F_C=30", "--uncertain", "F_t_mean=0.5"]
+    main(
+        identify,
+        [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "F_C=30", "--uncertain", "F_t_mean=0.5"],
     )
     assert capsys.readouterr().out.startswith("MISFIT: the law does not fit: the misfit, ")
 
@@ -437,7 +439,7 @@ def test_bad_requests_are_refused(fmu_path: Path, tmp_path: Path, argv: list[str
     path = tmp_path / "good.csv"
     path.write_text(HEADER + GOOD)
     with pytest.raises(SystemExit, match=f"error: .*{message}"):
-        identify.main([str(path), "--fmu", str(fmu_path), "--output", str(tmp_path), *argv])
+        main(identify, [str(path), "--fmu", str(fmu_path), "--output", str(tmp_path), *argv])
 
 
 def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> None:
@@ -446,12 +448,12 @@ def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> 
     with pytest.raises(
         SystemExit, match="error: the uncertainty of F_t_mean: row 3 measures 0 N, so give it in N"
     ):
-        identify.main([str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
+        main(identify, [str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
 
 
 def test_help_shows_one_per_cent_sign(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
-        identify.main(["--help"])
+        main(identify, ["--help"])
     printed = capsys.readouterr().out
     assert "NAME=VALUE|PERCENT%" in printed
     assert "%%" not in printed
@@ -481,7 +483,7 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
     path = tmp_path / "lugre.csv"
     path.write_text(LUGRE_FIT)
     ranges = ("contact.sigma=1e4..1e9", "F_C", "friction.staticRatio=1..3", "friction.V_S=1e-3..1")
-    identify.main(
+    main(identify,
         [
             str(path), "--fmu", str(fmu_path), "--quick", "--uncertain", "F_t_mean=0.5",
             "--set", "friction.model=LuGre", "--set", "contact.model=Constant",
@@ -497,11 +499,11 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
 
 def test_missing_file_is_named(fmu_path: Path) -> None:
     with pytest.raises(SystemExit, match=r"error: nowhere\.csv: No such file"):
-        identify.main(["nowhere.csv", "--fmu", str(fmu_path)])
+        main(identify, ["nowhere.csv", "--fmu", str(fmu_path)])
 
 
 def test_command_prints_and_draws(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    identify.main(["--fmu", str(fmu_path), "--output", str(tmp_path)])
+    main(identify, ["--fmu", str(fmu_path), "--output", str(tmp_path)])
     printed = capsys.readouterr().out
     assert "contact.stiffnessScale" in printed
     assert "224.6" in printed

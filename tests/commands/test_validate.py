@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
 from workshop.project import ROOT
 from workshop.validate import command, elements, longitudinal, measurements, normal, record
@@ -190,7 +191,7 @@ def test_elements_in_parallel_share_one_element_s_force() -> None:
 def test_the_command_prints_its_tables_and_draws(
     fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    command.main(["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "out")])
+    main(command, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "out")])
     text = capsys.readouterr().out
     assert "Longitudinal vibration, dry" in text
     assert "Normal vibration" in text
@@ -200,4 +201,4 @@ def test_the_command_prints_its_tables_and_draws(
 def test_an_output_that_can_not_be_written_is_one_line(fmu_path: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(SystemExit, match=r"error: .*file"):
-        command.main(["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "file" / "out")])
+        main(command, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "file" / "out")])

@@ -13,7 +13,6 @@ from frictioncontact.command import (
     add_output,
     as_table,
     command_line,
-    finish,
     progress_bar,
     say_written,
     table_console,
@@ -163,7 +162,3 @@ def run(options: argparse.Namespace) -> None:
     title = "Largest errors of F_t and of its mean, over F_C"
     table_console().print(as_table(list(rows[0]), [[*map(str, row.values())] for row in rows], title))
     say_written([write_csv(rows, options.output / "levels.csv")])
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))

@@ -166,11 +166,7 @@ def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
             truth: tuple[np.ndarray, np.ndarray] | None = None
             for linear in (False, True):
                 case = sampled(n, sigma, linear, periods=2)
-                inside = replace(
-                    case,
-                    start_values={**vibrating(sigma).start_values},
-                    inputs={},
-                )
+                inside = replace(case, start_values=vibrating(sigma).start_values, inputs={})
                 truth = truth or expected(inside, 0.13 * PERIOD)
                 outcome = bench.run(case.job(0.0, 0.0, solver__tolerance=1e-9))
                 errors = [
@@ -390,8 +386,4 @@ def run(options: argparse.Namespace) -> None:
     say_written(written)
 
 
-QUICK_CASES = (
-    f"vibrating-{SIGMAS[1]:.0e}".replace("+", ""),
-    f"vibrating-{SIGMAS[4]:.0e}".replace("+", ""),
-    "held",
-)
+QUICK_CASES = (vibrating(SIGMAS[1]).name, vibrating(SIGMAS[4]).name, "held")

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from frictioncontact import style
-from frictioncontact.command import add_fmu, add_output, command_line, finish
+from frictioncontact.command import add_fmu, add_output, command_line
 from frictioncontact.fmu import SETTLED, FrictionFmu, simulate
 from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
@@ -203,7 +203,3 @@ def run(options: argparse.Namespace) -> None:
             print(path)
     for path in draw_tutorial(options.output / "tutorial"):
         print(path)
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))

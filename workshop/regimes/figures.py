@@ -35,8 +35,13 @@ def means(probe: Probe, quick: bool) -> Figure:
     """Mean friction over kappa and zeta without and with normal vibration, and cuts against the limits."""
     kappas, zetas = grids(quick)
     levels = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
-    still = probe.mean(on_map(kappas, zetas))
-    moving = probe.mean(on_map(kappas, zetas, ALPHA, PHASE))
+    panels = [
+        Panel(title, KAPPA, ZETA, [Map(kappas, zetas, z, "mean F_t / F_C", 0.0, 1.0, levels)], True, True)
+        for title, z in (
+            ("d constant", probe.mean(on_map(kappas, zetas))),
+            ("a_d / R_q = 0.18, phase 225°", probe.mean(on_map(kappas, zetas, ALPHA, PHASE))),
+        )
+    ]
     cuts = []
     fine = np.linspace(0.005, 1.5, 120)
     for kappa, colour in zip((0.3, 1.0, 3.0, 10.0), (SKY, GREEN, AMBER, PINK), strict=True):
@@ -45,25 +50,7 @@ def means(probe: Probe, quick: bool) -> Figure:
         Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dashed"),
         Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", BLACK, "dashed"),
     ]
-    panels = [
-        Panel(
-            "d constant",
-            KAPPA,
-            ZETA,
-            [Map(kappas, zetas, still, "mean F_t / F_C", 0.0, 1.0, levels)],
-            True,
-            True,
-        ),
-        Panel(
-            "a_d / R_q = 0.18, phase 225°",
-            KAPPA,
-            ZETA,
-            [Map(kappas, zetas, moving, "mean F_t / F_C", 0.0, 1.0, levels)],
-            True,
-            True,
-        ),
-        Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)),
-    ]
+    panels.append(Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)))
     caption = (
         "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean: at κ = 100 within "
         "0.001 F_C for ζ = 0.3, but not near ζ = 1; with d moving this much only above 3000. Soft ones, "

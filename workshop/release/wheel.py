@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from frictioncontact import resources
-from frictioncontact.command import add_output, command_line, finish, say_written
+from frictioncontact.command import add_output, command_line, say_written
 from frictioncontact.errors import UserError
 from workshop.build import build_fmu
 from workshop.playground.page import page_text
@@ -70,7 +70,3 @@ def run(options: argparse.Namespace) -> None:
         wheel = packed("wheel", options.output, [fmu, page, resources.batch_host()])
     say_written([wheel])
     print(f"{wheel.stat().st_size / 1e6:.2f} MB")
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rich.progress import Progress
 
-from frictioncontact.command import add_fmu, add_output, command_line, finish, progress_bar
+from frictioncontact.command import add_fmu, add_output, command_line, progress_bar
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.table2.rows import results
@@ -45,10 +45,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help="also renew the figures that docs/ shows, docs/pictures/paper-*.png",
     )
     return parser.parse_args(argv)
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
 
 
 def run(options: argparse.Namespace) -> None:

@@ -12,7 +12,6 @@ from frictioncontact.command import (
     as_table,
     can_draw,
     command_line,
-    finish,
     table_console,
 )
 from frictioncontact.fmu import FrictionFmu
@@ -177,7 +176,3 @@ def run(options: argparse.Namespace) -> None:
         for name, figure in drawn.items():
             style.save(figure, options.output / f"{name}.png")
         print(f"Written: {len(drawn)} pictures in {options.output}")
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
