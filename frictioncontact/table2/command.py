@@ -2,7 +2,6 @@
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 from rich.table import Table
 
@@ -52,17 +51,13 @@ def run(options: argparse.Namespace) -> None:
             if not options.quick and can_draw():
                 progress.update(task, description="Drawing")
                 written.append(options.output / "table2.png")
-                draw(fmu, table, written[1])
+                from frictioncontact.table2 import figure  # takes a second, which --quick saves
+
+                figure.draw(fmu, table, written[1])
     table_console().print(as_text(table))
     print(remarks())
     print("FMU:", shown(path))
     say_written(written)
-
-
-def draw(fmu: FrictionFmu, table: Sequence[Result], path: Path) -> None:
-    from frictioncontact.table2 import figure as table2_figure  # takes a second, which --quick saves
-
-    table2_figure.draw(fmu, table, path)
 
 
 def as_text(table: Sequence[Result]) -> Table:

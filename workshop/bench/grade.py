@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -32,17 +32,13 @@ class Point:
         return max(self.error_F, self.error_mean)
 
     def row(self) -> dict[str, object]:
-        return {
-            "case": self.case,
-            "method": self.method,
-            "setting": self.setting,
-            "error_F_t": self.error_F,
-            "error_F_t_mean": self.error_mean,
-            "cpu_s_per_period": self.cpu,
-            "wall_s_per_period": self.wall,
-            "evaluations_per_period": self.evaluations,
-            "failure": self.failure,
-        }
+        return dict(zip(COLUMNS, astuple(self), strict=True))
+
+
+COLUMNS = (  # of a point in a CSV file
+    *("case", "method", "setting", "error_F_t", "error_F_t_mean"),
+    *("cpu_s_per_period", "wall_s_per_period", "evaluations_per_period", "failure"),
+)
 
 
 def grade_point(

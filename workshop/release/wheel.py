@@ -16,14 +16,8 @@ from workshop.build import build_fmu
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release.build_hook import PAGE
+from workshop.release.targets import PLATFORMS
 
-TAGS = {  # by the oldest system that cmake/zig.cmake compiles for
-    "linux64": "manylinux2014_x86_64",
-    "aarch64-linux": "manylinux2014_aarch64",
-    "win64": "win_amd64",
-    "darwin64": "macosx_10_15_x86_64",
-    "aarch64-darwin": "macosx_11_0_arm64",
-}
 DESCRIPTION = """\
 Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
 page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
@@ -31,7 +25,10 @@ page of the live FMU and the measurements inside. pip installs it where there is
 
 def wheels(fmu: Path, page: Path, hosts: Mapping[str, Path], output: Path) -> list[Path]:
     """A wheel for each platform with its batch host, and the sdist, in the folder output."""
-    made = [packed("wheel", output, [fmu, page, host], TAGS[platform]) for platform, host in hosts.items()]
+    made = [
+        packed("wheel", output, [fmu, page, host], PLATFORMS[platform].tag)
+        for platform, host in hosts.items()
+    ]
     return [*made, packed("sdist", output, [page])]
 
 
