@@ -1,7 +1,5 @@
 """The command `frictioncontact NAME ARGS`, which runs the command of that name."""
 
-from __future__ import annotations
-
 import argparse
 import importlib
 import os
@@ -40,8 +38,10 @@ def _chosen() -> Callable[[], None]:
 
         hint = did_you_mean(name, COMMANDS)
         sys.exit(f"error: {shown(name)} is no command{hint or ';'} these are: {', '.join(COMMANDS)}")
+    from frictioncontact.command import main_of
+
     del sys.argv[1]
-    return importlib.import_module(f"frictioncontact.{COMMANDS[name][0]}.command").main
+    return main_of(importlib.import_module(f"frictioncontact.{COMMANDS[name][0]}.command"))
 
 
 def _usage() -> None:

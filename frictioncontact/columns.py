@@ -1,14 +1,14 @@
-"""Headings of tables: "NAME [UNIT]", with the factor of the unit to SI, or "NAME" in SI units."""
-
-from __future__ import annotations
+"""Tables with headings: "NAME [UNIT]", with the factor of the unit to SI, or "NAME" in SI units."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 
 from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.values import LARGEST, number
 
 HEADING = re.compile(r"\s*([^\[\]]+?)\s*(?:\[\s*([^\[\]]*?)\s*\]\s*)?")
 FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
@@ -23,7 +23,6 @@ OWN = {  # columns that are no inputs or parameters of the FMU
 
 @dataclass(frozen=True)
 class Column:
-    index: int
     heading: str
     name: str
     factor: float  # from the column's unit to SI
@@ -44,19 +43,53 @@ def accepted(fmu: FrictionFmu) -> list[str]:
 def units(fmu: FrictionFmu, name: str) -> dict[str, float]:
     """The units that a variable may be given in, each with its factor to SI."""
     variable = fmu.variables[name]
-    known = {variable.unit: 1.0}
-    for unit in fmu.description.unitDefinitions:
-        if unit.name == variable.unit:
-            known |= {display.name: 1.0 / display.factor for display in unit.displayUnits}
-    return known | (FORCES if variable.unit == "N" else {})
+    factors = fmu.known.factors.items()
+    known = {display: 1.0 / factor for (unit, display), factor in factors if unit == variable.unit}
+    return {variable.unit: 1.0} | known | (FORCES if variable.unit == "N" else {})
 
 
-def columns_of(fmu: FrictionFmu, path: Path, line: int, header: Sequence[str]) -> list[Column]:
-    return [_column(fmu, path, line, index, cell) for index, cell in enumerate(header)]
+def columns_of(fmu: FrictionFmu, path: Path, lines: Sequence[tuple[int, list[str]]]) -> list[Column]:
+    """Those of the header, the first of the lines (their numbers and cells); UserError where one is wrong."""
+    if not lines:
+        raise UserError(f"{path}: no header row")
+    line, header = lines[0]
+    columns = [_column(fmu, f"{path}, line {line}, column {k}", cell) for k, cell in enumerate(header, 1)]
+    names = [column.name for column in columns]
+    for name in names:
+        if names.count(name) > 1:
+            raise UserError(f"{path}: column {name} is there twice")
+    return columns
 
 
-def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> Column:
-    where = f"{path}, line {line}, column {index + 1}"
+def numbers_below(
+    path: Path,
+    columns: Sequence[Column],
+    lines: Sequence[tuple[int, list[str]]],
+    positive: Collection[str] = (),
+) -> dict[str, list[float]]:
+    """The rows after the header, by name, in SI units.
+
+    positive: the columns whose values must be. UserError names the row, from 1, its line and the column.
+    """
+    found: dict[str, list[float]] = {column.name: [] for column in columns}
+    for row, (line, cells) in enumerate(lines, 1):
+        at = f"{path}, row {row} (line {line})"
+        if len(cells) > len(columns):
+            raise UserError(f"{at}: {len(cells)} cells, but {len(columns)} columns")
+        for column, cell in zip_longest(columns, cells, fillvalue=""):
+            where = f"{at}, column '{column.heading}'"
+            if not cell:
+                raise UserError(f"{where}: no value")
+            value = number(cell, where)
+            if abs(value) > LARGEST:
+                raise UserError(f"{where}: {cell} must be from {-LARGEST:g} to {LARGEST:g}")
+            if column.name in positive and value <= 0.0:
+                raise UserError(f"{where}: {cell} must be positive")
+            found[column.name].append(value * column.factor)
+    return found
+
+
+def _column(fmu: FrictionFmu, where: str, cell: str) -> Column:
     match = HEADING.fullmatch(cell)
     if not match:
         raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]' or 'name'")
@@ -74,4 +107,4 @@ def _column(fmu: FrictionFmu, path: Path, line: int, index: int, cell: str) -> C
         )
     if unit is not None and unit not in known:
         raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
-    return Column(index, cell.strip(), name, known[unit] if unit is not None else 1.0)
+    return Column(cell.strip(), name, known[unit] if unit is not None else 1.0)

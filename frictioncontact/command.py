@@ -1,20 +1,22 @@
 """What all commands share: options, the one line that an error becomes, progress, shown paths, CSV files."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 import importlib.util
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import NoReturn
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
 
 from frictioncontact import resources
 from frictioncontact.errors import FrictionWarning, UserError
@@ -77,6 +79,16 @@ def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespac
         sys.exit(f"error: {f'{where}: ' if where else ''}{error.strerror or error}")
 
 
+def main(command: ModuleType, argv: Sequence[str] | None = None) -> None:
+    """Runs a command, a module with arguments() and run(), with these words or those of the command line."""
+    finish(command.run, command.arguments(argv))
+
+
+def main_of(command: ModuleType) -> Callable[[], None]:
+    """What runs a command: its own main(), or the one of all."""
+    return getattr(command, "main", partial(main, command))
+
+
 def _stdout_fails() -> bool:
     """Whether nothing can be printed any more. What was not yet written then goes nowhere."""
     try:
@@ -98,6 +110,18 @@ def can_draw() -> bool:
 def table_console() -> Console:
     """Standard output, for tables: wide enough to cut none off, whatever the terminal says of its width."""
     return Console(width=max(TABLE, Console().width))
+
+
+def as_table(
+    headings: Sequence[str], rows: Iterable[Sequence[str]], title: str | None = None, names: int = 1
+) -> Table:
+    """A table of numbers, as texts; the first columns, as many as names says, hold words."""
+    table = Table(title=title and escape(title), title_justify="left")
+    for k, heading in enumerate(headings):
+        table.add_column(escape(heading), justify="left" if k < names else "right", no_wrap=k < names)
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 @contextmanager

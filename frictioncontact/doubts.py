@@ -1,7 +1,5 @@
 """Scenes that were hardly meant: settings that nothing uses, and magnitudes of another unit."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """The errors and the warning that users see, and the words for a wrong name."""
 
-from __future__ import annotations
-
 import difflib
 import sys
 import warnings

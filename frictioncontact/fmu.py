@@ -15,11 +15,12 @@ import shutil
 import tempfile
 import zipfile
 import zlib
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from functools import cache
 from pathlib import Path
-from types import TracebackType
+from typing import Self
 
 import numpy as np
 from fmpy import extract, read_model_description
@@ -46,7 +47,21 @@ OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
 
 
-class FrictionFmu:
+class Closing(ABC):
+    """What is closed at the end of a `with` block."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Gives back what it holds."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+
+class FrictionFmu(Closing):
     """The unzipped FMU and its model description, from which sessions are opened.
 
     path      the .fmu file, for example `fc.FMU`
@@ -120,14 +135,6 @@ class FrictionFmu:
         """Removes the unzipped files."""
         shutil.rmtree(self._temporary, ignore_errors=True)
 
-    def __enter__(self) -> FrictionFmu:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
 
 def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2CallbackFunctions:
     """Callbacks of an instance, which keep its messages; the caller keeps them while the instance lives."""
@@ -144,7 +151,7 @@ def logging_callbacks(messages: list[str], warnings: list[str] | None = None) ->
     return callbacks
 
 
-class Session:
+class Session(Closing):
     """One instance, stepped by its user. `time` [s] is where it is, `warnings` what the FMU warned of.
 
     Opened by `FrictionFmu.session`, closed at the end of a `with` block or by `close()`. Every call raises
@@ -243,14 +250,6 @@ class Session:
         if self.slave.component is not None:
             self.slave.fmi2FreeInstance(self.slave.component)
             self.slave.component = None
-
-    def __enter__(self) -> Session:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 def simulate(

@@ -3,8 +3,6 @@
 A scene is given to the FMU as a dictionary of start values under the names of its variables.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What is read from an FMU in its periodic state, in which initialState = Settled starts it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where an FMU has the shared library for this machine."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 import fmpy

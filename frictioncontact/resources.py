@@ -4,8 +4,6 @@ An installed wheel holds them in its own folder `bundled`. In a clone, whose ins
 is no such folder: what is built is in build/ of the project, and the measurements are in data/.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -8,8 +8,6 @@ Colours are those of Okabe and Ito, which people with any colour vision can tell
 identified; each solver) has the same colour in every picture.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -26,16 +24,6 @@ CYCLE = (BLUE, ORANGE, GREEN, PINK, SKY, AMBER, BLACK)
 
 # Where a number of Table 2 comes from.
 SOURCE = {"paper": BLACK, "exact": BLUE, "identified": ORANGE}
-
-# solver.method, and the peers that it is compared with.
-METHOD = {
-    "collocation": BLUE,
-    "cvode": ORANGE,
-    "backwardEuler": GREEN,
-    "trapezoid": PINK,
-    "rk4": SKY,
-    "explicitEuler": AMBER,
-}
 
 _SETTINGS: dict[str, Any] = {
     "figure.dpi": 100,

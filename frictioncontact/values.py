@@ -1,7 +1,5 @@
 """Is this a value of that variable? The one answer, for Python, command lines and CSV files."""
 
-from __future__ import annotations
-
 import csv
 import math
 import numbers
@@ -18,6 +16,7 @@ from frictioncontact.errors import UserError, indefinite, shown, unknown_variabl
 
 Value = float | str
 SETTABLE = ("input", "parameter")
+LARGEST = 1e50  # of a table: differences and squares are finite; and of a value without a bound
 
 
 def number(text: str, where: str) -> float:

@@ -1,4 +1,4 @@
-"""Runs main() of a command's module, as the files of scripts/ do:
+"""Runs a command's module, as the files of scripts/ do:
 
     python -m workshop workshop.report.command ARGS
     python -m workshop frictioncontact.identification.command ARGS
@@ -6,8 +6,6 @@
 What users install takes the FMU as it finds it. From here it is called scripts/NAME, and the FMU is built
 before, unless the command needs none or --fmu names another.
 """
-
-from __future__ import annotations
 
 import importlib
 import sys
@@ -30,13 +28,16 @@ def main() -> None:
 
 
 def _loaded(module: str) -> Callable[[], None]:
+    from frictioncontact.command import main_of
+
     command = importlib.import_module(module)
+    run = main_of(command)
     if not module.startswith("frictioncontact."):
-        return command.main
+        return run
 
     def prepare_and_run() -> None:
         prepare(command, module.split(".")[1])
-        command.main()
+        run()
 
     return prepare_and_run
 

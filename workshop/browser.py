@@ -1,17 +1,17 @@
 """The headless Chromium in which the pages are looked at."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
-from playwright.sync_api import Browser, Error, Page, Playwright, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Error, Page, Playwright, sync_playwright
 
 from frictioncontact.errors import UserError
 
 PATIENCE = 300_000.0  # ms, for a page: the machine may have much other work
+SIZES = {"desktop": (1440, 900), "phone": (390, 844)}  # of windows, pixels of CSS
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
@@ -39,6 +39,13 @@ def chromium() -> Iterator[Browser]:
 
 def _launched(playwright: Playwright, executable: str) -> Browser:
     return playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])
+
+
+def window(browser: Browser, size: str, **options: Any) -> BrowserContext:
+    """A window of one of SIZES, with what else playwright's new_context takes."""
+    width, height = SIZES[size]
+    viewport = {"width": width, "height": height}
+    return browser.new_context(viewport=viewport, has_touch=size == "phone", **options)
 
 
 def watch(page: Page, home: Path, heard: list[str]) -> None:

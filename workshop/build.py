@@ -3,8 +3,6 @@
 CMAKE_ARGS in the environment is passed on when configuring, e.g. CMAKE_ARGS=-DWITH_SUNDIALS=OFF.
 """
 
-from __future__ import annotations
-
 import argparse
 import fcntl
 import json

@@ -1,12 +1,11 @@
 """modelDescription.xml as FMPy reads it, and as plain values for pages."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
 
+from frictioncontact.values import Value, Variables
 from workshop.project import ROOT
 
 XML = ROOT / "modelDescription.xml"
@@ -21,13 +20,7 @@ def display_unit(model: ModelDescription, variable: ScalarVariable) -> tuple[str
     """The unit that people use for a Real, and the factor to it from SI."""
     own = variable.unit or ""
     name = variable.displayUnit or own
-    factors = {
-        display.name: display.factor
-        for unit in model.unitDefinitions
-        if unit.name == own
-        for display in unit.displayUnits
-    }
-    return name, factors.get(name, 1.0)
+    return name, Variables(model).factors.get((own, name), 1.0)
 
 
 def description(xml: Path = XML) -> dict[str, Any]:
@@ -38,23 +31,22 @@ def description(xml: Path = XML) -> dict[str, Any]:
     items with their descriptions.
     """
     model = read(xml)
-    return {"version": model.version, "variables": [_plain(model, v) for v in model.modelVariables]}
+    starts = Variables(model).starts()
+    variables = [_plain(model, variable, starts.get(variable.name)) for variable in model.modelVariables]
+    return {"version": model.version, "variables": variables}
 
 
-def _plain(model: ModelDescription, variable: ScalarVariable) -> dict[str, Any]:
+def _plain(model: ModelDescription, variable: ScalarVariable, start: Value | None) -> dict[str, Any]:
     plain: dict[str, Any] = {
         "name": variable.name,
         "reference": variable.valueReference,
         "causality": variable.causality,
         "description": variable.description or "",
-        "start": None,
+        "start": start,
     }
     if variable.type == "Enumeration":
         items = variable.declaredType.items
         plain["items"] = [{"name": item.name, "description": item.description or ""} for item in items]
-        plain["start"] = items[int(variable.start or "1") - 1].name
-        return plain
-    plain["displayUnit"], plain["factor"] = display_unit(model, variable)
-    if variable.start is not None:
-        plain["start"] = float(variable.start)
+    else:
+        plain["displayUnit"], plain["factor"] = display_unit(model, variable)
     return plain

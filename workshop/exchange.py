@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_double, c_uint
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model
 from fmpy.sundials import CVodeSolver
 
-from frictioncontact.fmu import FrictionError, FrictionFmu, Value, logging_callbacks
+from frictioncontact.fmu import Closing, FrictionError, FrictionFmu, Value, logging_callbacks
 
 Inputs = Callable[[float, np.ndarray], Mapping[str, float]]
 Rates = Callable[..., Sequence[float]]
@@ -29,7 +28,7 @@ STATES = 4  # delta, W_f, Q_f, delta_y
 MOST_STEPS = 1_000_000  # of CVODE on the way to one output
 
 
-class Host:
+class Host(Closing):
     """One contact in model exchange and the host's own states, from start on.
 
     inputs(t, own) gives inputs of the FMU; what it does not name stays as it is. own_rates(t, own, *forces)
@@ -116,13 +115,11 @@ class Host:
         self._model.enterContinuousTimeMode()
 
     def _set(self, name: str, value: Value) -> None:
-        variable = self.fmu.variables[name]
+        variable, number = self.fmu.variables[name], self.fmu.known.number(name, value, "set")
         if variable.type == "Real":
-            self._model.setReal([variable.valueReference], [float(value)])
-            return
-        if isinstance(value, str):
-            value = {item.name: int(item.value) for item in variable.declaredType.items}[value]
-        self._model.setInteger([variable.valueReference], [int(value)])
+            self._model.setReal([variable.valueReference], [number])
+        else:
+            self._model.setInteger([variable.valueReference], [int(number)])
 
     # What CVODE asks for; pointers are to as many doubles as there are states.
 
@@ -183,14 +180,6 @@ class Host:
         if self._model.component is not None:
             self._model.freeInstance()
             self._model.component = None
-
-    def __enter__(self) -> Host:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 class FMU2Counted(FMU2Model):

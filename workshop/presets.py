@@ -1,18 +1,12 @@
 """Scenes that the page of the live FMU offers and the FMU holds as parameter sets: the one place for them."""
 
-from __future__ import annotations
-
-import csv
-import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+
+import numpy as np
 
 from frictioncontact.fmu import SETTLED
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, Row, start_values
-from workshop.project import ROOT
-
-DRY_ROWS = ROOT / "data" / "measurements" / "luo2024.csv"
+from workshop.validate.measurements import sliding
 
 
 @dataclass(frozen=True)
@@ -31,23 +25,6 @@ class Preset:
 
 def presets() -> list[Preset]:
     return [*table_2(IDENTIFIED), *table_2(PRINTED), *dry_rows(), *scenes()]
-
-
-def possible(presets: Sequence[Preset], variables: Sequence[Mapping[str, Any]]) -> list[Preset]:
-    """Those whose variables and items are among the variables of description()."""
-    known = {variable["name"]: variable for variable in variables}
-    return [
-        preset
-        for preset in presets
-        if all(
-            name in known and (not isinstance(value, str) or value in _items(known[name]))
-            for name, value in preset.values.items()
-        )
-    ]
-
-
-def _items(variable: Mapping[str, Any]) -> list[str]:
-    return [item["name"] for item in variable["items"]]
 
 
 def table_2(parameters: ParameterSet) -> list[Preset]:
@@ -93,14 +70,10 @@ def _table_2_note(parameters: ParameterSet) -> str:
 
 def dry_rows() -> list[Preset]:
     """Luo et al. 2024, Fig. 5b: each row that slides, with its measured force without vibration as F_C."""
-    f, amplitude = 26e3, 0.35e-6  # Hz, m
-    V_1 = 2.0 * math.pi * f * amplitude
-    with DRY_ROWS.open(newline="", encoding="utf-8") as file:
-        lines = [line for line in csv.DictReader(file) if line["lubrication"] == "dry"]
-    rows = [tuple(float(line[name]) for name in ("V_m_per_s", "F_without_N", "F_with_N")) for line in lines]
-    rows = [row for row in rows if row[0] > 0.0]  # at rest the mean of every law is 0
+    data = sliding("dry")
+    rows = np.column_stack([data.V, data.without, data.vibrated]).tolist()
     points = tuple(
-        (V / V_1, force / without, f"{1e3 * V:g} mm/s: {force:g} of {without:g} N")
+        (V / data.V_1, force / without, f"{1e3 * V:g} mm/s: {force:g} of {without:g} N")
         for V, without, force in rows
     )
     return [
@@ -120,8 +93,8 @@ def dry_rows() -> list[Preset]:
                 "load": 10.8,
                 "F_C": without,
                 "V": V,
-                "vibration.f": f,
-                "vibration.V_1": V_1,
+                "vibration.f": data.f,
+                "vibration.V_1": data.V_1,
             },
             known=force,
             known_from="Measured",

@@ -4,11 +4,10 @@ Both are Jacobi masters: in every step all FMUs advance by themselves with the i
 are passed on. Times of libcosim are whole nanoseconds.
 """
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 from fmpy.ssp.simulation import simulate_ssp
@@ -86,26 +85,15 @@ def run_libcosim(ssp: Path, step_ns: int, count: int, signals: Sequence[Signal])
     return samples
 
 
-class _Values:
-    """Start values in the form that fmpy's simulate_ssp takes."""
-
-    def __init__(self, values: Mapping[Signal, float]) -> None:
-        self.parameters = [
-            _Value(f"{component}.{name}", value) for (component, name), value in values.items()
-        ]
-
-
-class _Value:
-    def __init__(self, name: str, value: float) -> None:
-        self.name = name
-        self.value = value
-
-
 def run_fmpy(ssp: Path, step: float, count: int, signals: Sequence[Signal]) -> dict[Signal, np.ndarray]:
     """The same by fmpy, which leaves the start values of the .ssd to its caller, and inputs at 0 at first."""
     with zipfile.ZipFile(ssp) as archive:
-        values = parameters(archive.read("SystemStructure.ssd").decode())
+        given = parameters(archive.read("SystemStructure.ssd").decode())
+    values = [SimpleNamespace(name=".".join(signal), value=value) for signal, value in given.items()]
     result = simulate_ssp(
-        str(ssp), stop_time=(count - 0.5) * step, step_size=step, parameter_set=_Values(values)
+        str(ssp),
+        stop_time=(count - 0.5) * step,
+        step_size=step,
+        parameter_set=SimpleNamespace(parameters=values),
     )
     return {signal: result[".".join(signal)] for signal in signals}

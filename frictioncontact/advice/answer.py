@@ -15,6 +15,7 @@ from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
+from frictioncontact.periodic import periodic_mean
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -123,9 +124,7 @@ def mean_friction(fmu: FrictionFmu, asked: Question) -> float:
         count = len(next(iter(asked.inputs.values()))) - 1
         rows = simulate(fmu, asked.given, asked.step, count, asked.inputs, asked.linear, asked.start)
         return float(rows["F_t_mean"][1:].mean())
-    with fmu.session({**asked.given, **SETTLED}) as session:
-        session.step(asked.period)
-        return session.get("F_t_mean")
+    return periodic_mean(fmu, asked.given)
 
 
 def mean_limit(fmu: FrictionFmu, asked: Question) -> float:

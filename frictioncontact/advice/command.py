@@ -1,7 +1,5 @@
 """What to set for a scene and an accuracy, and how to couple the contact to a mass."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -9,7 +7,7 @@ from pathlib import Path
 from frictioncontact.advice.answer import PHASES, advise
 from frictioncontact.advice.question import OUTPUTS, STEP_LENGTHS, between, scene_values
 from frictioncontact.advice.stuck_mass import MASTERS, advice
-from frictioncontact.command import add_fmu, add_set, command_line, finish, progress_bar, shown
+from frictioncontact.command import add_fmu, add_set, command_line, progress_bar, shown
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Session, Value, opened
 from frictioncontact.simulation.command import read_inputs
@@ -111,11 +109,3 @@ def stiffest(session: Session) -> float:
             session.step(1.0 / (64.0 * session.get("vibration.f")))
             found = max(found, session.get("sigma"))
     return found
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -15,8 +15,6 @@ A, with V_0 = |V|, V_1 > V_0, omega = 2 pi f, x(t) from the reversal:
 and the integral of e^(-k t^2) is at most sqrt(pi / k) / 2.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -20,8 +20,6 @@ With a = H^2 sigma / m and b = H sigma_1 / m the eigenvalues x are the roots of
     Gauss-Seidel    x^2 - (2 - a - b) x + 1 - b              b = 0,  b = 2 - a / 2
 """
 
-from __future__ import annotations
-
 import math
 
 from frictioncontact.fmu import Value

@@ -1,7 +1,5 @@
 """Columns of values that a batch sets: brought to one shape before anything runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -93,18 +93,7 @@ def simulate_many(
         check_whole(threads, MOST_THREADS, "threads =")
     try:
         loaded = loaded_fmu(resources.fmu() if fmu is None else fmu, runner(resources.batch_host()))
-        batch = prepared(
-            loaded,
-            values,
-            outputs,
-            settle=settle,
-            duration=duration,
-            samples=samples,
-            unit=unit,
-            settled=settled,
-            inputs=inputs,
-            steps=steps,
-        )
+        batch = prepared(loaded, values, outputs, settle, duration, samples, unit, settled, inputs, steps)
     except UserError as error:
         raise BatchError(str(error)) from None
     warn_of(loaded.variables, batch.starts | (inputs or {}), is_over_period=unit == "period")

@@ -30,14 +30,13 @@ def prepared(
     fmu: LoadedFmu,
     values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
     outputs: Outputs,
-    *,
-    settle: npt.ArrayLike | None = None,
-    duration: npt.ArrayLike = 1.0,
-    samples: int = 1,
-    unit: Unit = "period",
-    settled: bool = False,
-    inputs: Mapping[str, npt.ArrayLike] | None = None,
-    steps: npt.ArrayLike | None = None,
+    settle: npt.ArrayLike | None,
+    duration: npt.ArrayLike,
+    samples: int,
+    unit: Unit,
+    settled: bool,
+    inputs: Mapping[str, npt.ArrayLike] | None,
+    steps: npt.ArrayLike | None,
 ) -> Batch:
     """The batch of `simulate_many`, checked."""
     lengths = None

@@ -1,7 +1,5 @@
 """A checked batch, run by the C runner on threads of this process."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import threading

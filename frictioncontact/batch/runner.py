@@ -1,12 +1,7 @@
 """The batch runner of host/batch.h through ctypes: loaded once, its structures declared."""
 
-from __future__ import annotations
-
 import ctypes
-import shutil
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from ctypes import POINTER, c_char_p, c_int, c_size_t, c_uint, c_void_p
 from functools import cache
 from pathlib import Path
@@ -74,25 +69,18 @@ def runner(path: Path) -> ctypes.CDLL:
     return library
 
 
-@contextmanager
-def temporary_file(name: str, content: bytes) -> Iterator[Path]:
-    """A shared library of this content. What is loaded from it no longer needs it when it is gone."""
-    folder = Path(tempfile.mkdtemp(prefix="friction-batch-"))
-    path = folder / f"{name}{fmpy.sharedLibraryExtension}"
-    try:
+def load_fmu(library: ctypes.CDLL, name: str, content: bytes) -> int:
+    """Handle of an FMU's shared library for batch_begin. It stays loaded as long as the process lives.
+
+    Once it is loaded, it no longer needs its file.
+    """
+    why = ctypes.create_string_buffer(TEXT)
+    with tempfile.TemporaryDirectory(prefix="friction-batch-", ignore_cleanup_errors=True) as folder:
+        path = Path(folder) / f"{name}{fmpy.sharedLibraryExtension}"
         try:
             path.write_bytes(content)
         except OSError as error:
             raise BatchError(f"{path}: can't be written: {error.strerror}") from None
-        yield path
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def load_fmu(library: ctypes.CDLL, name: str, content: bytes) -> int:
-    """Handle of an FMU's shared library for batch_begin. It stays loaded as long as the process lives."""
-    why = ctypes.create_string_buffer(TEXT)
-    with temporary_file(name, content) as path:
         handle = library.batch_load(str(path).encode(), why, TEXT)
     if not handle:
         raise BatchError(f"the FMU's library can't be loaded: {why.value.decode(errors='replace')}")

@@ -1,7 +1,5 @@
 """An FMU file made ready for the batch runner: its model description, and its library for this platform."""
 
-from __future__ import annotations
-
 import ctypes
 import hashlib
 import io

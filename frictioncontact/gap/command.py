@@ -1,16 +1,13 @@
 """Separation for a normal load, and normal load for a separation: users know the load, the FMU takes d."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Sequence
 from dataclasses import fields
 
-from rich.markup import escape
 from rich.table import Table
 
-from frictioncontact.command import add_set, command_line, finish, table_console
+from frictioncontact.command import add_set, as_table, command_line, table_console
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.gap.heights import MODELS, area, load, separation, stiffness
@@ -59,10 +56,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
 def run(options: argparse.Namespace) -> None:
     given = opened(None).known.assigned(options.set)
     E = float(given.pop("E", E_FULL))
@@ -98,21 +91,18 @@ def run(options: argparse.Namespace) -> None:
 
 def as_text(surfaces: Surfaces, gaps: Sequence[float], E: float, model: str) -> Table:
     """One line per separation."""
-    text = Table()
-    for heading in ("d [um]", "d / R_q", "load [N]", "A_r [mm2]", "A_r / A_n", "sigma [N/m]"):
-        text.add_column(escape(heading), justify="right")
+    headings = ("d [um]", "d / R_q", "load [N]", "A_r [mm2]", "A_r / A_n", "sigma [N/m]")
+    rows = []
     for d in gaps:
         A_r = area(surfaces, d, E, model)
-        text.add_row(
-            f"{1e6 * d:.4f}",
-            f"{d / surfaces.R_q:.3f}",
-            f"{load(surfaces, d, E, model):.4g}",
-            f"{1e6 * A_r:.4g}",
-            f"{A_r / surfaces.A_n:.3g}",
-            f"{stiffness(surfaces, d, E, model):.4g}",
+        rows.append(
+            [
+                f"{1e6 * d:.4f}",
+                f"{d / surfaces.R_q:.3f}",
+                f"{load(surfaces, d, E, model):.4g}",
+                f"{1e6 * A_r:.4g}",
+                f"{A_r / surfaces.A_n:.3g}",
+                f"{stiffness(surfaces, d, E, model):.4g}",
+            ]
         )
-    return text
-
-
-if __name__ == "__main__":
-    main()
+    return as_table(headings, rows, names=0)

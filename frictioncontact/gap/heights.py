@@ -9,8 +9,6 @@ Three contacts over the same two surfaces, all by quadrature of the same integra
 s = z / R_q is the height, h = d / R_q the separation, w = omega_c / R_q the critical interference.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
@@ -55,20 +53,19 @@ def _integral(function: Density, left: float, right: float) -> float:
     return math.fsum(pieces)
 
 
-def _density(surfaces: Surfaces, model: str) -> Density:
-    return exponential(surfaces.c, surfaces.lambda_) if model == "exponential" else gaussian
+def _parts(surfaces: Surfaces, d: float, E: float, model: str, power: float) -> tuple[float, float]:
+    """Over the heights: (s - h)^power of what is elastic, and 2 (s - h) - w of what has yielded."""
+    h, w = d / surfaces.R_q, surfaces.critical_interference(E) / surfaces.R_q
+    density = exponential(surfaces.c, surfaces.lambda_) if model == "exponential" else gaussian
+    if model == "elastic":
+        return height_integral(h, power, density), 0.0
+    elastic = quad(lambda s: (s - h) ** power * density(s), h, h + w, epsabs=0.0, epsrel=1e-12)[0]
+    return elastic, _integral(lambda s: (2.0 * (s - h) - w) * density(s), h + w, h + w + TAIL)
 
 
 def area(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
     """A_r [m2], Eq. 18, 19, 22; model "elastic" takes Eq. 8 for every asperity."""
-    h, w = d / surfaces.R_q, surfaces.critical_interference(E) / surfaces.R_q
-    density = _density(surfaces, model)
-    front = math.pi * surfaces.beta * surfaces.A_n
-    if model == "elastic":
-        return front * height_integral(h, 1.0, density)
-    elastic = quad(lambda s: (s - h) * density(s), h, h + w, epsabs=0.0, epsrel=1e-12)[0]
-    plastic = _integral(lambda s: (2.0 * (s - h) - w) * density(s), h + w, h + w + TAIL)
-    return front * (elastic + plastic)
+    return math.pi * surfaces.beta * surfaces.A_n * sum(_parts(surfaces, d, E, model, 1.0))
 
 
 def stiffness(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
@@ -78,16 +75,10 @@ def stiffness(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exp
 
 def load(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
     """Normal load [N]: Eq. 9 below omega_c and Eq. 16 above it, summed over the asperities."""
-    R_q, omega_c = surfaces.R_q, surfaces.critical_interference(E)
-    h, w = d / R_q, omega_c / R_q
-    density = _density(surfaces, model)
-    count = surfaces.eta * surfaces.A_n
+    R_q, count = surfaces.R_q, surfaces.eta * surfaces.A_n
     hertz = 4.0 / 3.0 * E * math.sqrt(surfaces.R) * R_q**1.5
-    if model == "elastic":
-        return count * hertz * height_integral(h, 1.5, density)
     flow = math.pi * surfaces.R * R_q * surfaces.yield_pressure
-    elastic = quad(lambda s: (s - h) ** 1.5 * density(s), h, h + w, epsabs=0.0, epsrel=1e-12)[0]
-    plastic = _integral(lambda s: (2.0 * (s - h) - w) * density(s), h + w, h + w + TAIL)
+    elastic, plastic = _parts(surfaces, d, E, model, 1.5)
     return count * (hertz * elastic + flow * plastic)
 
 

@@ -21,12 +21,12 @@ from frictioncontact.identification.bootstrap import bootstrap as refits_of
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
 from frictioncontact.identification.experiment import Experiment, Rows
 from frictioncontact.identification.fit import fit as fitted
-from frictioncontact.identification.parameter import LARGEST, Parameter, parameter
+from frictioncontact.identification.parameter import Parameter, parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import Tell, silent
 from frictioncontact.identification.series import Record
 from frictioncontact.identification.show import show
-from frictioncontact.values import Variables, number, pairs, path_of, real
+from frictioncontact.values import LARGEST, Variables, number, pairs, path_of, real
 
 if TYPE_CHECKING:
     import pandas as pd

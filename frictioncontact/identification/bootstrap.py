@@ -1,7 +1,5 @@
 """Intervals by simulation: new data from the fitted law with new noise, fitted again, many times."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

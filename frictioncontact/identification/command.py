@@ -1,7 +1,5 @@
 """Fits named parameters of the FMU to a CSV of measured friction: steady means, or a series in time."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +11,6 @@ from frictioncontact.command import (
     add_set,
     can_draw,
     command_line,
-    finish,
     progress_bar,
     table_console,
 )
@@ -116,11 +113,3 @@ def fit_of(words: Sequence[str] | None) -> dict[str, float | tuple[float, float]
         parts = [number(part, f"--fit {text}") for part in value.split("..", 1)] if value else [None]
         asked[name] = (parts[0], parts[1]) if len(parts) == 2 else parts[0]
     return asked
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -7,17 +7,16 @@ NAME.uncertainty is the standard uncertainty of the column NAME. A column "time"
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frictioncontact.columns import Column, columns_of
+from frictioncontact.columns import columns_of, numbers_below
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.identification.parameter import LARGEST
-from frictioncontact.values import csv_rows, number
+from frictioncontact.values import csv_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,9 +47,6 @@ class Measurements:
     uncertainty: list[float] | None  # N
     uncertain: tuple[Uncertain, ...] = ()
 
-    def __len__(self) -> int:
-        return len(self.force)
-
 
 @dataclass(frozen=True)
 class Series:
@@ -62,14 +58,11 @@ class Series:
     force: np.ndarray  # N
     constants: dict[str, Any]
     uncertainty: np.ndarray | None = None  # N
-    position: np.ndarray | None = field(default=None)
+    position: np.ndarray | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
         return ("V", *self.inputs)
-
-    def __len__(self) -> int:
-        return len(self.force)
 
 
 @dataclass(frozen=True)
@@ -97,19 +90,14 @@ def read(
     is_path = isinstance(source, Path)
     path = source if is_path else Path("data")
     lines = list(csv_rows(source)) if is_path else _lines(source)
-    if not lines:
-        raise UserError(f"{path}: no header row")
-    header_line, header = lines[0]
-    columns = columns_of(fmu, path, header_line, header)
+    columns = columns_of(fmu, path, lines)
     names = [column.name for column in columns]
     is_series = TIME in names
     _check(path, names, constants, is_series)
-    measured: dict[str, list[float]] = {name: [] for name in names}
-    for row, (line, cells) in enumerate(lines[1:], 1):
-        for column in columns:
-            measured[column.name].append(_value(path, row, line, column, cells, len(header)))
     if not lines[1:]:
         raise UserError(f"{path}: no rows of numbers")
+    positive = [name for name in names if name == LOAD or name.endswith(SUFFIX)]
+    measured = numbers_below(path, columns, lines[1:], positive)
     shared = with_load(names, constants)
     if is_series:
         return _series(path, fmu, measured, shared, stated)
@@ -131,8 +119,6 @@ def with_load(names: Sequence[str], constants: Mapping[str, Any]) -> dict[str, A
 
 def _check(path: Path, names: Sequence[str], constants: Mapping[str, Any], is_series: bool) -> None:
     for name in names:
-        if names.count(name) > 1:
-            raise UserError(f"{path}: column {name} is there twice")
         if name in constants:
             raise UserError(f"{path}: {name} is a column and also set as a constant")
         if name.endswith(SUFFIX) and name.removesuffix(SUFFIX) not in names:
@@ -151,21 +137,6 @@ def _check(path: Path, names: Sequence[str], constants: Mapping[str, Any], is_se
             raise UserError(f"{path}: {name} is for {where}")
     if LOAD in names and ("d" in names or "d" in constants):
         raise UserError(f"{path}: load and d both give the separation; keep one")
-
-
-def _value(path: Path, row: int, line: int, column: Column, cells: Sequence[str], width: int) -> float:
-    where = f"{path}, row {row} (line {line}), column '{column.heading}'"
-    if len(cells) > width:
-        raise UserError(f"{path}, row {row} (line {line}): {len(cells)} cells, but {width} columns")
-    if column.index >= len(cells) or not cells[column.index].strip():
-        raise UserError(f"{where}: no value")
-    text = cells[column.index].strip()
-    value = number(text, where)
-    if abs(value) > LARGEST:
-        raise UserError(f"{where}: {text} must be from {-LARGEST:g} to {LARGEST:g}")
-    if (column.name == LOAD or column.name.endswith(SUFFIX)) and value <= 0.0:
-        raise UserError(f"{where}: {text} must be positive")
-    return value * column.factor
 
 
 def _rows(

@@ -5,19 +5,19 @@ that is not known exactly, in standard deviations where it was measured (then it
 what was measured), or in its unit where it is free.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.identification.data import Measurements
-from frictioncontact.identification.parameter import LARGEST, Parameter
+from frictioncontact.identification.parameter import Parameter
+from frictioncontact.values import LARGEST
 
 TOLERANCE = 1e-6  # of the FMU's solver: far below what differences of forces over DIFFERENCE need
 TIGHT = 1e-10  # where a fit ends
@@ -60,9 +60,18 @@ class Experiment(ABC):
     def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
         """[point, row] in N; nan in a row of points that the FMU refuses, and then self.problem says why."""
 
-    @abstractmethod
     def kappa(self, point: np.ndarray) -> np.ndarray | None:
         """sigma V_1 / (2 pi f F) of every row, F the limit, at the mean separation; None of a series."""
+        return None
+
+    def value(self, values: Mapping[str, Any], name: str) -> np.ndarray:
+        """Of a variable in scenes with these start values."""
+        return np.asarray(values.get(name, float(self.fmu.variables[name].start)))
+
+    def limit(self, values: Mapping[str, Any], F_n: np.ndarray) -> np.ndarray:
+        """Of the friction [N] in scenes with these start values."""
+        by_load = np.asarray(values.get("friction.limit")) == "Load"
+        return np.where(by_load, self.value(values, "friction.mu") * F_n, self.value(values, "F_C"))
 
     @property
     def target(self) -> np.ndarray:
@@ -180,11 +189,6 @@ class Rows(Experiment):
 
     def kappa(self, point: np.ndarray) -> np.ndarray:
         values = {**self._values(point[None, :]), "vibration.a_d": 0.0}
-
-        def value(name: str) -> np.ndarray:
-            return np.asarray(values.get(name, float(self.fmu.variables[name].start)))
-
         found = simulate_many(values, ("sigma", "F_n"), settle=0.0, duration=0.0, fmu=self.fmu.path)
-        by_load = np.asarray(values.get("friction.limit")) == "Load"
-        limit = np.where(by_load, value("friction.mu") * found["F_n"], value("F_C"))
-        return (found["sigma"] * value("vibration.V_1") / (2.0 * math.pi * value("vibration.f") * limit))[0]
+        V_1, f = (self.value(values, name) for name in ("vibration.V_1", "vibration.f"))
+        return (found["sigma"] * V_1 / (2.0 * math.pi * f * self.limit(values, found["F_n"])))[0]

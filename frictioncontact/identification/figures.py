@@ -1,7 +1,5 @@
 """The picture of a fit: measured and fitted forces, and how sharply the data fix the first two parameters."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

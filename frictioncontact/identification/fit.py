@@ -4,8 +4,6 @@ Intervals: linear ones, value -+ t s sqrt(C) in the coordinates, from the deriva
 by profile likelihood (profile.py), which hold where the sum of squares is no parabola.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

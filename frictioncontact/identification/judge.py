@@ -1,7 +1,5 @@
 """What a fit can't tell, and whether the law fits at all, in words."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

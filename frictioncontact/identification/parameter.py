@@ -1,7 +1,5 @@
 """A parameter that is fitted, and the coordinate it is fitted in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +10,7 @@ import numpy as np
 from frictioncontact.columns import accepted
 from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.values import LARGEST
 
 # The ranges where nothing is given. Of other parameters starts are sought within a factor of 3 of the usual
 # value, and the fit stays within a factor of FARTHEST of it.
@@ -22,7 +21,6 @@ RANGES = {
     **dict.fromkeys(PHASES, (0.0, 2.0 * math.pi)),
 }
 NEAR, FARTHEST = 3.0, 1e6
-LARGEST = 1e50  # a value without a bound in the model description, and a residual
 
 
 @dataclass(frozen=True)

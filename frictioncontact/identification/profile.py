@@ -7,8 +7,6 @@ that rise, and so may span values that are less likely. MINOS of iminuit gives t
 sum of squares is a point, and none where it is a valley, of which a profile is to tell.
 """
 
-from __future__ import annotations
-
 import math
 
 from scipy.optimize import brentq

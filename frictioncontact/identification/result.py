@@ -1,7 +1,5 @@
 """What a fit finds: the least sum of squares, its linear intervals, the other minima, the profiles."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The least sum of squares of an experiment: scipy's least squares from the best of some sampled starts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

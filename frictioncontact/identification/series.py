@@ -1,7 +1,5 @@
 """A measured series in time, for example a loop of presliding and sliding, replayed in the FMU."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -70,13 +68,5 @@ class Record(Experiment):
             values, ("sigma", "F_n"), settle=0.0, duration=0.0, unit="s", errors="keep", fmu=self.fmu.path
         )
         self._keep_problem(now)
-
-        def value(name: str) -> np.ndarray:
-            return np.asarray(values.get(name, float(self.fmu.variables[name].start)))
-
-        by_load = np.asarray(values.get("friction.limit")) == "Load"
-        limit = np.where(by_load, value("friction.mu") * now["F_n"], value("F_C"))
+        limit = self.limit(values, now["F_n"])
         return np.clip(force, -limit, limit) / now["sigma"]
-
-    def kappa(self, point: np.ndarray) -> None:
-        return None

@@ -1,13 +1,12 @@
 """What a fit found, on the terminal: first whether the law fits, then numbers, then what they can't tell."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from frictioncontact.command import as_table
 from frictioncontact.identification.bootstrap import quantiles
 from frictioncontact.identification.data import Measurements
 from frictioncontact.identification.experiment import Experiment
@@ -58,19 +57,18 @@ def _stiffness(experiment: Experiment, scale: float) -> float:
 
 
 def _values(result: Fit, spread: np.ndarray | None) -> Table:
-    table = Table(title="Fitted parameters", title_justify="left")
     headings = ["parameter", "unit", "value", "95 % interval, linear", "by profile"]
-    for heading in headings + ([] if spread is None else [f"by {len(spread)} refits"]):
-        table.add_column(heading, justify="left" if heading == "parameter" else "right")
+    rows = []
     for k, p in enumerate(result.parameters):
         intervals = [result.interval(k), result.profiles[k]]
         if spread is not None:
             intervals.append(quantiles(result, spread, k))
-        table.add_row(p.name, p.unit, f"{result.values[k]:.6g}", *(_interval(*one) for one in intervals))
+        rows.append([p.name, p.unit, f"{result.values[k]:.6g}", *(_interval(*one) for one in intervals)])
         if p.unit == "rad":
             degrees = [_interval(*np.degrees(one)) for one in intervals]
-            table.add_row("", "deg", f"{math.degrees(result.values[k]):.6g}", *degrees)
-    return table
+            rows.append(["", "deg", f"{math.degrees(result.values[k]):.6g}", *degrees])
+    headings += [] if spread is None else [f"by {len(spread)} refits"]
+    return as_table(headings, rows, "Fitted parameters")
 
 
 def _interval(low: float, high: float) -> str:
@@ -78,27 +76,25 @@ def _interval(low: float, high: float) -> str:
 
 
 def _rows(experiment: Experiment, result: Fit) -> Table:
-    table = Table(title="Mean friction force [N]", title_justify="left")
-    for heading in ("row", "measured", "fitted", "difference", "kappa"):
-        table.add_column(heading, justify="right")
-    for k in range(min(len(result.model), MOST)):
-        table.add_row(
+    rows = [
+        [
             str(k + 1),
             f"{experiment.force[k]:.3f}",
             f"{result.model[k]:.3f}",
             f"{result.residuals[k]:+.3f}",
             f"{result.kappa[k]:.3g}",
-        )
-    if len(result.model) > MOST:
-        table.add_row("...", "", "", "", "")
-    return table
+        ]
+        for k in range(min(len(result.model), MOST))
+    ]
+    rows += [["..."]] if len(result.model) > MOST else []
+    headings = ("row", "measured", "fitted", "difference", "kappa")
+    return as_table(headings, rows, "Mean friction force [N]", names=0)
 
 
 def _correlations(result: Fit) -> Table:
-    table = Table(title="Correlations", title_justify="left")
-    table.add_column("")
-    for p in result.parameters:
-        table.add_column(p.name, justify="right")
-    for p, row in zip(result.parameters, result.correlation, strict=True):
-        table.add_row(p.name, *("none" if math.isnan(value) else f"{value:+.3f}" for value in row))
-    return table
+    names = [p.name for p in result.parameters]
+    rows = [
+        [name, *("none" if math.isnan(value) else f"{value:+.3f}" for value in row)]
+        for name, row in zip(names, result.correlation, strict=True)
+    ]
+    return as_table(["", *names], rows, "Correlations")

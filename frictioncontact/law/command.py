@@ -1,7 +1,5 @@
 """The friction law of a contact as a table, a CSV file or a picture."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frictioncontact.command import add_fmu, add_set, can_draw, command_line, finish, say_written
+from frictioncontact.command import add_fmu, add_set, can_draw, command_line, say_written
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import opened
@@ -77,11 +75,3 @@ def run(options: argparse.Namespace) -> None:
             options.picture,
         )
     say_written([path for path in (options.output, options.picture) if path])
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

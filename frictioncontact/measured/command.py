@@ -1,11 +1,9 @@
 """Lists the measured contacts, or says all of one."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 
-from frictioncontact.command import command_line, finish
+from frictioncontact.command import command_line
 from frictioncontact.measured.contacts import contacts
 
 DESCRIPTION = """\
@@ -23,11 +21,3 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> None:
     print(contacts()[options.name] if options.name else contacts())
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

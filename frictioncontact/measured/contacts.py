@@ -1,7 +1,5 @@
 """`contacts`: contacts that were measured, as start values with their source, range and uncertainty."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,14 +1,12 @@
 """Opens the page with the FMU alive in it, or copies it."""
 
-from __future__ import annotations
-
 import argparse
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
 from frictioncontact import resources
-from frictioncontact.command import command_line, finish, say_written, shown
+from frictioncontact.command import command_line, say_written, shown
 from frictioncontact.files import whole_file
 
 DESCRIPTION = """\
@@ -32,11 +30,3 @@ def run(options: argparse.Namespace) -> None:
         print(f"opened {shown(page)}")
     else:
         print(f"no browser was found: open {shown(page)}")
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

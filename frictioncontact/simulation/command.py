@@ -1,18 +1,15 @@
 """One scene over time: a table on the terminal, or a CSV file."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from frictioncontact.columns import MEASURED, columns_of
-from frictioncontact.command import add_fmu, add_set, command_line, finish, say_written
-from frictioncontact.errors import UserError
+from frictioncontact.columns import MEASURED, columns_of, numbers_below
+from frictioncontact.command import add_fmu, add_set, command_line, say_written
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, FrictionFmu, opened
 from frictioncontact.simulation.run import simulate
-from frictioncontact.values import csv_rows, number
+from frictioncontact.values import csv_rows
 
 DESCRIPTION = """\
 Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file. All values
@@ -58,29 +55,10 @@ def run(options: argparse.Namespace) -> None:
 
 
 def read_inputs(path: Path, fmu: FrictionFmu) -> dict[str, list[float]]:
-    """The columns of a CSV file under their names, in SI units; UserError names file, line and column.
+    """The columns of a CSV file under their names, in SI units; UserError names file, row and column.
 
     A measured force is left out, so that what identify reads may be simulated too.
     """
     lines = list(csv_rows(path))
-    if not lines:
-        raise UserError(f"{path}: no header row")
-    header = columns_of(fmu, path, *lines[0])
-    table: dict[str, list[float]] = {column.name: [] for column in header}
-    if len(table) < len(header):
-        raise UserError(f"{path}: a column is there twice")
-    for line, cells in lines[1:]:
-        if len(cells) != len(header):
-            raise UserError(f"{path}, line {line}: has {len(cells)} cells where the header has {len(header)}")
-        for column, cell in zip(header, cells, strict=True):
-            where = f"{path}, line {line}, {column.heading}"
-            table[column.name].append(column.factor * number(cell, where))
+    table = numbers_below(path, columns_of(fmu, path, lines), lines[1:])
     return {name: values for name, values in table.items() if name not in MEASURED}
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -10,13 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from frictioncontact.errors import UserError, did_you_mean
-from frictioncontact.values import numbers_of
+from frictioncontact.values import LARGEST, numbers_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-LARGEST = 1e50  # value of a sample, whose differences are finite
 FAR = 1e300  # s, before and after every sample
 
 

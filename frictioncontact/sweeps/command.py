@@ -1,7 +1,5 @@
 """Many scenarios on many processors: friction means, extremes and work over any parameters, into Parquet."""
 
-from __future__ import annotations
-
 import argparse
 import signal
 from collections.abc import Sequence
@@ -9,7 +7,7 @@ from pathlib import Path
 
 from frictioncontact import resources
 from frictioncontact.batch.many import processors
-from frictioncontact.command import command_line, finish
+from frictioncontact.command import add_fmu, command_line, finish
 from frictioncontact.sweeps.group import RESULTS
 from frictioncontact.sweeps.run import sweep
 from frictioncontact.sweeps.workers import GOES_ON
@@ -52,7 +50,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     add("--group", type=int, metavar="N",
         help="scenarios of a file, which a kill loses (a 64th of the sweep, at most 250000)")  # fmt: skip
     add("--samples", type=int, default=64, help="samples of the period (64)")
-    add("--fmu", type=Path, help="use this FMU instead of the package's own")
+    add_fmu(parser)
     add("--quick", action="store_true", help="a grid of 16 x 12 scenarios, afresh")
     options = parser.parse_args(argv)
     if options.quick:
@@ -79,7 +77,3 @@ def main(argv: Sequence[str] | None = None) -> None:
         finish(run, options)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"stopped; {GOES_ON}") from None
-
-
-if __name__ == "__main__":
-    main()

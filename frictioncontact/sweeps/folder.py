@@ -9,8 +9,6 @@ A file is named after the first and the last scenario of its group, and appears 
 runs of one sweep at a time do the same work twice, and nothing worse.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A sweep: groups of scenarios on threads of this process or a Dask cluster, a Parquet file for each."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import time

@@ -4,8 +4,6 @@ A column is a variable of the FMU that can be set, its values in the units of th
 an enumeration by name. A row depends on its number alone, and is made where it is needed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

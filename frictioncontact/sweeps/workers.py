@@ -1,7 +1,5 @@
 """Who runs the groups of a sweep: threads of this process, or the workers of a Dask cluster."""
 
-from __future__ import annotations
-
 import copy
 import logging
 import threading

@@ -1,10 +1,7 @@
 """The main job: simulates the six rows of Table 2 through fmpy and prints the table."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 from rich.table import Table
 
@@ -14,7 +11,6 @@ from frictioncontact.command import (
     add_output,
     can_draw,
     command_line,
-    finish,
     progress_bar,
     say_written,
     shown,
@@ -40,10 +36,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
 def run(options: argparse.Namespace) -> None:
     options.output.mkdir(parents=True, exist_ok=True)
     with progress_bar() as progress:
@@ -59,17 +51,13 @@ def run(options: argparse.Namespace) -> None:
             if not options.quick and can_draw():
                 progress.update(task, description="Drawing")
                 written.append(options.output / "table2.png")
-                draw(fmu, table, written[1])
+                from frictioncontact.table2 import figure  # takes a second, which --quick saves
+
+                figure.draw(fmu, table, written[1])
     table_console().print(as_text(table))
     print(remarks())
     print("FMU:", shown(path))
     say_written(written)
-
-
-def draw(fmu: FrictionFmu, table: Sequence[Result], path: Path) -> None:
-    from frictioncontact.table2 import figure as table2_figure  # takes a second, which --quick saves
-
-    table2_figure.draw(fmu, table, path)
 
 
 def as_text(table: Sequence[Result]) -> Table:
@@ -115,7 +103,3 @@ identified  Eq. 1-2 with {fitted}, and V {IDENTIFIED.V} m/s, the velocity of Fig
             equations can reach these rows, which does not show that they are right. Rows 4 and 5
             are out of their reach: with V constant and positive the mean is F_C.
 """
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,5 @@
 """The picture of Table 2: friction over time for each row, and the means against the paper's."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,8 +9,9 @@ from matplotlib.lines import Line2D
 
 from frictioncontact import style
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.parameters import COULOMB_FORCE, IDENTIFIED, PRINTED
-from frictioncontact.table2.rows import Result, conditions, waves
+from frictioncontact.parameters import COULOMB_FORCE, IDENTIFIED, PRINTED, start_values
+from frictioncontact.periodic import periodic_waves
+from frictioncontact.table2.rows import Result, conditions
 
 PARAMETERS = {"exact": PRINTED, "identified": IDENTIFIED}
 LABELS = {
@@ -54,7 +53,7 @@ def draw(fmu: FrictionFmu, table: Sequence[Result], *paths: Path) -> None:
 
 def _draw_waves(axes: Axes, fmu: FrictionFmu, result: Result) -> None:
     for name, parameters in PARAMETERS.items():
-        run = waves(fmu, result.row, parameters)
+        run = periodic_waves(fmu, start_values(result.row, parameters), ("F_t",), samples=400)
         axes.plot(1e6 * run["time"], run["F_t"], color=style.SOURCE[name], lw=1.7)
     axes.axhline(result.row.paper_force, color=style.SOURCE["paper"], ls=":", lw=1.8)
     axes.axhline(0.0, color=style.GREY, lw=0.8, zorder=0.5)

@@ -5,12 +5,8 @@ identified one, with three numbers (stiffness, phase, V) adjusted to the three i
 shows that the equations can reach those rows. It does not show that they are right.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.parameters import (
@@ -22,7 +18,7 @@ from frictioncontact.parameters import (
     Row,
     start_values,
 )
-from frictioncontact.periodic import periodic_mean, periodic_waves
+from frictioncontact.periodic import periodic_mean
 
 
 @dataclass(frozen=True)
@@ -43,11 +39,6 @@ def results(fmu: FrictionFmu) -> Iterator[Result]:
 def mean_force(fmu: FrictionFmu, row: Row, parameters: ParameterSet) -> float:
     """F_t_mean [N] of one period in the periodic state."""
     return periodic_mean(fmu, start_values(row, parameters))
-
-
-def waves(fmu: FrictionFmu, row: Row, parameters: ParameterSet, samples: int = 400) -> dict[str, np.ndarray]:
-    """ "time" [s] and F_t [N] over two periods of the periodic state, at samples points a period."""
-    return periodic_waves(fmu, start_values(row, parameters), ("F_t",), samples=samples)
 
 
 def reduction(mean: float, without: float) -> float:

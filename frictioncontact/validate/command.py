@@ -1,7 +1,5 @@
 """Holds the measured contacts against the means that they were fitted to."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 
@@ -9,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.command import add_fmu, command_line, finish
+from frictioncontact.command import add_fmu, command_line
 from frictioncontact.errors import quiet
 from frictioncontact.fmu import opened
 from frictioncontact.identification.data import read
@@ -40,11 +38,3 @@ def run(options: argparse.Namespace) -> None:
         print(f"{contact.name}: {contact.title}. SI units, mean friction [N]")
         print(table.to_string(index=False, float_format="{:.5g}".format))
         print(f"misfit: {np.sqrt(np.mean(miss**2)):.3f} N (rms)")
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -14,8 +14,8 @@ import numpy as np
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import STIFFNESS_PRINTED
 from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
 from workshop.reference.settled import settled
-from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of
 
 T = 5e-5  # s, period of the vibration

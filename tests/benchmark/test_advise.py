@@ -11,10 +11,11 @@ from benchmark.advised_scenes import OUTPUTS, T, allowed, draw, missed, runs_of
 
 from frictioncontact.advice import command as advise
 from frictioncontact.advice.coulomb_bound import coulomb_errors
+from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
 from workshop.reference.coulomb import coulomb
-from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of, start_values_of
 
 ALONG = {"V_y": 0.0, "vibration.V_2": 0.0}
@@ -23,7 +24,7 @@ ALONG = {"V_y": 0.0, "vibration.V_2": 0.0}
 def advised(fmu_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, float]:
     """The start values that it prints for fmpy, which takes numbers alone."""
     words = [word if "=" not in word else f"--set={word}" for word in words]
-    advise.main(["--quick", "--fmu", str(fmu_path), *words])
+    main(advise, ["--quick", "--fmu", str(fmu_path), *words])
     text = capsys.readouterr().out
     pairs = text[text.index("--start-values") :].split()[1:]
     return {name: float(value) for name, value in zip(pairs[::2], pairs[1::2], strict=True)}
@@ -123,7 +124,7 @@ def test_bad_questions_get_one_line(
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("time,V\n0,0.1\n1e-5,x\n", "line 3, V: 'x' is not a number"),
+        ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
         (
             "time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n",
             "inputs: time must grow in even steps, and does not at sample ",

@@ -43,7 +43,7 @@ def test_the_default_keeps_its_tolerance_on_every_scene(bench: Bench, case: Case
 @pytest.mark.parametrize("case", [SOFT, replace(vibrating(6e8), count=2)], ids=lambda case: case.name)
 def test_plain_solvers_solve_the_same_equation(bench: Bench, method: str, case: Case) -> None:
     for start in case.starts:
-        errors = [error(plain(bench, method, case, start, x, 0.0), case, start) for x in (1e-4, 1e-10)]
+        errors = [error(plain(bench, method, case, x, 0.0, start), case, start) for x in (1e-4, 1e-10)]
         assert errors[1] < 1e-7
         assert errors[0] > 10 * errors[1]  # their own tolerance shows
 
@@ -52,7 +52,7 @@ def test_plain_solvers_solve_the_same_equation(bench: Bench, method: str, case: 
 @pytest.mark.parametrize("name", ["linear", "held", "sampled-20-linear-6e06", "vibrating-d"])
 def test_plain_solvers_take_inputs(bench: Bench, method: str, name: str) -> None:
     case = next(case for case in cases() if case.name == name)
-    assert error(plain(bench, method, case, 0.0, 1e-10, 0.0), case) < 1e-7
+    assert error(plain(bench, method, case, 1e-10, 0.0, 0.0), case) < 1e-7
 
 
 @pytest.mark.parametrize("stages", [3, 5, 7])
@@ -61,7 +61,7 @@ def test_radau_has_its_order(bench: Bench, stages: int) -> None:
     case = replace(vibrating(6e6), starts=(0.0,), count=1)
     method, errors, work = f"Radau {2 * stages - 1}", [], []
     for tolerance in (1e-3, 1e-8):
-        outcome = plain(bench, method, case, 0.0, tolerance, 0.0)
+        outcome = plain(bench, method, case, tolerance, 0.0, 0.0)
         errors.append(error(outcome, case))
         work.append(outcome.evaluations)
     assert np.log(errors[0] / errors[1]) / np.log(work[1] / work[0]) > 1.5 * stages
@@ -76,7 +76,7 @@ def test_calls_alone_stay_at_the_start(bench: Bench) -> None:
 
 def test_scipy_solves_the_same_equation() -> None:
     case = sampled(20, 6e6, linear=True)
-    assert error(scipy_radau(case, 0.0, 1e-7, 100_000), case) < 1e-4
+    assert error(scipy_radau(case, 1e-7, 100_000, 0.0), case) < 1e-4
 
 
 def test_failures_carry_their_reason(bench: Bench) -> None:
@@ -84,7 +84,7 @@ def test_failures_carry_their_reason(bench: Bench) -> None:
     refused = bench.run(stiff.job(solver__method="explicitEuler", solver__stepSize=5e-5))
     assert "largest usable step" in refused.failure
     assert np.isnan(refused.cpu)
-    slow = scipy_radau(stiff, 0.0, 1e-8, 100)
+    slow = scipy_radau(stiff, 1e-8, 100, 0.0)
     assert "100 evaluations" in slow.failure
 
 

@@ -7,13 +7,14 @@ from pathlib import Path
 import pandas
 import pytest
 
+from frictioncontact.command import main
 from workshop.bench import levels
 
 
 def test_the_table_of_scenes_shows_where_simpler_models_fail(
     fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    levels.main(["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path)])
+    main(levels, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path)])
     assert "presliding" in capsys.readouterr().out
     table = pandas.read_csv(tmp_path / "levels.csv", index_col="scene")
     errors = table.map(lambda cell: max(map(float, cell.split(", "))))

@@ -23,6 +23,7 @@ from frictioncontact.advice.stuck_mass import (
     damping_range,
     least_damping,
 )
+from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
 from workshop.project import ROOT
 
@@ -174,7 +175,7 @@ def test_damping_swings_the_force_of_a_contact_that_slides_under_vibration(fmu: 
 
 def run(capsys: pytest.CaptureFixture[str], master: str, *words: str) -> str:
     scene = [f"--set={word}" for word in ("contact.model=Constant", "contact.sigma=1e6", *words)]
-    advise.main(["--mass", "1", "--step", "1e-4", "--master", master, *scene])
+    main(advise, ["--mass", "1", "--step", "1e-4", "--master", master, *scene])
     return capsys.readouterr().out
 
 
@@ -214,6 +215,6 @@ def test_a_step_that_nothing_makes_stable_is_said() -> None:
 )
 def test_wrong_options_are_one_line(words: list[str], message: str) -> None:
     with pytest.raises(SystemExit) as ended:
-        advise.main(words)
+        main(advise, words)
     assert message in str(ended.value)
     assert "\n" not in str(ended.value)

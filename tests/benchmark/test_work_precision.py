@@ -17,7 +17,6 @@ from workshop.bench.work_precision import (
     period_cells,
     period_points,
     ratios,
-    renew_periods,
     renew_tables,
     step_size_points,
 )
@@ -68,7 +67,7 @@ def test_the_page_has_the_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     monkeypatch.setattr(work_precision, "PAGE", page)
     rows = [{"error": error, "case": "held", "calls": 0.5, "Radau 9": 1e9 * error} for error in (1e-6, 1e-9)]
     for _ in range(2):
-        renew_tables(rows, {"held": "Held"})
+        renew_tables(rows, [], {"held": "Held"})
         lines = [line for line in page.read_text().splitlines() if line.startswith("| ")]
         assert [line.split(" | ")[:4] for line in lines if "Held" in line] == [
             ["| Held", "50 %", "not reached", "1000"],
@@ -110,6 +109,6 @@ def test_the_table_of_long_steps_is_renewed(monkeypatch: pytest.MonkeyPatch, tmp
         }
         for kind, ratio in (("held", 2.0), ("moving", 16.0))
     ]
-    renew_periods(rows)
+    renew_tables([], rows, {})
     assert "| Dahl | Load | 2.00 | 16.0 | 1600 |\n\nmore" in page.read_text()
     assert "old" not in page.read_text()

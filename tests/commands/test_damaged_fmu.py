@@ -8,6 +8,7 @@ import pytest
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.batch.unpacked import description_and_library
+from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
@@ -34,7 +35,7 @@ def test_commands_refuse_it_in_one_line(
 ) -> None:
     more = ["--vary", "V=0.1,0.2"] if command is sweep else []
     with pytest.raises(SystemExit) as stopped:
-        command.main(["--fmu", str(damaged), "--output", str(tmp_path / "out"), *more])
+        main(command, ["--fmu", str(damaged), "--output", str(tmp_path / "out"), *more])
     message = str(stopped.value)
     assert message.startswith("error: ")
     assert str(damaged) in message

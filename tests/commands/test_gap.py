@@ -9,19 +9,20 @@ from pathlib import Path
 
 import pytest
 
+from frictioncontact.command import main
 from frictioncontact.gap import command as gap
 from frictioncontact.gap.heights import load
 from frictioncontact.parameters import Surfaces
 
 
 def test_load_gives_start_values_that_carry_it(capsys: pytest.CaptureFixture[str]) -> None:
-    gap.main(["--load", "100"])
+    main(gap, ["--load", "100"])
     d, E = re.search(r"start values: d (\S+)  E (\S+)", capsys.readouterr().out).groups()
     assert load(Surfaces(), float(d), float(E)) == pytest.approx(100.0, rel=1e-6)
 
 
 def test_separation_gives_load(capsys: pytest.CaptureFixture[str]) -> None:
-    gap.main(["--separation", "14e-6", "--set", "contact.R_q=6e-6"])
+    main(gap, ["--separation", "14e-6", "--set", "contact.R_q=6e-6"])
     assert f"{load(Surfaces(), 14e-6):.4g}" in capsys.readouterr().out
 
 
@@ -30,15 +31,15 @@ def test_separation_gives_load(capsys: pytest.CaptureFixture[str]) -> None:
 )
 def test_values_that_are_not_positive_are_refused(argv: list[str]) -> None:
     with pytest.raises(SystemExit) as stop:
-        gap.main(argv)
+        main(gap, argv)
     assert "must be a positive number" in str(stop.value.code)
 
 
 def test_more_than_all_of_the_area_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     """A_r / A_n is A_r(14 um) e^(3 (14 - d) / 6) / A_n: 1 at d = 3.479 um."""
-    gap.main(["--separation", "3.48e-6"])
+    main(gap, ["--separation", "3.48e-6"])
     assert "warning" not in capsys.readouterr().out
-    gap.main(["--separation", "1e-6", "3.47e-6", "14e-6"])
+    main(gap, ["--separation", "1e-6", "3.47e-6", "14e-6"])
     assert "warning: up to d = 3.4700 um the real area A_r is larger" in capsys.readouterr().out
 
 
@@ -46,7 +47,7 @@ def test_a_terminal_without_width_shows_the_table(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "0")
-    gap.main(["--separation", "14e-6"])
+    main(gap, ["--separation", "14e-6"])
     printed = capsys.readouterr().out
     assert "312.4" in printed
     assert "A_r [mm2]" in printed
@@ -65,4 +66,4 @@ def test_full_standard_output_is_named() -> None:
 
 def test_load_out_of_reach_is_refused() -> None:
     with pytest.raises(SystemExit, match=r"error: load = 1e\+09 N is out of reach"):
-        gap.main(["--load", "1e9"])
+        main(gap, ["--load", "1e9"])

@@ -14,11 +14,12 @@ import pytest
 from scipy import stats
 from scipy.optimize import least_squares
 
+from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification import command as identify
 from frictioncontact.identification.bootstrap import bootstrap
-from frictioncontact.identification.data import Measurements, Uncertain, read
+from frictioncontact.identification.data import Measurements, Series, Uncertain, read
 from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import Fit, fit
 from frictioncontact.identification.parameter import parameter
@@ -26,13 +27,12 @@ from frictioncontact.identification.series import Record
 from frictioncontact.parameters import STIFFNESS_PRINTED
 from workshop.project import ROOT
 from workshop.report.recovery import (
-    LOOP_TRUTH,
     NOISE,
     TRUTH,
     Recovered,
-    from_loops,
     from_rows,
     measurements,
+    recovered,
     true_forces,
 )
 from workshop.validate import longitudinal
@@ -49,7 +49,29 @@ ROWS = {  # uncertainty that is stated, relative error of V_1
 }
 
 
+LOOP_TRUTH = {"contact.sigma": 2.5e6, "F_C": 48.0}
+LOOP_START = 5.0  # N, the force that a loop begins with
+LOOP_NOISE = 0.3  # N, standard deviation of one sample
 LOOPS = {"Dahl": True, "ElasticPlastic": False}  # law, whether the uncertainty is stated
+
+
+def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> Recovered:
+    """From one noisy loop per seed: presliding at first, sliding at its ends later."""
+    time = np.linspace(0.0, 2.0, 160)
+    position = 60e-6 * np.sin(2.0 * np.pi * time) * (0.3 + 0.5 * time)
+    constants = {"contact.model": "Constant", "friction.model": law}
+    series = Series(
+        time, np.diff(position) / np.diff(time), {}, np.zeros(len(time)), constants,
+        np.full(len(time), LOOP_NOISE) if stated else None, position,
+    )  # fmt: skip
+    named = [
+        parameter(fmu, "contact.sigma", None, (1e3, 1e9), constants),
+        parameter(fmu, "F_C", None, None, constants),
+    ]
+    first = Record(fmu, series, named)
+    truth = [p.to_coordinate(LOOP_TRUTH[p.name]) for p in named]
+    forces = first.forces(np.array([[*truth, LOOP_START]]))[0]
+    return recovered(Record(fmu, replace(series, force=forces), named), LOOP_TRUTH, forces, LOOP_NOISE, seeds)
 
 
 @pytest.fixture(scope="module")
@@ -298,8 +320,9 @@ def _soft_limit(zeta: float) -> float:
 def test_misfit_is_said_first(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "misfit.csv"
     path.write_text("V [m/s],vibration.V_1 [m/s],F_t_mean [N]\n0.1,1,10\n0.2,1,40\n0.3,1,5\n")
-    identify.main(
-        [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "F_C=30", "--uncertain", "F_t_mean=0.5"]
+    main(
+        identify,
+        [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "F_C=30", "--uncertain", "F_t_mean=0.5"],
     )
     assert capsys.readouterr().out.startswith("MISFIT: the law does not fit: the misfit, ")
 
@@ -382,7 +405,7 @@ def test_a_measured_loop(fmu: FrictionFmu) -> None:
         parameter(fmu, "friction.mu", None, None, constants),
     ]
     result = fit(Record(fmu, series, named))
-    rms = math.sqrt(2.0 * expected.cost / len(series))
+    rms = math.sqrt(2.0 * expected.cost / len(series.force))
     assert result.values == pytest.approx([math.exp(expected.x[0]), expected.x[1]], rel=1e-3)
     assert np.sqrt(np.mean(result.residuals**2)) == pytest.approx(rms, rel=1e-4)
     times = rms / (np.std(np.diff(series.force, 2)) / math.sqrt(6.0))
@@ -416,7 +439,7 @@ def test_bad_requests_are_refused(fmu_path: Path, tmp_path: Path, argv: list[str
     path = tmp_path / "good.csv"
     path.write_text(HEADER + GOOD)
     with pytest.raises(SystemExit, match=f"error: .*{message}"):
-        identify.main([str(path), "--fmu", str(fmu_path), "--output", str(tmp_path), *argv])
+        main(identify, [str(path), "--fmu", str(fmu_path), "--output", str(tmp_path), *argv])
 
 
 def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> None:
@@ -425,12 +448,12 @@ def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> 
     with pytest.raises(
         SystemExit, match="error: the uncertainty of F_t_mean: row 3 measures 0 N, so give it in N"
     ):
-        identify.main([str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
+        main(identify, [str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
 
 
 def test_help_shows_one_per_cent_sign(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
-        identify.main(["--help"])
+        main(identify, ["--help"])
     printed = capsys.readouterr().out
     assert "NAME=VALUE|PERCENT%" in printed
     assert "%%" not in printed
@@ -460,7 +483,7 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
     path = tmp_path / "lugre.csv"
     path.write_text(LUGRE_FIT)
     ranges = ("contact.sigma=1e4..1e9", "F_C", "friction.staticRatio=1..3", "friction.V_S=1e-3..1")
-    identify.main(
+    main(identify,
         [
             str(path), "--fmu", str(fmu_path), "--quick", "--uncertain", "F_t_mean=0.5",
             "--set", "friction.model=LuGre", "--set", "contact.model=Constant",
@@ -476,11 +499,11 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
 
 def test_missing_file_is_named(fmu_path: Path) -> None:
     with pytest.raises(SystemExit, match=r"error: nowhere\.csv: No such file"):
-        identify.main(["nowhere.csv", "--fmu", str(fmu_path)])
+        main(identify, ["nowhere.csv", "--fmu", str(fmu_path)])
 
 
 def test_command_prints_and_draws(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    identify.main(["--fmu", str(fmu_path), "--output", str(tmp_path)])
+    main(identify, ["--fmu", str(fmu_path), "--output", str(tmp_path)])
     printed = capsys.readouterr().out
     assert "contact.stiffnessScale" in printed
     assert "224.6" in printed

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from frictioncontact.command import main
 from workshop.report import command as report
 
 SECTIONS = (
@@ -24,7 +25,7 @@ SECTIONS = (
 @pytest.fixture(scope="module")
 def index(fmu_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("report")
-    report.main(["--quick", "--fmu", str(fmu_path), "--output", str(folder)])
+    main(report, ["--quick", "--fmu", str(fmu_path), "--output", str(folder)])
     return folder / "index.html"
 
 
@@ -74,4 +75,4 @@ def test_output_that_cannot_be_written_is_named(fmu_path: Path, tmp_path: Path) 
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(SystemExit, match=f"error: {re.escape(str(blocked))}"):
-        report.main(["--quick", "--fmu", str(fmu_path), "--output", str(blocked)])
+        main(report, ["--quick", "--fmu", str(fmu_path), "--output", str(blocked)])

@@ -12,10 +12,11 @@ import pandas as pd
 import pytest
 
 import frictioncontact as fc
+from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.simulation import command
 from workshop.reference import solution as reference
-from workshop.reference.solution import MP
+from workshop.reference.arithmetic import MP
 from workshop.reference.start_values import scene_of
 
 SOFT: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 2.5e6, "solver.tolerance": 1e-8}
@@ -143,10 +144,11 @@ def test_the_command_prints_or_writes_the_same_table(
     fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["--set", "V=0.5", "--set", "friction.model=LuGre", "--stop", "1e-3", "--step", "5e-4"]
-    command.main([*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path)])
+    main(command, [*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path)])
     printed = capsys.readouterr().out.split()
-    command.main(
-        [*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path), "--output", str(tmp_path / "out.csv")]
+    main(
+        command,
+        [*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path), "--output", str(tmp_path / "out.csv")],
     )
     written = pd.read_csv(tmp_path / "out.csv")
     table = fc.simulate(
@@ -159,11 +161,11 @@ def test_the_command_prints_or_writes_the_same_table(
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("time,V\n0,0.1\n1e-5,x\n", "line 3, V: 'x' is not a number"),
+        ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
         ("time [s],V [km/h]\n0,0.1\n", "line 1, column 2: V is in m/s or mm/s"),
-        ("time,V\n0\n", "line 2: has 1 cells where the header has 2"),
+        ("time,V\n0\n", "row 1 (line 2), column 'V': no value"),
         ("", "no header row"),
-        ("time,V,V\n0,1,2\n", "a column is there twice"),
+        ("time,V,V\n0,1,2\n", "column V is there twice"),
         ("time,speed\n0,1\n", "line 1, column 2: there is no variable 'speed'; columns may be"),
     ],
 )
@@ -171,7 +173,7 @@ def test_wrong_files_of_inputs(fmu_path: Path, tmp_path: Path, text: str, messag
     path = tmp_path / "drive.csv"
     path.write_text(text)
     with pytest.raises(SystemExit, match=re.escape(message)):
-        command.main(["--stop", "1", "--step", "1", "--inputs", str(path), "--fmu", str(fmu_path)])
+        main(command, ["--stop", "1", "--step", "1", "--inputs", str(path), "--fmu", str(fmu_path)])
 
 
 def test_an_fmu_that_is_replaced_is_read_anew(fmu: FrictionFmu, fmu_path: Path, tmp_path: Path) -> None:
@@ -188,7 +190,7 @@ def test_a_pipe_is_written_to_and_stays(fmu_path: Path, tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     end = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    command.main(["--stop", "1e-3", "--step", "1e-3", "--fmu", str(fmu_path), "--output", str(pipe)])
+    main(command, ["--stop", "1e-3", "--step", "1e-3", "--fmu", str(fmu_path), "--output", str(pipe)])
     assert os.read(end, 7) == b"time,F_"
     os.close(end)
     assert pipe.is_fifo() and list(tmp_path.iterdir()) == [pipe]

@@ -8,7 +8,8 @@ from functools import cache
 from pathlib import Path
 
 from frictioncontact.fmu import Session
-from workshop.reference.solution import Contact, Scene
+from workshop.reference.contact import Contact
+from workshop.reference.scene import Scene
 from workshop.reference.start_values import start_values_of
 
 LAWS = ("Dahl", "LuGre", "ElasticPlastic", "Coulomb")

@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import multiprecision
-from workshop.reference.contact import normal_force, rest_separation, stiffness
+from workshop.reference.arithmetic import MP, multiprecision
+from workshop.reference.contact import Contact, normal_force, stiffness
 from workshop.reference.course import Course
+from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
-from workshop.reference.solution import MP, Contact, Scene
 
 SEEDS = {"Dahl": 11, "LuGre": 12, "ElasticPlastic": 13, "Coulomb": 14, "Settled": 15}
 COUNT, SETTLED_COUNT = 200, 60
@@ -58,6 +58,13 @@ class Draw:
 
     def time(self, low: float, high: float) -> float:
         return max(1, round(self.log(low, high) * 2**50)) / 2**50
+
+
+def rest_separation(contact: Contact, load: Any, E: Any, a_d: Any = 0) -> Any:
+    """d [m] at which the time mean of F_n over a period of the vibration is the load."""
+    decay = MP.mpf(contact.lambda_) / MP.mpf(contact.R_q)
+    swell = MP.besseli(0, decay * MP.mpf(a_d))
+    return MP.log(normal_force(contact, 0, E) * swell / MP.mpf(load)) / decay
 
 
 def velocity(draw: Draw, V_1: float) -> float:

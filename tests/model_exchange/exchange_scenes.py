@@ -10,8 +10,9 @@ import numpy as np
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.exchange import Host
+from workshop.reference.contact import Contact
 from workshop.reference.course import Course
-from workshop.reference.solution import Contact, Scene
+from workshop.reference.scene import Scene
 from workshop.reference.start_values import start_values_of
 
 LAWS = ("Dahl", "LuGre", "ElasticPlastic")

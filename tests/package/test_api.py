@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 import frictioncontact as fc
 from frictioncontact.advice import command as advise_command
+from frictioncontact.command import main
 from frictioncontact.fmu import opened
 from frictioncontact.identification import command as identify_command
 from frictioncontact.simulation.command import read_inputs
@@ -38,9 +39,10 @@ def test_it_prints_what_the_command_prints(
     dry: fc.Identification, fmu_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = [f"{name}={value}" for name, value in LAW.items()]
-    identify_command.main(
+    main(
+        identify_command,
         [str(DRY), "--fit", "contact.sigma", "--set", words[0], "--set", words[1], "--quick"]
-        + ["--fmu", str(fmu_path)]
+        + ["--fmu", str(fmu_path)],
     )
     printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
     assert printed == [line.rstrip() for line in str(dry).splitlines()]
@@ -92,7 +94,7 @@ def test_advice_is_what_the_command_prints(fmu_path: Path, capsys: pytest.Captur
     found = fc.advise(scene, accuracy=1e-4, step=1e-3, output="F_t_mean", fmu=fmu_path)
     words = [f"--set={name}={value}" for name, value in scene.items()]
     options = ["--accuracy", "1e-4", "--step", "1e-3", "--output-of", "F_t_mean"]
-    advise_command.main([*options, *words, "--fmu", str(fmu_path)])
+    main(advise_command, [*options, *words, "--fmu", str(fmu_path)])
     assert capsys.readouterr().out.startswith(f"{found}\n")
     assert set(found.settings) == {"solver.tolerance"} and found.error <= 1e-4 * 55.0
     assert found.start_values == {**scene, **found.settings}

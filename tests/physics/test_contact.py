@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from frictioncontact import parameters as scenarios
 from frictioncontact.fmu import FrictionFmu, Session, simulate
 from workshop.reference import contact as reference_contact
-from workshop.reference.solution import MP, Contact
+from workshop.reference.arithmetic import MP
+from workshop.reference.contact import Contact
 
 E_FULL, E_REDUCED = scenarios.E_FULL, scenarios.E_REDUCED
 UM = 1e-6
@@ -25,6 +28,22 @@ def at(session: Session, d: float, E: float) -> tuple[float, float]:
     session.set("d", d)
     session.set("E", E)
     return session.get("A_r"), session.get("sigma")
+
+
+def gradient(quantity: Any, contact: Contact, d: Any, E: Any) -> tuple[Any, Any]:
+    """Partial derivatives of area or stiffness with respect to d and E, by central differences at 40 digits.
+
+    The relative step of 1e-6 with the Richardson correction leaves a relative error of 1e-20 or so.
+    """
+
+    def slope(function: Any, x: Any) -> Any:
+        h = x * MP.mpf("1e-6")
+        wide = (function(x + h) - function(x - h)) / (2 * h)
+        narrow = (function(x + h / 2) - function(x - h / 2)) / h
+        return (4 * narrow - wide) / 3
+
+    d, E = MP.mpf(d), MP.mpf(E)
+    return slope(lambda y: quantity(contact, y, E), d), slope(lambda y: quantity(contact, d, y), E)
 
 
 def test_combined_modulus() -> None:
@@ -112,7 +131,7 @@ def test_logarithmic_slope_of_the_stiffness(fmu: FrictionFmu) -> None:
         above, below = at(session, 14 * UM + h, E_FULL)[1], at(session, 14 * UM - h, E_FULL)[1]
     slope = (np.log(above) - np.log(below)) / (2 * h)
     assert slope * UM == pytest.approx(-1.2142857, rel=1e-6)
-    exact, _ = reference_contact.gradient(reference_contact.stiffness, Contact(), 14 * UM, E_FULL)
+    exact, _ = gradient(reference_contact.stiffness, Contact(), 14 * UM, E_FULL)
     sigma = reference_contact.stiffness(Contact(), 14 * UM, E_FULL)
     assert float(exact / sigma) * UM == pytest.approx(-1.2142857, rel=digits("1.2142857"))
 
@@ -124,8 +143,8 @@ def test_directional_derivatives(fmu: FrictionFmu, contact: Contact) -> None:
         f"contact.{name.rstrip('_')}": getattr(contact, name) for name in contact.__dataclass_fields__
     } | {"d": d, "E": E}
     reference = {
-        "A_r": reference_contact.gradient(reference_contact.area, contact, d, E),
-        "sigma": reference_contact.gradient(reference_contact.stiffness, contact, d, E),
+        "A_r": gradient(reference_contact.area, contact, d, E),
+        "sigma": gradient(reference_contact.stiffness, contact, d, E),
     }
     with fmu.session(start) as session:
         for output, expected in reference.items():

@@ -85,7 +85,7 @@ def test_cycles_at_5_N(fmu: FrictionFmu, law: int, misfit: float, work: float) -
     limit = line["friction.mu"] * line["load"]
     start = np.clip(cycles.friction[0], -limit, limit) / line["contact.sigma"]
     found = record.along_path(fmu, cycles, line | {"delta_0": float(start)})
-    error = record.rms(found - cycles.friction) / record.sliding_friction(whole)
+    error = measurements.rms(found - cycles.friction) / record.sliding_friction(whole)
     assert error == pytest.approx(misfit, abs=6e-4)  # as the page rounds it
     ratio = record.work(found, cycles) / record.work(cycles.friction, cycles)
     assert ratio == pytest.approx(work, abs=2e-3)

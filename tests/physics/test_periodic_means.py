@@ -25,7 +25,7 @@ from frictioncontact.periodic import periodic_mean
 from workshop.project import ROOT
 from workshop.reference import constant as reference_constant
 from workshop.reference import solution as reference
-from workshop.reference.solution import MP
+from workshop.reference.arithmetic import MP
 from workshop.reference.start_values import scene_of
 
 ACCURATE = {"solver.tolerance": 1e-11}

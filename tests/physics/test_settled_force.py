@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.reference.course import scale
+from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
-from workshop.reference.solution import Scene
 from workshop.reference.start_values import scene_of
 
 F_C = 55.0

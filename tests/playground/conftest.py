@@ -9,9 +9,8 @@ import pytest
 from playground_page import Playground
 from playwright.sync_api import Browser
 
-from workshop.description import description
-from workshop.playground.page import XML, page_text
-from workshop.presets import Preset, possible, presets
+from workshop.playground.page import page_text
+from workshop.presets import Preset, presets
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 
@@ -36,4 +35,4 @@ def playground(browser: Browser, html: Path) -> Iterator[Playground]:
 
 @pytest.fixture(scope="session")
 def offered() -> list[Preset]:
-    return possible(presets(), description(XML)["variables"])
+    return presets()

@@ -10,10 +10,18 @@ from axe_playwright_python.sync_playwright import Axe
 from playground_page import Playground
 from playwright.sync_api import Browser
 
+from workshop.browser import SIZES
 from workshop.description import description
-from workshop.playground.browser import PAINTED, SCHEMES, SIZES
+from workshop.playground.browser import SCHEMES
 from workshop.playground.page import XML
 from workshop.presets import Preset
+
+PAINTED = """() => new Promise((resolve) => {
+    new PerformanceObserver((list) => {
+        const picture = list.getEntries().find(({ identifier }) => identifier === "first picture");
+        if (picture) resolve(picture.renderTime);
+    }).observe({ type: "element", buffered: true });
+})"""
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -61,7 +61,7 @@ def test_a_foreign_export_is_found(tmp_path: Path) -> None:
 def test_each_fault_is_found(
     monkeypatch: pytest.MonkeyPatch, platform: str, change: dict[str, object], message: str
 ) -> None:
-    sound = Library("X86_64", fmi2_functions(), {"libc.so.6"}, (2, 14), (), "none", set())
+    sound = Library("X86_64", fmi2_functions(), {"libc.so.6"}, set(), (2, 14))
     monkeypatch.setattr(release_inspect, "inspect", lambda path: replace(sound, **change))
     with pytest.raises(UserError, match=message):
         check(platform, Path("FrictionContact.so"))

@@ -12,9 +12,9 @@ from playwright.sync_api import Browser, Page, expect
 
 from frictioncontact.errors import UserError
 from workshop import description
-from workshop.browser import PATIENCE, watch
+from workshop.browser import PATIENCE, SIZES, watch, window
 from workshop.project import ROOT
-from workshop.site.check import SIZES, broken_links, complaints, context, pages
+from workshop.site.check import broken_links, complaints, pages
 from workshop.site.command import build
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
@@ -42,8 +42,8 @@ def site(older: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def page(browser: Browser, site: Path, request: pytest.FixtureRequest) -> Iterator[Page]:
     """A window of each size. Fails the test if a page had an error or asked for more than the folder has."""
     heard: list[str] = []
-    with context(browser, request.param) as window:
-        page = window.new_page()
+    with window(browser, request.param) as opened:
+        page = opened.new_page()
         watch(page, site, heard)
         yield page
     assert heard == []
@@ -158,8 +158,8 @@ def test_the_playground_lives_in_its_page(page: Page, site: Path) -> None:
 
 
 def test_the_menu_of_a_phone_leads_on(browser: Browser, site: Path) -> None:
-    with context(browser, "phone") as window:
-        page = window.new_page()
+    with window(browser, "phone") as opened:
+        page = opened.new_page()
         page.goto((site / "index.html").as_uri())
         link = page.get_by_role("link", name="Errata", exact=True)
         assert not link.is_visible()

@@ -9,8 +9,7 @@ from data.laws import law_scenes
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import multiprecision
-from workshop.reference.solution import MP
+from workshop.reference.arithmetic import MP, multiprecision
 from workshop.reference.start_values import scene_of
 
 PERIOD = 1.0 / 20e3

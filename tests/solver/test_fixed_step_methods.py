@@ -13,8 +13,8 @@ import pytest
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import multiprecision
-from workshop.reference.solution import MP
+from workshop.reference.arithmetic import EXTENDED, MP, multiprecision
+from workshop.reference.scene import Drive
 from workshop.reference.start_values import scene_of
 
 ORDERS = {"explicitEuler": 1, "backwardEuler": 1, "trapezoid": 2, "rk4": 4}
@@ -150,8 +150,8 @@ def test_the_refusal_names_a_step_that_works(fmu: FrictionFmu, method: str, z: f
 def test_the_refusal_under_vibration_goes_by_the_largest_rate(fmu: FrictionFmu) -> None:
     start = SMOOTH | {"V": 0.3, "solver.method": "explicitEuler", "solver.stepSize": 1e-4}
     scene = scene_of(start)
-    drive = reference.Drive(scene, 0, reference.EXTENDED)
-    largest = drive.relaxation_rate(reference.EXTENDED.array(np.linspace(0, 5e-5, 4001))).max()
+    drive = Drive(scene, 0, EXTENDED)
+    largest = drive.relaxation_rate(EXTENDED.array(np.linspace(0, 5e-5, 4001))).max()
     with fmu.session(start) as session, pytest.raises(FrictionError) as refusal:
         session.step(1e-3)
     usable = float(re.search(r"largest usable step is (\S+) s", str(refusal.value)).group(1))

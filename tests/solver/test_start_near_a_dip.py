@@ -12,8 +12,9 @@ import pytest
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import multiprecision
-from workshop.reference.solution import MP, Contact, Scene
+from workshop.reference.arithmetic import MP, multiprecision
+from workshop.reference.contact import Contact, stiffness
+from workshop.reference.scene import Scene
 from workshop.reference.start_values import start_values_of
 
 FREQUENCY = 16384.0  # Hz, so that the dips are at exact times
@@ -26,7 +27,7 @@ V_1, F_C = 0.25, 2.5
 @pytest.mark.parametrize("depth", DEPTHS)
 def test_error_is_at_most_the_tolerance(fmu: FrictionFmu, kappa: float, depth: float) -> None:
     sigma = kappa * 2 * 3.14159 * FREQUENCY * F_C / V_1
-    contact = Contact(stiffnessScale=sigma / float(reference.stiffness(Contact(), 14e-6, 5.5e10)))
+    contact = Contact(stiffnessScale=sigma / float(stiffness(Contact(), 14e-6, 5.5e10)))
     scene = Scene(
         V=-(1 + depth) * V_1, V_1=V_1, F_C=F_C, E=5.5e10, f=FREQUENCY, a_d=5e-7, phase_d=1.0, contact=contact
     )

@@ -5,8 +5,6 @@ The cost of a sweep is that of all its processes: what N scenarios more take, so
 count.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re
@@ -207,7 +205,3 @@ def run(options: argparse.Namespace) -> None:
     measure(
         fmu, ROOT / "build" / "bench" / "bare_loop", count, 1 if options.quick else TURNS, not options.quick
     )
-
-
-if __name__ == "__main__":
-    main()

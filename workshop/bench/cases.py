@@ -1,7 +1,5 @@
 """The scenes of the benchmarks, and what is right in each: the reference at every communication point."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -11,9 +9,9 @@ from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from workshop.bench.driver import Job
 from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
 from workshop.reference.coulomb import mean_limit
 from workshop.reference.scene import Scene
-from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of
 
 SIGMAS = (6e4, 6e6, 6e8, 6e10, 6e12)  # N/m at 14 um

@@ -7,8 +7,6 @@
 Within a step the mass is integrated exactly (matrix exponential), so that the coupling alone is seen.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -190,10 +188,12 @@ def _bisect(grows: Callable[[float], bool], low: float, precision: float = 1e-6)
         low, high = high, 1.5 * high
         if high > 1e3:
             return float("inf")
+    return edge(lambda H: not grows(H), low, high, precision)
+
+
+def edge(holds: Callable[[float], bool], low: float, high: float, precision: float) -> float:
+    """Up to where something holds, between low, where it does, and high, where it does not; by bisection."""
     while high / low > 1 + precision:
         middle = (low * high) ** 0.5
-        if grows(middle):
-            high = middle
-        else:
-            low = middle
+        low, high = (middle, high) if holds(middle) else (low, middle)
     return (low * high) ** 0.5

@@ -7,8 +7,6 @@ initialization, of one run that is repeated until its median is steady, from a s
 derivatives. Errors are those of the timed run's own outputs, so that no second run is needed for them.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os
@@ -23,7 +21,6 @@ from types import MappingProxyType
 import fmpy
 import numpy as np
 from PIL import Image
-from rich.console import Console
 from rich.progress import Progress
 
 from frictioncontact.command import add_output, command_line
@@ -87,10 +84,9 @@ class Bench:
         lines = _steps(job)
         for name, value in job.start_values.items():
             variable = self.fmu.variables[name]
-            if isinstance(value, str):
-                value = {item.name: int(item.value) for item in variable.declaredType.items}[value]
-            kind = "real" if variable.type == "Real" else "integer"
-            lines.append(f"{kind} {variable.valueReference} {value!r}")
+            number = self.fmu.known.number(name, value, "job")
+            kind, number = ("real", number) if variable.type == "Real" else ("integer", int(number))
+            lines.append(f"{kind} {variable.valueReference} {number!r}")
         lines += _inputs(job, numbers)
         lines += [f"output {numbers['F_t']}", f"output {numbers['F_t_mean']}"]
         lines.append(f"evaluations {numbers['solver.evaluations']}")
@@ -205,18 +201,7 @@ def renew_docs(pictures: Sequence[Path]) -> list[Path]:
     return copies
 
 
-def wide_console() -> Console:
-    """For tables: not cut to 80 columns if the output is not a terminal."""
-    console = Console()
-    return console if console.is_terminal else Console(width=120)
-
-
 def write_machine(path: Path) -> Path:
-    write_whole(path, json.dumps(machine(), indent=2) + "\n")
-    return path
-
-
-def machine() -> dict[str, str]:
     """What a measurement depends on besides the code."""
     import scipy
 
@@ -239,7 +224,7 @@ def machine() -> dict[str, str]:
     revision = subprocess.run(
         ["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True, check=False
     ).stdout.strip()
-    return {
+    machine = {
         "cpu": cpu,
         "system": f"{platform.system()} {platform.release()}",
         "compiler": compiler,
@@ -249,3 +234,5 @@ def machine() -> dict[str, str]:
         "fmpy": fmpy.__version__,
         "revision": revision or "unknown",
     }
+    write_whole(path, json.dumps(machine, indent=2) + "\n")
+    return path

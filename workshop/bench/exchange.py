@@ -7,8 +7,6 @@ exchange a host's CVODE takes bristle and mass together. Cost is the number of c
 FMU. Errors are the largest at 250 points: of F_t over F_C, of x over F_C / k.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -147,13 +145,8 @@ def table(fmu: FrictionFmu) -> Iterator[tuple[str, str, int, float, float, int]]
         for coupling in ("F_t held", "F_t linear"):
             for count in STEPS:
                 run = simulate(fmu, belt, coupling, count)
-                yield (
-                    law,
-                    f"co-simulation, {coupling}, {count} steps",
-                    run.calls,
-                    *errors(belt, run, truth),
-                    0,
-                )
+                way = f"co-simulation, {coupling}, {count} steps"
+                yield law, way, run.calls, *errors(belt, run, truth), 0
         for tolerance in TOLERANCES:
             run = exchange(fmu, belt, tolerance)
             way = f"model exchange, tolerance {tolerance:g}"

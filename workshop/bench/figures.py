@@ -1,7 +1,5 @@
 """Pictures of the benchmarks."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -10,21 +8,13 @@ import numpy as np
 from frictioncontact import style
 from workshop.bench.grade import Point
 
-COLOUR = {
-    **style.METHOD,
-    "Radau 5": style.PINK,
-    "Radau 9": style.ORANGE,
-    "Radau 13": style.RED,
-    "plain CVODE": style.GREEN,
-    "scipy Radau": style.GREY,
-}
-LABEL = {  # of the methods that the chart shows
-    "collocation": "the default",
-    "Radau 5": "Radau IIA, order 5",
-    "Radau 9": "order 9",
-    "Radau 13": "order 13",
-    "plain CVODE": "CVODE",
-    "scipy Radau": "scipy Radau",
+METHODS = {  # that the chart shows: label and colour
+    "collocation": ("the default", style.BLUE),
+    "Radau 5": ("Radau IIA, order 5", style.PINK),
+    "Radau 9": ("order 9", style.ORANGE),
+    "Radau 13": ("order 13", style.RED),
+    "plain CVODE": ("CVODE", style.GREEN),
+    "scipy Radau": ("scipy Radau", style.GREY),
 }
 SHOWN = ("vibrating-6e06", "vibrating-6e10", "vibrating-V", "vibrating-d", "linear", "sampled-20-linear-6e06")
 SMALLEST_ERROR = 1e-16
@@ -36,7 +26,7 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
     rows = -(-len(names) // 2)
     figure, axes = style.subplots(rows, 2, size=(6.4, 2.5 * rows + 0.9), sharex=True, squeeze=False)
     for panel, name in zip(axes.flat, names, strict=False):
-        for method, label in LABEL.items():
+        for method, (label, colour) in METHODS.items():
             good = sorted(
                 (p for p in points if p.case == name and p.method == method and not p.failure),
                 key=lambda p: p.setting,
@@ -45,7 +35,7 @@ def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: P
                 [max(p.error, SMALLEST_ERROR) for p in good],
                 [1e6 * p.cpu for p in good],
                 "o-",
-                color=COLOUR[method],
+                color=colour,
                 linewidth=2.4 if method == "collocation" else 1.4,
                 markersize=3,
                 label=label,

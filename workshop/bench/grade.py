@@ -1,10 +1,8 @@
 """How far one method at one setting is from the reference on a case, and what it costs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -12,7 +10,6 @@ from frictioncontact.parameters import PERIOD
 from workshop.bench.cases import Case
 from workshop.bench.driver import Outcome
 
-FIXED_STEP = ("backwardEuler", "trapezoid", "rk4", "explicitEuler")
 References = dict[float, tuple[np.ndarray, np.ndarray]]  # start [s]: F and F_mean [N] after each step
 
 
@@ -35,17 +32,13 @@ class Point:
         return max(self.error_F, self.error_mean)
 
     def row(self) -> dict[str, object]:
-        return {
-            "case": self.case,
-            "method": self.method,
-            "setting": self.setting,
-            "error_F_t": self.error_F,
-            "error_F_t_mean": self.error_mean,
-            "cpu_s_per_period": self.cpu,
-            "wall_s_per_period": self.wall,
-            "evaluations_per_period": self.evaluations,
-            "failure": self.failure,
-        }
+        return dict(zip(COLUMNS, astuple(self), strict=True))
+
+
+COLUMNS = (  # of a point in a CSV file
+    *("case", "method", "setting", "error_F_t", "error_F_t_mean"),
+    *("cpu_s_per_period", "wall_s_per_period", "evaluations_per_period", "failure"),
+)
 
 
 def grade_point(

@@ -1,34 +1,32 @@
 """Levels of the model: how far simpler laws and contacts are from the scene's own, for typical scenes."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from rich.progress import Progress
-from rich.table import Table
 
 from frictioncontact.advice.answer import PHASES, STEPS
 from frictioncontact.command import (
     add_fmu,
     add_output,
+    as_table,
     command_line,
-    finish,
     progress_bar,
     say_written,
+    table_console,
     write_csv,
 )
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import E_FULL, E_REDUCED, STIFFNESS_PRINTED, TABLE_2
 from workshop.bench.cases import Case, sampled, vibrating
 from workshop.bench.coupling import Belt, monolithic
-from workshop.bench.driver import REPORT, wide_console
+from workshop.bench.driver import REPORT
 from workshop.build import build_fmu
 from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
 from workshop.reference.settled import settled
-from workshop.reference.solution import MP
 from workshop.reference.start_values import scene_of
 
 
@@ -161,18 +159,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 def run(options: argparse.Namespace) -> None:
     with progress_bar() as progress, FrictionFmu(options.fmu or build_fmu(progress=progress)) as fmu:
         rows = rows_of(fmu, PHASES[:2] if options.quick else PHASES, progress)
-    table = Table(title="Largest errors of F_t and of its mean, over F_C", title_justify="left")
-    for heading in rows[0]:
-        table.add_column(heading)
-    for row in rows:
-        table.add_row(*map(str, row.values()))
-    wide_console().print(table)
+    title = "Largest errors of F_t and of its mean, over F_C"
+    table_console().print(as_table(list(rows[0]), [[*map(str, row.values())] for row in rows], title))
     say_written([write_csv(rows, options.output / "levels.csv")])
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -5,8 +5,6 @@ All solve y = (sigma_ref delta / F_C, integral of F_t dt / F_C) or its equal. CV
 V reverses.
 """
 
-from __future__ import annotations
-
 import math
 import time
 import warnings
@@ -16,7 +14,7 @@ from scipy.integrate import solve_ivp
 
 from workshop.bench.cases import Case
 from workshop.bench.driver import Bench, Outcome, failed
-from workshop.reference.solution import stiffness
+from workshop.reference.contact import stiffness
 from workshop.reference.start_values import scene_of
 
 PLAIN_PROGRAMS = {
@@ -47,7 +45,7 @@ def plain_values(case: Case, tolerance: float) -> dict[str, float]:
     }
 
 
-def plain(bench: Bench, method: str, case: Case, start: float, tolerance: float, budget: float) -> Outcome:
+def plain(bench: Bench, method: str, case: Case, tolerance: float, budget: float, start: float) -> Outcome:
     """One of PLAIN_PROGRAMS."""
     return bench.run_plain(PLAIN_PROGRAMS[method], case.job(start, budget), plain_values(case, tolerance))
 
@@ -84,7 +82,7 @@ class Equation:
         return (V - abs(V) * ratio) * v["sigma"] / v["F_C"], ratio
 
 
-def scipy_radau(case: Case, start: float, tolerance: float, most_evaluations: int) -> Outcome:
+def scipy_radau(case: Case, tolerance: float, most_evaluations: int, start: float) -> Outcome:
     """solve_ivp with Radau over each communication step; started anew only if inputs jump or bend there."""
     equation = Equation(plain_values(case, tolerance), most_evaluations)
     ends = start + case.step * np.arange(1, case.count + 1)

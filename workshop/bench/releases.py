@@ -1,7 +1,5 @@
 """What the default costs in this build and in another release, both taking turns."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -9,6 +7,7 @@ from pathlib import Path
 
 from rich.table import Table
 
+from frictioncontact.command import as_table
 from frictioncontact.fmu import FrictionFmu
 from workshop.bench.cases import Case, expected
 from workshop.bench.driver import Bench, Outcome
@@ -64,16 +63,13 @@ def table(points: Sequence[Point]) -> Table:
     """Evaluations of both releases and the ratio of their times."""
     own, other = dict.fromkeys(p.method for p in points)
     title = f"Evaluations of the default in {own} and in {other}, and how many times faster it is"
-    shown = Table(title=title, title_justify="left")
-    shown.add_column("scene", no_wrap=True)
     tolerances = [t for t in dict.fromkeys(p.setting for p in points) if t in SHOWN]
-    for tolerance in tolerances:
-        shown.add_column(f"{tolerance:.0e}", justify="right", no_wrap=True)
     at = {(p.case, p.setting, p.method): p for p in points}
+    rows = []
     for case in dict.fromkeys(p.case for p in points):
         cells = []
         for tolerance in tolerances:
             new, old = (at[case, tolerance, name] for name in (own, other))
             cells.append(f"{new.evaluations:.0f} of {old.evaluations:.0f}, {old.cpu / new.cpu:.2g} times")
-        shown.add_row(case, *cells)
-    return shown
+        rows.append([case, *cells])
+    return as_table(["scene", *(f"{tolerance:.0e}" for tolerance in tolerances)], rows, title)

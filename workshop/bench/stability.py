@@ -1,14 +1,12 @@
 """Where each method is stable: alone, over z = sigma |V| h / F_C, and coupled to a mass on a belt."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 
 import numpy as np
 from rich.table import Table
 
-from frictioncontact.command import finish, progress_bar, say_written, write_csv
+from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
 from frictioncontact.fmu import FrictionFmu
 from workshop.bench import stability_figures
 from workshop.bench.coupling import (
@@ -23,7 +21,6 @@ from workshop.bench.driver import (
     bench_options,
     open_bench,
     renew_docs,
-    wide_console,
     write_machine,
 )
 from workshop.bench.exchange import against_cost
@@ -98,20 +95,14 @@ def run(options: argparse.Namespace) -> None:
     written += stability_figures.draw_coupled(errors, coupled, reference, belt, output)
     if options.docs:
         written += renew_docs(written)
-    console = wide_console()
+    console = table_console()
     console.print(_table("Edges in z = sigma |V| h / F_C", found))
     console.print(_table("Mass on a belt: largest stable communication step [s] in stick", coupled))
     say_written(written)
 
 
 def _table(title: str, rows: Sequence[dict[str, object]]) -> Table:
-    table = Table(title=title, title_justify="left")
-    for heading in rows[0]:
-        table.add_column(heading, no_wrap=True)
-    for row in rows:
-        table.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value) for value in row.values()))
-    return table
-
-
-if __name__ == "__main__":
-    main()
+    cells = [
+        [f"{value:.4g}" if isinstance(value, float) else str(value) for value in row.values()] for row in rows
+    ]
+    return as_table(list(rows[0]), cells, title)

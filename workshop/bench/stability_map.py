@@ -8,12 +8,11 @@ The force starts at 0 and should rise to F_C without passing it. With e = 1 - F_
     refuses    fmi2Error
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.parameters import COULOMB_FORCE, VELOCITY_IDENTIFIED
+from workshop.bench.coupling import edge
 
 SIGMA, V, F_C = 2.5e6, VELOCITY_IDENTIFIED, COULOMB_FORCE
 STEPS = 40
@@ -99,10 +98,4 @@ def measured_edge(fmu: FrictionFmu, method: str, before: str, theory: float) -> 
     low, high = 0.75 * theory, 1.4 * theory
     if classify(fmu, method, low) != before or classify(fmu, method, high) == before:
         raise ValueError(f"{method} has no edge from {before} between z = {low:.3g} and {high:.3g}")
-    while high / low > 1.0002:
-        middle = (low * high) ** 0.5
-        if classify(fmu, method, middle) == before:
-            low = middle
-        else:
-            high = middle
-    return (low * high) ** 0.5
+    return edge(lambda z: classify(fmu, method, z) == before, low, high, 2e-4)

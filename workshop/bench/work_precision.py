@@ -1,12 +1,11 @@
 """Speed against accuracy: every method of the FMU and its peers, scene by scene."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,8 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from frictioncontact.command import finish, progress_bar, say_written, write_csv
+from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
+from frictioncontact.doubts import FIXED_STEPS
 from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from workshop.bench import figures, releases
@@ -26,10 +26,9 @@ from workshop.bench.driver import (
     bench_options,
     open_bench,
     renew_docs,
-    wide_console,
     write_machine,
 )
-from workshop.bench.grade import FIXED_STEP, Point, grade_point
+from workshop.bench.grade import Point, grade_point
 from workshop.bench.peers import PLAIN_PROGRAMS, plain, scipy_radau
 from workshop.project import ROOT
 
@@ -94,18 +93,16 @@ def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[Task]:
             yield Task(
                 method,
                 tolerance,
-                lambda start, method=method, tolerance=tolerance: plain(
-                    bench, method, case, start, tolerance, effort.budget
-                ),
+                partial(plain, bench, method, case, tolerance, effort.budget),
             )
     for steps in effort.steps:
-        for method in FIXED_STEP:
+        for method in FIXED_STEPS:
             yield Task(method, steps, fmu(solver__method=method, solver__stepSize=case.step / steps))
     for tolerance in effort.slow_tolerances:
         yield Task(
             "scipy Radau",
             tolerance,
-            lambda start, tolerance=tolerance: scipy_radau(case, start, tolerance, effort.most_evaluations),
+            partial(scipy_radau, case, tolerance, effort.most_evaluations),
             slow=True,
         )
 
@@ -169,11 +166,7 @@ def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
             truth: tuple[np.ndarray, np.ndarray] | None = None
             for linear in (False, True):
                 case = sampled(n, sigma, linear, periods=2)
-                inside = replace(
-                    case,
-                    start_values={**vibrating(sigma).start_values},
-                    inputs={},
-                )
+                inside = replace(case, start_values=vibrating(sigma).start_values, inputs={})
                 truth = truth or expected(inside, 0.13 * PERIOD)
                 outcome = bench.run(case.job(0.0, 0.0, solver__tolerance=1e-9))
                 errors = [
@@ -264,7 +257,7 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
     **{name: (name,) for name in RADAU},
     "best, bare": (BARE,),
     "CVODE": ("plain CVODE",),
-    "fixed step": FIXED_STEP,
+    "fixed step": FIXED_STEPS,
 }
 
 
@@ -282,30 +275,28 @@ def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[st
 
 
 def ratio_table(rows: Sequence[dict[str, object]], error: float) -> Table:
-    table = Table(
-        title=f"CPU time over the default's, errors of at most {error:.0e} F_C", title_justify="left"
-    )
-    table.add_column("scene", no_wrap=True)
-    for heading in ("calls", *COLUMNS):
-        table.add_column(heading, justify="right")
-    for cells in ratio_cells(rows, error):
-        table.add_row(*cells)
-    return table
+    title = f"CPU time over the default's, errors of at most {error:.0e} F_C"
+    return as_table(["scene", "calls", *COLUMNS], ratio_cells(rows, error), title)
 
 
-def renew_tables(rows: Sequence[dict[str, object]], titles: Mapping[str, str]) -> Path:
-    """The tables of docs/numerics.md, each under the words that name its error."""
+def renew_tables(
+    compared: Sequence[dict[str, object]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
+) -> Path:
+    """The tables of docs/numerics.md, each under the words before it: of each error, and of long steps."""
     text = PAGE.read_text(encoding="utf-8")
     for error in MATCHED_ERRORS:
-        lines = [["scene", "calls", *COLUMNS], ["---"] * (2 + len(COLUMNS))]
-        lines += [[titles[name], *cells] for name, *cells in ratio_cells(rows, error)]
-        text = with_table(text, f"errors of at most {error:.0e} `F_C`:".replace("e-0", "e-"), lines)
+        rows = [[titles[name], *cells] for name, *cells in ratio_cells(compared, error)]
+        head = f"errors of at most {error:.0e} `F_C`:".replace("e-0", "e-")
+        text = with_table(text, head, ["scene", "calls", *COLUMNS], rows)
+    headings = ["law", "limit", "held", "moving", "moving, CPU time"]
+    text = with_table(text, "does so with the CPU time:", headings, period_cells(periods))
     PAGE.write_text(text, encoding="utf-8")
     return PAGE
 
 
-def with_table(text: str, head: str, lines: Sequence[Sequence[str]]) -> str:
-    """The text with these lines for the table under the words head."""
+def with_table(text: str, head: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """The text with this table in place of the one under the words head."""
+    lines = [headings, ["---"] * len(headings), *rows]
     table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
     return re.sub(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)*", table, text)
 
@@ -321,15 +312,6 @@ def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
         costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (held, moving)]
         cells.append([law, limit, *costs, f"{float(format(moving['cpu_ratio'], '.2g')):.0f}"])
     return cells
-
-
-def renew_periods(rows: Sequence[Mapping[str, Any]]) -> Path:
-    """The table of docs/numerics.md on long steps."""
-    heading = ["law", "limit", "held", "moving", "moving, CPU time"]
-    lines = [heading, ["---"] * len(heading), *period_cells(rows)]
-    text = with_table(PAGE.read_text(encoding="utf-8"), "does so with the CPU time:", lines)
-    PAGE.write_text(text, encoding="utf-8")
-    return PAGE
 
 
 def cheapest(row: dict[str, object], names: Sequence[str]) -> str:
@@ -390,12 +372,11 @@ def run(options: argparse.Namespace) -> None:
     written += figures.step_sizes(step_sizes, output)
     written += figures.periods(periods, output)
     if options.docs:
-        written += [*renew_docs(written), renew_tables(compared, titles)]
-        renew_periods(periods)
+        written += [*renew_docs(written), renew_tables(compared, periods, titles)]
     for error in MATCHED_ERRORS:
-        wide_console().print(ratio_table(compared, error))
+        table_console().print(ratio_table(compared, error))
     if options.against:
-        wide_console().print(releases.table(against_tolerance))
+        table_console().print(releases.table(against_tolerance))
     for law, limit, when_held, when_moving, time in period_cells(periods):
         print(
             f"{law}, limit {limit}: a step over 1e6 periods costs {when_held} times the evaluations of one, "
@@ -405,12 +386,4 @@ def run(options: argparse.Namespace) -> None:
     say_written(written)
 
 
-QUICK_CASES = (
-    f"vibrating-{SIGMAS[1]:.0e}".replace("+", ""),
-    f"vibrating-{SIGMAS[4]:.0e}".replace("+", ""),
-    "held",
-)
-
-
-if __name__ == "__main__":
-    main()
+QUICK_CASES = (vibrating(SIGMAS[1]).name, vibrating(SIGMAS[4]).name, "held")

@@ -9,8 +9,6 @@
 Each prints its figures and the command behind them. docs/reliability.md says what they found.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import random
@@ -249,7 +247,3 @@ def main() -> None:
         print(f"== {name}: {result} ({time.monotonic() - begin:.0f} s)", flush=True)
     if failed:
         sys.exit(f"error: {', '.join(failed)} failed")
-
-
-if __name__ == "__main__":
-    main()

@@ -14,8 +14,6 @@ half of what the phase and ln(sigma) move by over the span T at the most. A line
 least a and b that are nowhere below. tests/unit/test_settled_lag.c holds the rule to the equation.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from scipy.optimize import linprog

@@ -19,8 +19,6 @@ The solver calls phi mu mu.
 tests/unit/test_bounded_panel.c holds the table against panels of other scenes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

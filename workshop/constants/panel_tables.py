@@ -8,9 +8,11 @@ Gauss and of P_n - P_(n-1) for Radau: the integrals and slopes of the polynomial
 nodes, their Legendre coefficients, their value at 0.
 """
 
-from __future__ import annotations
+from collections.abc import Callable
 
+import numpy as np
 from mpmath import mp, mpf
+from scipy.special import roots_jacobi, roots_legendre
 
 from workshop.project import ROOT
 
@@ -19,33 +21,18 @@ GAUSS, RADAU = (4, 6, 8, 12), 9
 HEADER = ROOT / "fmu_src" / "solver" / "panels" / "panel_tables.h"
 
 
-def legendre(n: int) -> list[mpf]:
-    """Coefficients of P_n(2 c - 1), lowest degree first."""
-    before, now = [mpf(1)], [mpf(-1), mpf(2)]
-    if n == 0:
-        return before
-    for k in range(1, n):
-        after = [mpf(0)] * (k + 2)
-        for i, c in enumerate(now):
-            after[i] -= c * (2 * k + 1) / (k + 1)
-            after[i + 1] += 2 * c * (2 * k + 1) / (k + 1)
-        for i, c in enumerate(before):
-            after[i] -= c * k / (k + 1)
-        before, now = now, after
-    return now
-
-
-def roots(polynomial: list[mpf]) -> list[mpf]:
-    return sorted(mp.re(root) for root in mp.polyroots(polynomial[::-1], maxsteps=500, extraprec=300))
+def roots(polynomial: Callable[[mpf], mpf], near: np.ndarray) -> list[mpf]:
+    """Of a polynomial on [-1, 1], each next to a number, on [0, 1]."""
+    return [(1 + mp.findroot(polynomial, (mpf(x), mpf(x) + 1e-13))) / 2 for x in near]
 
 
 def gauss_nodes(n: int) -> list[mpf]:
-    return roots(legendre(n))
+    return roots(lambda x: mp.legendre(n, x), roots_legendre(n)[0])
 
 
 def radau_nodes(n: int) -> list[mpf]:
-    below = [*legendre(n - 1), mpf(0)]
-    return [*roots([a - b for a, b in zip(legendre(n), below, strict=True)])[:-1], mpf(1)]
+    inner = roots(lambda x: mp.legendre(n, x) - mp.legendre(n - 1, x), roots_jacobi(n - 1, 1, 0)[0])
+    return [*inner, mpf(1)]
 
 
 class Rule:
@@ -54,16 +41,10 @@ class Rule:
     def __init__(self, nodes: list[mpf]) -> None:
         n = len(nodes)
         self.nodes = nodes
-        powers = mp.matrix(n, n)
-        integrals = mp.matrix(n, n)
-        slopes = mp.matrix(n, n)
-        legendres = mp.matrix(n, n)
-        for i, c in enumerate(nodes):
-            for j in range(n):
-                powers[i, j] = c**j
-                integrals[i, j] = c ** (j + 1) / (j + 1)
-                slopes[i, j] = j * c ** (j - 1) if j else mpf(0)
-                legendres[i, j] = mp.polyval(legendre(j)[::-1], c)
+        powers = mp.matrix([[c**j for j in range(n)] for c in nodes])
+        integrals = mp.matrix([[c ** (j + 1) / (j + 1) for j in range(n)] for c in nodes])
+        slopes = mp.matrix([[j * c ** (j - 1) for j in range(n)] for c in nodes])
+        legendres = mp.matrix([[mp.legendre(j, 2 * c - 1) for j in range(n)] for c in nodes])
         from_values = powers**-1
         self.integral = integrals * from_values
         self.slope = slopes * from_values
@@ -81,15 +62,11 @@ def rows(values: list[list[mpf]]) -> str:
     return "{" + ",\n     ".join(row(line) for line in values) + "}"
 
 
-PAIRS = '#include "solver/panels/arithmetic.h"'
-
-
 def header(guard: str, body: list[str]) -> str:
-    made = "// Made by workshop.constants.panel_tables, which says what the entries are."
-    top = f"{made}\n// clang-format off\n"
-    return (
-        f"{top}#ifndef {guard}\n#define {guard}\n\n{PAIRS}\n\n" + "\n".join(body) + f"\n#endif  // {guard}\n"
-    )
+    lines = ["// Made by workshop.constants.panel_tables, which says what the entries are."]
+    lines += ["// clang-format off", f"#ifndef {guard}", f"#define {guard}", ""]
+    lines += ['#include "solver/panels/arithmetic.h"', "", *body, f"#endif  // {guard}"]
+    return "\n".join(lines) + "\n"
 
 
 GAUSS_STRUCT = """typedef struct {

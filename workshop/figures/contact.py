@@ -1,12 +1,11 @@
 """Figure of the height statistics: what the exponential density costs."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from frictioncontact.gap.heights import area, gaussian
 from frictioncontact.parameters import SEPARATION, Surfaces
-from workshop.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel
+from frictioncontact.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from workshop.figure import Figure, Level, Line, Panel
 
 NAMES = {
     "exponential": "exponential, elastic-plastic (the FMU)",
@@ -14,7 +13,7 @@ NAMES = {
     "elastic": "Gaussian, elastic (Greenwood-Williamson)",
 }
 COLOURS = {"exponential": BLUE, "gaussian": GREEN, "elastic": ORANGE}
-DASHES = {"exponential": "solid", "gaussian": "dash", "elastic": "dot"}
+DASHES = {"exponential": "solid", "gaussian": "dashed", "elastic": "dotted"}
 
 
 def areas(points: int = 61) -> Figure:
@@ -25,7 +24,7 @@ def areas(points: int = 61) -> Figure:
     by_model = {m: np.array([area(surfaces, x * surfaces.R_q, model=m) for x in h]) for m in NAMES}
     density = [
         Line(s, surfaces.c * np.exp(-surfaces.lambda_ * s), "17 e^(−3s), Eq. 17", BLUE),
-        Line(s, [gaussian(x) for x in s], "Gaussian", GREEN, "dash"),
+        Line(s, [gaussian(x) for x in s], "Gaussian", GREEN, "dashed"),
     ]
     area_lines = [Line(h, by_model[m] / surfaces.A_n, NAMES[m], COLOURS[m], DASHES[m], 2.2) for m in NAMES]
     errors = [
@@ -35,14 +34,14 @@ def areas(points: int = 61) -> Figure:
             (by_model["exponential"] / by_model["gaussian"]) ** 2,
             "stiffness σ = E A_r² / d³",
             ORANGE,
-            "dash",
+            "dashed",
         ),
-        Level(1.0, "exact", GREY, "dot"),
+        Level(1.0, "exact", GREY, "dotted"),
         Line(
             [SEPARATION / surfaces.R_q],
             [area(surfaces, SEPARATION) / area(surfaces, SEPARATION, model="gaussian")],
             "14 µm of the paper",
-            INK,
+            BLACK,
             markers=True,
         ),
     ]

@@ -1,7 +1,5 @@
 """The picture of docs/three-directions.md: one contact that vibrates along, transverse or normal."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -5,8 +5,6 @@
 Two rough surfaces that touch at their asperities, the arrow of the velocity, the wave of the vibration.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
 

@@ -1,7 +1,5 @@
 """The pictures of docs/physics.md that need the FMU alone: an open contact and static friction."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

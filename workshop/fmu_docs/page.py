@@ -6,8 +6,6 @@ The page is docs/fmu/page.html with the plots of docs/fmu/ and tables of the var
 modelDescription.xml put in. The build makes the page.
 """
 
-from __future__ import annotations
-
 import sys
 from html import escape
 from pathlib import Path

@@ -6,8 +6,6 @@ They are simulated with build/FrictionContact.fmu. The colours are CSS variables
 so that they follow its light or dark scheme; by itself a plot has those of the light one.
 """
 
-from __future__ import annotations
-
 import io
 import math
 import re

@@ -1,13 +1,12 @@
 """The pictures of README.md, the tutorial and the pages on use, equations and solver, into docs/pictures/."""
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from frictioncontact import style
-from frictioncontact.command import add_fmu, add_output, command_line, finish
+from frictioncontact.command import add_fmu, add_output, command_line
 from frictioncontact.fmu import SETTLED, FrictionFmu, simulate
 from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
@@ -175,18 +174,20 @@ def draw_tutorial(folder: Path) -> list[Path]:
 
 def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     """All pictures; gives their paths."""
-    table2_figure.draw(fmu, list(table2.results(fmu)), folder / "table2.png")
-    for drawing in (overview, fmpy_example, step_sizes):
-        drawing(fmu, folder / f"{drawing.__name__}.png")
-    laws.open_contact(fmu, folder / "physics-open-contact.png")
-    laws.static_friction(fmu, folder / "physics-static-friction.png")
-    directions.draw(fmu, folder / "three-directions.png")
-    stretch.draw(folder / "solver-stretch.png")
-    names = (
-        "table2", "overview", "fmpy_example", "step_sizes",
-        "physics-open-contact", "physics-static-friction", "solver-stretch", "three-directions",
-    )  # fmt: skip
-    return sorted(folder / f"{name}.png" for name in names)
+    drawings: dict[str, Callable[[Path], None]] = {
+        "table2": partial(table2_figure.draw, fmu, list(table2.results(fmu))),
+        "overview": partial(overview, fmu),
+        "fmpy_example": partial(fmpy_example, fmu),
+        "step_sizes": partial(step_sizes, fmu),
+        "physics-open-contact": partial(laws.open_contact, fmu),
+        "physics-static-friction": partial(laws.static_friction, fmu),
+        "solver-stretch": stretch.draw,
+        "three-directions": partial(directions.draw, fmu),
+    }
+    paths = [folder / f"{name}.png" for name in drawings]
+    for path, drawing in zip(paths, drawings.values(), strict=True):
+        drawing(path)
+    return paths
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
@@ -202,11 +203,3 @@ def run(options: argparse.Namespace) -> None:
             print(path)
     for path in draw_tutorial(options.output / "tutorial"):
         print(path)
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

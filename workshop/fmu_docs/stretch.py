@@ -1,7 +1,5 @@
 """The drawing of docs/solver.md: one stretch between two reversals, and its panels in four contacts."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

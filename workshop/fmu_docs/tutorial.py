@@ -1,7 +1,5 @@
 """The pages of the tutorial as programs: their blocks in order, and what these print."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 The same input gives the same bytes: names are sorted and timestamps fixed.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import struct

@@ -1,7 +1,5 @@
 """modelDescription.xml as the build needs it: its guid, and whether the C code can be what it says."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 import uuid

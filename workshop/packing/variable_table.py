@@ -3,8 +3,6 @@
 usage: python -m workshop.packing.variable_table modelDescription.xml variables.c
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

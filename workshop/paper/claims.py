@@ -1,7 +1,5 @@
 """The paper's numbers against what its own equations give: the abstract's claims, from the FMU."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +14,6 @@ from workshop.paper.figures import (
     PRINTED_MEAN_AREA,
     PRINTED_MEAN_SIGMA,
     PRINTED_SIGMA,
-    STIFFNESSES,
     start,
 )
 
@@ -79,8 +76,8 @@ def claims(fmu: FrictionFmu) -> list[Claim]:
 def mean_changes(fmu: FrictionFmu) -> tuple[float, float]:
     """Changes [%] of the time means of A_r and sigma under the paper's oscillation of d, from the FMU."""
     names = ("A_r", "sigma")
-    run = periodic_waves(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), names, periods=1)
-    with fmu.session(start(STIFFNESSES[0], PRINTED.V)) as session:
+    run = periodic_waves(fmu, start(PRINTED, PRINTED.V, a_d=A_D), names, periods=1)
+    with fmu.session(start(PRINTED, PRINTED.V)) as session:
         still = session.read(names)
     means = np.array([np.mean(run[name][:-1]) for name in names])
     area, stiffness = 100.0 * (means / still - 1.0)

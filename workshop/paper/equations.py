@@ -1,7 +1,5 @@
 """What the paper prints and the FMU does not compute: Eq. 23 and 25, which its figures show."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

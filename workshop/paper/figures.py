@@ -4,11 +4,11 @@ The paper's axes are not stated in its text, so times are chosen to show what ea
 scene is drawn at the printed parameters (sigma = 5.743e12 N/m) and at the identified stiffness.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -16,17 +16,19 @@ from frictioncontact.fmu import FrictionFmu, simulate
 from frictioncontact.gap.heights import area, stiffness
 from frictioncontact.parameters import (
     COULOMB_FORCE,
-    E_FULL,
     FREQUENCY,
     IDENTIFIED,
     PERIOD,
     PRINTED,
     SEPARATION,
-    STIFFNESS_PRINTED,
+    TABLE_2,
+    ParameterSet,
     Surfaces,
+    start_values,
 )
 from frictioncontact.periodic import periodic_mean, periodic_waves
-from workshop.figure import BLUE, GREEN, GREY, INK, ORANGE, Figure, Level, Line, Panel
+from frictioncontact.style import BLACK, BLUE, GREEN, GREY, ORANGE
+from workshop.figure import Figure, Level, Line, Panel
 from workshop.paper.equations import force_eq_23, force_eq_25
 
 A_D = 1.1e-6  # m, amplitude of the separation in the paper's section 3.2
@@ -34,69 +36,47 @@ PRINTED_AREA, PRINTED_MEAN_AREA = 1.397e-7, 1.341e-7  # m2, section 3.2
 PRINTED_SIGMA, PRINTED_MEAN_SIGMA = 2.326e11, 2.07e11  # N/m, section 3.2 (the print has 2.07e-7)
 FROZEN = 5.1  # sigma V t / F_C at which Eq. 23 gives the paper's 48 and 54 N
 
-PAPER, MODEL, MEAN, FORMULA = INK, BLUE, BLUE, ORANGE
+PAPER, MODEL, MEAN, FORMULA = BLACK, BLUE, BLUE, ORANGE
 
 
-@dataclass(frozen=True)
-class Stiffness:
-    """One of the two stiffnesses each scene is drawn at."""
-
-    name: str
-    sigma: float  # N/m at 14 um and the full modulus
-
-    @property
-    def scale(self) -> float:
-        return self.sigma / STIFFNESS_PRINTED
+# Each scene is drawn at both stiffnesses.
+STIFFNESSES = {
+    "Printed parameters, σ = 5.743e12 N/m": PRINTED,
+    "Identified stiffness, σ = 2.537 MN/m": IDENTIFIED,
+}
 
 
-STIFFNESSES = (
-    Stiffness("Printed parameters, σ = 5.743e12 N/m", PRINTED.stiffness),
-    Stiffness("Identified stiffness, σ = 2.537 MN/m", IDENTIFIED.stiffness),
-)
+def start(contact: ParameterSet, V: float, V_1: float = 0.0, a_d: float = 0.0) -> dict[str, float]:
+    """Row 1 of Table 2 with the stiffness of a set of parameters and a vibration of phase 0."""
+    still = start_values(TABLE_2[0], replace(contact, V=V, phase_d=0.0))
+    return still | {"vibration.V_1": V_1, "vibration.a_d": a_d}
 
 
-def start(stiffness: Stiffness, V: float, V_1: float = 0.0, a_d: float = 0.0) -> dict[str, float]:
-    return {
-        "V": V,
-        "d": SEPARATION,
-        "E": E_FULL,
-        "F_C": COULOMB_FORCE,
-        "contact.stiffnessScale": stiffness.scale,
-        "vibration.f": FREQUENCY,
-        "vibration.V_1": V_1,
-        "vibration.a_d": a_d,
-    }
+def _figure(number: int, title: str, caption: str, panels: list[Panel], *layout: Any) -> Figure:
+    return Figure(f"fig-{number:02}", f"Figure {number}: {title}", caption, panels, *layout)
 
 
-def figure_2(fmu: FrictionFmu) -> Figure:
-    return _steady(fmu, "fig-02", 2, 0.005)
-
-
-def figure_3(fmu: FrictionFmu) -> Figure:
-    return _steady(fmu, "fig-03", 3, 0.5)
-
-
-def _steady(fmu: FrictionFmu, key: str, number: int, V: float) -> Figure:
+def steady(number: int, V: float, fmu: FrictionFmu) -> Figure:
     panels = []
-    for contact in STIFFNESSES:
-        relaxation = COULOMB_FORCE / (contact.sigma * V)
+    for name, contact in STIFFNESSES.items():
+        relaxation = COULOMB_FORCE / (contact.stiffness * V)
         count = 120
         run = simulate(fmu, start(contact, V), 6.0 * relaxation / count, count, outputs=("F_t",))
         factor, unit = _time_unit(6.0 * relaxation)
         t = run["time"]
         panels.append(
             Panel(
-                contact.name,
+                name,
                 f"time from rest [{unit}]",
                 "friction force F_t [N]",
                 [
                     Line(factor * t, run["F_t"], "FMU", MODEL, width=3.0),
                     Line(
                         factor * t,
-                        force_eq_23(COULOMB_FORCE, contact.sigma, V, t),
+                        force_eq_23(COULOMB_FORCE, contact.stiffness, V, t),
                         "Eq. 23",
                         FORMULA,
-                        "dot",
+                        "dotted",
                     ),
                     Level(COULOMB_FORCE, "F_C"),
                 ],
@@ -109,7 +89,7 @@ def _steady(fmu: FrictionFmu, key: str, number: int, V: float) -> Figure:
         f"{_shown(COULOMB_FORCE / (PRINTED.stiffness * V))}, at the identified stiffness within "
         f"{_shown(COULOMB_FORCE / (IDENTIFIED.stiffness * V))} (F_C / (σ V))."
     )
-    return Figure(key, f"Figure {number}: constant velocity of {V:g} m/s", caption, panels)
+    return _figure(number, f"constant velocity of {V:g} m/s", caption, panels)
 
 
 def _time_unit(t: float) -> tuple[float, str]:
@@ -124,37 +104,25 @@ def _shown(t: float) -> str:
     return f"{factor * t:.3g} {unit}"
 
 
-def figure_4(fmu: FrictionFmu) -> Figure:
-    return _vibrating(fmu, "fig-04", 4, 0.5, 1.4)
-
-
-def figure_5(fmu: FrictionFmu) -> Figure:
-    return _vibrating(fmu, "fig-05", 5, 0.005, 1.4)
-
-
-def figure_6(fmu: FrictionFmu) -> Figure:
-    return _vibrating(fmu, "fig-06", 6, 0.005, 14.5)
-
-
-def _vibrating(fmu: FrictionFmu, key: str, number: int, V: float, V_1: float) -> Figure:
+def vibrating(number: int, V: float, V_1: float, fmu: FrictionFmu) -> Figure:
     panels, means = [], []
     samples, periods = 200, 3
-    for contact in STIFFNESSES:
+    for name, contact in STIFFNESSES.items():
         values = start(contact, V, V_1)
         run = simulate(fmu, values, PERIOD / samples, periods * samples, outputs=("F_t",))
         mean = periodic_mean(fmu, values)
         means.append(mean)
         t = run["time"]
-        formula = force_eq_25(COULOMB_FORCE, contact.sigma, V, V_1, FREQUENCY, t)
+        formula = force_eq_25(COULOMB_FORCE, contact.stiffness, V, V_1, FREQUENCY, t)
         panels.append(
             Panel(
-                contact.name,
+                name,
                 "time from rest [µs]",
                 "friction force F_t [N]",
                 [
                     Line(1e6 * t, run["F_t"], "FMU", MODEL, width=2.4),
-                    Line(1e6 * t, formula, "Eq. 25", FORMULA, "dash", 1.4),
-                    Level(mean, f"FMU, periodic mean {mean:.3g} N", MEAN, "dot"),
+                    Line(1e6 * t, formula, "Eq. 25", FORMULA, "dashed", 1.4),
+                    Level(mean, f"FMU, periodic mean {mean:.3g} N", MEAN, "dotted"),
                 ],
                 y_range=(-62.0, 62.0),
             )
@@ -166,101 +134,76 @@ def _vibrating(fmu: FrictionFmu, key: str, number: int, V: float, V_1: float) ->
         "the bristle does, and drifts toward Coulomb friction as its factor t grows. In the stiff contact "
         "the two can't be told apart by eye."
     )
-    title = f"Figure {number}: velocity {V:g} m/s with a vibration of {V_1:g} m/s"
-    return Figure(key, title, caption, panels)
+    return _figure(number, f"velocity {V:g} m/s with a vibration of {V_1:g} m/s", caption, panels)
 
 
 def figure_8(fmu: FrictionFmu) -> Figure:
-    gaps = np.linspace(10e-6, 20e-6, 101)
-    surfaces = Surfaces()
-    of_fmu = _against_gap(fmu, gaps, "A_r")
+    gaps, of_fmu = _against_gap(fmu, "A_r")
     at = float(np.interp(SEPARATION, gaps, of_fmu))
-    items = [
-        Line(1e6 * gaps, 1e6 * of_fmu, "FMU (Eq. 20–22, corrected)", MODEL, width=2.4),
-        Line(
-            1e6 * gaps,
-            [1e6 * area(surfaces, d, model="gaussian") for d in gaps],
-            "Gaussian heights",
-            GREEN,
-            "dash",
-        ),
-        Line([14.0], [1e6 * PRINTED_AREA], "paper, as printed", PAPER, markers=True),
-    ]
+    gaussian = [1e6 * area(Surfaces(), d, model="gaussian") for d in gaps]
+    lines = _gap_lines(gaps, 1e6 * of_fmu, "FMU (Eq. 20–22, corrected)", gaussian, 1e6 * PRINTED_AREA)
     caption = (
         f"The FMU's area at 14 µm is {1e6 * at:.4f} mm² (5.188e-7 m²); the paper prints 1.397e-7 m², which "
         "follows from no variant of its equations. The dashed line is the Gaussian for which Eq. 17 stands "
         "in."
     )
-    panel = Panel("Real contact area", "separation d [µm]", "A_r [mm²]", items, y_log=True)
-    return Figure("fig-08", "Figure 8: contact area against separation", caption, [panel], 1, (6.0, 4.4))
+    panel = Panel("Real contact area", "separation d [µm]", "A_r [mm²]", lines, y_log=True)
+    return _figure(8, "contact area against separation", caption, [panel], 1, (6.0, 4.4))
 
 
 def figure_10(fmu: FrictionFmu) -> Figure:
-    gaps = np.linspace(10e-6, 20e-6, 101)
-    surfaces = Surfaces()
-    items = [
-        Line(1e6 * gaps, _against_gap(fmu, gaps, "sigma"), "FMU (Eq. 3)", MODEL, width=2.4),
-        Line(
-            1e6 * gaps,
-            [stiffness(surfaces, d, model="gaussian") for d in gaps],
-            "Gaussian heights",
-            GREEN,
-            "dash",
-        ),
-        Line([14.0], [PRINTED_SIGMA], "paper, as printed", PAPER, markers=True),
-    ]
+    gaps, of_fmu = _against_gap(fmu, "sigma")
+    gaussian = [stiffness(Surfaces(), d, model="gaussian") for d in gaps]
+    lines = _gap_lines(gaps, of_fmu, "FMU (Eq. 3)", gaussian, PRINTED_SIGMA)
     caption = (
         "The paper prints σ(14 µm) = 2.326e11 N/m, which is E A_r² / d³ with its own A_r and d = 17 µm. "
         "With 14 µm and the area of Eq. 20–22 it is 5.743e12 N/m. A micrometre changes σ by a factor of "
         "3.3."
     )
-    panel = Panel("Tangential stiffness", "separation d [µm]", "σ [N/m]", items, y_log=True)
-    return Figure(
-        "fig-10", "Figure 10: contact stiffness against separation", caption, [panel], 1, (6.0, 4.4)
-    )
+    panel = Panel("Tangential stiffness", "separation d [µm]", "σ [N/m]", lines, y_log=True)
+    return _figure(10, "contact stiffness against separation", caption, [panel], 1, (6.0, 4.4))
 
 
-def _against_gap(fmu: FrictionFmu, gaps: np.ndarray, name: str) -> np.ndarray:
-    values = []
+def _against_gap(fmu: FrictionFmu, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Separations [m] and a variable of the FMU at each."""
+    gaps, values = np.linspace(10e-6, 20e-6, 101), []
     with fmu.session() as session:
         for d in gaps:
             session.set("d", d)
             session.step(0.0)
             values.append(session.get(name))
-    return np.array(values)
+    return gaps, np.array(values)
 
 
-def figure_9(fmu: FrictionFmu) -> Figure:
-    ratio = PRINTED_MEAN_AREA / PRINTED_AREA
-    return _over_time(fmu, "fig-09", 9, "A_r", "A_r", "contact area", ratio)
+def _gap_lines(
+    gaps: np.ndarray, of_fmu: np.ndarray, name: str, gaussian: list[float], printed: float
+) -> list[Line]:
+    return [
+        Line(1e6 * gaps, of_fmu, name, MODEL, width=2.4),
+        Line(1e6 * gaps, gaussian, "Gaussian heights", GREEN, "dashed"),
+        Line([14.0], [printed], "paper, as printed", PAPER, markers=True),
+    ]
 
 
-def figure_11(fmu: FrictionFmu) -> Figure:
-    ratio = PRINTED_MEAN_SIGMA / PRINTED_SIGMA
-    return _over_time(fmu, "fig-11", 11, "sigma", "σ", "contact stiffness", ratio)
-
-
-def _over_time(
-    fmu: FrictionFmu, key: str, number: int, name: str, symbol: str, words: str, printed: float
-) -> Figure:
+def over_time(number: int, name: str, symbol: str, words: str, printed: float, fmu: FrictionFmu) -> Figure:
     """Over its value at 14 um, since the paper's absolute values are off; printed is the paper's mean so."""
-    run = periodic_waves(fmu, start(STIFFNESSES[0], 0.005, a_d=A_D), (name,))
-    with fmu.session(start(STIFFNESSES[0], 0.005)) as session:
+    run = periodic_waves(fmu, start(PRINTED, 0.005, a_d=A_D), (name,))
+    with fmu.session(start(PRINTED, 0.005)) as session:
         still = session.get(name)
     mean = float(np.mean(run[name][:-1])) / still
     change, printed_change = 100.0 * (mean - 1.0), 100.0 * (printed - 1.0)
     items = [
         Line(1e6 * run["time"], run[name] / still, "FMU", MODEL, width=2.4),
-        Level(mean, f"FMU, mean ({change:+.1f} %)", MEAN, "dash"),
-        Level(1.0, "without vibration", GREY, "dot"),
-        Level(printed, f"paper, mean (−{-printed_change:.0f} %)", PAPER, "dash"),
+        Level(mean, f"FMU, mean ({change:+.1f} %)", MEAN, "dashed"),
+        Level(1.0, "without vibration", GREY, "dotted"),
+        Level(printed, f"paper, mean (−{-printed_change:.0f} %)", PAPER, "dashed"),
     ]
     caption = (
         f"d = 14 µm ± 1.1 µm at 20 kHz. The {words} is convex in d, so by Jensen's inequality its mean over "
         f"a symmetric oscillation rises: {change:+.2f} %. The paper has it fall by {-printed_change:.0f} %."
     )
     panel = Panel(f"Oscillating {words}", "time [µs]", f"{symbol} over its value at 14 µm", items)
-    return Figure(key, f"Figure {number}: {words} over time", caption, [panel], 1, (6.4, 4.6))
+    return _figure(number, f"{words} over time", caption, [panel], 1, (6.4, 4.6))
 
 
 def frozen_time() -> float:
@@ -275,11 +218,11 @@ def figure_12(fmu: FrictionFmu) -> Figure:
     surfaces = Surfaces()
     of_fmu = []
     for d in gaps:
-        with fmu.session(start(STIFFNESSES[0], PRINTED.V) | {"d": d}) as session:
+        with fmu.session(start(PRINTED, PRINTED.V) | {"d": d}) as session:
             session.step(t)
             of_fmu.append(session.get("F_t"))
     formula = [float(force_eq_23(COULOMB_FORCE, stiffness(surfaces, d), PRINTED.V, t)) for d in gaps]
-    loop = periodic_waves(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D), ("F_t",), periods=1)
+    loop = periodic_waves(fmu, start(IDENTIFIED, 0.5, a_d=A_D), ("F_t",), periods=1)
     d_loop = SEPARATION + A_D * np.cos(2.0 * math.pi * FREQUENCY * loop["time"])
     panels = [
         Panel(
@@ -287,7 +230,7 @@ def figure_12(fmu: FrictionFmu) -> Figure:
             "separation d [µm]",
             "friction force F_t [N]",
             [
-                Line(1e6 * gaps, formula, "Eq. 23", FORMULA, "dash"),
+                Line(1e6 * gaps, formula, "Eq. 23", FORMULA, "dashed"),
                 Line(1e6 * gaps, of_fmu, "FMU, d constant", MODEL, markers=True),
                 Level(COULOMB_FORCE, "FMU, d constant, later"),
             ],
@@ -308,15 +251,15 @@ def figure_12(fmu: FrictionFmu) -> Figure:
         "moves, the deflection lags and the force goes around a loop, beyond F_C on one side and below it "
         "on the other."
     )
-    return Figure("fig-12", "Figure 12: friction force against separation", caption, panels)
+    return _figure(12, "friction force against separation", caption, panels)
 
 
 def figure_13(fmu: FrictionFmu) -> Figure:
-    run = periodic_waves(fmu, start(STIFFNESSES[0], PRINTED.V, a_d=A_D), ("F_t", "sigma"))
+    run = periodic_waves(fmu, start(PRINTED, PRINTED.V, a_d=A_D), ("F_t", "sigma"))
     formula = force_eq_23(COULOMB_FORCE, run["sigma"], PRINTED.V, frozen_time())
     middle = 0.5 * float(formula.max() + formula.min())
-    soft = periodic_waves(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D), ("F_t",))
-    mean = periodic_mean(fmu, start(STIFFNESSES[1], 0.5, a_d=A_D))
+    soft = periodic_waves(fmu, start(IDENTIFIED, 0.5, a_d=A_D), ("F_t",))
+    mean = periodic_mean(fmu, start(IDENTIFIED, 0.5, a_d=A_D))
     panels = [
         Panel(
             "Printed parameters, V = 5 mm/s",
@@ -324,9 +267,9 @@ def figure_13(fmu: FrictionFmu) -> Figure:
             "friction force F_t [N]",
             [
                 Line(1e6 * run["time"], run["F_t"], "FMU", MODEL, width=2.4),
-                Line(1e6 * run["time"], formula, "Eq. 23 at σ V t / F_C = 5.1", FORMULA, "dash"),
-                Level(middle, f"its (max + min) / 2: {middle:.2f} N", FORMULA, "dot"),
-                Level(48.0, "paper's mean: 48 N", PAPER, "dot"),
+                Line(1e6 * run["time"], formula, "Eq. 23 at σ V t / F_C = 5.1", FORMULA, "dashed"),
+                Level(middle, f"its (max + min) / 2: {middle:.2f} N", FORMULA, "dotted"),
+                Level(48.0, "paper's mean: 48 N", PAPER, "dotted"),
             ],
         ),
         Panel(
@@ -335,8 +278,8 @@ def figure_13(fmu: FrictionFmu) -> Figure:
             "friction force F_t [N]",
             [
                 Line(1e6 * soft["time"], soft["F_t"], "FMU", MODEL, width=2.4),
-                Level(mean, f"FMU, mean {mean:.3f} N", MEAN, "dot"),
-                Level(48.0, "paper's mean: 48 N", PAPER, "dot"),
+                Level(mean, f"FMU, mean {mean:.3f} N", MEAN, "dotted"),
+                Level(48.0, "paper's mean: 48 N", PAPER, "dotted"),
             ],
         ),
     ]
@@ -346,19 +289,19 @@ def figure_13(fmu: FrictionFmu) -> Figure:
         "comes out of Eq. 23 with d(t) put in at one frozen instant, and of (max + min) / 2 instead of a "
         "mean."
     )
-    return Figure("fig-13", "Figure 13: friction force over time with moving separation", caption, panels)
+    return _figure(13, "friction force over time with moving separation", caption, panels)
 
 
 FIGURES: tuple[Callable[[FrictionFmu], Figure], ...] = (
-    figure_2,
-    figure_3,
-    figure_4,
-    figure_5,
-    figure_6,
+    partial(steady, 2, 0.005),
+    partial(steady, 3, 0.5),
+    partial(vibrating, 4, 0.5, 1.4),
+    partial(vibrating, 5, 0.005, 1.4),
+    partial(vibrating, 6, 0.005, 14.5),
     figure_8,
-    figure_9,
+    partial(over_time, 9, "A_r", "A_r", "contact area", PRINTED_MEAN_AREA / PRINTED_AREA),
     figure_10,
-    figure_11,
+    partial(over_time, 11, "sigma", "σ", "contact stiffness", PRINTED_MEAN_SIGMA / PRINTED_SIGMA),
     figure_12,
     figure_13,
 )

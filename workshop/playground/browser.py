@@ -1,30 +1,18 @@
 """The page in a headless Chromium, for pictures of it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from playwright.sync_api import Browser, Page
 
-SIZES = {"desktop": (1440, 900), "phone": (390, 844)}  # pixels of CSS
+from workshop.browser import SIZES, window
+
 SCHEMES = ("light", "dark")
-PAINTED = """() => new Promise((resolve) => {
-    new PerformanceObserver((list) => {
-        const picture = list.getEntries().find(({ identifier }) => identifier === "first picture");
-        if (picture) resolve(picture.renderTime);
-    }).observe({ type: "element", buffered: true });
-})"""
 
 
 def opened(browser: Browser, html: Path, size: str, scheme: str) -> Page:
     """The page with all its figures drawn."""
-    width, height = SIZES[size]
-    context = browser.new_context(
-        viewport={"width": width, "height": height},
-        color_scheme="dark" if scheme == "dark" else "light",
-        device_scale_factor=2 if size == "phone" else 1,
-        has_touch=size == "phone",
-    )
+    scale = 2 if size == "phone" else 1
+    context = window(browser, size, color_scheme=scheme, device_scale_factor=scale)
     page = context.new_page()
     page.goto(html.resolve().as_uri())
     page.wait_for_selector("body.ready[data-worker=done]")

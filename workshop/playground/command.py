@@ -1,7 +1,5 @@
 """One HTML file with the FMU alive in it: `scripts/playground`."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path
@@ -41,7 +39,3 @@ def main() -> None:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {options.output} can't be written: {error.strerror}")
-
-
-if __name__ == "__main__":
-    main()

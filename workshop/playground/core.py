@@ -4,8 +4,6 @@ All files in one call with -flto: built by CMake, from archives and with -flto=t
 functions of a system, and a page has none.
 """
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page from its parts: one HTML file that loads nothing."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re
@@ -11,7 +9,7 @@ from typing import Any
 
 from workshop.description import description
 from workshop.playground.core import core
-from workshop.presets import Preset, possible, presets
+from workshop.presets import Preset, presets
 from workshop.project import ROOT
 
 XML = ROOT / "modelDescription.xml"
@@ -20,12 +18,12 @@ PLACE = re.compile(r"/\*\[([\w.]+)\]\*/|<!--\[(\w+)\]-->")
 
 
 def page(wasm: bytes) -> str:
-    """The text of the page; presets with a variable or an item that the FMU has not are left out."""
+    """The text of the page."""
     model = description(XML)
     parts = {
         "version": model["version"],
         "description": _json(model),
-        "presets": _json([_fields(preset) for preset in possible(presets(), model["variables"])]),
+        "presets": _json([_fields(preset) for preset in presets()]),
         "controls": _json(json.loads((ASSETS / "controls.json").read_text(encoding="utf-8"))),
         "wasm": base64.b64encode(wasm).decode(),
     }

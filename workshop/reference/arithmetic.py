@@ -4,8 +4,6 @@ The quadrature of ``quadrature`` is written once for arrays of either kind. Exte
 digits on x86-64) serves sweeps of many scenes; it is itself graded against the 40 digits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -13,6 +11,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
 DIGITS = 40
 MP = mpmath.mp.clone()
@@ -91,27 +90,12 @@ class GaussRule:
     to_end: Any  # the same over [nodes[i], 1]
 
 
-def _legendre(n: int, x: Any) -> list:
-    values = [MP.mpf(1), x]
-    for m in range(1, n + 1):
-        values.append(((2 * m + 1) * x * values[m] - m * values[m - 1]) / (m + 1))
-    return values  # P_0 .. P_(n+1)
-
-
 @cache
 def gauss_rule(n: int) -> GaussRule:
-    points, weights = [], []
-    for i in range(n, 0, -1):
-        x = MP.cos(MP.pi * (i - MP.mpf(1) / 4) / (n + MP.mpf(1) / 2))
-        for _ in range(8):
-            P = _legendre(n, x)
-            slope = n * (x * P[n] - P[n - 1]) / (x * x - 1)
-            x -= P[n] / slope
-        P = _legendre(n, x)
-        slope = n * (x * P[n] - P[n - 1]) / (x * x - 1)
-        points.append(x)
-        weights.append(2 / ((1 - x * x) * slope * slope))
-    P = [_legendre(n, x) for x in points]
+    points = [MP.findroot(lambda x: MP.legendre(n, x), (near, near + 1e-13)) for near in leggauss(n)[0]]
+    P = [[MP.legendre(m, x) for m in range(n + 2)] for x in points]
+    slopes = [n * (x * row[n] - row[n - 1]) / (x * x - 1) for x, row in zip(points, P, strict=True)]
+    weights = [2 / ((1 - x * x) * slope * slope) for x, slope in zip(points, slopes, strict=True)]
     from_start, to_end = [], []
     for i in range(n):
         # integral of P_m over [x, 1] is (P_(m-1)(x) - P_(m+1)(x)) / (2 m + 1)

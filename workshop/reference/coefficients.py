@@ -3,8 +3,6 @@
 gamma(s, x) = x^s e^-x sum_k x^k / (s (s+1) .. (s+k)): every term is positive, nothing cancels.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,24 +3,9 @@
 Between reversals F relaxes toward s F_C over the path: F_1 = s F_C + (F_0 - s F_C) e^(-sigma L / F_C).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from workshop.reference.arithmetic import MP
-
-
-def extreme_forces(sigma: Any, F_C: Any, V: Any, V_1: Any, f: Any) -> tuple[Any, Any]:
-    """F at the end of the forward and of the backward half of the periodic cycle; |V| < V_1."""
-    V, V_1, f, F_C = MP.mpf(V), MP.mpf(V_1), MP.mpf(f), MP.mpf(F_C)
-    omega = 2 * MP.pi * f
-    angle = MP.acos(-V / V_1)  # V > 0 for |theta| < angle
-    forward = 2 * (V * angle + V_1 * MP.sin(angle)) / omega
-    backward = forward - V / f
-    q_plus, q_minus = (MP.exp(-MP.mpf(sigma) * L / F_C) for L in (forward, backward))
-    F_plus = F_C * ((1 - q_plus) - q_plus * (1 - q_minus)) / (1 - q_plus * q_minus)
-    F_minus = -F_C + (F_plus + F_C) * q_minus
-    return F_plus, F_minus
 
 
 def periodic_mean(sigma: Any, F_C: Any, V: Any, V_1: Any, f: Any) -> Any:
@@ -28,9 +13,13 @@ def periodic_mean(sigma: Any, F_C: Any, V: Any, V_1: Any, f: Any) -> Any:
     sigma, V, V_1, f, F_C = (MP.mpf(value) for value in (sigma, V, V_1, f, F_C))
     if abs(V) >= V_1:
         return F_C * MP.sign(V)
-    F_plus, F_minus = extreme_forces(sigma, F_C, V, V_1, f)
-    angle = MP.acos(-V / V_1)
     omega = 2 * MP.pi * f
+    angle = MP.acos(-V / V_1)  # V > 0 for |theta| < angle
+    forward = 2 * (V * angle + V_1 * MP.sin(angle)) / omega
+    q_plus, q_minus = (MP.exp(-sigma * L / F_C) for L in (forward, forward - V / f))
+    # at the end of the forward and of the backward half of the cycle
+    F_plus = F_C * ((1 - q_plus) - q_plus * (1 - q_minus)) / (1 - q_plus * q_minus)
+    F_minus = -F_C + (F_plus + F_C) * q_minus
 
     def position(theta: Any) -> Any:
         return (V * theta + V_1 * MP.sin(theta)) / omega

@@ -1,7 +1,5 @@
 """Real contact area and stiffness from the formulas (Eq. 3, 12-14, 20-22, corrected), at 40 digits."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,13 +80,6 @@ def normal_force(contact: Contact, d: Any, E: Any) -> Any:
     return _asperities_reaching(contact, d) * (elastic + plastic)
 
 
-def rest_separation(contact: Contact, load: Any, E: Any, a_d: Any = 0) -> Any:
-    """d [m] at which the time mean of F_n over a period of the vibration is the load."""
-    decay = MP.mpf(contact.lambda_) / MP.mpf(contact.R_q)
-    swell = MP.besseli(0, decay * MP.mpf(a_d))
-    return MP.log(normal_force(contact, 0, E) * swell / MP.mpf(load)) / decay
-
-
 def mindlin_stiffness(contact: Contact, d: Any, E: Any) -> Any:
     """The sum of each contact's tangential stiffness [N/m], without stiffnessScale."""
     R, R_q, lam, nu = (MP.mpf(v) for v in (contact.R, contact.R_q, contact.lambda_, contact.nu))
@@ -109,19 +100,3 @@ def stiffness(contact: Contact, d: Any, E: Any) -> Any:
     if contact.model == "Mindlin":
         return MP.mpf(contact.stiffnessScale) * mindlin_stiffness(contact, d, E)
     return MP.mpf(contact.stiffnessScale) * MP.mpf(E) * area(contact, d, E) ** 2 / MP.mpf(d) ** 3
-
-
-def gradient(quantity: Any, contact: Contact, d: Any, E: Any) -> tuple[Any, Any]:
-    """Partial derivatives of area or stiffness with respect to d and E, by central differences at 40 digits.
-
-    The relative step of 1e-6 with the Richardson correction leaves a relative error of 1e-20 or so.
-    """
-
-    def slope(function: Any, x: Any) -> Any:
-        h = x * MP.mpf("1e-6")
-        wide = (function(x + h) - function(x - h)) / (2 * h)
-        narrow = (function(x + h / 2) - function(x - h / 2)) / h
-        return (4 * narrow - wide) / 3
-
-    d, E = MP.mpf(d), MP.mpf(E)
-    return slope(lambda y: quantity(contact, y, E), d), slope(lambda y: quantity(contact, d, y), E)

@@ -1,7 +1,5 @@
 """Coulomb friction between reversals: F_t = F_C(t) sgn V + sigma_2 V."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

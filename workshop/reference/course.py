@@ -4,8 +4,6 @@ A jump is the limit of a fast ramp. Along it the separation, E and V go linearly
 sigma by powers. A bristle is moved where its bound comes to lie below it.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ Pieces grow geometrically from it; the smallest relaxes by e^-0.1 at most. The e
 reversal may lie just beyond.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -9,8 +9,6 @@ Where the load is given, the surfaces rest where the time mean of F_n over a per
 d = d_rest(t) + a_d cos(2 pi f t + phase_d),    d_rest = (R_q / lambda) ln(F_n(0) I0(lambda a_d / R_q) / load)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -109,16 +107,6 @@ class Drive:
 
     def V(self, tau: Any) -> Any:
         return self.V_0 + self.V_rate * tau + self.V_1 * self.arithmetic.cos(self.theta(tau))
-
-    def travel(self, begin: Any, end: Any) -> Any:
-        """Integral of V over [begin, end], without cancellation where that is short."""
-        span = end - begin
-        smooth = (self.V_0 + self.V_rate * (begin + end) / 2) * span
-        if self.V_1 == 0:
-            return smooth
-        half, quarter_turn = self.omega * span / 2, self.arithmetic.real(MP.pi / 2)
-        swing = self.arithmetic.cos(self.theta(begin) + half) * self.arithmetic.cos(half - quarter_turn)
-        return smooth + 2 * self.V_1 / self.omega * swing
 
     def load(self, tau: Any) -> Any:
         return self.load_0 + self.load_rate * tau

@@ -1,7 +1,5 @@
 """Where the deflection tends after infinitely many periods of held inputs, or after sliding for ever."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

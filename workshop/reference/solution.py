@@ -4,8 +4,6 @@
 period, where 40 digits take 10 s.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -14,34 +12,12 @@ import numpy as np
 
 from workshop.reference import stop
 from workshop.reference.arithmetic import EXTENDED, MP, MULTIPRECISION, Arithmetic, multiprecision
-from workshop.reference.contact import Contact, area, stiffness
 from workshop.reference.coulomb import coulomb, without_contact
-from workshop.reference.mesh import graded_mesh
 from workshop.reference.quadrature import AffineMap, interval_map
-from workshop.reference.scene import Drive, Scene, events
+from workshop.reference.scene import Drive, Scene
 
 # Where long double is no wider than double, 40 digits must do.
 DEFAULT = EXTENDED if np.finfo(np.longdouble).nmant >= 63 else MULTIPRECISION
-
-__all__ = [
-    "EXTENDED",
-    "MP",
-    "MULTIPRECISION",
-    "Contact",
-    "Drive",
-    "Scene",
-    "StepResult",
-    "advance",
-    "area",
-    "events",
-    "force",
-    "graded_mesh",
-    "periodic_deflection",
-    "periodic_mean",
-    "sigma",
-    "solve",
-    "stiffness",
-]
 
 
 def sigma(scene: Scene, t: Any) -> Any:

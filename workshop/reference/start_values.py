@@ -1,7 +1,5 @@
 """The same scene for the reference and for the FMU: start values to Scene and back."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import fields
 

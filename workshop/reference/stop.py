@@ -11,8 +11,6 @@ With static friction ElasticPlastic has a second state, the side it slips to (0:
 sticks breaks away at the static bound D_s and drops to the kinetic one, D. It slips until s V - D' <= 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, NamedTuple

@@ -1,28 +1,11 @@
 """Figures of the regimes: mean friction, sensitivities, friction reduction, and which model is enough."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
-from workshop.figure import (
-    AMBER,
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    ORANGE,
-    PINK,
-    SKY,
-    Classes,
-    Figure,
-    Level,
-    Line,
-    Map,
-    Panel,
-    Span,
-)
+from frictioncontact.style import AMBER, BLACK, BLUE, GREEN, GREY, ORANGE, PINK, SKY
+from workshop.figure import Classes, Figure, Level, Line, Map, Panel, Span
 from workshop.regimes.mean import (
     REGIMES,
     Probe,
@@ -52,35 +35,22 @@ def means(probe: Probe, quick: bool) -> Figure:
     """Mean friction over kappa and zeta without and with normal vibration, and cuts against the limits."""
     kappas, zetas = grids(quick)
     levels = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
-    still = probe.mean(on_map(kappas, zetas))
-    moving = probe.mean(on_map(kappas, zetas, ALPHA, PHASE))
+    panels = [
+        Panel(title, KAPPA, ZETA, [Map(kappas, zetas, z, "mean F_t / F_C", 0.0, 1.0, levels)], True, True)
+        for title, z in (
+            ("d constant", probe.mean(on_map(kappas, zetas))),
+            ("a_d / R_q = 0.18, phase 225°", probe.mean(on_map(kappas, zetas, ALPHA, PHASE))),
+        )
+    ]
     cuts = []
     fine = np.linspace(0.005, 1.5, 120)
     for kappa, colour in zip((0.3, 1.0, 3.0, 10.0), (SKY, GREEN, AMBER, PINK), strict=True):
         cuts.append(Line(fine, probe.mean(Regime(kappa, fine)), f"FMU, κ = {kappa:g}", colour))
     cuts += [
-        Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dash"),
-        Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", INK, "dash"),
+        Line(fine, [soft_limit(z) for z in fine], "κ → 0: ζ / mean |ζ + cos|", BLUE, "dashed"),
+        Line(fine, [coulomb_limit(z) for z in fine], "κ → ∞: (2/π) asin ζ (Coulomb)", BLACK, "dashed"),
     ]
-    panels = [
-        Panel(
-            "d constant",
-            KAPPA,
-            ZETA,
-            [Map(kappas, zetas, still, "mean F_t / F_C", 0.0, 1.0, levels)],
-            True,
-            True,
-        ),
-        Panel(
-            "a_d / R_q = 0.18, phase 225°",
-            KAPPA,
-            ZETA,
-            [Map(kappas, zetas, moving, "mean F_t / F_C", 0.0, 1.0, levels)],
-            True,
-            True,
-        ),
-        Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)),
-    ]
+    panels.append(Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, y_range=(0.0, 1.05)))
     caption = (
         "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean: at κ = 100 within "
         "0.001 F_C for ζ = 0.3, but not near ζ = 1; with d moving this much only above 3000. Soft ones, "
@@ -111,8 +81,8 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
             )
             limits = soft_sensitivity(zeta, name, ALPHA, PHASE), coulomb_sensitivity(zeta, name)
             for x, y in zip(ends, limits, strict=True):
-                items.append(Line(x, [y, y], "", INK, "dash", 2.4))
-        items.append(Line([1.0], [np.nan], "limits in closed form", INK, "dash", 2.4))
+                items.append(Line(x, [y, y], "", BLACK, "dashed", 2.4))
+        items.append(Line([1.0], [np.nan], "limits in closed form", BLACK, "dashed", 2.4))
         title = "To " + ", ".join(SYMBOLS[name] for name in names)
         panels.append(Panel(title, KAPPA, "of F_C per 100 % or rad", items, True))
     caption = (
@@ -151,7 +121,7 @@ def _table_2_points() -> list[Line]:
     from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
 
     points = []
-    for parameters, colour in ((PRINTED, INK), (IDENTIFIED, ORANGE)):
+    for parameters, colour in ((PRINTED, BLACK), (IDENTIFIED, ORANGE)):
         V_1 = TABLE_2[2].V_1
         kappa = parameters.stiffness * V_1 / (2.0 * math.pi * FREQUENCY * COULOMB_FORCE)
         label = f"row 3 of Table 2, {parameters.name}"
@@ -167,19 +137,26 @@ MEASURED = (
 UP_TO = (60.0, "Dong, Dapino 2014 [9]: up to 60 %, both directions")
 
 
+def _limits(zetas: np.ndarray) -> list[Line]:
+    """Of the friction reduction: of stiff and of soft contacts."""
+    return [
+        Line(zetas, [100.0 * (1.0 - limit(z)) for z in zetas], label, colour, "dashed")
+        for limit, label, colour in (
+            (coulomb_limit, "Coulomb limit, κ → ∞", BLACK),
+            (soft_limit, "soft limit, κ → 0", BLUE),
+        )
+    ]
+
+
 def reduction(probe: Probe, quick: bool) -> Figure:
     """Friction reduction over V / V_1 with the limits, and what others measured."""
     zetas = np.geomspace(1e-3, 2.0, 60 if quick else 160)
-    lines = [
-        Line(zetas, [100.0 * (1.0 - coulomb_limit(z)) for z in zetas], "Coulomb limit, κ → ∞", INK, "dash")
-    ]
+    coulomb, soft = _limits(zetas)
+    lines = [coulomb]
     for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY)):
         values = 100.0 * (1.0 - probe.mean(Regime(kappa, zetas)))
         lines.append(Line(zetas, values, f"FMU, κ = {kappa:g}", colour))
-    lines.append(
-        Line(zetas, [100.0 * (1.0 - soft_limit(z)) for z in zetas], "soft limit, κ → 0", BLUE, "dash")
-    )
-    lines.append(Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True))
+    lines += [soft, Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True)]
     model = Panel(
         "Tangential vibration, d constant",
         "V / V_1",
@@ -189,13 +166,7 @@ def reduction(probe: Probe, quick: bool) -> Figure:
         y_range=(0.0, 105.0),
         x_range=(1e-3, 2.0),
     )
-    wide = np.linspace(0.01, 1.2, 80)
-    measured = [
-        *MEASURED,
-        Line(wide, [100.0 * (1.0 - coulomb_limit(z)) for z in wide], "Coulomb limit, κ → ∞", INK, "dash"),
-        Line(wide, [100.0 * (1.0 - soft_limit(z)) for z in wide], "soft limit, κ → 0", BLUE, "dash"),
-        Level(UP_TO[0], UP_TO[1], ORANGE, "dot"),
-    ]
+    measured = [*MEASURED, *_limits(np.linspace(0.01, 1.2, 80)), Level(*UP_TO, ORANGE, "dotted")]
     against = Panel(
         "Measured headline ranges",
         "V / V_1 of the limits",

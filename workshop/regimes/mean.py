@@ -7,8 +7,6 @@ Three numbers say where a vibrating contact is:
     alpha = a_d / R_q                  how much the separation moves
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -122,20 +120,13 @@ def soft_sensitivity(zeta: float, name: str, alpha: float, phase_d: float) -> fl
     """The limit of Probe.sensitivity for kappa -> 0; d enters it only through (d + a_d cos)^-3 in Eq. 3."""
     if name == "F_C":
         return soft_limit(zeta, alpha, phase_d)
-    h = STEP
-    if name in ("V", "V_1"):
-        rise = soft_limit(zeta * math.exp(h), alpha, phase_d) - soft_limit(
-            zeta * math.exp(-h), alpha, phase_d
-        )
-        return rise / (2.0 * h) * (1.0 if name == "V" else -1.0)
-    if name == "a_d":
-        rise = soft_limit(zeta, alpha * math.exp(h), phase_d) - soft_limit(
-            zeta, alpha * math.exp(-h), phase_d
-        )
-        return rise / (2.0 * h)
-    if name == "phase_d":
-        return (soft_limit(zeta, alpha, phase_d + h) - soft_limit(zeta, alpha, phase_d - h)) / (2.0 * h)
-    return 0.0
+
+    def limit(step: float) -> float:
+        of_zeta = math.exp({"V": step, "V_1": -step}.get(name, 0.0))
+        of_alpha = math.exp(step if name == "a_d" else 0.0)
+        return soft_limit(of_zeta * zeta, of_alpha * alpha, phase_d + (step if name == "phase_d" else 0.0))
+
+    return (limit(STEP) - limit(-STEP)) / (2.0 * STEP)
 
 
 # What decides a regime, as classes of `regime_map`.

@@ -1,7 +1,5 @@
 """The experiments whose results the FMU carries with it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

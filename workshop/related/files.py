@@ -6,15 +6,12 @@ Parameter sets are those of the System Structure Parameterization standard (SSP 
 FMI-LS-REF 1.0.0-alpha.1. The build makes them.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
-from workshop.description import description
-from workshop.presets import Preset, possible, presets
+from workshop.presets import Preset, presets
 from workshop.related.experiments import Experiment, experiments
 
 STANDARD = "org.fmi-standard.fmi-ls-ref"
@@ -31,8 +28,7 @@ ElementTree.register_namespace("fmi-ls", LAYERED)
 
 def files() -> dict[str, bytes]:
     """Name in the folder -> content."""
-    sets = possible(presets(), description()["variables"])
-    runs = experiments()
+    sets, runs = presets(), experiments()
     return {
         MANIFEST: manifest(sets, runs),
         EXPERIMENTS: experiment_file(runs),

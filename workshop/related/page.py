@@ -5,15 +5,12 @@
 The build makes the page.
 """
 
-from __future__ import annotations
-
 import sys
 from html import escape
 from itertools import groupby
 from pathlib import Path
 
-from workshop.description import description
-from workshop.presets import Preset, possible, presets
+from workshop.presets import Preset, presets
 from workshop.related.experiments import Experiment, experiments
 from workshop.related.files import CHECKSUMS, EXPERIMENTS, FOLDER
 
@@ -59,13 +56,14 @@ as it was packed.</p>
 
 def page() -> str:
     """The text of the page."""
-    sets = possible(presets(), description()["variables"])
     return PAGE.format(
         folder=FOLDER,
         experiments=EXPERIMENTS,
         checksums=CHECKSUMS,
         runs="\n".join(map(_run, experiments())),
-        sets="\n".join(_sets(note, list(same)) for note, same in groupby(sets, lambda preset: preset.note)),
+        sets="\n".join(
+            _sets(note, list(same)) for note, same in groupby(presets(), lambda preset: preset.note)
+        ),
     )
 
 

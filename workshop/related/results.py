@@ -6,22 +6,20 @@ Takes a minute. The reference solves Eq. 1-4, 12-14, 20-22 and 24 by itself, in 
 is the FMU's.
 """
 
-from __future__ import annotations
-
-import csv
 from collections.abc import Iterator
-from pathlib import Path
 
-from frictioncontact.files import whole_file
+from frictioncontact.command import write_csv
 from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP, multiprecision
+from workshop.reference.arithmetic import MP, MULTIPRECISION, multiprecision
+from workshop.reference.contact import area
+from workshop.reference.scene import Drive
 from workshop.reference.start_values import scene_of
 from workshop.related.experiments import Experiment, experiments
 
 COLUMNS = ("time", "F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
 
-def rows(experiment: Experiment) -> Iterator[list[float]]:
+def rows(experiment: Experiment) -> Iterator[dict[str, float]]:
     """A row for each communication point, in the order and units of COLUMNS."""
     scene = scene_of(experiment.values)
     count = round(experiment.stop / experiment.step)
@@ -34,20 +32,14 @@ def rows(experiment: Experiment) -> Iterator[list[float]]:
             before = experiment.step * (k - 1)
             delta, impulse, step_work = map(multiprecision, reference.solve(scene, before, t, delta))
             mean, work = impulse / (MP.mpf(t) - MP.mpf(before)), work + step_work
-        drive = reference.Drive(scene, t, reference.MULTIPRECISION)
+        drive = Drive(scene, t, MULTIPRECISION)
         force = reference.force(scene, t, delta)
-        area = reference.area(scene.contact, drive.d(MP.mpf(0)), drive.E(MP.mpf(0)))
-        yield [float(x) for x in (t, force, mean, work, reference.sigma(scene, t), area, delta)]
-
-
-def write(experiment: Experiment, path: Path) -> None:
-    with whole_file(path) as unfinished, unfinished.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        writer.writerows(rows(experiment))
+        A_r = area(scene.contact, drive.d(MP.mpf(0)), drive.E(MP.mpf(0)))
+        values = (t, force, mean, work, reference.sigma(scene, t), A_r, delta)
+        yield dict(zip(COLUMNS, map(float, values), strict=True))
 
 
 if __name__ == "__main__":
     for experiment in experiments():
-        write(experiment, experiment.result)
+        write_csv(list(rows(experiment)), experiment.result)
         print(experiment.result.name)

@@ -6,8 +6,6 @@ platform tag FRICTIONCONTACT_PLATFORM; without these it is compiled here by CMak
 editable installation takes nothing: frictioncontact.resources finds it in the clone.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -5,8 +5,6 @@ appears under its name only when it is complete and the FMI validator finds noth
 same bytes.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.metadata
 import re
@@ -28,7 +26,7 @@ from workshop.fmu_docs.page import page as index_page
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release import inspect as release_inspect
-from workshop.release.targets import SUFFIXES, build, zig
+from workshop.release.targets import PLATFORMS, build, zig
 from workshop.release.universal import universal
 from workshop.release.verify import SUMS, verify, write_sums
 from workshop.release.wheel import wheels
@@ -49,7 +47,7 @@ def compile_platform(platform: str, progress: Progress | None = None, anew: bool
     anew: everything is compiled, whatever has been compiled before.
     """
     folder = build(platform, ["fmu_parts", "friction_batch"], progress, anew)
-    library = folder / f"FrictionContact{SUFFIXES[platform]}"
+    library = folder / f"FrictionContact{PLATFORMS[platform].suffix}"
     release_inspect.check(platform, library)
     release_inspect.check(platform, batch_host(library), "batch_")
     return library
@@ -176,7 +174,7 @@ def main() -> None:
         "-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu"
     )
     parser.add_argument(
-        "--platforms", nargs="+", choices=list(SUFFIXES), metavar="PLATFORM", help=", ".join(SUFFIXES)
+        "--platforms", nargs="+", choices=list(PLATFORMS), metavar="PLATFORM", help=", ".join(PLATFORMS)
     )
     parser.add_argument(
         "--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick"
@@ -201,7 +199,7 @@ def _run(options: argparse.Namespace) -> None:
 def _release(options: argparse.Namespace) -> None:
     name = "release-quick" if options.quick else "release"
     output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
-    platforms = options.platforms or (QUICK if options.quick else list(SUFFIXES))
+    platforms = options.platforms or (QUICK if options.quick else list(PLATFORMS))
     with progress_bar() as progress:
         make_release(output, platforms, progress, anew=not options.quick)
     print(size_table(output))
@@ -210,7 +208,3 @@ def _release(options: argparse.Namespace) -> None:
     for line in output.with_name(SUMS).read_text().splitlines():
         checksum, _, name = line.partition("  ")
         print(f"{shown(output.with_name(name))} (sha256 {checksum})")
-
-
-if __name__ == "__main__":
-    main()

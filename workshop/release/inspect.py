@@ -1,7 +1,5 @@
 """What a library shows to the loader, read from its file: format, processor, exports, needs, signature."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from dataclasses import dataclass
@@ -11,18 +9,11 @@ import fmpy
 import lief
 
 from frictioncontact.errors import UserError
+from workshop.release.targets import PLATFORMS
 
 lief.logging.disable()  # it reports on harmless oddities of the files
 
 NEWEST_GLIBC = (2, 17)
-PROCESSORS = {
-    "linux64": "X86_64",
-    "aarch64-linux": "AARCH64",
-    "win64": "AMD64",
-    "darwin64": "X86_64",
-    "aarch64-darwin": "ARM64",
-}
-MINIMUM_MACOS = {"darwin64": (10, 15), "aarch64-darwin": (11, 0)}
 # zig's linker exports the header and the handle of the image itself; nothing binds to them.
 IMAGE_SYMBOLS = {"__mh_dylib_header", "___dso_handle"}
 # Libraries that every system of the platform has.
@@ -39,10 +30,10 @@ class Library:
     processor: str
     exports: set[str]
     needs: set[str]
-    glibc: tuple[int, ...]  # newest symbol version needed; empty where there is no glibc
-    minimum_macos: tuple[int, ...]
-    signature: str  # "none", "ad hoc" or "broken"
     debug_sections: set[str]
+    glibc: tuple[int, ...] = ()  # newest symbol version needed; empty where there is no glibc
+    minimum_macos: tuple[int, ...] = ()
+    signature: str = "none"  # or "ad hoc", "broken"
 
 
 def inspect(path: Path) -> Library:
@@ -68,20 +59,20 @@ def check(platform: str, path: Path, prefix: str = "fmi2") -> Library:
     prefix: how the names begin that it exports.
     """
     library = inspect(path)
-    darwin = platform in MINIMUM_MACOS
+    wanted = PLATFORMS[platform]
     foreign = {name for name in library.exports if not name.startswith(prefix)}
     if foreign:
         raise UserError(f"{platform}: {sorted(foreign)[0]} is exported, and only {prefix} functions may be")
     if prefix == "fmi2" and (missing := fmi2_functions() - library.exports):
         raise UserError(f"{platform}: {sorted(missing)[0]} is not exported")
-    if library.processor != PROCESSORS[platform]:
-        raise UserError(f"{platform}: built for {library.processor}, not for {PROCESSORS[platform]}")
+    if library.processor != wanted.processor:
+        raise UserError(f"{platform}: built for {library.processor}, not for {wanted.processor}")
     if library.glibc > NEWEST_GLIBC:
         raise UserError(f"{platform}: needs GLIBC_{'.'.join(map(str, library.glibc))}, later than 2.17")
     strange = {name for name in library.needs if not SYSTEM_LIBRARIES.fullmatch(name)}
     if strange:
         raise UserError(f"{platform}: needs {sorted(strange)[0]}, which not every system has")
-    if darwin and library.minimum_macos != MINIMUM_MACOS[platform]:
+    if library.minimum_macos != wanted.macos:
         raise UserError(f"{platform}: minimum macOS is {library.minimum_macos}")
     if platform == "aarch64-darwin" and library.signature != "ad hoc":
         raise UserError(f"{platform}: signature: {library.signature}; macOS on ARM loads signed code only")
@@ -102,8 +93,6 @@ def _elf(binary: lief.ELF.Binary) -> Library:
         exports={str(symbol.name) for symbol in binary.exported_symbols},
         needs=set(map(str, binary.libraries)),
         glibc=max(versions, default=()),
-        minimum_macos=(),
-        signature="none",
         debug_sections={
             str(section.name)
             for section in binary.sections
@@ -117,9 +106,6 @@ def _pe(binary: lief.PE.Binary) -> Library:
         processor=str(binary.header.machine).rpartition(".")[2],
         exports={str(function.name) for function in binary.exported_functions},
         needs=set(map(str, binary.libraries)),
-        glibc=(),
-        minimum_macos=(),
-        signature="none",
         debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},
     )
 
@@ -130,7 +116,6 @@ def _macho(binary: lief.MachO.Binary, content: bytes) -> Library:
         processor=str(binary.header.cpu_type).rpartition(".")[2],
         exports={name.removeprefix("_") for name in exported - IMAGE_SYMBOLS},
         needs={str(library.name) for library in binary.libraries} - {f"@rpath/{_install_name(binary)}"},
-        glibc=(),
         minimum_macos=tuple(binary.build_version.minos)[:2],
         signature=_signature(binary, content),
         debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},

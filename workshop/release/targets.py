@@ -1,11 +1,10 @@
 """The platforms of a release; cmake/zig.cmake holds how each is compiled, CMakeLists.txt what."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.progress import Progress
@@ -14,13 +13,22 @@ from frictioncontact.errors import UserError
 from workshop.build import build_targets
 from workshop.project import ROOT
 
+
+@dataclass(frozen=True)
+class Platform:
+    suffix: str  # of a shared library
+    processor: str  # as lief calls it
+    tag: str  # of a wheel, by the oldest system that cmake/zig.cmake compiles for
+    macos: tuple[int, ...] = ()  # the oldest
+
+
 # Folders under binaries/, as FMI 2.0.5, section 2.3, and FMI 3.0, section 2.5.1.4.1, name them.
-SUFFIXES = {
-    "linux64": ".so",
-    "aarch64-linux": ".so",
-    "win64": ".dll",
-    "darwin64": ".dylib",
-    "aarch64-darwin": ".dylib",
+PLATFORMS = {
+    "linux64": Platform(".so", "X86_64", "manylinux2014_x86_64"),
+    "aarch64-linux": Platform(".so", "AARCH64", "manylinux2014_aarch64"),
+    "win64": Platform(".dll", "AMD64", "win_amd64"),
+    "darwin64": Platform(".dylib", "X86_64", "macosx_10_15_x86_64", (10, 15)),
+    "aarch64-darwin": Platform(".dylib", "ARM64", "macosx_11_0_arm64", (11, 0)),
 }
 
 
@@ -48,7 +56,7 @@ def environment() -> dict[str, str]:
 def build(
     platform: str, targets: Sequence[str], progress: Progress | None = None, anew: bool = False
 ) -> Path:
-    """Builds targets of CMake for a platform, one of SUFFIXES, and gives CMake's folder.
+    """Builds targets of CMake for a platform, one of PLATFORMS, and gives CMake's folder.
 
     UserError holds the compiler's first error.
     """

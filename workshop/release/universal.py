@@ -3,8 +3,6 @@
 FMI's darwin64 means x86-64, but importers on Apple silicon look there too. A universal library serves both.
 """
 
-from __future__ import annotations
-
 import struct
 
 MAGIC = 0xCAFEBABE

@@ -4,8 +4,6 @@ The checksums inside tell an accident or an edit from the file that was packed. 
 changes a file on purpose can change its checksum too. SHA256SUMS, published apart, is harder to change.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 import subprocess

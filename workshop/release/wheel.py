@@ -1,7 +1,5 @@
 """Wheels with the FMU inside: scripts/wheel makes this platform's, scripts/release those of all platforms."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import shutil
@@ -12,20 +10,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from frictioncontact import resources
-from frictioncontact.command import add_output, command_line, finish, say_written
+from frictioncontact.command import add_output, command_line, say_written
 from frictioncontact.errors import UserError
 from workshop.build import build_fmu
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release.build_hook import PAGE
+from workshop.release.targets import PLATFORMS
 
-TAGS = {  # by the oldest system that cmake/zig.cmake compiles for
-    "linux64": "manylinux2014_x86_64",
-    "aarch64-linux": "manylinux2014_aarch64",
-    "win64": "win_amd64",
-    "darwin64": "macosx_10_15_x86_64",
-    "aarch64-darwin": "macosx_11_0_arm64",
-}
 DESCRIPTION = """\
 Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
 page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
@@ -33,7 +25,10 @@ page of the live FMU and the measurements inside. pip installs it where there is
 
 def wheels(fmu: Path, page: Path, hosts: Mapping[str, Path], output: Path) -> list[Path]:
     """A wheel for each platform with its batch host, and the sdist, in the folder output."""
-    made = [packed("wheel", output, [fmu, page, host], TAGS[platform]) for platform, host in hosts.items()]
+    made = [
+        packed("wheel", output, [fmu, page, host], PLATFORMS[platform].tag)
+        for platform, host in hosts.items()
+    ]
     return [*made, packed("sdist", output, [page])]
 
 
@@ -72,11 +67,3 @@ def run(options: argparse.Namespace) -> None:
         wheel = packed("wheel", options.output, [fmu, page, resources.batch_host()])
     say_written([wheel])
     print(f"{wheel.stat().st_size / 1e6:.2f} MB")
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,16 +1,15 @@
 """The paper's figures, tables and claims from the FMU, the regimes and the identification on one page."""
 
-from __future__ import annotations
-
 import argparse
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
 from rich.progress import Progress
 
-from frictioncontact.command import add_fmu, add_output, command_line, finish, progress_bar
+from frictioncontact.command import add_fmu, add_output, command_line, progress_bar
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.table2.rows import results
@@ -22,7 +21,7 @@ from workshop.paper.claims import claims
 from workshop.project import ROOT
 from workshop.regimes import figures as regime_figures
 from workshop.regimes.mean import Probe
-from workshop.report import images, recovery, text
+from workshop.report import recovery, text
 from workshop.report.page import Section, page
 
 DESCRIPTION = """\
@@ -48,10 +47,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
 def run(options: argparse.Namespace) -> None:
     options.output.mkdir(parents=True, exist_ok=True)
     with progress_bar() as progress:
@@ -65,22 +60,23 @@ def run(options: argparse.Namespace) -> None:
     print(f"Written: {index} and {len(written)} figures")
 
 
-def _jobs(fmu: FrictionFmu, probe: Probe, quick: bool) -> Iterator[Callable[[], Figure]]:
-    for draw in paper_figures.FIGURES:
-        yield lambda draw=draw: draw(fmu)
-    yield contact_figures.areas
-    for draw in (
+def _jobs(fmu: FrictionFmu, quick: bool) -> list[Callable[[], Figure]]:
+    of_regimes = (
         regime_figures.means,
         regime_figures.regimes,
         regime_figures.reduction,
         regime_figures.sensitivity_cuts,
-    ):
-        yield lambda draw=draw: draw(probe, quick)
-    yield lambda: recovery.figure(fmu, 20 if quick else 100)
+    )
+    return [
+        *(partial(draw, fmu) for draw in paper_figures.FIGURES),
+        contact_figures.areas,
+        *(partial(draw, Probe(fmu.path), quick) for draw in of_regimes),
+        partial(recovery.figure, fmu, 20 if quick else 100),
+    ]
 
 
 def _figures(fmu: FrictionFmu, quick: bool, progress: Progress) -> dict[str, Figure]:
-    jobs = list(_jobs(fmu, Probe(fmu.path), quick))
+    jobs = _jobs(fmu, quick)
     task = progress.add_task("Simulating", total=len(jobs))
     found = {}
     for job in jobs:
@@ -110,12 +106,8 @@ def _draw(figures: dict[str, Figure], options: argparse.Namespace, progress: Pro
             paths.append(options.output / f"{key}.png")
         if options.docs and key in IN_DOCS:
             paths.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
-        images.draw(figure, *paths)
+        figure.draw(*paths)
         written += paths
         progress.advance(task)
     progress.remove_task(task)
     return written
-
-
-if __name__ == "__main__":
-    main()

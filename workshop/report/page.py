@@ -1,7 +1,5 @@
 """The web page of the report: tables and the figures that are drawn beside it; no network, no script."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,27 +1,22 @@
 """Does an identification recover what made the data? Synthetic noisy measurements, fitted again and again."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frictioncontact.errors import quiet
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.identification.data import Measurements, Series, Uncertain
+from frictioncontact.identification.data import Measurements, Uncertain
 from frictioncontact.identification.experiment import Experiment, Rows
 from frictioncontact.identification.fit import with_profiles
 from frictioncontact.identification.parameter import Parameter, parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import search
-from frictioncontact.identification.series import Record
-from workshop.figure import BLUE, INK, ORANGE, Figure, Level, Line, Panel
+from frictioncontact.style import BLACK, BLUE, ORANGE
+from workshop.figure import Figure, Level, Line, Panel
 
 TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
 NOISE = 0.5  # N, standard deviation of one mean
-LOOP_TRUTH = {"contact.sigma": 2.5e6, "F_C": 48.0}
-LOOP_START = 5.0  # N, the force that a loop begins with
-LOOP_NOISE = 0.3  # N, standard deviation of one sample
 NAMES = ("V", "vibration.V_1", "vibration.a_d")
 
 
@@ -79,31 +74,10 @@ def from_rows(
         ]
         rows = replace(rows, uncertain=tuple(uncertain))
     experiment = Rows(fmu, rows, parameters(fmu))
-    return _recovered(experiment, TRUTH, experiment.target, NOISE, seeds)
+    return recovered(experiment, TRUTH, experiment.target, NOISE, seeds)
 
 
-def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> Recovered:
-    """From one noisy loop per seed: presliding at first, sliding at its ends later."""
-    time = np.linspace(0.0, 2.0, 160)
-    position = 60e-6 * np.sin(2.0 * np.pi * time) * (0.3 + 0.5 * time)
-    constants = {"contact.model": "Constant", "friction.model": law}
-    series = Series(
-        time, np.diff(position) / np.diff(time), {}, np.zeros(len(time)), constants,
-        np.full(len(time), LOOP_NOISE) if stated else None, position,
-    )  # fmt: skip
-    named = [
-        parameter(fmu, "contact.sigma", None, (1e3, 1e9), constants),
-        parameter(fmu, "F_C", None, None, constants),
-    ]
-    first = Record(fmu, series, named)
-    truth = [p.to_coordinate(LOOP_TRUTH[p.name]) for p in named]
-    forces = first.forces(np.array([[*truth, LOOP_START]]))[0]
-    return _recovered(
-        Record(fmu, replace(series, force=forces), named), LOOP_TRUTH, forces, LOOP_NOISE, seeds
-    )
-
-
-def _recovered(
+def recovered(
     experiment: Experiment, truth: dict[str, float], exact: np.ndarray, noise: float, seeds: int
 ) -> Recovered:
     random = np.array([np.random.default_rng(seed).standard_normal(len(exact)) for seed in range(seeds)])
@@ -131,7 +105,7 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
             y += [*(factor * np.array(found.fits[seed].profiles[k])), np.nan]
         items = [
             Line(*good, f"holds the truth: {sum(held)} of {seeds}", BLUE),
-            Level(factor * TRUTH[name], "truth", INK, "dash"),
+            Level(factor * TRUTH[name], "truth", BLACK, "dashed"),
         ]
         if missed[0]:
             items.insert(1, Line(*missed, "misses it", ORANGE, width=2.4))

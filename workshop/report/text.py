@@ -1,7 +1,5 @@
 """What the report says: its sections, tables and the words between the figures."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 

@@ -1,18 +1,14 @@
 """Whether the site holds together: its links, and what its pages do in a browser opened from the folder."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from lxml import html
-from playwright.sync_api import Browser, BrowserContext
+from playwright.sync_api import Browser
 
-from workshop.browser import chromium, watch
-
-SIZES = {"desktop": (1440, 900), "phone": (390, 844)}  # pixels of CSS
+from workshop.browser import SIZES, chromium, watch, window
 
 
 def problems(folder: Path) -> list[str]:
@@ -57,16 +53,11 @@ def broken_links(folder: Path) -> Iterator[str]:
                 yield f"{where}: no such anchor"
 
 
-def context(browser: Browser, size: str) -> BrowserContext:
-    width, height = SIZES[size]
-    return browser.new_context(viewport={"width": width, "height": height}, has_touch=size == "phone")
-
-
 def complaints(browser: Browser, folder: Path, size: str) -> list[str]:
     """What the pages do wrong, opened one by one: errors, requests, text wider than the window."""
     heard: list[str] = []
-    with context(browser, size) as window:
-        page = window.new_page()
+    with window(browser, size) as opened:
+        page = opened.new_page()
         watch(page, folder, heard)
         for path in pages(folder):
             page.goto(path.resolve().as_uri())

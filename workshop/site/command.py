@@ -1,7 +1,5 @@
 """scripts/site: the project's pages as a web site that works from a folder, without a server."""
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import subprocess
@@ -12,7 +10,7 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
-from frictioncontact.command import add_output, command_line, finish, shown
+from frictioncontact.command import add_output, command_line, shown
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from workshop.playground.page import page_text
@@ -61,11 +59,3 @@ def run(options: argparse.Namespace) -> None:
         if found:
             raise UserError("\n".join(found))
         print("all links lead somewhere; no page asks for anything outside or has an error")
-
-
-def main() -> None:
-    finish(run, arguments())
-
-
-if __name__ == "__main__":
-    main()

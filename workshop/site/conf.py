@@ -1,7 +1,5 @@
 """Configuration of Sphinx. The pages are the project's Markdown files, where they lie and as they are."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

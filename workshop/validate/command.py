@@ -1,14 +1,19 @@
 """Every law of friction against measurements that others published."""
 
-from __future__ import annotations
-
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from rich.table import Table
 
 from frictioncontact import resources
-from frictioncontact.command import add_fmu, add_output, can_draw, command_line, finish, table_console
+from frictioncontact.command import (
+    add_fmu,
+    add_output,
+    as_table,
+    can_draw,
+    command_line,
+    table_console,
+)
 from frictioncontact.fmu import FrictionFmu
 from workshop.build import build_fmu
 from workshop.validate import elements, longitudinal, measurements, normal, record
@@ -28,16 +33,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def as_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
-    """The first column names the rows, the others are numbers."""
-    table = Table(title=title)
-    for k, heading in enumerate(headings):
-        table.add_column(heading, justify="right" if k else "left", no_wrap=not k)
-    for row in rows:
-        table.add_row(*row)
-    return table
-
-
 def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[longitudinal.Fit]) -> Table:
     def stiffness(fit: longitudinal.Fit) -> str:
         if fit.law in ("Dahl", "LuGre"):
@@ -45,7 +40,6 @@ def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[lon
         return "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
 
     return as_table(
-        f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]",
         ["", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"],
         [["measured", "", *(f"{force:.3f}" for force in data.vibrated), "", ""]]
         + [
@@ -53,10 +47,11 @@ def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[lon
                 fit.law,
                 stiffness(fit),
                 *(f"{force:.4f}" for force in fit.model),
-                *(f"{longitudinal.rms(model, data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
+                *(f"{measurements.rms(model - data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
             ]
             for fit in fits
         ],
+        f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]",
     )
 
 
@@ -78,21 +73,21 @@ def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) ->
         for fit in fits
     ]
     same, later = record.repeated(data), record.predicted_cycles(data)
-    error = record.rms(same.friction - later.friction) / record.sliding_friction(data)
+    error = measurements.rms(same.friction - later.friction) / record.sliding_friction(data)
     ratio = record.work(same.friction, later) / record.work(later.friction, later)
     return as_table(
-        "The cycles: fitted on two, 47 predicted. Misfit over the measured friction",
         ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"],
         [*rows, ["no physics: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"]],
+        "The cycles: fitted on two, 47 predicted. Misfit over the measured friction",
     )
 
 
 def elements_table(fits: Sequence[elements.ElementFit]) -> Table:
     names = (f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name for fit in fits)
     return as_table(
-        "What would mend ElasticPlastic, fitted to the same two cycles",
         ["", "rms fitted", "rms predicted"],
         [[n, f"{f.rms_fitted:.1%}", f"{f.rms_predicted:.1%}"] for n, f in zip(names, fits, strict=True)],
+        "What would mend ElasticPlastic, fitted to the same two cycles",
     )
 
 
@@ -109,9 +104,6 @@ def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit])
         "Dahl, constant limit": dahl.constant_limit,
     }
     return as_table(
-        "The unloading, predicted by what the two cycles gave: rms over the "
-        f"{record.friction_before_unloading(data):.2f} N before it, "
-        f"and |F| / F_n while F_n > {record.CARRYING} N",
         ["", "rms", "least F / F_n", "largest"],
         [
             [
@@ -121,6 +113,9 @@ def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit])
             ]
             for name, each in forces.items()
         ],
+        "The unloading, predicted by what the two cycles gave: rms over the "
+        f"{record.friction_before_unloading(data):.2f} N before it, "
+        f"and |F| / F_n while F_n > {record.CARRYING} N",
     )
 
 
@@ -138,7 +133,7 @@ def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.Norma
         f"{data.reduction[1]:.0%}. A constant limit gives 0"
     )
     headings = "limit mu F_n, law", "swing lambda a_d / R_q", "mu load / k [um]", "predicted at 40.6 mm/s"
-    return as_table(title, [*headings, "at 87 mm/s"], rows)
+    return as_table([*headings, "at 87 mm/s"], rows, title)
 
 
 def run(options: argparse.Namespace) -> None:
@@ -181,11 +176,3 @@ def run(options: argparse.Namespace) -> None:
         for name, figure in drawn.items():
             style.save(figure, options.output / f"{name}.png")
         print(f"Written: {len(drawn)} pictures in {options.output}")
-
-
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, arguments(argv))
-
-
-if __name__ == "__main__":
-    main()

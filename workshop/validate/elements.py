@@ -6,16 +6,14 @@ on the way to and fro, proportional to the load, tilts the friction instead. Eac
 that the laws are fitted to, and predicts the others.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from workshop.validate.measurements import Record
-from workshop.validate.record import fitted_cycles, predicted_cycles, rms, sliding_friction
+from workshop.validate.measurements import Record, rms
+from workshop.validate.record import fitted_cycles, predicted_cycles, sliding_friction
 
 IWAN = 32  # elements that stand for infinitely many
 Elements = tuple[np.ndarray, np.ndarray, float]  # stiffness [N/m] and limit / load of each; tilt [N/N]

@@ -1,7 +1,5 @@
 """One figure a measurement: what was measured, and what each law says."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

@@ -6,8 +6,6 @@ sliding. Fitted: one tangential stiffness, by least squares on the vibrated rows
 the stiffness fitted to the others.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,17 +99,3 @@ def fit(fmu: Path, data: Sliding, law: str) -> Fit:
         grid.min(axis=0),
         grid.max(axis=0),
     )
-
-
-def yielding(data: Sliding, stiffness: float) -> float:
-    """Deflection [m] at which the bristle of the slowest sliding slips, F_C / k."""
-    return float(data.without[0] / stiffness)
-
-
-def static_friction(data: Sliding, stiffness: float) -> float:
-    """ElasticPlastic's mean as V -> 0 [N], F_C - k a with F_C the static friction."""
-    return data.static_without - stiffness * data.amplitude
-
-
-def rms(model: np.ndarray, measured: np.ndarray) -> float:
-    return float(np.sqrt(np.mean((model - measured) ** 2)))

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import gzip
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -14,14 +12,9 @@ from frictioncontact import resources
 FOLDER = resources.data() / "measurements"
 
 
-def _columns(path: Path) -> dict[str, list[str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    return {name: [row[name] for row in rows] for name in rows[0]}
-
-
-def _floats(column: list[str]) -> np.ndarray:
-    return np.array([float(cell) for cell in column])
+def _table(name: str) -> np.ndarray:
+    """A file with a header, by the names of its columns."""
+    return np.genfromtxt(FOLDER / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
 
 
 @dataclass(frozen=True)
@@ -33,7 +26,6 @@ class Sliding:
     without: np.ndarray  # N
     vibrated: np.ndarray  # N
     static_without: float  # N, largest static friction
-    static_vibrated: float  # N
 
     f: float = 26e3  # Hz
     amplitude: float = 0.35e-6  # m
@@ -46,18 +38,11 @@ class Sliding:
 
 def sliding(lubrication: str) -> Sliding:
     """The rows of luo2024.csv, "dry" or "oil"."""
-    columns = _columns(FOLDER / "luo2024.csv")
-    keep = np.array([name == lubrication for name in columns["lubrication"]])
-    V, without, vibrated = (_floats(columns[name])[keep] for name in ("V_m_per_s", "F_without_N", "F_with_N"))
+    rows = _table("luo2024.csv")
+    rows = rows[rows["lubrication"] == lubrication]
+    V, without, vibrated = (rows[name] for name in ("V_m_per_s", "F_without_N", "F_with_N"))
     rest = V == 0.0
-    return Sliding(
-        lubrication,
-        V[~rest],
-        without[~rest],
-        vibrated[~rest],
-        float(without[rest][0]),
-        float(vibrated[rest][0]),
-    )
+    return Sliding(lubrication, V[~rest], without[~rest], vibrated[~rest], float(without[rest][0]))
 
 
 @dataclass(frozen=True)
@@ -93,5 +78,9 @@ class NormalVibration:
 
 
 def normal_vibration() -> NormalVibration:
-    columns = _columns(FOLDER / "dong2015.csv")
-    return NormalVibration(_floats(columns["V_m_per_s"]), _floats(columns["reduction"]))
+    rows = _table("dong2015.csv")
+    return NormalVibration(rows["V_m_per_s"], rows["reduction"])
+
+
+def rms(error: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(error**2)))

@@ -6,8 +6,6 @@ depends on alpha and on k / (mu load) alone. For each alpha, k is fitted to the 
 fastest one is predicted, as is one between them whose number is not at hand.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -6,8 +6,6 @@ which the load falls from 5 N to 0 while the contact creeps. One run from the fi
 end of the unloading gives all of it: nothing is adjusted or started anew on the way.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 
 from frictioncontact.fmu import FrictionFmu, Value, run
-from workshop.validate.measurements import Record
+from workshop.validate.measurements import Record, rms
 
 LAWS = ("Coulomb", "Dahl", "ElasticPlastic")
 CYCLE = 4.0  # s
@@ -62,11 +60,6 @@ def sliding_friction(record: Record) -> float:
     return float(np.percentile(np.abs(record.between(FIRST, FIRST + CYCLES * CYCLE).friction), 95.0))
 
 
-def tare(record: Record) -> float:
-    """Mean of the measured friction [N] before the load comes, when nothing touches."""
-    return float(record.between(0.0, UNLOADED).friction.mean())
-
-
 def friction_before_unloading(record: Record) -> float:
     """Measured friction [N] where the load begins to fall, without its sign."""
     return float(abs(record.between(*UNLOADING).friction[0]))
@@ -103,10 +96,6 @@ def repeated(record: Record) -> Record:
 def work(friction: np.ndarray, record: Record) -> float:
     """Work along the path [J], trapezoidal."""
     return float(np.trapezoid(friction, record.position))
-
-
-def rms(error: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(error**2)))
 
 
 def along_path(fmu: FrictionFmu, record: Record, start_values: dict[str, Value]) -> np.ndarray:
