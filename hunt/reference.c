@@ -403,7 +403,9 @@ static void stretch(March* march, Real a, Real b) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
     Motion motion = {.sign = sign_of(velocity(w, &w->along, middle))};
-    while (a < b) {
+    bool arrived = false; // at the bound just now
+    int stays = 0;        // by rounding it may break away and stick without end
+    while (a < b && stays < 4) {
         if (march->slip && !(outward(w, middle, march->slip, false) > 0.0L)) {
             march->slip = 0; // it sticks, or leaves the bound
         }
@@ -415,10 +417,13 @@ static void stretch(March* march, Real a, Real b) {
                                      (slip ? side == slip : outward(w, middle, side, true) > 0.0L);
         }
         // on the bound, or catching up
-        const bool lies = slip && gap(w, a, march->delta, slip, false) <= 1e-18L * fabsl(march->delta);
+        const bool lies =
+            slip && (arrived || gap(w, a, march->delta, slip, false) <= 1e-18L * fabsl(march->delta));
         motion.slip = lies ? slip : 0;
         go_over(march, &motion, a, b);
+        stays = march->met && !(march->met_at > a) ? stays + 1 : 0;
         a = march->met ? march->met_at : b;
+        arrived = march->met != 0;
         if (march->met && !slip) {
             break_away(march, a, march->met);
         }
