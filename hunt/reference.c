@@ -661,7 +661,7 @@ static Real force_at(const World* w, Real t, Real delta, int slip) {
     }
     const Real lies = bound(w, &at, false);
     const bool slips =
-        slip && fabsl((Real)slip * lies - delta) <= 1e-11L * lies && outward(w, t, slip, false) > 0.0L;
+        slip && fabsl((Real)slip * lies - delta) <= ON_BOUND * lies && outward(w, t, slip, false) > 0.0L;
     const Real rate =
         slips ? (Real)slip * bound_rate(w, &at, false) : at.V - relaxation(w, &at, sign_of(at.V)) * delta;
     return at.sigma * delta + s->sigma_1 * rate + s->sigma_2 * at.V;
