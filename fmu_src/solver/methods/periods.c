@@ -219,15 +219,44 @@ static bool repeats(Walk* walk) {
 }
 
 // In the plane a bristle that slips little in each period forgets its direction slowly: its ends converge by a ratio near 1, and are
-// extrapolated to where they lead (Aitken), from the last three of four.
+// extrapolated to where they lead, from the last three of four. Between two ends that move towards each other they lead to where the
+// motion vanishes (false position, Illinois), else by the ratio (Aitken).
+typedef struct {
+    FcVector at, moves; // the end of a period, and by how much it has moved in it
+} End;
 typedef struct {
     FcVector end[3];
     int count;
     double ratio; // the last that was known; 0 for none
+    End side[2];
+    int sides;    // that are known; both move towards each other
+    int replaced; // the one that was last
 } Ends;
 
 // Of the deflection: a smaller change tells no ratio. Rounding: 4500 eps.
 static const double LEAST_CHANGE = 1e-12;
+
+static FcVector way(FcVector from, FcVector to) { return (FcVector){to.x - from.x, to.y - from.y}; }
+
+static bool moves_to(const End* a, const End* b) { return fc_product(a->moves, way(a->at, b->at)) > 0.0; }
+
+static void keep_side(Ends* ends, End now) {
+    End* side = ends->side;
+    if (ends->sides < 2) {
+        const bool opposes = ends->sides == 1 && moves_to(&side[0], &now) && moves_to(&now, &side[0]);
+        side[opposes] = now;
+        ends->sides = opposes ? 2 : 1;
+        ends->replaced = -1;
+        return;
+    }
+    const int which = moves_to(&now, &side[1]) ? 0 : 1;
+    side[which] = now;
+    if (which == ends->replaced) {
+        side[1 - which].moves.x *= 0.5;
+        side[1 - which].moves.y *= 0.5;
+    }
+    ends->replaced = which;
+}
 
 static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
     const int place = ends->count++ % 4 - 1; // the first after an extrapolation is left out
@@ -238,18 +267,25 @@ static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
     if (place < 2) {
         return;
     }
-    const FcVector* end = ends->end;
-    const FcVector before = {end[1].x - end[0].x, end[1].y - end[0].y};
-    const FcVector last = {end[2].x - end[1].x, end[2].y - end[1].y};
+    const FcVector before = way(ends->end[0], ends->end[1]);
+    const FcVector last = way(ends->end[1], ends->end[2]);
     const double ratio = fc_product(before, last) / fc_product(before, before);
     if (ratio > 0.0 && ratio < 1.0 && hypot(last.x, last.y) > LEAST_CHANGE * size_of(total)) {
         ends->ratio = ratio;
     }
+    keep_side(ends, (End){ends->end[2], last});
     const double more = ends->ratio / (1.0 - ends->ratio);
-    FcBristle there = fc_bristle_of(total);
-    there.delta += more * last.x;
-    there.delta_y += more * last.y;
-    const FcBristle reached = fc_plane_reach(scene, there);
+    FcVector leads = {total->delta + more * last.x, total->delta_y + more * last.y};
+    if (ends->sides == 2) {
+        const End* side = ends->side;
+        const double moves = hypot(side[0].moves.x, side[0].moves.y);
+        const double all = moves + hypot(side[1].moves.x, side[1].moves.y);
+        const double part = all > 0.0 ? moves / all : 0.0;
+        const FcVector between = way(side[0].at, side[1].at);
+        leads = (FcVector){side[0].at.x + part * between.x, side[0].at.y + part * between.y};
+    }
+    const FcBristle reached =
+        fc_plane_reach(scene, (FcBristle){.delta = leads.x, .delta_y = leads.y, .slips = total->slips});
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
 }

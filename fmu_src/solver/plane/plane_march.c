@@ -37,10 +37,17 @@ typedef struct {
     double evaluations;
 } March;
 
+// How fast [m/s] the bristle and its bound may move, together.
+static double largest_push(const March* march) {
+    const FcInterval* interval = march->interval;
+    return interval->speed + interval->saturation * interval->pace.log_sigma;
+}
+
 static FcPlaneFrom from_of(const March* march) {
     return (FcPlaneFrom){.delta = {march->along.offset, march->across.offset},
                          .scale = (1.0 - march->along.relaxation) * march->scale,
-                         .speed = march->interval->speed + DBL_MIN};
+                         .speed = march->interval->speed + DBL_MIN,
+                         .push = largest_push(march) + DBL_MIN};
 }
 
 // Panels that are refused in a row before one is taken as it is. By hand: 0.3^12 of the first, where rounding rules.
@@ -49,10 +56,12 @@ enum { MOST_TRIES = 12 };
 // miss rho^-17, sinh(ln rho) = pi over the panel's length. And of a decaying exponential, by hand: costs tries, not accuracy.
 static const double ORDER = 17.0;
 static const double LAYERS = 6.3;
+// Of that length, by hand: most panels of the whole are refused, those of a third no less often than those of a half.
+static const double PART_OF_ELLIPSE = 0.5;
 // Radii of the disc that a bristle which sticks may go in a panel: its points tell then where it comes to the bound. By hand.
 static const double MOST_OF_DISC = 4.0;
 // A panel may last so many times the time over which the contact moves by 1. By hand: costs tries, not accuracy.
-static const double SMOOTH = 7.0;
+static const double SMOOTH = 5.0;
 
 // A panel whose points do not tell what happens near its start is shortened by this. By hand: costs tries, not accuracy.
 static const double SHORTENED_BY = 1.0 / 32.0;
@@ -100,7 +109,7 @@ static double planned(const March* march) {
     }
     double h = fmin(left, fc_straight_place(in, t + span) - march->u);
     if (isfinite(in->length)) {
-        h = fmin(h, FC_PI / sinh(-log(resolves)));
+        h = fmin(h, PART_OF_ELLIPSE * FC_PI / sinh(-log(resolves)));
     }
     if (march->h > 0.0) {
         h = fmin(h, march->h);
@@ -214,12 +223,6 @@ static void set_delta(March* march, FcVector delta) {
     march->along.relaxation = march->across.relaxation = 1.0;
     march->along.offset = delta.x;
     march->across.offset = delta.y;
-}
-
-// How fast [m/s] the bristle and its bound may move, together.
-static double largest_push(const March* march) {
-    const FcInterval* interval = march->interval;
-    return interval->speed + interval->saturation * interval->pace.log_sigma;
 }
 
 // Where the march is now.

@@ -251,8 +251,8 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
         // The heat is the work less what the bristle stores, whose rate follows Stribeck's curve at once, and what the stiffness takes.
-        heat[i] = force * (outwards + 0.5 * D * bound[i].log_sigma_rate) / from->speed;
-        map->heat_offset += weight * from->speed * heat[i];
+        heat[i] = force * (outwards + 0.5 * D * bound[i].log_sigma_rate) / from->push;
+        map->heat_offset += weight * from->push * heat[i];
         map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
     }
     const double start = bound[STAGES].D;

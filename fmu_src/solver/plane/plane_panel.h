@@ -27,7 +27,8 @@ void fc_plane_nodes(const FcPlane* plane, const FcHalf* half, double u, double h
 typedef struct {
     FcVector delta; // m
     double scale;   // m
-    double speed;   // m/s
+    double speed;   // m/s, the largest of the surfaces,
+    double push;    // m/s, and of the bristle and its bound together
 } FcPlaneFrom;
 
 typedef struct {
