@@ -36,7 +36,7 @@ LIKELY = {
     "V": (0.0, 100.0),
     "V_y": (0.0, 100.0),
     "d": (1e-9, 1e-3),
-    "E": (1e5, 1e13),
+    "E": (3e5, 1e13),
     "delta_0": (0.0, 1e-2),
     "delta_y_0": (0.0, 1e-2),
     "contact.sigma": (100.0, 1e15),
@@ -44,10 +44,11 @@ LIKELY = {
     "contact.R": (1e-9, 1e-1),
     "contact.A_n": (0.0, 10.0),
     "contact.Y": (1e5, 1e12),
+    "friction.mu": (0.0, 10.0),
     "friction.V_S": (0.0, 10.0),
     "vibration.f": (100.0, 1e8),
-    "vibration.V_1": (0.0, 100.0),
-    "vibration.V_2": (0.0, 100.0),
+    "vibration.V_1": (1e-5, 100.0),
+    "vibration.V_2": (1e-5, 100.0),
     "vibration.a_d": (0.0, 1e-3),
     "vibration.phase_d": (0.0, 15.0),
     "vibration.phase_2": (0.0, 15.0),
@@ -90,10 +91,13 @@ def unlikely(known: Variables, given: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def _display(known: Variables, name: str, value: float) -> str:
-    """The same number in the unit that the variable is shown in."""
+    """The same number in the unit that the variable is shown in, if that may have been meant."""
     unit = known.all[name].displayUnit
     factor = known.factors.get((known.all[name].unit, unit))
-    return f": {value:g} {unit} is {value / factor:.6g} here" if factor else ""
+    low, high = LIKELY[name]
+    if not factor or abs(value) < 1.0 or not low <= abs(value / factor) <= high:
+        return ""
+    return f": {value:g} {unit} is {value / factor:.6g} here"
 
 
 def warn_of(

@@ -71,14 +71,16 @@ def run(options: argparse.Namespace) -> None:
             phases=PHASES[:2] if options.quick else PHASES,
             fmu=options.fmu,
         )
-    command = f"fmpy simulate {shown(fmu.path)} --output-interval {found.asked.step:.6g}"
-    print(found, f"{command} {start_values(fmu, found.start_values)}", sep="\n\n")
+    words = ["fmpy simulate", shown(fmu.path), f"--output-interval {found.asked.step:.6g}"]
+    if options.inputs:
+        words.append(f"--input-file {options.inputs}")
+    print(found, " ".join([*words, start_values(fmu, found.start_values)]).rstrip(), sep="\n\n")
 
 
 def start_values(fmu: FrictionFmu, values: Mapping[str, Value]) -> str:
     """Values as fmpy's command takes them: of an enumeration the number."""
     codes = {name: fmu.known.items[name].get(str(value), value) for name, value in values.items()}
-    return " ".join(["--start-values", *(f"{name} {code:.10g}" for name, code in codes.items())])
+    return " ".join(["--start-values" if codes else "", *(f"{name} {code:.10g}" for name, code in codes.items())])
 
 
 def coupling(

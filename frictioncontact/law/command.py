@@ -47,11 +47,14 @@ def run(options: argparse.Namespace) -> None:
     if options.picture and options.picture.suffix not in (".png", ".svg", ".pdf"):
         raise UserError(f"--picture {options.picture}: must end in .png, .svg or .pdf")
     known = opened(options.fmu).known
-    law = friction_law(known.assigned(options.set), fmu=options.fmu)
+    scene = known.assigned(options.set)
+    law = friction_law(scene, fmu=options.fmu)
     vary = assignments(options.vary, "--vary")
     for name in vary:
         known.find(name, "--vary", ("input",))
-    if "V" not in vary:
+    if "V" in scene and "V" not in vary:
+        vary["V"] = str(scene["V"])
+    elif "V" not in vary:
         amplitude = max(float(law.start.get(f"vibration.{name}", 0.0)) for name in ("V_1", "V_2"))
         vary["V"] = f"0:{1.5 * amplitude or 0.1}:16"
     made = grid(known, vary)

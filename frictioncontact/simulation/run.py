@@ -66,13 +66,13 @@ def simulate(
     if "F_t" not in outputs:  # the sample that an undersampled vibration makes of it is not read
         log = [text for text in log if "F_t is then one sample" not in text]
     warn_of(loaded.known, values | moving.values, log)
+    kept = np.concatenate([[0], np.searchsorted(times, ends) + 1])
+    found = rows[kept]
     if "F_t_mean" in outputs:
         k = list(outputs).index("F_t_mean")
         impulse = np.concatenate([[0.0], np.cumsum(rows[1:, k] * lengths)])
-        kept = np.concatenate([[0], np.searchsorted(times, ends) + 1])
-        rows = rows[kept]
-        rows[1:, k] = np.diff(impulse[kept]) / np.diff(ends, prepend=0.0)
-    return pd.DataFrame({"time": np.concatenate([[0.0], ends]), **dict(zip(outputs, rows.T, strict=True))})
+        found[1:, k] = np.diff(impulse[kept]) / np.diff(ends, prepend=0.0)
+    return pd.DataFrame({"time": np.concatenate([[0.0], ends]), **dict(zip(outputs, found.T, strict=True))})
 
 
 def _names(outputs: object) -> list[str]:

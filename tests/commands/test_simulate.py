@@ -79,6 +79,14 @@ def test_a_frame_of_inputs_and_a_last_row_that_is_shorter(fmu_path: Path) -> Non
     assert table["F_t"].to_numpy() == pytest.approx(exact, abs=1e-6 * 55.0)
 
 
+def test_samples_inside_of_rows_add_no_rows(fmu_path: Path) -> None:
+    """Whatever is read: as many rows as steps, with the force at their ends (Eq. 2)."""
+    inputs = {"time": [0.0, 1e-5], "V": [0.3, 0.3]}
+    table = fc.simulate(SOFT, stop=9e-5, step=3e-5, inputs=inputs, outputs=["F_t"], fmu=fmu_path)
+    exact = -55.0 * np.expm1(-2.5e6 * 0.3 / 55.0 * np.arange(4) * 3e-5)
+    assert table["F_t"].to_numpy() == pytest.approx(exact, abs=1e-6 * 55.0)
+
+
 def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
     """With samples inside the rows: W_f / V at a constant V."""
     inputs = {"time": np.linspace(0.0, 1e-4, 8), "V": np.full(8, 0.3)}

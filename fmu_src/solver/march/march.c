@@ -339,7 +339,8 @@ static double latest_end(March* m, double end) {
 // Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.
 static void slip(March* m, double end, bool forced) {
     m->result->evaluations += 1.0;
-    if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) > 0.0)) {
+    // Where V is 0, so is the push: the panel says how it goes on.
+    if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) >= 0.0)) {
         end_slip(m);
         return;
     }
