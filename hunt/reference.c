@@ -405,7 +405,7 @@ static void stretch(March* march, Real a, Real b) {
     Motion motion = {.sign = sign_of(velocity(w, &w->along, middle))};
     bool arrived = false; // at the bound just now
     int stays = 0;        // by rounding it may break away and stick without end
-    while (a < b && stays < 4) {
+    while (a < b) {
         if (march->slip && !(outward(w, middle, march->slip, false) > 0.0L)) {
             march->slip = 0; // it sticks, or leaves the bound
         }
@@ -423,6 +423,10 @@ static void stretch(March* march, Real a, Real b) {
         go_over(march, &motion, a, b);
         stays = march->met && !(march->met_at > a) ? stays + 1 : 0;
         a = march->met ? march->met_at : b;
+        if (stays > 4) {
+            w->panels += b - a > 1e-15L * w->h ? MOST_PANELS : 0.0L; // the step is not known
+            return;
+        }
         arrived = march->met != 0;
         if (march->met && !slip) {
             break_away(march, a, march->met);

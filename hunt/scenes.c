@@ -131,12 +131,12 @@ double scene_kappa(const ReferenceScene* s) {
 }
 
 double scene_gain(const ReferenceScene* s) {
-    const double swing = hypot(s->V_1, s->V_2), turns = TURN * s->f;
-    if (s->law != LAW_ELASTIC_PLASTIC || swing == 0.0) {
+    const double turns = TURN * s->f, V_rate = turns * hypot(s->V_1, s->V_2) + hypot(s->V_rate, s->V_y_rate);
+    if (s->law != LAW_ELASTIC_PLASTIC || V_rate == 0.0) {
         return 0.0;
     }
-    const double D = top_speed(s) / (turns * scene_kappa(s));
-    return 2.0 * D * (s->staticRatio - 1.0) * turns * swing / (s->V_S * s->V_S);
+    const double D = limit_now(s) / stiffness_now(s);
+    return 2.0 * D * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
 }
 
 static void friction(Draw* draw, int law, ReferenceScene* s) {
