@@ -151,7 +151,8 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
                   double tolerance) {
     taken->planar = plane_is_needed(before, &taken->scene);
     step_of_reference(before, &taken->scene, &taken->step, &taken->truth);
-    if (!taken->truth.known || may_forget(&taken->scene) || (taken->scene.initial == START_SETTLED && !settles(&taken->scene))) {
+    if (!taken->truth.known || may_forget(&taken->scene) ||
+        (taken->scene.initial == START_SETTLED && !settles(&taken->scene))) {
         trial->unknown++;
         taken->verdict = (Verdict){.ratio = -1.0};
         return;
@@ -161,7 +162,8 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
     if (!(taken->verdict.ratio <= 1.0)) {
         taken->verdict = verdict_by_rounding(before, taken, tolerance);
     }
-    const double settled = before == NULL && settles(&taken->scene) ? settled_ratio(taken, method, tolerance) : -1.0;
+    const double settled =
+        before == NULL && settles(&taken->scene) ? settled_ratio(taken, method, tolerance) : -1.0;
     if (settled > taken->verdict.ratio) {
         taken->verdict = (Verdict){settled, OF_SETTLED};
     }

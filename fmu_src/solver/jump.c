@@ -137,7 +137,8 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     const FcGaussRule* rule = &FC_GAUSS_8;
     for (int i = 0; i < 8; i++) {
         const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
-        *heat -= rule->weight[i] * (b - from) * at.limit * at.rate; // a shallow rise that is not seen cancels its fall
+        *heat -= rule->weight[i] * (b - from) * at.limit *
+                 at.rate; // a shallow rise that is not seen cancels its fall
     }
     return end.D;
 }
@@ -154,13 +155,14 @@ static const double END_OF_CURVE = 7.0;
 
 // The next place to stop at after s.
 static double next_place(const Ramp* ramp, double s, double step) {
-    const double V_S = fmin(ramp->scene->friction->V_S, ramp->past.V_S);
+    const double V_S = ramp->scene->friction->V_S;
+    const double least = fmin(V_S, ramp->past.V_S);
+    const double most = fmax(V_S, ramp->past.V_S);
     const double V = hypot(ramp->past.V + s * ramp->V, ramp->past.V_y + s * ramp->V_y);
     const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
     if (ramp->slips != 0 && fc_has_static_friction(ramp->scene->friction) && change != 0.0) {
-        const double beyond = V / V_S - END_OF_CURVE;
-        next = fmin(next, s + fmax(STEP_OF_CURVE, beyond) * V_S / change);
+        next = fmin(next, s + fmax(STEP_OF_CURVE * least, V - END_OF_CURVE * most) / change);
     }
     const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
     assert(place > s && place <= 1.0);

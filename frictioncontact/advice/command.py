@@ -80,7 +80,9 @@ def run(options: argparse.Namespace) -> None:
 def start_values(fmu: FrictionFmu, values: Mapping[str, Value]) -> str:
     """Values as fmpy's command takes them: of an enumeration the number."""
     codes = {name: fmu.known.items[name].get(str(value), value) for name, value in values.items()}
-    return " ".join(["--start-values" if codes else "", *(f"{name} {code:.10g}" for name, code in codes.items())])
+    return " ".join(
+        ["--start-values" if codes else "", *(f"{name} {code:.10g}" for name, code in codes.items())]
+    )
 
 
 def coupling(

@@ -151,7 +151,8 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
     if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V asks for the whole share
         whole.z = fmax(1.0, panel->z);
     }
-    whole.z = fmax(LEAST_SHARE * fmin(1.0, interval->speed * interval->duration / interval->saturation), whole.z);
+    whole.z =
+        fmax(LEAST_SHARE * fmin(1.0, interval->speed * interval->duration / interval->saturation), whole.z);
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
     const double path = march->path_after + straight_way(march, end, march->half.end);
     const double left_at_end = exp(-path / interval->saturation);

@@ -264,8 +264,8 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     panel->along.limit = nodes->at[LAST].limit;
     panel->along.rate = z[LAST] / nodes->tau[LAST];
     const double force = panel->along.sigma * bound[LAST].D;
-    const double quadrature =
-        error_of_direction(nodes, from->speed, F_x, V_x) + error_of_direction(nodes, from->speed, F_y, V_y) + error_of_mean(nodes, heat);
+    const double quadrature = error_of_direction(nodes, from->speed, F_x, V_x) +
+                              error_of_direction(nodes, from->speed, F_y, V_y) + error_of_mean(nodes, heat);
     set_errors(nodes, z, force * fc_radau_unresolved(slope, fmax(0.0, panel->along.z)), quadrature,
                &panel->along);
     return true;
