@@ -404,29 +404,27 @@ static void stretch(March* march, Real a, Real b) {
     const Real middle = 0.5L * (a + b);
     Motion motion = {.sign = sign_of(velocity(w, &w->along, middle))};
     bool arrived = false; // at the bound just now
-    int stays = 0;        // by rounding it may break away and stick without end
+    int stays = 0;        // where V is 0 it may break away and stick without end
     while (a < b) {
         if (march->slip && !(outward(w, middle, march->slip, false) > 0.0L)) {
             march->slip = 0; // it sticks, or leaves the bound
         }
+        const bool blind = stays > 4;
+        const Real to = blind && a + 1e-12L * (b - a) > a ? a + 1e-12L * (b - a) : b;
         const int slip = march->slip;
         march->slipped = march->slipped || slip;
         march->met = 0;
         for (int side = 1; side >= -1; side -= 2) {
-            march->watch[side < 0] = w->bounded && !w->open && !w->open_ends &&
+            march->watch[side < 0] = !blind && w->bounded && !w->open && !w->open_ends &&
                                      (slip ? side == slip : outward(w, middle, side, true) > 0.0L);
         }
         // on the bound, or catching up
         const bool lies =
             slip && (arrived || gap(w, a, march->delta, slip, false) <= 1e-18L * fabsl(march->delta));
         motion.slip = lies ? slip : 0;
-        go_over(march, &motion, a, b);
+        go_over(march, &motion, a, to);
         stays = march->met && !(march->met_at > a) ? stays + 1 : 0;
-        a = march->met ? march->met_at : b;
-        if (stays > 4) {
-            w->panels += b - a > 1e-15L * w->h ? MOST_PANELS : 0.0L; // the step is not known
-            return;
-        }
+        a = march->met ? march->met_at : to;
         arrived = march->met != 0;
         if (march->met && !slip) {
             break_away(march, a, march->met);

@@ -139,7 +139,10 @@ static double settled_ratio(TrialStep* taken, int method, double tolerance) {
 }
 
 // Over so many periods of a motion that may be chaotic the state before tells nothing.
-static bool may_forget(const ReferenceScene* s) { return may_be_chaotic(s) && s->h * s->f > 10.0; }
+static bool may_forget(const ReferenceScene* s) {
+    const bool vibrates = s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0;
+    return vibrates && may_be_chaotic(s) && s->h * s->f > 10.0;
+}
 
 // Whether the scene has a settled state that is promised.
 static bool settles(const ReferenceScene* s) {
