@@ -150,14 +150,19 @@ static bool settles(const ReferenceScene* s) {
     return s->law == LAW_COULOMB || !vibrates || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
 }
 
+// Leaves a step unjudged.
+static void skip(Trial* trial, TrialStep* taken) {
+    trial->unknown++;
+    taken->verdict = (Verdict){.ratio = -1.0};
+}
+
 static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, int method,
                   double tolerance) {
-    taken->planar = plane_is_needed(before, &taken->scene);
-    step_of_reference(before, &taken->scene, &taken->step, &taken->truth);
-    if (!taken->truth.known || may_forget(&taken->scene) ||
-        (taken->scene.initial == START_SETTLED && !settles(&taken->scene))) {
-        trial->unknown++;
-        taken->verdict = (Verdict){.ratio = -1.0};
+    const ReferenceScene* scene = &taken->scene;
+    taken->planar = plane_is_needed(before, scene);
+    step_of_reference(before, scene, &taken->step, &taken->truth);
+    if (!taken->truth.known) {
+        skip(trial, taken);
         return;
     }
     const Values truth = of_reference(&taken->truth);
@@ -165,9 +170,13 @@ static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, 
     if (!(taken->verdict.ratio <= 1.0)) {
         taken->verdict = verdict_by_rounding(before, taken, tolerance);
     }
-    const double settled =
-        before == NULL && settles(&taken->scene) ? settled_ratio(taken, method, tolerance) : -1.0;
-    if (settled > taken->verdict.ratio) {
+    if (!(taken->verdict.ratio <= 1.0) &&
+        (may_forget(scene) || (scene->initial == START_SETTLED && !settles(scene)))) {
+        skip(trial, taken);
+        return;
+    }
+    const double settled = before == NULL ? settled_ratio(taken, method, tolerance) : -1.0;
+    if (settled > taken->verdict.ratio && (settled <= 1.0 || settles(scene))) {
         taken->verdict = (Verdict){settled, OF_SETTLED};
     }
 }

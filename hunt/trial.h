@@ -12,7 +12,7 @@
 // - the change of the reference if the step's own start and length move by two units in their last place;
 // - the same if the deflection before the step moves by 2e-10 of itself: at its static bound a bristle may have
 //   broken away or not; by the tolerance in a step whose motion may be chaotic (scene_gain above 2);
-//   one over more than 10 periods is not judged;
+//   one over more than 10 periods, or settled, that misses is counted and not judged;
 // - a bristle within 1e-10 of its kinetic bound, or 1e-11 of its static one, lies on it. S is at least 1e-20 N, and the allowed
 //   error of an energy 1e-20 J. A step is judged from the FMU's own state before it, a settled start by
 //   F_t_start. A step with more panels or cycles than the reference takes is counted and not judged.
