@@ -10,10 +10,12 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy import stats
 from scipy.optimize import least_squares
 
+import frictioncontact as fc
 from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
@@ -135,6 +137,17 @@ def test_exact_data_give_the_truth_from_no_start_value(fmu: FrictionFmu) -> None
     for (low, high), truth in zip(result.profiles, TRUTH.values(), strict=True):
         assert truth * 0.999 < low < truth < high < truth * 1.001
     assert result.warnings == []
+
+
+@pytest.mark.parametrize(("F_C", "sigma"), [(8.0, 1e6), (200.0, 1e7)])
+def test_a_limit_far_from_the_start_value_is_found(fmu_path: Path, F_C: float, sigma: float) -> None:
+    """ElasticPlastic from rest at a constant V: F_t = min(sigma V t, F_C)."""
+    time = np.linspace(0.0, 5.0 * F_C / (sigma * 0.02), 15)
+    data = pd.DataFrame({"time": time, "V": 0.02, "F_t": np.minimum(sigma * 0.02 * time, F_C)})
+    law = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+    found = fc.identify(data, ["contact.sigma", "F_C"], start=law, fmu=fmu_path).values
+    assert found["contact.sigma"] == pytest.approx(sigma, rel=1e-3)
+    assert found["F_C"] == pytest.approx(F_C, rel=1e-3)
 
 
 def test_fixed_parameter_is_fitted_too(fmu: FrictionFmu) -> None:
