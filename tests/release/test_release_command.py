@@ -76,7 +76,7 @@ def test_the_checksums_beside_it_are_those_of_sha256sum(released: Path) -> None:
 
 
 def test_it_is_one_of_ours(released: Path) -> None:
-    command = [sys.executable, "-m", "workshop.release.command", "--check", str(released)]
+    command = [sys.executable, "-m", "workshop", "workshop.release.command", "--check", str(released)]
     run = subprocess.run(command, check=True, capture_output=True, text=True)
     assert len(run.stdout.splitlines()) == 4
     assert all(line.startswith("ok  ") for line in run.stdout.splitlines())
