@@ -53,8 +53,10 @@ typedef struct {
 
 static int kappa_class(const ReferenceScene* scene) {
     const double kappa = scene_kappa(scene);
-    const bool vibrates = scene->V_1 != 0.0 || scene->V_2 != 0.0 || scene->a_d != 0.0;
-    return !vibrates ? KAPPAS - 1 : kappa <= 1.0 ? 0 : kappa >= 1e8 ? 5 : 1 + (int)(log10(kappa) / 2.0);
+    return !vibrates(scene) ? KAPPAS - 1
+           : kappa <= 1.0   ? 0
+           : kappa >= 1e8   ? 5
+                            : 1 + (int)(log10(kappa) / 2.0);
 }
 
 static void add_cell(Cell* sum, const Cell* part) {

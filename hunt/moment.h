@@ -87,7 +87,6 @@ World make_world(const ReferenceScene* scene, Real h, int fineness);
 // The same with its inputs held.
 World held_world(const World* w, Real h);
 
-bool vibrates(const ReferenceScene* s);
 bool is_held(const ReferenceScene* s);
 
 Real velocity(const World* w, const Drive* drive, Real t);

@@ -60,6 +60,8 @@ ReferenceScene reference_scene(void);
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result);
 
+bool vibrates(const ReferenceScene* scene);
+
 // Whether the contact is open at the start of a scene.
 bool reference_is_open(const ReferenceScene* scene);
 

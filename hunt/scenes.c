@@ -356,9 +356,8 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
 static bool is_in_domain(const ReferenceScene* s) {
     const ReferenceScene end = scene_after(s);
     const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
-    const bool vibrates = s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0;
     return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
-           !(vibrates && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
+           !(vibrates(s) && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
            (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }
 

@@ -140,14 +140,12 @@ static double settled_ratio(TrialStep* taken, int method, double tolerance) {
 
 // Over so many periods of a motion that may be chaotic the state before tells nothing.
 static bool may_forget(const ReferenceScene* s) {
-    const bool vibrates = s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0;
-    return vibrates && may_be_chaotic(s) && s->h * s->f > 10.0;
+    return vibrates(s) && may_be_chaotic(s) && s->h * s->f > 10.0;
 }
 
 // Whether the scene has a settled state that is promised.
 static bool settles(const ReferenceScene* s) {
-    const bool vibrates = s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0;
-    return s->law == LAW_COULOMB || !vibrates || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
+    return s->law == LAW_COULOMB || !vibrates(s) || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
 }
 
 // Leaves a step unjudged.
@@ -187,11 +185,10 @@ static void look_at(TrialStep* taken, const ReferenceScene* before) {
     const bool ends_open = reference_is_open(&end), was_open = reference_is_open(before ? before : &now);
     const bool moves = now.V_rate != 0.0 || now.V_y_rate != 0.0 || now.d_rate != 0.0 || now.E_rate != 0.0 ||
                        now.load_rate != 0.0;
-    const bool vibrates = now.V_1 != 0.0 || now.V_2 != 0.0 || now.a_d != 0.0;
     taken->is[IS_STATIC] = now.staticRatio > 1.0 && (now.law == LAW_ELASTIC_PLASTIC || now.law == LAW_LUGRE);
     taken->is[OPENS] = ends_open && !was_open;
     taken->is[CLOSES] = was_open && !ends_open;
-    taken->is[LEAPS] = moves && vibrates && now.h * now.f >= 10.0 && now.law != LAW_COULOMB;
+    taken->is[LEAPS] = moves && vibrates(&now) && now.h * now.f >= 10.0 && now.law != LAW_COULOMB;
     now.h = now.V_rate = now.V_y_rate = now.d_rate = now.E_rate = now.load_rate = 0.0;
     for (int k = 0; before && k < REFERENCE_DOUBLES; k++) {
         ReferenceScene past = *before;

@@ -137,8 +137,8 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     const FcGaussRule* rule = &FC_GAUSS_8;
     for (int i = 0; i < 8; i++) {
         const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
-        *heat -= rule->weight[i] * (b - from) * at.limit *
-                 at.rate; // a shallow rise that is not seen cancels its fall
+        // With its sign, so that a shallow rise that is not seen cancels its fall.
+        *heat -= rule->weight[i] * (b - from) * at.limit * at.rate;
     }
     return end.D;
 }

@@ -225,7 +225,7 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     double F_y[POINTS];
     double V_x[POINTS];
     double V_y[POINTS];
-    double heat[POINTS]; // W over a speed, N
+    double heat[POINTS]; // N, its power over a speed
     FcMap* map = &panel->along.map;
     *map = (FcMap){.relaxation = 1.0};
     panel->across = (FcMap){.relaxation = 1.0};
@@ -251,8 +251,9 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
         // The heat is the work less what the bristle stores, whose rate follows Stribeck's curve at once, and what the stiffness takes.
-        heat[i] = force * (outwards + 0.5 * D * bound[i].log_sigma_rate) / from->push;
-        map->heat_offset += weight * from->push * heat[i];
+        const double power = force * (outwards + 0.5 * D * bound[i].log_sigma_rate);
+        heat[i] = power / from->push;
+        map->heat_offset += weight * power;
         map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
     }
     const double start = bound[STAGES].D;
