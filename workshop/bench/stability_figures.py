@@ -89,7 +89,7 @@ def draw_coupled(
                 panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)
                 panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
     panel.xaxis.set_minor_formatter(NullFormatter())
-    panel.set_xlabel("communication step, or time per call in model exchange [s]")
+    panel.set_xlabel("communication step; model exchange: time per evaluation of rates [s]")
     panel.set_ylabel("largest error of $F_t$ over $F_C$")
     panel.set_title("Jacobi master; dashed: stable up to here while it sticks")
     panel.legend()
