@@ -11,7 +11,7 @@ SHOWN = 40  # characters of a wrong name or value in a message
 
 
 class UserError(ValueError):
-    """Something the user can mend; the text names it in one line."""
+    """A mistake that the user can correct; the text names it in one line."""
 
 
 class FrictionError(UserError):
@@ -19,11 +19,11 @@ class FrictionError(UserError):
 
 
 class BatchError(UserError):
-    """The batch can't be run, or a scenario was refused; the text is one line that says why."""
+    """The batch can't be run, or a scenario was refused; the text gives the reason in one line."""
 
 
 class FrictionWarning(UserWarning):
-    """A scene was accepted that was hardly meant: the FMU's own warning, a setting that the scene does not
+    """An accepted scene that is probably a mistake: the FMU's own warning, a setting that the scene does not
     use, or a magnitude that looks like another unit."""
 
 

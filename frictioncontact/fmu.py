@@ -152,7 +152,7 @@ def logging_callbacks(messages: list[str], warnings: list[str] | None = None) ->
 
 
 class Session(Closing):
-    """One instance, stepped by its user. `time` [s] is where it is, `warnings` what the FMU warned of.
+    """One instance, stepped by its user. `time` [s] is its present time, `warnings` the FMU's warnings.
 
     Opened by `FrictionFmu.session`, closed at the end of a `with` block or by `close()`. Every call raises
     UserError for an unknown name or a wrong value, and FrictionError if the FMU refuses it; the instance is

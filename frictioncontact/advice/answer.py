@@ -29,7 +29,7 @@ STEPS = (1.0, 0.37, 1.0)  # over the communication step
 
 @dataclass(frozen=True, repr=False)
 class Advice:
-    """What to set, and what it was graded by. str() gives it in words."""
+    """The advised settings and their grade. str() prints them."""
 
     asked: Question
     settings: dict[str, Value]  # start values besides the scene's own
@@ -45,7 +45,7 @@ class Advice:
 
     @property
     def knows_the_mean(self) -> bool:
-        """Whether some tolerance gives that accuracy of the mean friction."""
+        """Whether some tolerance gives the accuracy for the mean friction."""
         return self.asked.accuracy * abs(self.mean) >= LEAST * self.scale
 
     def __repr__(self) -> str:
@@ -81,9 +81,9 @@ def advise(
     phases: tuple[float, ...] = PHASES,
     fmu: str | Path | None = None,
 ) -> Advice:
-    """What to set so that F_t and F_t_mean are within an accuracy of F_C and of the mean friction.
+    """Settings with which F_t and F_t_mean are accurate enough, relative to F_C and to the mean friction.
 
-    scene     start values of what describes it, SI units
+    scene     start values that describe it, SI units
     accuracy  largest error, over F_C and over the mean friction, from 1e-8 to 1
     step      communication step, s (a period of the vibration)
     output    which output must be accurate: "F_t", "F_t_mean" or "both"
@@ -92,7 +92,7 @@ def advise(
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
     fmu       another .fmu file of this model
-    returns   an `Advice`: settings, start_values, mean and error [N]; str() says it in words
+    returns   an `Advice`: settings, start_values, mean and error [N]; str() prints them
     raises    UserError: the question is wrong, or the FMU refuses the scene
     warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 

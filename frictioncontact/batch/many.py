@@ -60,16 +60,16 @@ def simulate_many(
               "mean", "min", "max" (of the samples), "samples" (all of them: one axis more; in a frame the
               columns NAME[0], NAME[1], ...)
     fmu       another .fmu file of this model with a binary for this platform, or its bytes
-    settle    length of a first step that is not read. If it is not given, there is none; then scenarios
-              start settled if the unit is the period and the values say nothing of initialState
-    duration  what is read after that, in samples equal steps
+    settle    length of a first step that is not read. Without it scenarios start settled, if the unit is
+              the period and the values do not contain initialState
+    duration  length of the recorded part, in `samples` equal steps
     unit      of settle and duration: a period of the vibration, 1 / vibration.f, or a second
-    settled   start where the state tends to after infinitely many periods: initialState = Settled
-    inputs    what is set before each step, alike in all scenarios: name of an input -> a value for every step
-    steps     lengths of the steps, in the unit, in place of duration and samples
+    settled   start in the settled state: initialState = Settled
+    inputs    inputs to set before each step, the same in all scenarios: name -> a value for every step
+    steps     lengths of the steps, in the unit, instead of duration and samples
     errors    "raise": BatchError with the message of the first scenario that the FMU refuses;
               "keep": its results are NaN and "reason", one result more, holds the message (else None)
-    threads   that run at once, up to 1024; one for each processor that this process may use
+    threads   number of threads, up to 1024; by default one for each processor that this process may use
     progress  True: a bar on a terminal; or a function that is told how many scenarios are finished and
               how many of them refused
     returns   name of each result -> array, SI units; of a frame the frame of its rows
@@ -78,7 +78,7 @@ def simulate_many(
     warns     FrictionWarning: of a setting that has no effect in any scenario; of an unlikely magnitude
 
     At a KeyboardInterrupt the threads stop after their present step, and within a second the exception
-    reaches the caller; a few steps of the default method are run without a thread, to their end.
+    reaches the caller. A few steps of the default method run to their end without a thread.
 
         import numpy as np
         import frictioncontact as fc

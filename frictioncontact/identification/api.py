@@ -40,7 +40,7 @@ LEAST_REFITS = 40  # below, there is no 2.5 % quantile
 
 @dataclass(frozen=True, repr=False)
 class Identification:
-    """What a fit found. str() says first whether the law fits; plot() draws it."""
+    """The result of a fit. str() states first whether the law fits; plot() draws the fit."""
 
     fit: Fit
     experiment: Experiment = field(repr=False)
@@ -60,7 +60,7 @@ class Identification:
 
     @property
     def misfits(self) -> list[str]:
-        """What is wrong with the law for these data, in words; empty where it fits."""
+        """The reasons why the law does not fit these data, in words; empty if it fits."""
         return self.fit.misfits
 
     def __repr__(self) -> str:
@@ -102,10 +102,10 @@ def identify(
     fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
     start      start values that all rows share, SI units; of an enumeration an item or its number
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")
-    bootstrap  so many refits to data with new noise, at least 40, for intervals by simulation too
+    bootstrap  number of refits to data with new noise, at least 40, for intervals by simulation
     fmu        another .fmu file of this model
-    tell       is told what is begun
-    returns    an `Identification`: values, intervals, misfits; str() says it in words, plot() draws it
+    tell       a function that is called with the name of each stage
+    returns    an `Identification`: values, intervals, misfits; str() prints them, plot() draws the fit
     raises     UserError: the data or the request are wrong; a parameter has no effect on these data
     warns      FrictionWarning: of a start value that has no effect; of an unlikely magnitude
 

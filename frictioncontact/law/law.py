@@ -24,7 +24,7 @@ FORCE, TRANSVERSE = "F_t_settled", "F_y_settled"
 class FrictionLaw:
     """The friction force [N] as a function of the inputs: its mean over a period of the vibration, settled.
 
-    `start` holds the scene. Made by `friction_law`; one law is for one thread.
+    `start` holds the scene. `friction_law` makes it. Use it in one thread only.
     """
 
     def __init__(self, start: Mapping[str, Value] | None, fmu: str | Path | None) -> None:
@@ -51,13 +51,13 @@ class FrictionLaw:
         return self._at(V, inputs, lambda: self._session.get(FORCE))
 
     def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
-        """The force transverse to V, F_y_settled [N]; else as a call."""
+        """The force transverse to V, F_y_settled [N]; arguments as in a call."""
         return self._at(V, inputs, lambda: self._session.get(TRANSVERSE))
 
     def derivative(
         self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
     ) -> float | np.ndarray:
-        """The derivative of a force by one of the inputs, at a kink that of one side.
+        """The derivative of a force by one of the inputs; one-sided at a kink.
 
         V         velocity, m/s: a number, or an array of any shape
         by        the input: V, V_y, d, load or E
@@ -123,7 +123,7 @@ class FrictionLaw:
 
 
 def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | None = None) -> FrictionLaw:
-    """The friction law that a machine sees which is slower than the vibration: F_t_settled, as a function.
+    """The friction law for a machine that is slower than the vibration: F_t_settled as a function.
 
     scene     name of an input or parameter -> value, SI units; of an enumeration an item or its number
     fmu       another .fmu file of this model

@@ -32,15 +32,15 @@ def simulate(
     outputs: Sequence[str] = OUTPUTS,
     fmu: str | Path | None = None,
 ) -> pd.DataFrame:
-    """A scene from 0 to stop; a row each step.
+    """Simulates a scene from 0 to stop, with a row for each step.
 
     start     name of an input or parameter -> its value at the start, SI units; of an enumeration an item or
               its number
     stop      s; the last step is shorter if stop is not a multiple of step
     step      s between two rows; F_t_mean is the mean over the time since the row before
     inputs    a table (mapping or frame) with time [s] and any inputs: linear between the samples, held before
-              the first and after the last; two samples at one time are a jump. The result does not depend
-              on how samples and steps lie to each other
+              the first and after the last; two samples at one time are a jump. Samples need not coincide
+              with steps
     outputs   names of the variables to read
     fmu       another .fmu file of this model
     returns   a frame of ceil(stop / step) + 1 rows: the column time [s], and one for each output, SI units

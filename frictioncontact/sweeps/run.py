@@ -30,7 +30,7 @@ MOST_FILES = 100_000
 
 @dataclass(frozen=True)
 class Swept:
-    """What came of a sweep."""
+    """The results of a sweep."""
 
     results: Path  # a folder of Parquet files, which pandas and pyarrow read as one
     good: int  # scenarios in there
@@ -78,7 +78,7 @@ def sweep(
 
     They start settled, unless initialState is among their values. Needs the extra frictioncontact[sweep].
 
-    output    folder of the results; that of an unfinished sweep with the same arguments is gone on with
+    output    folder of the results; an unfinished sweep with the same arguments continues
     fmu       another .fmu file of this model with a binary for this platform
     vary      name of an input or parameter -> its values: "a,b,c", a sequence, or "low:high:count[:log]" of
               a grid of all combinations, "low:high[:log]" of a random sweep; SI units, of an enumeration
@@ -88,11 +88,11 @@ def sweep(
     set       name -> value, the same in all scenarios
     workers   threads here; one for each processor that this process may use
     cluster   address of a Dask scheduler, whose workers have this package, in place of threads here
-    group     scenarios of a file of the results: what a kill loses at most for each worker
-    samples   of the period
-    fresh     discard what the folder holds of a sweep
+    group     number of scenarios in a file of results; a kill loses at most one group of each worker
+    samples   steps of the period
+    fresh     discard an earlier sweep in the folder
     progress  a bar on a terminal
-    returns   where the results are, and what they took
+    returns   a `Swept`: the place of the results, and their cost
     raises    UserError: an argument is wrong, before anything runs; the output can't be written
     warns     FrictionWarning: of a setting that has no effect in any scenario; of an unlikely magnitude
 
