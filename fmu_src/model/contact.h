@@ -24,7 +24,7 @@
 #ifndef FC_MODEL_CONTACT_H
 #define FC_MODEL_CONTACT_H
 
-// The values that modelDescription.xml gives them.
+// The values of modelDescription.xml.
 typedef enum { FC_CONTACT_ASPERITIES = 1, FC_CONTACT_CONSTANT = 2, FC_CONTACT_MINDLIN = 3 } FcContactModel;
 typedef enum { FC_CONTACT_SEPARATION = 1, FC_CONTACT_LOAD = 2 } FcContactInput;
 
@@ -69,8 +69,8 @@ typedef struct {
 // E [Pa] > 0.
 FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E);
 
-// At separation d [m] > 0: all of it, or the stiffness sigma [N/m] alone. An open contact of constant stiffness
-// may have d = 0: its stiffness is right, its area and force are not to be used.
+// At the separation d [m] > 0: all values, or the stiffness sigma [N/m] alone. An open contact of constant
+// stiffness may have d = 0. Then only its stiffness is valid.
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d);
 double fc_contact_stiffness(const FcContactAtModulus* c, double d);
 

@@ -6,7 +6,7 @@
 #include "model/constants.h"
 #include "model/root.h"
 
-// f t less the nearest whole number, exact to the last bit of t: the product's rounding error is added back.
+// f t minus the nearest whole number, exact to the last bit of t: the product's rounding error is added back.
 static double phase_in_cycles(double f, double t) {
     const double cycles = f * t;
     if (!isfinite(cycles)) {
@@ -77,8 +77,8 @@ FcPhase fc_drive_phase(const FcDrive* drive, double t) {
     return angle == 0.0 ? (FcPhase){0.0, 1.0} : (FcPhase){sin(angle), cos(angle)};
 }
 
-// Where V nearly cancels V_1 |V| may be less than the rounding of either, by which the stiffest contacts would relax
-// otherwise: 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits where |cos| is nearly 1.
+// If V nearly cancels V_1, |V| may be less than the rounding of either, and the stiffest contacts would relax
+// wrongly. 1 - |cos| = sin^2 / (1 + |cos|) keeps its digits if |cos| is nearly 1.
 double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
     const double V_1 = drive->vibration.V_1;
     const double cosine = at_t.cosine;
@@ -91,7 +91,7 @@ double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
            (drive->V.rate * t - turn * (at_t.sine * at_t.sine / (1.0 + fabs(cosine))));
 }
 
-// Of the angle of the vibration across.
+// Of the angle of the transverse vibration.
 static FcPhase phase_across(const FcDrive* drive, FcPhase at_t) {
     return (FcPhase){.sine = at_t.sine * drive->cos_phase_2 + at_t.cosine * drive->sin_phase_2,
                      .cosine = at_t.cosine * drive->cos_phase_2 - at_t.sine * drive->sin_phase_2};
@@ -210,7 +210,8 @@ double fc_drive_largest_speed(const FcDrive* drive, double h) {
     return hypot(along, fmax(fabs(drive->V_y.value), fabs(linear(drive->V_y, h))) + drive->vibration.V_2);
 }
 
-// Half an angle [rad] up to which the displacement is taken from a series. Derived: what that leaves out is then under 1e-16.
+// Half an angle [rad] up to which the displacement is a series. Derived: the remainder of the series is below
+// 1e-16 there. Twice the angle would leave a larger remainder.
 static const double SERIES_UP_TO = 0.5;
 
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
@@ -225,7 +226,8 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
     if (half > SERIES_UP_TO) {
         return linear(drive->V, middle) * duration + 2.0 * V_c / drive->omega * sin(half);
     }
-    // V in the middle as a whole, since it may nearly cancel V_1, less what the vibration bends: 1 - sin(half) / half.
+    // V in the middle, as one number since V may nearly cancel V_1, minus the effect of the vibration's
+    // curvature, 1 - sin(half) / half.
     const double y = half * half;
     const double bent =
         y / 6 * (1.0 - y / 20 * (1.0 - y / 42 * (1.0 - y / 72 * (1.0 - y / 110 * (1.0 - y / 156)))));
@@ -278,9 +280,9 @@ static double square_by_quadrature(const FcDrive* drive, double middle, double h
     return square * half;
 }
 
-// Of the sum of its terms: below it the square of V has lost three digits to their cancelling, as where V grazes zero, or in a
-// short step around a reversal. The vibration turns by less than 2 rad there, over which eight nodes err by less than 1e-13 of
-// the terms.
+// The part of the sum of its terms below which the square of V has lost three digits to cancellation, for
+// example if V grazes zero or in a short step around a reversal. The vibration then turns by less than 2 rad,
+// over which eight nodes err by less than 1e-13 of the terms. A smaller part would keep lost digits.
 static const double CANCELS = 1e-3;
 
 // With tau = t - middle, V = v + V' tau + V_1 cos(theta + omega tau), s = omega duration / 2 and S = sin(s):
@@ -307,13 +309,13 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1) {
                : square;
 }
 
-// Roots of V nearer than this, over 1 + the angle [rad], are one. By hand, 450 eps: if smaller, rounding finds a root again; if
-// larger, a second root is passed over.
+// Roots of V nearer than this, over 1 + the angle [rad], are one root. Chosen empirically, 450 eps: a smaller
+// distance finds a root again through rounding, a larger one passes over a second root.
 static const double SAME_ANGLE = 1e-13;
 
 static double least_ahead(double angle) { return SAME_ANGLE * (1.0 + fabs(angle)); }
 
-// How far ahead of now, by more than `least`, the next angle is that equals target modulo 2 pi.
+// The distance from now, more than `least`, to the next angle that equals target modulo 2 pi.
 static double angle_ahead(double now, double target, double least) {
     double ahead = fmod(target - now, FC_TWO_PI);
     if (ahead < 0.0) {
@@ -335,15 +337,16 @@ static double root_of_V(const FcDrive* drive, double t0, double t1) {
                    &evaluations);
 }
 
-// A dip shallower than this is smooth enough to be stepped over.
+// A dip that is shallower than this is smooth enough to be stepped over. A larger value cuts more stretches.
 static bool is_dip(const FcDrive* drive, double t) {
     const FcVelocity at = fc_drive_velocity(drive, t);
     return at.V * at.curvature >= 0.0 &&
            fabs(at.V) < 0.5 * (fabs(linear(drive->V, t)) + drive->vibration.V_1);
 }
 
-// Up to this |V|, over V_1, V goes through zero steeply enough for acos and its cosine to keep their digits. By hand: there
-// acos multiplies rounding by 1 / sqrt(1 - 0.9^2) = 2.3.
+// The largest |V| over V_1 at which V passes zero steeply enough for acos and its cosine to keep their
+// digits. Chosen empirically: at this value acos multiplies rounding by 1 / sqrt(1 - 0.9^2) = 2.3, at larger
+// values by more.
 static const double AWAY_FROM_GRAZING = 0.9;
 
 // acos(-V / V_1), which loses half of its digits next to 1 and -1.
@@ -389,14 +392,14 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
 }
 
-// What V may be at the double next to a root t.
+// The largest |V| at the floating-point number next to a root t.
 static double rounding_of_V(const FcDrive* drive, double t) {
     return fabs(drive->vibration.V_1) * least_ahead(theta(drive, t)) +
            1e-15 * (fabs(drive->V.value) + fabs(drive->V.rate) * t);
 }
 
 static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, double end) {
-    // V is monotone between the angles where sin(theta) = V' / (V_1 omega), if there are any.
+    // V is monotone between the angles at which sin(theta) = V' / (V_1 omega), if there are any.
     const double slope = drive->V.rate / (drive->vibration.V_1 * drive->omega);
     double from = t;
     double V_from = fc_drive_V(drive, from);
@@ -433,7 +436,7 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     assert(t >= 0.0 && end >= t);
     if (drive->vibration.V_1 == 0.0) {
-        const double root = -drive->V.value / drive->V.rate; // no root where V' = 0: infinite or NaN
+        const double root = -drive->V.value / drive->V.rate; // no root if V' = 0: infinite or NaN
         return root > t && root < end ? event_at(drive, root, true) : none_before(end);
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)

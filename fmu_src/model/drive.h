@@ -1,9 +1,9 @@
-// What drives the contact over one communication step: V(t), d(t) or load(t), E(t).
+// The motion of the contact over one communication step: V(t), d(t) or load(t), E(t).
 //
 //     V(t) = V + V' t + V_1 cos(2 pi f t + theta_0)                (Eq. 24)
 //     d(t) = d + d' t + a_d cos(2 pi f t + theta_0 + phase_d)      (section 3.2)
 //     E(t) = E + E' t              load(t) = load + load' t
-//     V_y(t) = V_y + V_y' t + V_2 cos(2 pi f t + theta_0 + phase_2), across V, in the plane of the contact
+//     V_y(t) = V_y + V_y' t + V_2 cos(2 pi f t + theta_0 + phase_2), transverse to V, in the plane of the contact
 //
 // t is local: 0 at the start of the step; theta_0 is the phase of the vibration there. The rates are zero when
 // the inputs are held. Local time keeps a step at 1e9 s as accurate as one at 0.
@@ -27,8 +27,8 @@ typedef struct {
     double rate;  // per second
 } FcLinearInput;
 
-// E or load after t [s], in one rounding: where an input falls by decades, that of the product would be many times what is
-// left of it.
+// E or load after t [s], with one rounding. If an input falls by decades, the rounding of the product would
+// be many times the rest.
 double fc_input_after(FcLinearInput input, double t);
 
 typedef struct {
@@ -44,8 +44,8 @@ typedef struct {
     double theta_0; // rad, phase at local time 0
 } FcDrive;
 
-// The drive of a step that starts at the absolute time start + rest [s], rest being what rounding cut off start. It does not slide
-// across: V_y is 0 until it is set.
+// The drive of a step that starts at the absolute time start + rest [s]; rest is the part that rounding cut
+// off start. V_y is 0 until it is set.
 FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinearInput load,
                       FcVibration vibration, double start, double rest);
 
@@ -76,7 +76,7 @@ FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase a
 double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t);   // m/s
 double fc_drive_V_y_at_phase(const FcDrive* drive, double t, FcPhase at_t); // m/s
 
-// The drive whose V is V_y of this one, for what is asked of V alone below.
+// The drive whose V is V_y of this one, for the functions of V below.
 FcDrive fc_drive_across(const FcDrive* drive);
 
 double fc_drive_V(const FcDrive* drive, double t);           // m/s
@@ -95,8 +95,8 @@ double fc_drive_smallest_E(const FcDrive* drive, double h);    // lower bound of
 double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of E over [0, h]
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h], in the plane
 
-// Time [s] in which what moves at a rate and with a curvature, neither negative, moves by that: the root of
-// rate x + curvature x^2 / 2 = change.
+// The time [s] in which a quantity with this rate and curvature, neither negative, moves by change: the root
+// of rate x + curvature x^2 / 2 = change.
 static inline double fc_time_to_move(double rate, double curvature, double change) {
     return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
 }
@@ -125,18 +125,18 @@ double fc_drive_displacement_integral(const FcDrive* drive, double t0, double t1
 // integral of V^2 over [t0, t1] [m2/s], exact.
 double fc_drive_square(const FcDrive* drive, double t0, double t1);
 
-// Where V changes sign (a reversal) or |V| dips close to zero without doing so.
+// A time at which V changes sign (a reversal) or |V| dips close to zero without a change of sign.
 typedef struct {
     double time;   // s
     bool reversal; // V changes sign here
     FcPhase phase; // there
     double ahead,
-        then_ahead; // rad, to the next reversal and from there on, by turns; 0 where that is to be found first
+        then_ahead; // rad, to the next reversal and the one after it, by turns; 0 if not found yet
 } FcDriveEvent;
 
-// The first one after t and before end; if there is none, the time end and no phase. One exactly at t is none. At t = 0, where
-// a scene begins, one that is ahead by any amount counts; for t > 0 one that is ahead by no more than the rounding of the
-// phase or of V is t itself.
+// The first event after t and before end; if there is none, the time end and no phase. An event exactly at t
+// does not count. At t = 0, the start of a scene, an event counts at any distance ahead. For t > 0 an event
+// that is ahead by no more than the rounding of the phase or of V is t itself.
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
 
 // The same after an event.

@@ -18,7 +18,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-// The values that modelDescription.xml gives them.
+// The values of modelDescription.xml.
 typedef enum { FC_DAHL = 1, FC_COULOMB = 2, FC_ELASTIC_PLASTIC = 3, FC_LUGRE = 4 } FcFrictionModel;
 typedef enum { FC_LIMIT_CONSTANT = 1, FC_LIMIT_LOAD = 2 } FcFrictionLimit;
 
@@ -32,8 +32,9 @@ typedef struct {
     double sigma_2;     // N s/m  viscous friction
 } FcFriction;
 
-// The state of a bristle. Only one of ElasticPlastic with static friction remembers whether it slips, and to which side:
-// 1 or -1, 0 if it sticks. One that slips may lie inside its kinetic bound after an input has jumped.
+// The state of a bristle. In ElasticPlastic with static friction, slips is the side along which the bristle
+// slips, 1 or -1, or 0 if it sticks. Elsewhere slips is 0. A slipping bristle may lie inside its kinetic
+// bound after an input has jumped.
 typedef struct {
     double delta; // m
     int slips;
@@ -43,7 +44,7 @@ typedef struct {
 // The side along: 1 or -1.
 static inline int fc_side(FcBristle bristle) { return bristle.delta < 0.0 ? -1 : 1; }
 
-// slips of a bristle that a motion in the plane may have left: with the side, which a motion along a line goes on from.
+// slips of a bristle after a motion in the plane, with the side with which a motion along a line continues.
 static inline int fc_side_of_slip(FcBristle bristle) { return bristle.slips != 0 ? fc_side(bristle) : 0; }
 
 static inline bool fc_limit_follows_load(const FcFriction* friction) {
@@ -64,7 +65,7 @@ static inline bool fc_has_static_friction(const FcFriction* friction) {
     return friction->model == FC_ELASTIC_PLASTIC && friction->staticRatio != 1.0;
 }
 
-// Static over Coulomb friction, 1 in the laws without.
+// Static over Coulomb friction; 1 in laws without static friction.
 static inline double fc_static_ratio(const FcFriction* friction) {
     return fc_has_stribeck_curve(friction) ? friction->staticRatio : 1.0;
 }

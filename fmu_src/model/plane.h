@@ -18,12 +18,12 @@ typedef struct {
 
 static inline double fc_product(FcVector a, FcVector b) { return a.x * b.x + a.y * b.y; }
 
-// Whether the contact moves, or is deflected, across.
+// Whether the contact moves or is deflected transversely.
 static inline bool fc_is_planar(const FcScene* scene, FcBristle bristle) {
     return bristle.delta_y != 0.0 || fc_drive_is_planar(&scene->drive);
 }
 
-// A scene, and the same with its static limit, which V does not move. It points into itself.
+// A scene, and the same scene with its static limit, which does not depend on V. It points into itself.
 typedef struct {
     const FcScene* scene;
     FcFriction static_friction;
@@ -31,7 +31,7 @@ typedef struct {
 } FcPlane;
 void fc_plane_make(FcPlane* plane, const FcScene* scene); // keeps the pointer
 
-// What the equations above need at one moment.
+// The coefficients of the equations above at one time.
 typedef struct {
     FcVector V;          // m/s
     double speed;        // m/s, |V|
@@ -50,7 +50,7 @@ static inline FcVector fc_plane_coulomb(const FcPlaneCoefficients* at) {
 // The radius D [m] of the bound of a bristle that slips or does not.
 double fc_plane_radius(const FcPlane* plane, const FcPlaneCoefficients* at, int slips);
 
-// The same with its rate, and that of ln sigma.
+// The bound with its rate, and the rate of ln sigma.
 typedef struct {
     double D;              // m
     double rate;           // m/s
@@ -59,8 +59,8 @@ typedef struct {
 FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at, int slips, double t,
                             FcPhase at_t);
 
-// Velocity [m/s] by which a bristle on its bound, in the direction n (|n| = 1), is pushed outwards beyond it. It slips while this
-// is positive.
+// The push: the velocity [m/s] at which a bristle on its bound, in the direction n (|n| = 1), would leave the
+// bound outwards. The bristle slips while the push is positive.
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
                      FcVector n);
 

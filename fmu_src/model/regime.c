@@ -38,7 +38,7 @@ double fc_push_at(void* context, double t) {
     return fc_push(of->scene, of->bound, t, of->side);
 }
 
-// That of the side at the start of the scene.
+// The bound of that side at the start of the scene.
 static double push(const FcScene* scene, int slips, int side) {
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, slips, &friction);
@@ -104,8 +104,9 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     return bristle;
 }
 
-// By how much of its bound a bristle that slips may be inside it. By hand: at the end of a step the phase's rounding may take
-// it off the bound.
+// The part of its bound by which a slipping bristle may lie inside it. Chosen empirically: rounding of the
+// phase may take the bristle off its bound at the end of a step. A larger value would move a bristle that
+// catches up onto its bound.
 static const double INSIDE_BOUND = 1e-10;
 
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
@@ -127,7 +128,7 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
     return on_bound && push(scene, bristle.slips, side) > 0.0 ? (FcRegime)side : FC_FREE;
 }
 
-// What the bristle's equation needs at the start of a scene.
+// The coefficients of the bristle's equation at the start of a scene.
 typedef struct {
     FcVector V;   // m/s
     double speed; // m/s, |V|
@@ -146,7 +147,7 @@ static Moment moment(const FcScene* scene, const FcContactResponse* contact) {
     return (Moment){{at.V, 0.0}, fabs(at.V), at.sigma, at.limit};
 }
 
-// What a motion is made of, or their derivatives along a direction.
+// The parts of a motion, or their derivatives along a direction.
 typedef struct {
     FcVector V;          // m/s
     FcVector force;      // N, F
@@ -161,13 +162,13 @@ static FcVector plus(FcVector a, double factor, FcVector b) {
 
 static FcVector times(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
 
-// Without a part across it is the product along to the bit, a zero's sign included.
+// Without a transverse part it equals the product along, to the bit and with the sign of zero.
 static double product(FcVector a, FcVector b) { return b.y == 0.0 ? a.x * b.x : fc_product(a, b); }
 
 // The part of a that is perpendicular to n, |n| = 1.
 static FcVector perpendicular(FcVector a, FcVector n) { return plus(a, -product(a, n), n); }
 
-// Of a bristle that slips.
+// For a slipping bristle.
 static FcVector direction_of_slip(const FcScene* scene, FcRegime regime, FcBristle bristle) {
     return fc_is_planar(scene, bristle) ? direction(bristle.delta, bristle.delta_y)
                                         : (FcVector){(double)regime, 0.0};
@@ -211,7 +212,7 @@ static Parts parts_of(const FcScene* scene, const FcContactResponse* contact, Fc
     return (Parts){.V = at.V, .force = times(at.sigma, delta), .delta_rate = rate, .state_rate = rate};
 }
 
-// F_t and F_y, and their derivatives where parts are derivatives: they are linear in them.
+// F_t and F_y; or their derivatives, if the parts are derivatives, since both are linear in the parts.
 static FcVector whole_force(const FcFriction* friction, const Parts* of) {
     FcVector F = of->force;
     if (friction->model != FC_COULOMB && friction->sigma_1 != 0.0) {
@@ -267,7 +268,7 @@ static FcVector free_rate_along(const FcScene* scene, const Moment* at, FcVector
     return plus(plus(V_along, -r_along, delta), -r, (FcVector){along->delta, along->delta_y});
 }
 
-// How a direction moves what the contact gives.
+// The derivatives of the contact's results along a direction.
 typedef struct {
     double log_sigma, log_F_n;
 } ContactAlong;
@@ -295,7 +296,7 @@ static double bound_rate_along(const FcScene* bound, const FcDirection* along) {
     return change;
 }
 
-// D_rate_along is that of D'.
+// D_rate_along is the derivative of D' along the direction.
 static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcRegime regime, FcBristle bristle,
                             const ContactAlong* contact, const FcDirection* along, double D_rate_along) {
     const FcBound bound = fc_bound_in_plane(of_bound, 0.0);
@@ -380,8 +381,8 @@ FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirecti
                  (FcVector){bristle.delta, bristle.delta_y});
 }
 
-// Second time derivative of the bound [m/s2], by a central difference of its rate, which is exact. Its pace is that of what moves
-// it; away from surfaces that would touch.
+// Second time derivative of the bound [m/s2], by a central difference of its rate, which is exact. The
+// difference is taken over the fastest change of an input, and away from surfaces that would touch.
 static double bound_acceleration(const FcScene* bound) {
     const FcDrive* drive = &bound->drive;
     const FcLogRates rates = fc_scene_log_rates(bound, 0.0);

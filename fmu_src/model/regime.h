@@ -18,11 +18,12 @@
 #include "model/plane.h"
 #include "model/scene.h"
 
-// The sign of the bound along which the bristle slips; 0 where it touches none. In the plane either sign says that it slips.
+// The sign of the bound along which the bristle slips; 0 if the bristle is free. In the plane either sign
+// means that it slips.
 typedef enum { FC_SLIPS_BACK = -1, FC_FREE = 0, FC_SLIPS_FORWARD = 1 } FcRegime;
 
-// The scene whose limit, over sigma, is the bound of a bristle of a bounded law that slips or does not (FcBristle.slips). It points
-// to *friction, which it sets.
+// The scene whose limit over sigma is the bound of a bristle that slips or sticks (FcBristle.slips), for a
+// bounded law. It points to *friction, which it sets.
 FcScene fc_scene_of_bound(const FcScene* scene, int slips, FcFriction* friction);
 
 // The bound D at a local time of such a scene, and its rate.
@@ -34,8 +35,8 @@ static inline double fc_free_rate(const FcScene* scene, const FcCoefficients* at
     return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
 }
 
-// Velocity [m/s] by which a bristle on the bound D of that side (1 or -1) is pushed beyond it: what it would move by if it were
-// free, less the motion of the bound. It slips while this is positive.
+// The push: the velocity [m/s] at which a bristle on the bound D of that side (1 or -1) would leave the bound
+// if it were free, relative to the bound. The bristle slips while the push is positive.
 double fc_push(const FcScene* scene, const FcScene* bound, double t, int side);
 
 // The push as a function of time, for fc_root_between: context is an FcPushed.
@@ -46,18 +47,19 @@ typedef struct {
 } FcPushed;
 double fc_push_at(void* context, double t);
 
-// By how much of its static bound a stuck bristle may be beyond it and not break away. By hand: some times the rounding of a
-// bound and of the length of a deflection.
+// The part of its static bound by which a stuck bristle may exceed it without breaking away. Chosen
+// empirically: a few times the rounding of a bound and of the length of a deflection. A larger value delays
+// break-away.
 #define FC_ROUNDING_OF_BOUND 1e-12
 
-// What the state is at the start of the scene: one beyond its bound is taken onto it, one that has lost its contact is 0, one
-// that slips sticks if it is not pushed.
+// The state at the start of the scene: a bristle beyond its bound is moved onto it, a bristle without contact
+// becomes 0, and a slipping bristle that is not pushed sticks.
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle);
 
 // The regime of a bristle that is within its bound.
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 
-// fc_push in the plane, at the start: in the direction of the bristle's deflection, wherever its bound is.
+// fc_push in the plane, at the start, in the direction of the deflection, at any distance from the bound.
 double fc_push_in_plane(const FcScene* scene, FcBristle bristle);
 
 // The bound at a local time of a scene of fc_scene_of_bound, in the plane too.
@@ -84,10 +86,10 @@ typedef struct {
 // FC_FREE for a law without a bound; Coulomb's force has no regime.
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle);
 
-// (F_t, F_y) [N] of a bristle that is within its bound, from what fc_scene_contact says at the start.
+// (F_t, F_y) [N] of a bristle within its bound, from the results of fc_scene_contact at the start.
 FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle);
 
-// A direction in the space of what the motion depends on.
+// A direction in the space of the variables of the motion.
 typedef struct {
     double V;       // m/s
     double d;       // m
@@ -101,7 +103,7 @@ typedef struct {
 // The derivative of the motion along the direction, by the chain rule; of the rate of a bound by a central difference.
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along);
 
-// How fast the deflection changes along the direction if the bristle is kept on its bound.
+// The derivative of the deflection along the direction if the bristle is kept on its bound.
 FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along);
 
 // Time derivative of (F_t, F_y) [N/s] of a bristle that is within its bound, the inputs moving as the drive says.

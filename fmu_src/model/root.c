@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-// The largest number of evaluations of one root. Halving alone takes some 60 to rounding, so half of this
-// would do. A root that takes more is returned as it is.
+// The largest number of evaluations of one root, after which the last value is returned. Bisection alone
+// takes about 60 to reach rounding; half of this would suffice, twice would cost nothing.
 enum { MOST_ROOT_STEPS = 200 };
 
 // To the nearer root of the parabola; Newton's step if it has none.
@@ -20,8 +20,8 @@ static double step_to_root(FcRootFunction at) {
 // not the accuracy.
 static const double PARABOLA_REACH = 0.25;
 
-// From a to the root of the parabola there, if it is near, else to that of the cubic t(f) through both ends,
-// if the slopes agree with the change.
+// The step from a to the root of the parabola there if that root is near. Else the step to the root of the
+// cubic t(f) through both ends, if the slopes agree with the change.
 static double first_step(double duration, FcRootFunction at_a, FcRootFunction at_b) {
     const double change = at_b.value - at_a.value;
     const double nearer = fabs(step_to_root(at_a));
@@ -51,8 +51,8 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
         }
         step = next - t;
         t = next;
-        // A small step to the parabola's root is a smaller one from f's, a small bracket's middle may be as
-        // far from it.
+        // A small step to the parabola's root is smaller than f's own. The middle of a small bracket may be
+        // as far from it.
         const bool is_near =
             i > 0 && !bisects && fabs(step) <= last_step * (t - start) && fabs(step * at.value) <= least_area;
         if (is_near) {

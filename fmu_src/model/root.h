@@ -22,9 +22,9 @@ typedef FcRootFunction (*FcRootEvaluation)(void* context, double t);
 double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a, double b,
                FcRootFunction at_b, double last_step, double least_area, double* evaluations);
 
-// The root of f between a and b, a < b, of values of opposite signs there: by inverse quadratic interpolation, halved if that is
-// slow (Chandrupatla). Ends on b's side of the root with a value of at most `close`, of at most least_area over the bracket that
-// is left, or of rounding. Adds what it evaluates to *evaluations.
+// The root of f between a and b, a < b, at which f has opposite signs: inverse quadratic interpolation, or
+// bisection if that is slow (Chandrupatla). Ends on b's side of the root. The value there is at most `close`,
+// or of at most least_area over the remaining bracket, or rounding. Adds its evaluations to *evaluations.
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double least_area, double* evaluations);
 

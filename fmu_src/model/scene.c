@@ -2,21 +2,22 @@
 
 #include <assert.h>
 
-// Where the surfaces rest at the time t [m], with contact.input = Load.
+// The mean separation [m] of the surfaces at the time t, with contact.input = Load.
 static double rest_separation(const FcScene* scene, const FcContactAtModulus* at_E, double t) {
     return (log(at_E->load_0 / fc_drive_load(&scene->drive, t)) + scene->log_swell) / at_E->decay;
 }
 
 static bool follows_load(const FcScene* scene) { return scene->contact->input == FC_CONTACT_LOAD; }
 
-// A load or a stiffness below this is none [N, N/m]. By hand, beyond anything that is seen: products of two such numbers
-// are still numbers.
+// A load or a stiffness below this counts as 0 [N, N/m]. Chosen empirically, far below any visible value: the
+// product of two such numbers is still a number.
 static const double NOTHING = 1e-100;
 
-// Up to this decay the contact is closed, whatever its parameters are. By hand: e^-100 of a load and a stiffness.
+// Up to this decay the contact is closed for any parameters. Chosen empirically: e^-100 of a load and a
+// stiffness. A larger value might miss an opening.
 static const double NOT_FAR = 50.0;
 
-// The separation [m] from which on F_n or sigma is nothing, if the load is not given.
+// The separation [m] beyond which F_n or sigma counts as 0, if the load is not given.
 static double open_separation(const FcContactAtModulus* at_E) {
     const double without_load = log(at_E->load_0 / NOTHING) / at_E->decay;
     if (at_E->model == FC_CONTACT_CONSTANT) {
@@ -58,7 +59,8 @@ double fc_scene_closed_by(const FcScene* scene) {
                : fmax(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
 }
 
-// By this factor a load may move in a piece. By hand: more needs finer panels, less more pieces.
+// The largest factor by which a load moves in a piece. Chosen empirically: a larger factor needs finer
+// panels, a smaller one more pieces.
 static const double LOAD_OF_PIECE = 4.0;
 
 double fc_scene_piece(FcScene* scene, double rest, double whole) {
@@ -68,7 +70,7 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     if (!fc_scene_has_pieces(scene)) {
         return rest;
     }
-    // Time to where the contact opens or closes: behind, if negative, of one that comes from there.
+    // Time until the contact opens or closes; negative if this lies behind.
     const bool opens = by_load ? rate < 0.0 : rate > 0.0;
     const bool is_far = by_load || scene->is_open ||
                         scene->at_E.decay * fmax(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
@@ -107,7 +109,7 @@ static FcContactAtModulus contact_at(const FcScene* scene, double t) {
                                       : fc_contact_at_modulus(scene->contact, fc_drive_E(&scene->drive, t));
 }
 
-// The separation at t, of which the drive gives driven.
+// The separation at t; driven is the drive's part.
 static double separation(const FcScene* scene, const FcContactAtModulus* at_E, double driven, double t) {
     return scene->floats ? driven + rest_separation(scene, at_E, t) : driven;
 }
@@ -192,7 +194,7 @@ FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase a
             rates.limit += by_E.F_n * drive->E.rate;
             rates.ratio += (by_E.F_n - by_E.sigma) * drive->E.rate;
         }
-        if (scene->floats) { // the surfaces follow the load: what E does to F_n cancels, also in rounding
+        if (scene->floats) { // the surfaces follow the load: the effect of E on F_n cancels, also in rounding
             rates.limit =
                 drive->load.rate / fc_drive_load(drive, t) + by_d.F_n * fc_drive_d_rate_at_phase(drive, at_t);
         }
@@ -216,7 +218,7 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
     return fc_scene_log_rates_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
-// Bounds of the separation where the surfaces rest.
+// Bounds of the mean separation.
 static double smallest_rest(const FcScene* scene, double h) {
     const FcContactAtModulus end = contact_at(scene, h);
     const double load_0 = fmin(scene->at_E.load_0, end.load_0);
@@ -265,8 +267,8 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
 }
 
-// g / sigma is largest with E and the load at one of their ends, and the surfaces farthest apart or, with a constant stiffness,
-// nearest.
+// g / sigma is largest at an end of E and of the load, with the surfaces farthest apart or, with a constant
+// stiffness, nearest.
 double fc_scene_largest_saturation(const FcScene* scene, double h) {
     const FcFriction* friction = scene->friction;
     const bool follows = fc_limit_follows_load(friction);

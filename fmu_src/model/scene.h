@@ -1,4 +1,4 @@
-// The scene of one communication step: a contact, what drives it, and the law of friction. It gives what the equation of
+// The scene of one communication step: a contact, its drive, and the law of friction. It gives the coefficients of the equation of
 // the bristle needs at any time of the step,
 //
 //     delta' = V(t) - sigma(t) |V(t)| delta / g(t)                       (Eq. 2; g = F_C in the paper)
@@ -37,7 +37,7 @@ FcScene fc_scene_later(const FcScene* scene, double t);
 // The same with t at any phase.
 FcScene fc_scene_from(const FcScene* scene, double t);
 
-// Whether sigma or g, as far as the law asks for them, are functions of the separation.
+// Whether sigma or g, if the law uses them, depends on the separation.
 static inline bool fc_scene_depends_on_d(const FcScene* scene) {
     return fc_limit_follows_load(scene->friction) ||
            (scene->at_E.model != FC_CONTACT_CONSTANT && scene->friction->model != FC_COULOMB);
@@ -48,24 +48,25 @@ static inline bool fc_scene_is_loose(const FcScene* scene) {
     return scene->is_open && fc_scene_depends_on_d(scene);
 }
 
-// Whether the inputs that move the load, given or made from d, move, as far as the law asks for it.
+// Whether the load, given or from d, moves, if the law uses it.
 static inline bool fc_scene_has_pieces(const FcScene* scene) {
     return fc_scene_depends_on_d(scene) && (scene->drive.load.rate != 0.0 || scene->drive.d.rate != 0.0);
 }
 
-// A contact opens earlier and closes later by this part of the step. Derived: what the bristle does in that time goes with
-// its square.
+// The part of the step by which a contact opens earlier and closes later. Derived: the effect on the bristle
+// goes with its square. Twice the part has four times the effect.
 #define FC_NEARLY_OPEN 0x1p-44
 
-// What keeps the contact closed at the start: the load [N], or the way to the separation at which it opens [m]. Open at 0 and below.
+// The margin by which the contact is closed at the start: the load [N], or the way to the separation at which
+// it opens [m]. At 0 and below it is open.
 double fc_scene_closed_by(const FcScene* scene);
 
-// How long [s], up to `rest`, the scene may be taken as a whole from its start on, in a step of `whole` [s]: until the contact
-// opens or closes, or the load, given or made from d, has moved by a factor of 4. Sets is_open if the contact opens within
-// 2^-44 of the step.
+// The time [s], up to `rest`, over which the scene is one piece from its start on, in a step of `whole` [s]:
+// until the contact opens or closes, or the load, given or from d, has moved by a factor of 4. Sets is_open
+// if the contact opens within 2^-44 of the step.
 double fc_scene_piece(FcScene* scene, double rest, double whole);
 
-// Whether g / sigma is no function of it: F_n and Mindlin's stiffness fall with d alike.
+// Whether g / sigma does not depend on the separation: F_n and Mindlin's stiffness fall with d alike.
 static inline bool fc_scene_ratio_is_constant(const FcScene* scene) {
     return scene->at_E.model == FC_CONTACT_MINDLIN && fc_limit_follows_load(scene->friction);
 }
@@ -78,7 +79,7 @@ double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t);
 FcContactResponse fc_scene_contact(const FcScene* scene, double t); // also of one that is open
 double fc_scene_stiffness(const FcScene* scene, double t);          // N/m
 
-// What the equation of the bristle needs at one moment.
+// The coefficients of the bristle's equation at one time.
 typedef struct {
     double V;     // m/s
     double sigma; // N/m
@@ -86,7 +87,7 @@ typedef struct {
 } FcCoefficients;
 
 FcCoefficients fc_scene_coefficients(const FcScene* scene, double t);
-// At the start, from what fc_scene_contact says there.
+// At the start, from the results of fc_scene_contact there.
 FcCoefficients fc_scene_coefficients_of(const FcScene* scene, const FcContactResponse* response);
 FcCoefficients fc_scene_coefficients_at_phase(const FcScene* scene, double t, FcPhase at_t);
 
@@ -95,7 +96,8 @@ static inline double fc_relaxation_rate(const FcCoefficients* at) {
     return at->sigma * fabs(at->V) / at->limit;
 }
 
-// Time derivatives of ln(sigma), ln(g) and ln(g / sigma) [1/s], the last without what cancels in it; 0 for what has become 0.
+// Time derivatives of ln(sigma), ln(g) and ln(g / sigma) [1/s], the last without cancellation; 0 for a
+// quantity that has become 0.
 typedef struct {
     double sigma;
     double limit;
@@ -111,7 +113,7 @@ double fc_scene_smallest_limit(const FcScene* scene, double h);      // N
 double fc_scene_smallest_saturation(const FcScene* scene, double h); // m, of g / sigma
 double fc_scene_largest_saturation(const FcScene* scene, double h);  // m, of g / sigma
 
-// Whether sigma, and g but for the Stribeck curve, stand still over the step.
+// Whether sigma and g, apart from the Stribeck curve, are constant over the step.
 bool fc_scene_stiffness_is_constant(const FcScene* scene);
 bool fc_scene_limit_is_constant(const FcScene* scene);
 
