@@ -8,11 +8,12 @@
 
 #include "solver/methods/method.h"
 
-// Vibration periods since time 0 beyond which its phase is refused. By hand: neighbouring numbers of time are then more than
-// 2^-52 of it, 1/64 of a period, apart.
+// The number of vibration periods since time 0 beyond which the phase is refused. Chosen empirically:
+// neighbouring numbers of time are then 1/64 of a period apart. Twice the number would leave 1/32.
 static const double MOST_CYCLES = 0x1p46;
 
-// E may change by at most this factor in a step.
+// The largest factor by which E may change in a step. Chosen empirically: the tests cover it; a larger one is
+// refused.
 static const double MOST_CHANGE_OF_E = 10.0;
 
 static bool fail_stiffness(FcMessage* message, double d, double E) {
@@ -32,7 +33,7 @@ static bool are_equal(const FcContactParameters* a, const FcContactParameters* b
 _Static_assert(sizeof(FcContactParameters) == 10 * sizeof(double) + 2 * sizeof(int),
                "a new member of FcContactParameters must be compared in are_equal");
 
-// The contact at the modulus E [Pa] with the present parameters: computed anew where they or E have changed.
+// The contact at the modulus E [Pa] with the present parameters: computed anew if they or E have changed.
 static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E) {
     const FcContactParameters* parameters = &contact->state.variables.contact;
     if (contact->at_E_E != E || !are_equal(&contact->at_E_of, parameters)) {
@@ -49,7 +50,8 @@ static double load_after(FcLinearInput load, double h) {
     return load.rate < 0.0 && after <= -FC_NEARLY_OPEN * load.rate * h ? fmin(after, 0.0) : after;
 }
 
-// The scene from the absolute time start + rest on, the inputs moving at these rates for ahead [s] before it begins.
+// The scene from the absolute time start + rest on, with the inputs moving at these rates for ahead [s]
+// before it begins.
 static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
                           const double rate[FC_INPUT_COUNT], double ahead) {
     const FcVariables* v = &contact->state.variables;
@@ -94,7 +96,8 @@ static bool fail_separation(const FcScene* scene, double h, FcMessage* message) 
                           drive->d.value, drive->d.value + drive->d.rate * h, a_d);
 }
 
-// Separation and modulus must stay positive, E near itself, and the stiffness and the limit numbers over the step [0, h].
+// Over the step [0, h] separation and modulus must stay positive, E near its start, and the stiffness and the
+// limit finite.
 static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     const FcDrive* drive = &scene->drive;
     const double E = drive->E.value;
@@ -135,13 +138,13 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     return true;
 }
 
-// Single bounds say enough where nothing moves and no load decides.
+// Single bounds suffice if nothing moves and the load does not decide.
 static bool is_to_be_checked(const FcScene* scene) {
     return !fc_drive_is_constant(&scene->drive) || scene->contact->input == FC_CONTACT_LOAD ||
            fc_limit_follows_load(scene->friction);
 }
 
-// What can be seen of the scene at its start.
+// The outputs of the scene at its start.
 typedef struct {
     FcVector force; // N, (F_t, F_y)
     FcContactResponse contact;
@@ -154,7 +157,7 @@ FcFastest fc_fastest(const FcDrive* drive) {
                : (FcFastest){"V", drive->V.value, "vibration.V_1", v->V_1};
 }
 
-// Of a bristle that is within its bound; false if one of them is beyond the largest number.
+// For a bristle within its bound; false if an output is beyond the largest number.
 static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outputs, FcMessage* message) {
     const FcContactResponse contact = fc_scene_contact(scene, 0.0);
     *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
@@ -198,7 +201,7 @@ FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const Fc
 
 static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still
 
-// The time t [s] must tell the phase of the vibration.
+// The time t [s] must determine the phase of the vibration.
 static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
     const double f = drive->vibration.f;
     if (!fc_drive_vibrates(drive) || fabs(t) * f <= MOST_CYCLES) {
@@ -215,8 +218,8 @@ FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const doubl
     return scene_from(contact, contact->state.time, contact->state.time_rest, rate ? rate : HELD, 0.0);
 }
 
-// Single bounds do not see all: the separation must stay positive under vibration, the stiffness and the limit be
-// finite numbers above 0, the time tell the phase.
+// Combinations that single bounds do not cover: the separation must stay positive under vibration, the
+// stiffness and the limit finite and above 0, and the time must determine the phase.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
     return check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
@@ -261,11 +264,11 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// The finest tolerance that the solver is given. Rounding: 4500 eps; there are no more digits.
+// The finest tolerance of the solver. Rounding: 4500 eps. A finer one asks for digits that do not exist.
 static const double SMALLEST_TOLERANCE = 1e-12;
 
-// What solver.tolerance is relative to [N]: the largest of the limit at both ends of the step, the bristle's force at its start, and
-// the forces of damping and viscosity.
+// The scale [N] of solver.tolerance: the largest of the limit at both ends of the step, the bristle's force
+// at its start, and the forces of damping and viscosity.
 static double force_scale(const FcScene* scene, double h, FcBristle from) {
     const FcFriction* friction = scene->friction;
     double limit = fc_scene_mean_limit(scene, 0.0);
@@ -282,15 +285,16 @@ static double force_scale(const FcScene* scene, double h, FcBristle from) {
     return fmax(fmax(fc_static_ratio(friction) * limit, elastic), fmax(viscous * speed, DBL_MIN));
 }
 
-// The least limit of the step, but of one in which the contact opens or closes: there the mean limit at its closed end.
+// The least limit of the step. If the contact opens or closes in the step, the mean limit at its closed end.
 static double least_limit(const FcScene* scene, double h) {
     const double at_ends = fmin(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
     return at_ends > 0.0 ? fc_scene_smallest_limit(scene, h)
                          : fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
 }
 
-// An error of the deflection acts through sigma delta and, since delta' = V - sigma |V| delta / g, through sigma_1 delta': there times
-// sigma |V| / g. So the damping divides the tolerance of the bristle's force.
+// An error of the deflection acts through sigma delta and, since delta' = V - sigma |V| delta / g, through
+// sigma_1 delta', where it is multiplied by sigma |V| / g. So the damping divides the tolerance of the
+// bristle's force.
 static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, FcBristle from) {
     double tolerance = v->solver.tolerance;
     const double limit = v->friction.sigma_1 != 0.0 ? least_limit(scene, h) : 0.0;
@@ -361,7 +365,8 @@ void fc_friction_contact_free(FcFrictionContact* contact) {
     contact->cvode = NULL;
 }
 
-// Adds the damping of the bristle, which Coulomb's law has none of, and the viscous friction to what the method gives.
+// Adds the damping of the bristle, which Coulomb's law does not have, and the viscous friction to the result
+// of the method.
 static void add_damping(const FcScene* scene, double h, FcBristle start, FcStepResult* result) {
     const double sigma_1 = scene->friction->sigma_1;
     const double sigma_2 = scene->friction->sigma_2;
@@ -385,21 +390,22 @@ static void add_damping(const FcScene* scene, double h, FcBristle start, FcStepR
     }
 }
 
-// What a + b loses in rounding (Knuth's two-sum).
+// The rounding error of a + b (Knuth's two-sum).
 static double rounding_of_sum(double a, double b) {
     const double sum = a + b;
     const double b_part = sum - a;
     return (a - (sum - b_part)) + (b - b_part);
 }
 
-// Adds part to *sum, *rest being what rounding cuts off.
+// Adds part to *sum. *rest collects the rounding errors.
 static void accumulate(double* sum, double* rest, double part) {
     const double all = part + *rest;
     *rest = rounding_of_sum(*sum, all);
     *sum += all;
 }
 
-// The inputs where they end, the deflection, the sums; the rates of the next step are those of the last one now.
+// Stores the ends of the inputs, the deflection and the sums. The rates of the next step become those of the
+// last one.
 static void commit(FcFrictionState* state, double h, const FcStepResult* result, FcBristle reached,
                    const FcPast* past) {
     FcVariables* v = &state->variables;
@@ -448,8 +454,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     result.heat += heat;
     add_damping(&scene, h, start, &result);
 
-    // Evaluated at the phase of t + h itself, which is also that of the next step: a phase that is carried on from the
-    // step's start loses digits with every period of it.
+    // Evaluated at the phase of t + h, which is also that of the next step. A phase carried on from the
+    // step's start would lose digits with every period.
     const double time_rest = rounding_of_sum(t, h);
     const bool moves = !fc_drive_is_constant(&scene.drive);
     const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;

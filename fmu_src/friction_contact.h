@@ -1,8 +1,8 @@
-// One vibrating contact: its variables, its state, and how it advances. What FMI sees of the physics, with
-// model/derivatives.h.
+// One vibrating contact: its variables, its state, and its steps. Together with model/derivatives.h it is the
+// interface of the physics to FMI.
 //
-// FcVariables carries every variable of modelDescription.xml under its own name: contact.R_q is the C expression
-// contact.R_q. The table that FMI uses is generated from the XML and finds them by offsetof.
+// FcVariables has every variable of modelDescription.xml under its own name: contact.R_q is the C expression
+// contact.R_q. The table for FMI is generated from the XML and finds the variables by offsetof.
 #ifndef FC_FRICTION_CONTACT_H
 #define FC_FRICTION_CONTACT_H
 
@@ -13,7 +13,7 @@
 #include "model/scene.h"
 #include "solver/jump.h"
 
-// The values that modelDescription.xml gives them.
+// The values of modelDescription.xml.
 typedef enum { FC_STATE_GIVEN = 1, FC_STATE_SETTLED = 2 } FcInitialState;
 
 typedef struct {
@@ -53,7 +53,7 @@ typedef struct {
 
 typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_V_Y, FC_INPUT_COUNT } FcInput;
 
-// What model exchange keeps beside the variables (hybrid.h).
+// The state of model exchange besides the variables (hybrid.h).
 typedef struct {
     int regime;                   // FcRegime
     int changed;                  // a state was changed since the event began
@@ -64,21 +64,21 @@ typedef struct {
     double nominal_energy;        // J
     double lag;       // m, of delta behind the bound along which the bristle slips; in the plane of |delta|
     double lag_force; // N, the bristle's force there
-    double lag_heat;  // J, what Q_f lags behind by
+    double lag_heat;  // J, by which Q_f lags behind
 } FcHybrid;
 
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
     FcVariables variables;
     double time;                      // s, the communication point reached
-    double time_rest;                 // s, what rounding cut off when time was computed as t + h
-    double W_f_rest;                  // J, what rounding cut off the sums W_f
+    double time_rest;                 // s, the rounding error of time
+    double W_f_rest;                  // J, the rounding errors of the sums W_f
     double Q_f_rest;                  // J, and Q_f
     double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
     int slips;         // the other part of the bristle's state (FcBristle); in model exchange too
-    FcPast past;       // what the last step left, from which inputs and parameters may jump
+    FcPast past;       // the end of the last step, from which inputs and parameters may jump
     FcHybrid hybrid;
 } FcFrictionState;
 
@@ -93,40 +93,44 @@ typedef struct {
 
 // Functions that return bool return true, or false with *message filled and the contact unchanged.
 
-// After all start values and parameters are set: checks their combination, starts the state from delta_0, or where it
-// settles, at time start [s], computes the outputs.
+// Call after all start values and parameters are set. Checks their combination, starts the state at time
+// start [s] from delta_0 or in the settled state, and computes the outputs.
 bool fc_friction_contact_initialize(FcFrictionContact* contact, double start, FcMessage* message);
-// Allocates what the method (one FcMethod) needs for stepping, unless it is there. A saved state does not carry it.
+// Allocates the memory of the method (one FcMethod) for stepping, unless it exists. A saved state does not
+// contain it.
 bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessage* message);
-void fc_friction_contact_free(FcFrictionContact* contact); // frees what the two above allocated
+void fc_friction_contact_free(FcFrictionContact* contact); // frees the memory of the two above
 
-// Advances from t to t + h [s]; refuses an h below 0 or subnormal, and an end that is no finite number. The inputs move at
-// next_rate and stay where they end. With h = 0 time stands still: F_t_mean is F_t, and next_rate is used up as by any step.
+// Advances from t to t + h [s]. Refuses an h below 0 or subnormal, and an end that is not finite. The inputs
+// move at next_rate and keep their end values. With h = 0 time stands still: F_t_mean is F_t, and next_rate
+// is used up as in any step.
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
 
-// Recomputes F_t, F_n, sigma, A_r from the state and the present inputs and parameters, whose combination it checks
-// (delta, F_t_mean, W_f and Q_f are what the last step left). Call after an input or a tunable parameter changed and
-// before an output is read.
+// Recomputes F_t, F_n, sigma and A_r from the state and the present inputs and parameters, whose combination
+// it checks. delta, F_t_mean, W_f and Q_f keep the values of the last step. Call after an input or a tunable
+// parameter has changed and before an output is read.
 bool fc_friction_contact_refresh(FcFrictionContact* contact, FcMessage* message);
 
-// The bristle as the last step left it, and what the scene that begins now makes of it.
+// The bristle at the end of the last step, and the same bristle at the start of the present scene.
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact);
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene);
 
-// The scene that begins at the present time, with the inputs moving at the rates of the last step or, where new ones
-// have been set, of the next. It points into the contact.
+// The scene that begins at the present time, with the inputs moving at the rates of the last step or, if new
+// ones have been set, of the next. It points into the contact.
 FcScene fc_friction_contact_scene(FcFrictionContact* contact);
 
-// The scene at the present time with the inputs moving at these rates [1/s times their units], or held where they are NULL.
+// The scene at the present time with the inputs moving at these rates [1/s times their units], or held if
+// they are NULL.
 FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const double rate[FC_INPUT_COUNT]);
 
-// Whether the present inputs and parameters go together.
+// Whether the present inputs and parameters are a valid combination.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message);
 
-// Recomputes the rates of the states, der, for the outputs as they are; the law of friction may be any.
+// Recomputes the rates of the states, der, for the present outputs and any law of friction.
 bool fc_friction_contact_refresh_rates(FcFrictionContact* contact, FcMessage* message);
 
-// The faster of the two velocities along and across, for a message: its input, and the amplitude of its vibration.
+// The faster of the two velocities, along and transverse, for a message: its input, and the amplitude of its
+// vibration.
 typedef struct {
     const char* name;
     double V; // m/s

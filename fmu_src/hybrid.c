@@ -32,12 +32,13 @@ static const double LEAST_PART_OF_PERIOD = 1e-4;
 // remain.
 static const double END_OF_PEAK = 5.0;
 
-// The slope by which a reversal in the plane is seen: V + SLANT V_y passes 0 there, whatever its direction is. By hand: tan(1/2),
-// no slope that a host's V_y over V is likely to have.
+// The slope in the plane: V + SLANT V_y passes 0 at a reversal in any direction. Chosen empirically:
+// tan(1/2), a ratio of V_y to V that hosts are unlikely to have. With such a ratio a reversal would be
+// missed.
 static const double SLANT = -0.5463024898437905;
 
-// By this part of a period an event of time is later than the turn that it stands for. By hand: the indicators see the turn
-// first, and an event at a turn does not ask for a second one.
+// The part of a period by which a time event is later than its turn. Chosen empirically: the indicators see
+// the turn first, and an event at a turn does not ask for a second event. Half of it does the same.
 static const double AFTER_TURN = 1e-9;
 
 bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
@@ -116,7 +117,7 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     return true;
 }
 
-// Of a bounded bristle of a closed contact.
+// For a bounded bristle of a closed contact.
 static void find_indicators_of_bound(const View* view, FcRegime regime, double delta, double* z) {
     const double D = fc_bound(&view->bound, 0.0);
     if (regime == FC_FREE) {
@@ -201,14 +202,14 @@ static void look_at_inputs(FcFrictionContact* contact) {
     hybrid->seen_time = contact->state.time;
 }
 
-// A bristle that slips: how far delta lags behind the bound, where it is without a lag, and its force there.
+// A slipping bristle: the lag of delta behind the bound, its deflection without the lag, and its force there.
 typedef struct {
     double lag;     // m, in the plane that of |delta|
     FcVector delta; // m
     double force;   // N
 } Slip;
 
-// False where none slips, or the contact has opened and taken the stiffness along.
+// False if no bristle slips, or if the contact has opened and the stiffness is 0.
 static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     FcMessage unheard;
     if (regime_of(contact) == FC_FREE || !fc_friction_contact_check(contact, &unheard)) {
@@ -256,7 +257,7 @@ bool fc_hybrid_step_completed(FcFrictionContact* contact) {
            (z.of[1] <= 0.0 || z.of[2] <= 0.0 || z.of[3] <= 0.0);
 }
 
-// Moves delta and adds heat [J], if they stay numbers.
+// Moves delta and adds heat [J], if both stay finite.
 static void move_to(FcFrictionContact* contact, FcVector delta, double heat) {
     FcVariables* v = &contact->state.variables;
     if (isfinite(delta.x) && isfinite(delta.y) && (delta.x != v->delta || delta.y != v->delta_y)) {
@@ -282,12 +283,12 @@ static void begin_regime(FcFrictionContact* contact) {
     state->hybrid.regime = fc_regime(&now.scene, bristle);
     state->past = fc_past(&now.scene);
     Slip slip;
-    if (slips_along(contact, &slip)) { // but for rounding it is there
+    if (slips_along(contact, &slip)) { // it is there, apart from rounding
         move_to(contact, slip.delta, 0.0);
     }
 }
 
-// What the drop of a bristle that breaks away, which is motion, does to its damper.
+// The effect of the drop at break-away, which is motion, on the bristle's damper.
 static void add_drop(FcFrictionContact* contact, FcVector before) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);

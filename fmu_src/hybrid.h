@@ -1,5 +1,5 @@
-// One contact as a differential equation with events: what FMI for model exchange sees of the physics. The states are delta,
-// W_f, Q_f and delta_y; the inputs are what they are when asked.
+// One contact as a differential equation with events: the physics of FMI for model exchange. The states are
+// delta, W_f, Q_f and delta_y. The inputs have their present values.
 //
 // A bounded bristle is in a regime (model/regime.h) that changes only in fc_hybrid_update, at an event. It
 // slips once it is beyond its bound and pushed. It is free again once the push ends. With static friction it
@@ -17,7 +17,7 @@
 
 #include "friction_contact.h"
 
-// As many as modelDescription.xml declares.
+// Their numbers in modelDescription.xml.
 enum { FC_STATE_COUNT = 4, FC_EVENT_INDICATOR_COUNT = 4 };
 
 typedef struct {
@@ -38,12 +38,12 @@ void fc_hybrid_start(FcFrictionContact* contact);
 // Moves the contact to the time [s] of the host's integrator.
 void fc_hybrid_set_time(FcFrictionContact* contact, double time);
 
-// Recomputes the outputs and the rates of the states; false with *message filled if the inputs do not go
-// together or a result is beyond the largest number.
+// Recomputes the outputs and the rates of the states. False with *message filled if the inputs are not a
+// valid combination or a result is beyond the largest number.
 bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 
 // Positive but at an event:
-//   0   V with its vibration [m/s], where |V| has a kink; in the plane a slanting part of it, which is 0 at any reversal,
+//   0   V with its vibration [m/s], for the kink of |V|; in the plane a slanting part of it, which is 0 at any reversal,
 //       and harmlessly elsewhere; 1 in ElasticPlastic, which has no kink
 //   1   (D - |delta|) / D + hysteresis while a bounded bristle is free, else 1
 //   2   the push of a bristle that slips, beyond its bound, with hysteresis [m/s]; 1 if it does not slip
@@ -52,22 +52,21 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 // The first may have either sign. False as fc_hybrid_refresh.
 bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message);
 
-// Call after each completed step of the integrator: notes the inputs. True if the regime has ended; false
-// also if the inputs do not go together, which the next evaluation reports.
+// Call after each completed step of the integrator: stores the inputs. True if the regime has ended. False
+// also if the inputs are not a valid combination; the next evaluation reports this.
 bool fc_hybrid_step_completed(FcFrictionContact* contact);
 
-// Begins an event, with the inputs before it. Takes a bristle that slips onto its bound, which the inputs
-// have moved, and adds the heat of that motion to Q_f. Sets the past from which inputs and parameters may
-// jump.
+// Begins an event, with the inputs before it. Moves a slipping bristle onto its bound, which the inputs have
+// moved, and adds the heat of that motion to Q_f. Stores the past from which inputs and parameters may jump.
 void fc_hybrid_event_begins(FcFrictionContact* contact);
 
 // The regime after the event. *changed says whether a state has changed since the event began,
 // *nominals_changed whether the nominal values have. False as fc_hybrid_refresh.
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
 
-// The time [s] of the next event that the indicators may miss, for a step over two of their zeros: where the vibration, with the
-// inputs as they are, turns a bounded bristle back from a bound; a period ahead if it turns nowhere before; in the plane a
-// part of the period ahead. False where there is none.
+// The time [s] of the next event that the indicators may miss, because a step may pass two of their zeros. It
+// is the time at which the vibration, with the present inputs, turns a bounded bristle back from a bound; a
+// period ahead if there is no such turn; in the plane a part of the period ahead. False if there is none.
 bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
 
 // Ends an event. A jump of the inputs in it is not a motion.

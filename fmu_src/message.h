@@ -1,5 +1,5 @@
-// A short text that names the fault: variable, value, bound.
-// Filled by the function that fails; untouched on success.
+// A short text that names the fault: variable, value, bound. The function that fails fills it; success leaves
+// it unchanged.
 #ifndef FC_MESSAGE_H
 #define FC_MESSAGE_H
 

@@ -41,7 +41,7 @@ static FcFrictionContact at_time_0(const FcFrictionContact* contact) {
     return held;
 }
 
-// But for viscous friction. Adds what it spends to *evaluations.
+// Without viscous friction. Adds its evaluations to *evaluations.
 static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force, double* evaluations,
                       FcMessage* message) {
     if (!fc_friction_contact_refresh(held, message)) {
@@ -92,7 +92,7 @@ static double* input_of(FcVariables* v, FcInput input) {
 
 static const double PART_OF_SCALE = 0.25; // for the first range
 
-// Of a velocity along or across with its amplitude.
+// For a velocity, along or transverse, with its amplitude.
 static double first_range_of_V(const FcVariables* v, const FcScene* scene, double V, double amplitude) {
     const double speed = fabs(V);
     double scale = fmax(amplitude, speed - amplitude);
@@ -106,8 +106,8 @@ static double first_range_of_V(const FcVariables* v, const FcScene* scene, doubl
     return copysign(PART_OF_SCALE * scale, room > PART_OF_SCALE * scale ? -V : V);
 }
 
-// The range [the input's unit] over which the force is fitted at first, with its sign: it passes neither V = 0 nor
-// |V| = V_1, where the force has jumps and kinks, and leads to surfaces farther apart.
+// The first range [the input's unit] over which the force is fitted, with its sign. It contains neither V = 0
+// nor |V| = V_1, at which the force has jumps and kinks, and leads to surfaces farther apart.
 static double first_range(const FcFrictionContact* held, const FcScene* scene, FcInput input) {
     const FcVariables* v = &held->state.variables;
     const double part = PART_OF_SCALE;

@@ -1,7 +1,8 @@
-// Derivatives in time, in co-simulation: of inputs, given, and of F_t and F_y. Directional ones of outputs and rates: by the inputs
-// from initialization mode on, in model exchange by the states too. All are formulas but those of F_t_settled and F_y_settled
-// (settled_force.c) and what the rate of a bound adds where the bristle slips, to F_t and F_y by its damping, to der(delta),
-// der(delta_y) and der(Q_f): central differences (model/derivatives.c).
+// Time derivatives in co-simulation: of inputs, given, and of F_t and F_y. Directional derivatives of outputs
+// and rates: by the inputs from initialization mode on, in model exchange by the states too. All are formulas
+// except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of a bound for a
+// slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f). These are
+// central differences (model/derivatives.c).
 #include <math.h>
 
 #include "fmi2/instance.h"
@@ -10,7 +11,7 @@
 #include "model/derivatives.h"
 #include "settled_force.h"
 
-// The variable of the reference if it has the causality; NULL after logging why not.
+// The variable of the reference if it has the causality; otherwise NULL, after logging the reason.
 static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
                                     FcCausality causality) {
     if (vr >= fc_variables_count) {
@@ -27,7 +28,8 @@ static const FcVariableInfo* expect(const FcInstance* instance, FcCall call, fmi
     return info;
 }
 
-// Whether the arrays are there and ask for derivatives in time of order 1 of variables of the causality; logs why not.
+// Whether the arrays exist and name time derivatives of order 1 of variables of the causality. Logs the
+// reason if not.
 static bool asks_for_rates(const FcInstance* instance, FcCall call, FcCausality causality,
                            const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
                            const fmi2Real value[]) {
@@ -99,7 +101,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-// A direction of the knowns, and what they are.
+// A direction of the knowns, and the knowns.
 typedef struct {
     double input[FC_INPUT_COUNT];
     FcStateRates state; // of the states themselves
@@ -169,7 +171,7 @@ static double scaled(double slope, double change) {
     return slope != 0.0 && change != 0.0 ? slope * change : 0.0;
 }
 
-// A logarithm's change along the direction, from its slopes by d, E and load.
+// The derivative of a logarithm along the direction, from its slopes by d, E and load.
 static double log_along(const Direction* along, double by_d, double by_E, double by_load) {
     return scaled(by_d, along->input[FC_INPUT_D]) + scaled(by_E, along->input[FC_INPUT_E]) +
            scaled(by_load, along->input[FC_INPUT_LOAD]);
@@ -232,7 +234,7 @@ static double derivative_of(Tangent* tangent, const FcVariableInfo* unknown) {
     return state ? *state : slope_of(&tangent->outputs, unknown, tangent->mean_is_force);
 }
 
-// Reads the direction; false after logging what is wrong with it.
+// Reads the direction; false after logging the fault.
 static bool read_direction(FcInstance* instance, const fmi2ValueReference vr[], size_t n,
                            const fmi2Real change[], Direction* direction) {
     const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;

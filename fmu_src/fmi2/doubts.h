@@ -1,5 +1,5 @@
-// Start values that were hardly meant: settings that the scene does not use, and magnitudes that look like another unit. Each is told
-// once in the log, as a warning, when initialization ends.
+// Start values that are probably mistakes: settings that the scene does not use, and magnitudes that look
+// like another unit. The log has one warning for each when initialization ends.
 #ifndef FC_FMI2_DOUBTS_H
 #define FC_FMI2_DOUBTS_H
 

@@ -1,4 +1,4 @@
-// One FMU instance: a contact, where it is in the life of an FMI instance, and how it talks to its host.
+// One FMU instance: a contact, its state in the life of an FMI instance, and its connection to the host.
 #ifndef FC_FMI2_INSTANCE_H
 #define FC_FMI2_INSTANCE_H
 
@@ -9,7 +9,7 @@
 #include "friction_contact.h"
 #include "hybrid.h"
 
-// What FMI knows of a run beside the contact; plain data, part of a saved state.
+// The state of a run besides the contact; plain data, part of a saved state.
 typedef struct {
     int interface;        // one FcInterface
     int mode;             // one FcMode
@@ -43,9 +43,9 @@ void fc_instance_set_start_values(FcInstance* instance);
 // Model exchange, and initialized: the contact is the differential equation of hybrid.h.
 bool fc_instance_is_hybrid(const FcInstance* instance);
 
-// Makes F_t, sigma and A_r agree with the present inputs and parameters; in initialization mode all outputs,
-// from the start values set so far. Returns 1, or 0 with *message filled when those values do not go
-// together.
+// Computes F_t, sigma and A_r from the present inputs and parameters; in initialization mode all outputs,
+// from the start values set so far. Returns 1, or 0 with *message filled if these values are not a valid
+// combination.
 bool fc_instance_refresh_outputs(FcInstance* instance, FcMessage* message);
 
 // The same, and the rates of the states.

@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Bytes of a message; longer ones are cut off. By hand: room for the longest FcMessage and what stands around it.
+// The length of a message in bytes; longer ones are cut off. Chosen empirically: the longest FcMessage and
+// its prefix fit. Half of it would cut messages.
 enum { TEXT_SIZE = 512 };
 
 unsigned fc_log_category_bit(fmi2String category) {
@@ -24,7 +25,7 @@ unsigned fc_log_mask_all(void) { return (1u << fc_log_categories_count) - 1u; }
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The host's locale may have put a separator of one or more bytes where the decimal point belongs.
+// The host's locale may have put a separator of one or more bytes in place of the decimal point.
 static void restore_decimal_points(char* text) {
     char half[16];
     snprintf(half, sizeof half, "%.1f", 0.5); // 0, separator, 5

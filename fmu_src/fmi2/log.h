@@ -15,7 +15,8 @@
 fmi2Status fc_refuse(const FcInstance* instance, FcCall call, const char* format, ...) FC_PRINTF_LIKE(3, 4);
 
 // Logs "<function>: <text>" in the category, with the status that the function will return or a milder one.
-// The text's numbers are written only where somebody reads them: that costs as much as a short step.
+// The numbers of the text are formatted only if the category is logged, since formatting costs as much as a
+// short step.
 #define fc_log(instance, call, status, category, ...)                                                        \
     do {                                                                                                     \
         if (fc_log_reaches(instance, category)) {                                                            \

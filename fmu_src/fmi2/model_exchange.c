@@ -1,11 +1,11 @@
-// The functions of FMI for Model Exchange: time, states, rates, events. What they mean is in hybrid.h.
+// The functions of FMI for Model Exchange: time, states, rates, events. hybrid.h has their meaning.
 #include <float.h>
 #include <math.h>
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 
-// Whether the array is there and has a place for each; logs why not.
+// Whether the array exists and has a place for each. Logs the reason if not.
 static bool array_fits(const FcInstance* instance, FcCall call, const void* array, size_t given,
                        unsigned needed, const char* what) {
     if (!array) {
@@ -19,7 +19,8 @@ static bool array_fits(const FcInstance* instance, FcCall call, const void* arra
     return true;
 }
 
-// How far a time is after the stop time [s]; not above 0 without one. Hosts add or multiply their steps.
+// The time [s] by which a time lies after the stop time; 0 or below without a stop time. Hosts add or
+// multiply their steps.
 static double after_stop(const FcInstance* instance, double time) {
     const FcExperiment* experiment = &instance->experiment;
     const double stop = experiment->stop_time;
@@ -41,7 +42,8 @@ static bool is_before_stop(const FcInstance* instance, FcCall call) {
     return true;
 }
 
-// An integrator may look beyond the stop time and come back, but not from there, nor farther than the run is long.
+// An integrator may evaluate beyond the stop time and return, but it may not step from there, nor evaluate
+// farther than the length of the run.
 static bool may_look_at(const FcInstance* instance, double time) {
     const FcExperiment* experiment = &instance->experiment;
     const double seen = instance->contact.state.hybrid.seen_time;

@@ -36,7 +36,7 @@ FcSavedState* fc_saved_state_to_fill(const FcInstance* instance, FcCall call, fm
     return saved;
 }
 
-// Numbers that do not belong to the present values; zero makes equal states equal.
+// Clears the numbers that do not belong to the present values, so that equal states are equal bytes.
 static void drop_stale_outputs(const FcInstance* instance, FcSavedState* saved) {
     FcVariables* variables = &saved->friction.variables;
     variables->F_t = 0.0;
@@ -64,7 +64,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
     if (!saved) {
         return fmi2Error;
     }
-    // Whether the outputs have been read must not show in a saved state: they are brought up to date first.
+    // A saved state must not depend on whether the outputs have been read: they are brought up to date first.
     FcMessage message;
     const bool settled =
         instance->experiment.mode != FC_INSTANTIATED && fc_instance_refresh_outputs(instance, &message);

@@ -8,7 +8,7 @@
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
 //                   time and its rounding, roundings of W_f and Q_f, rates of the last step, rates of the next step:
 //                   8 bytes each; whether the latter were set, and to which side the bristle slips: 4 each
-//                   what the last step left, from which inputs may jump: 8 bytes each
+//                   the past from which inputs may jump: 8 bytes each
 //                   of model exchange: regime, whether a state was changed: 4 bytes each; when the inputs were seen
 //                   last, they and their speeds, two nominal values, the lag, its force and heat: 8 bytes each
 //                   interface, mode, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
@@ -26,7 +26,8 @@
 #include "fmi2/saved_state.h"
 #include "fmi2/variables.h"
 
-// Counted from 1: rises when anything but the variables changes in the layout above. With the variables the guid changes.
+// Counted from 1. It increases with every change of the layout above, except of the variables, whose change
+// alters the guid.
 enum { LAYOUT_VERSION = 5 };
 
 // Bytes of the parts above: the length of magic, of a guid in braces, of a 64-bit hash.
@@ -51,7 +52,7 @@ static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
     return hash;
 }
 
-// One walk over the fields of a state serves to measure, to write and to read it.
+// One function goes over the fields of a state, to measure, to write or to read it.
 typedef enum { MEASURE, WRITE, READ } Direction;
 
 typedef struct {
@@ -209,7 +210,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byt
     return fmi2OK;
 }
 
-// Why the bytes can't be a state of this FMU; NULL if they can.
+// The reason why the bytes cannot be a state of this FMU; NULL if they can.
 static const char* flaw_of_bytes(const unsigned char* bytes, size_t size) {
     const size_t expected = serialized_size();
     if (size < HEADER_SIZE) {
@@ -279,7 +280,7 @@ static bool hybrid_is_sound(const FcFrictionState* state) {
            isfinite(hybrid->lag_force) && isfinite(hybrid->lag_heat);
 }
 
-// The name of the first part of the state with a value that it can't have; NULL if there is none.
+// The name of the first part of the state with an impossible value; NULL if there is none.
 static const char* unsound_part(FcSavedState* saved) {
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];

@@ -1,4 +1,4 @@
-// fmi2GetXXXStatus. Steps are synchronous and never discarded, so only two questions have an answer.
+// fmi2GetXXXStatus. Steps are synchronous and never discarded, so only two queries have an answer.
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 

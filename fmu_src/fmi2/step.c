@@ -7,8 +7,8 @@
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
 
-// Hosts keep time in their own way, adding steps or multiplying them; what is a rounding of time to them must
-// not stop a run. There is no absolute allowance: steps of 1e-12 s are as good as steps of 1e9 s.
+// Hosts add or multiply their steps, so their time differs by rounding, which must not stop a run. The
+// allowance is relative: steps of 1e-12 s work as well as steps of 1e9 s.
 static double rounding_of_time(double t, double h) { return 1e-6 * h + 16.0 * DBL_EPSILON * fabs(t); }
 
 static bool check_step(const FcInstance* instance, double t, double h) {
@@ -38,7 +38,7 @@ static bool check_step(const FcInstance* instance, double t, double h) {
     return true;
 }
 
-// An input that moves must end where it could also have been set.
+// The end of a moving input must be a value that could also be set.
 static bool check_moving_inputs(const FcInstance* instance, double h) {
     const FcFrictionState* state = &instance->contact.state;
     for (unsigned vr = 0; state->next_rate_set && vr < fc_variables_count; vr++) {
@@ -91,7 +91,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
-    // Steps are synchronous, so the table allows this in no state that an instance enters.
+    // Steps are synchronous, so the table allows this call in no state that an instance enters.
     fc_instance_enter(c, FC_CALL_CANCEL_STEP);
     return fmi2Error;
 }

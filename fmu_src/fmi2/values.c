@@ -72,9 +72,9 @@ static fmi2Status refuse_literal(const FcInstance* instance, const FcVariableInf
                      literals);
 }
 
-// Inputs can be set in every state in which setting is legal at all, tunable parameters but while an integrator runs,
-// fixed parameters until initialization ends, outputs and local variables never; but some hosts of model exchange set the
-// states so while they integrate (CasADi).
+// Inputs can be set in every state in which setting is legal. Tunable parameters cannot be set while an
+// integrator runs, fixed parameters not after initialization, outputs and local variables never. Exception:
+// some hosts of model exchange (CasADi) set the states so while they integrate.
 static bool is_settable(const FcInstance* instance, const FcVariableInfo* info) {
     const int mode = instance->experiment.mode;
     if (info->causality != FC_CAUSALITY_PARAMETER) {
@@ -112,7 +112,8 @@ static bool have_equal_causes(const FcVariables* a, const FcVariables* b) {
     return true;
 }
 
-// An importer that records all outputs asks for it at each of them, mostly with the same inputs and parameters.
+// An importer that records all outputs reads F_t_settled at each of them, mostly with the same inputs and
+// parameters.
 static bool settled_force(FcInstance* instance, FcVector* force, FcMessage* message) {
     const FcVariables* now = &instance->contact.state.variables;
     if (!have_equal_causes(now, &instance->settled_force_of)) {
@@ -243,7 +244,7 @@ fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
     return fmi2OK;
 }
 
-// The model has no Boolean and no String: any reference is an error, an empty request is not.
+// The model has no Boolean and no String: any reference is an error, an empty request is allowed.
 static fmi2Status access_absent_type(fmi2Component c, FcCall call, const fmi2ValueReference vr[], size_t nvr,
                                      FcVariableType type) {
     const FcInstance* instance = fc_instance_enter(c, call);

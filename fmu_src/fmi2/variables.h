@@ -1,4 +1,4 @@
-// What modelDescription.xml says of each variable, as the C code sees it.
+// The variables of modelDescription.xml, for the C code.
 //
 // modelDescription.xml is the only source: workshop/packing/variable_table.py writes the table at build time,
 // and fc_variables[value reference] is the variable with that reference.
@@ -33,8 +33,8 @@ typedef struct {
     FcVariability variability;
     bool has_start;              // an output has none: its value is computed
     double start;                // in unit
-    double min;                  // in unit, inclusive; -DBL_MAX where the XML gives none
-    double max;                  // in unit, inclusive; DBL_MAX where the XML gives none
+    double min;                  // in unit, inclusive; -DBL_MAX if the XML gives none
+    double max;                  // in unit, inclusive; DBL_MAX if the XML gives none
     const char* const* literals; // names of the enumeration's values 1, 2, ...; NULL for other types
     size_t offset; // into FcVariables of friction_contact.h: a double for Real, an int for Enumeration
 } FcVariableInfo;
@@ -50,13 +50,14 @@ extern const char fc_model_identifier[]; // modelIdentifier of the XML
 extern const char* const fc_log_categories[]; // names under LogCategories
 extern const unsigned fc_log_categories_count;
 
-// Names under LogCategories of modelDescription.xml: the first three are FMI's own, logSolver is ours.
+// Names under LogCategories of modelDescription.xml: the first three are defined by FMI, logSolver by this
+// FMU.
 #define FC_LOG_STATUS_ERROR "logStatusError"
 #define FC_LOG_STATUS_WARNING "logStatusWarning"
 #define FC_LOG_EVENTS "logEvents" // life cycle: instantiated, initialized, terminated
-#define FC_LOG_SOLVER "logSolver" // messages of the numerical solver
+#define FC_LOG_SOLVER "logSolver" // number of evaluations
 
-// Where the value of a variable lies, and which values it may take.
+// The place of a variable's value, and its range.
 static inline double* fc_variable_real(FcVariables* variables, const FcVariableInfo* info) {
     return (double*)(void*)((char*)variables + info->offset);
 }
@@ -87,7 +88,7 @@ static inline bool fc_variable_is_state(const FcVariableInfo* info) {
            info->offset == offsetof(FcVariables, Q_f) || info->offset == offsetof(FcVariables, delta_y);
 }
 
-// F_t_settled and F_y_settled, computed for who asks for them.
+// F_t_settled and F_y_settled, computed only if they are read.
 static inline bool fc_variable_is_settled_force(const FcVariableInfo* info) {
     return info->offset == offsetof(FcVariables, F_t_settled) ||
            info->offset == offsetof(FcVariables, F_y_settled);

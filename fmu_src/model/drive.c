@@ -337,7 +337,7 @@ static double root_of_V(const FcDrive* drive, double t0, double t1) {
                    &evaluations);
 }
 
-// A dip that is shallower than this is smooth enough to be stepped over. A larger value cuts more stretches.
+// Whether |V| dips below half of |V| + V_1 at t. A shallower dip is smooth enough to be stepped over.
 static bool is_dip(const FcDrive* drive, double t) {
     const FcVelocity at = fc_drive_velocity(drive, t);
     return at.V * at.curvature >= 0.0 &&
