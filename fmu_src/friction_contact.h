@@ -139,7 +139,8 @@ typedef struct {
 } FcFastest;
 FcFastest fc_fastest(const FcDrive* drive);
 
-// The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to use.
+// The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to
+// use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);
 
 #endif

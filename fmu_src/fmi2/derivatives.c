@@ -132,8 +132,8 @@ typedef struct {
     FcVector settled_force;
 } Slopes;
 
-// The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs. Before the
-// first step F_t_mean is F_t, and F_y_mean F_y.
+// The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs.
+// Before the first step F_t_mean is F_t, and F_y_mean F_y.
 static double slope_of(const Slopes* slopes, const FcVariableInfo* output, bool mean_is_force) {
     switch (output->offset) {
     case offsetof(FcVariables, F_t):
@@ -214,7 +214,8 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
     };
 }
 
-// The derivatives of F_t_settled and F_y_settled along the direction, which cost many periods of the vibration.
+// The derivatives of F_t_settled and F_y_settled along the direction, which cost many periods of the
+// vibration.
 static bool settled_force_along(const FcFrictionContact* contact, const Direction* along,
                                 FcVector* derivative, FcMessage* message) {
     *derivative = (FcVector){0.0, 0.0};

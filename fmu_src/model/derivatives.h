@@ -13,8 +13,8 @@ typedef struct {
 } FcLogSlopes;
 FcLogSlopes fc_log_slopes(const FcScene* scene);
 
-// The derivative of the rate D' of the bound of a scene (model/regime.h) by the input at this offset in FcDrive, by a central
-// difference over 1e-5 of the input, or of V_S for V and V_y.
+// The derivative of the rate D' of the bound of a scene (model/regime.h) by the input at this offset in
+// FcDrive, by a central difference over 1e-5 of the input, or of V_S for V and V_y.
 double fc_bound_rate_slope(const FcScene* bound, size_t input);
 
 #endif

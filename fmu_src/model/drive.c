@@ -244,8 +244,8 @@ double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at
            drive->vibration.V_1 / drive->omega * (at_t1.sine - at_t0.sine);
 }
 
-// The integral of tau sin(omega tau) over an interval centred at tau = 0, s being omega times half its length. It vanishes
-// like s^3.
+// The integral of tau sin(omega tau) over an interval centred at tau = 0, s being omega times half its
+// length. It vanishes like s^3.
 static double sine_moment(double omega, double s) {
     return s > 0.1 ? 2.0 * (sin(s) - s * cos(s)) / (omega * omega)
                    : 2.0 * s * s * s * (1.0 / 3 - s * s * (1.0 / 30 - s * s * (1.0 / 840 - s * s / 45360))) /

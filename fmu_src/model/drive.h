@@ -5,8 +5,8 @@
 //     E(t) = E + E' t              load(t) = load + load' t
 //     V_y(t) = V_y + V_y' t + V_2 cos(2 pi f t + theta_0 + phase_2), transverse to V, in the plane of the contact
 //
-// t is local: 0 at the start of the step; theta_0 is the phase of the vibration there. The rates are zero when
-// the inputs are held. Local time keeps a step at 1e9 s as accurate as one at 0.
+// t is local: 0 at the start of the step; theta_0 is the phase of the vibration there. The rates are zero
+// when the inputs are held. Local time keeps a step at 1e9 s as accurate as one at 0.
 #ifndef FC_MODEL_DRIVE_H
 #define FC_MODEL_DRIVE_H
 
@@ -58,8 +58,8 @@ bool fc_drive_is_constant(const FcDrive* drive);
 bool fc_drive_is_planar(const FcDrive* drive); // it moves across
 bool fc_drive_V_is_constant(const FcDrive* drive);
 
-// Of the vibration's angle 2 pi f t + theta_0. The sine comes first: the other way round gcc reads both at once as soon as
-// sincos has written them one by one, and the processor waits.
+// Of the vibration's angle 2 pi f t + theta_0. The sine comes first: the other way round gcc reads both at
+// once as soon as sincos has written them one by one, and the processor waits.
 typedef struct {
     double sine;
     double cosine;

@@ -1,5 +1,6 @@
-// The laws of friction. The bristle's deflection delta [m] is the state of all but Coulomb's; g [N] is the limit of its
-// force, constant or proportional to the normal force, and s(V) = 1 + (staticRatio - 1) e^(-(V / V_S)^2) Stribeck's curve:
+// The laws of friction. The bristle's deflection delta [m] is the state of all but Coulomb's; g [N] is the
+// limit of its force, constant or proportional to the normal force, and s(V) = 1 + (staticRatio - 1) e^(-(V /
+// V_S)^2) Stribeck's curve:
 //
 //     Coulomb         F = g sgn V
 //     ElasticPlastic  it sticks, delta' = V, until sigma |delta| reaches the static bound, staticRatio g; it breaks away and
@@ -7,8 +8,8 @@
 //     Dahl            delta' = V - sigma |V| delta / g                                                   (Eq. 1, 2)
 //     LuGre           delta' = V - sigma |V| delta / (g s(V))
 //
-// If g follows the load, no bristle of Dahl carries more than g and none of LuGre more than staticRatio g: it slips along
-// that bound.
+// If g follows the load, no bristle of Dahl carries more than g and none of LuGre more than staticRatio g: it
+// slips along that bound.
 //
 // Every law with a state gives F_t = sigma delta + sigma_1 delta' + sigma_2 V, Coulomb F_t = F + sigma_2 V.
 #ifndef FC_MODEL_FRICTION_H
@@ -76,7 +77,8 @@ static inline bool fc_is_bounded(const FcFriction* friction) {
            (friction->model != FC_COULOMB && fc_limit_follows_load(friction));
 }
 
-// Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a Stribeck curve.
+// Factor on the limit at the velocity V [m/s], and its derivative with respect to V [s/m]: 1 and 0 without a
+// Stribeck curve.
 static inline double fc_stribeck(const FcFriction* friction, double V) {
     const double ratio = V / friction->V_S;
     assert(!fc_has_stribeck_curve(friction) || friction->staticRatio >= 1.0);

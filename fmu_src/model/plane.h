@@ -1,4 +1,5 @@
-// The contact in the plane: V = (V, V_y), and the bristle's deflection and force are vectors too. With r = sigma |V| / g,
+// The contact in the plane: V = (V, V_y), and the bristle's deflection and force are vectors too. With r =
+// sigma |V| / g,
 //
 //     Coulomb         F = g V / |V|
 //     Dahl, LuGre     delta' = V - r delta, g with Stribeck's curve of |V|

@@ -2,8 +2,8 @@
 #ifndef FC_MODEL_SPECIAL_H
 #define FC_MODEL_SPECIAL_H
 
-// Incomplete gamma functions for x >= 0, to a few roundings: lower, integral of t^(a-1) e^-t over [0, x], for a = 3/2
-// and 5/2; upper, the integral over [x, infinity), for a = 3/2.
+// Incomplete gamma functions for x >= 0, to a few roundings: lower, integral of t^(a-1) e^-t over [0, x], for
+// a = 3/2 and 5/2; upper, the integral over [x, infinity), for a = 3/2.
 double fc_lower_gamma_3_2(double x);
 double fc_lower_gamma_5_2(double x);
 double fc_upper_gamma_3_2(double x);

@@ -66,8 +66,8 @@ void fc_map_apply_across(const FcMap* map, FcStepResult* result) {
     result->heat += part.heat;
 }
 
-// (1/2 - (z - 1 + e^-z) / z^2) / z, which tends to 1/6, for z in [0, 1]: 1/3! - z/4! + z^2/5! - ... TERMS are 1/3! to 1/17!,
-// below which all is rounding.
+// (1/2 - (z - 1 + e^-z) / z^2) / z, which tends to 1/6, for z in [0, 1]: 1/3! - z/4! + z^2/5! - ... TERMS are
+// 1/3! to 1/17!, below which all is rounding.
 static double phi_3(double z) {
     assert(!(z < 0.0 || z > 1.0));
     // clang-format off

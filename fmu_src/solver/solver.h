@@ -8,7 +8,7 @@
 #include "message.h"
 #include "model/scene.h"
 
-// The values that modelDescription.xml gives them.
+// The values of modelDescription.xml.
 typedef enum {
     FC_METHOD_COLLOCATION = 1,
     FC_METHOD_CVODE = 2,

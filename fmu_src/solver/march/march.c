@@ -12,30 +12,37 @@
 #include "solver/methods/methods.h"
 #include "solver/stretches/watch.h"
 
-// Beyond this velocity, over V_S, Stribeck's curve is seen by no panel: e^-25 of it is left. By hand.
+// The velocity over V_S beyond which panels ignore Stribeck's curve: e^-25 of it remains. Chosen empirically;
+// at half of it e^-6 would remain.
 static const double END_OF_PEAK = 5.0;
 
-// The change of V over V_S in which the curve is taken to move by 1. By hand: more makes panels that are refused.
+// The change of V over V_S in which the curve is assumed to move by 1. Chosen empirically: twice of it makes
+// panels that are refused, half of it more panels.
 static const double CURVE_MOVES = 0.5;
 
-// What a bristle that is beyond its bound by rounding may be beyond, over the bound: 450 eps.
+// The largest excess over its bound that counts as rounding, over the bound: 450 eps. Twice of it would move
+// a bristle by as much more.
 static const double ROUNDING_OF_BOUND = 1e-13;
 
-// What such a bristle still moves by until V turns back, over the bound, if it is at its static bound but for rounding.
+// The largest way until V turns back, over the bound, that counts as rounding for a bristle at its static
+// bound. Half or twice of it decides only motions of this size.
 static const double ROUNDING_AT_REVERSAL = 1e-9;
 
-// A bristle that sticks is looked after, in one panel, for about the time in which V moves it by this many bounds. By hand: from one
-// bound to the other are two.
+// The length of a panel of a sticking bristle, in bounds that V moves it at its present pace. Chosen
+// empirically: the way from one bound to the other is two. Half of it costs panels; twice of it makes panels
+// that are cut early.
 static const double SOON = 3.0;
 
-// Regimes in a row that take no time before the next panel is taken whatever its push. By hand: a bristle that rounding
-// sends to and fro.
+// The number of regimes of no duration in a row, after which the next panel slips whatever its push. Chosen
+// empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
 enum { MOST_IDLE = 4 };
 
-// What the push may bend between two points, over the most that it bends from point to point there. By hand.
+// The largest bend of the push between two points, over the largest bend from point to point there. Chosen
+// empirically: half of it misses dips, twice of it costs evaluations.
 static const double BENDS = 1.5;
 
-// Halvings in search of a push that dips to 0 between two points. By hand: what is deeper is over in 1e-3 of the way.
+// The number of halvings in search of a dip of the push to 0 between two points. Chosen empirically: a dip
+// that is missed lasts less than 1e-3 of the cell. One more halving costs one evaluation.
 enum { MOST_HALVINGS = 10 };
 
 typedef struct {
@@ -65,7 +72,7 @@ static const FcScene* bound_of_slip(const March* m) {
 
 static double allowed(const March* m) { return m->options.tolerance * m->options.force; }
 
-// Before panels are planned.
+// Prepares the plan of panels.
 static void plan(March* m) {
     if (m->smooth_time == 0.0) {
         const FcPace pace = fc_pace(&m->bound, m->duration);
@@ -74,7 +81,7 @@ static void plan(March* m) {
     }
 }
 
-// Points into itself.
+// The march points into itself.
 static void begin(March* m, const FcScene* scene, const FcSolverOptions* options, double duration,
                   FcStepResult* result) {
     m->scene = scene;
@@ -94,7 +101,7 @@ static bool stands_still(const FcScene* scene) {
     return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
 }
 
-// Whether D stands still: also if sigma and g fall alike.
+// Whether D is constant; also if sigma and g fall alike.
 static bool bound_stands(const FcScene* bound) {
     return (stands_still(bound) || (fc_scene_ratio_is_constant(bound) && bound->drive.E.rate == 0.0)) &&
            (!fc_has_stribeck_curve(bound->friction) || fc_drive_V_is_constant(&bound->drive));
@@ -102,7 +109,7 @@ static bool bound_stands(const FcScene* bound) {
 
 // ---- slipping ----
 
-// |V| has a kink at a reversal, which Dahl and LuGre see; Stribeck's curve begins and ends.
+// Sets the cut: a reversal, since |V| has a kink there in Dahl and LuGre, or an end of Stribeck's curve.
 static void find_cut(March* m, double end) {
     const FcDrive* drive = &m->scene->drive;
     if (m->cut > m->t && m->cut <= end) {
@@ -132,7 +139,7 @@ static double smooth_time_of_slip(const March* m) {
 
 static void advance(March* m, double h) { m->t = fc_panel_end(m->t, h, m->cut); }
 
-// Moves the bristle at once to delta: what it stores less is heat.
+// Moves the bristle at once to delta. The energy that it loses is heat.
 static void move_to(March* m, double delta, double sigma) {
     FcStepResult* result = m->result;
     const double moved = delta - result->delta;
@@ -182,8 +189,8 @@ static void slip_points(March* m, double h, int rule, int side, Slip* slip) {
     }
 }
 
-// A distance [m] that is seen neither by the force nor, over the path, by work and heat. With static friction it may decide whether
-// the bristle breaks away: there only rounding is not seen.
+// A distance [m] that affects neither the force nor, over the path, work and heat. With static friction a
+// smaller distance may decide whether the bristle breaks away, so only rounding is ignored.
 static double unseen(const March* m, double sigma, double D) {
     if (fc_has_static_friction(m->scene->friction)) {
         return ROUNDING_OF_BOUND * D;
@@ -191,7 +198,7 @@ static double unseen(const March* m, double sigma, double D) {
     return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
 }
 
-// The push between two points, where it is above 0, and its second derivative is at most `bend`.
+// The push between two points at which it is above 0, with a second derivative of at most `bend`.
 typedef struct {
     FcPushed of;
     double bend; // m/s3
@@ -199,7 +206,8 @@ typedef struct {
     double* evaluations;
 } Push;
 
-// Where between a and b it comes to 0, to be seen by halving as long as it may; infinite if nowhere.
+// The time between a and b at which the push falls to 0, found by halving as long as it may; infinite if it
+// does not.
 static double dip_of_push(const Push* push, double a, double at_a, double b, double at_b) {
     typedef struct {
         double t, push;
@@ -232,7 +240,7 @@ static double dip_of_push(const Push* push, double a, double at_a, double b, dou
     return INFINITY;
 }
 
-// How much the push bends at point i of a panel.
+// The second difference of the push at point i of a panel.
 static double bend_at(const Slip* slip, int i) {
     const double* t = slip->at.t;
     const double* f = slip->push;
@@ -240,7 +248,7 @@ static double bend_at(const Slip* slip, int i) {
            (t[i + 1] - t[i - 1]);
 }
 
-// Where in the panel the push comes to 0; infinite if nowhere. At the start it is known to be above.
+// The time in the panel at which the push falls to 0; infinite if it does not. At the start it is above 0.
 static double end_of_push(March* m, int side, const Slip* slip) {
     const double* t = slip->at.t;
     const double* f = slip->push;
@@ -264,7 +272,7 @@ static double end_of_push(March* m, int side, const Slip* slip) {
     return INFINITY;
 }
 
-// Notes the middle of the longest slip.
+// Stores the middle of the longest slip.
 static void note_slip(March* m, double duration) {
     if (duration > m->longest) {
         m->longest = duration;
@@ -309,15 +317,16 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
         const double part = fastest > 0.0 ? (slip->at.V[i] - m->side * slip->rate[i]) / fastest : 0.0;
         f[i] = slip->at.limit[i] * (1.0 + part);
     }
-    // The heat g (V - D') may miss its part of the path, of the surfaces and of the bristle, alone: D' may be fast for a short time.
+    // The heat g (V - D') may err by its part of the path of surfaces and bristle alone, since D' may be fast
+    // for a short time.
     const double path = m->speed * m->duration + (most - least);
     const double of_path = fastest > 0.0 ? fmin(1.0, path / (fastest * m->duration)) : 1.0;
     return fc_error_at_points(&slip->at, f) * slip->at.h <=
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
 }
 
-// Where a slip ends at the latest, or the way to its bound of a bristle that slips: in ElasticPlastic where V turns back, unless the
-// bound falls there; else at `end`.
+// The latest end of a slip, or of the way of a slipping bristle to its bound: in ElasticPlastic the time at
+// which V reverses, unless the bound falls there; else `end`.
 static double latest_end(March* m, double end) {
     const FcDrive* drive = &m->scene->drive;
     if (relaxes(m->scene)) {
@@ -336,10 +345,11 @@ static double latest_end(March* m, double end) {
                : event.time; // V is 0, so the kinetic bound is the static one
 }
 
-// Along the bound for a panel, up to `end` at the most, or to where the bristle leaves it; forced if it is known not to.
+// Slips along the bound for a panel, up to `end` at most, or until the bristle leaves the bound. forced: it
+// is known not to leave.
 static void slip(March* m, double end, bool forced) {
     m->result->evaluations += 1.0;
-    // Where V is 0, so is the push: the panel says how it goes on.
+    // If V is 0, the push is 0: the panel decides.
     if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) >= 0.0)) {
         end_slip(m);
         return;
@@ -473,8 +483,8 @@ static void stick_until(March* m, const FcScene* bound, int rule, double end) {
     }
 }
 
-// Sticks for a panel, up to `end` at the most, or to where it meets the bound; clear if it can't. One that slips but lies inside its bound goes with
-// V while it comes nearer to it.
+// Sticks for a panel, up to `end` at most, or until it meets its bound. clear: it cannot meet it. A slipping
+// bristle inside its bound moves with V while it comes nearer to its bound.
 static void stick(March* m, double end, bool clear) {
     plan(m);
     const int slips = m->result->slips;
@@ -542,7 +552,7 @@ static void stick(March* m, double end, bool clear) {
 
 // ---- ElasticPlastic with a bound that stands still ----
 
-// Over [t, end] with a constant stiffness, of that displacement: closed forms.
+// The map over [t, end] with a constant stiffness and that displacement, in closed forms.
 static FcMap still_map(const FcScene* scene, double sigma, double t, double end, double displacement) {
     const FcDrive* drive = &scene->drive;
     const double x = displacement;
@@ -556,7 +566,7 @@ static FcMap still_map(const FcScene* scene, double sigma, double t, double end,
     };
 }
 
-// Sticks to the time `end`, up to which it is known to meet nothing.
+// Sticks to the time `end`, before which it meets no bound.
 static void stick_to(March* m, double end) {
     if (fc_scene_stiffness_is_constant(m->scene)) {
         const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
@@ -569,7 +579,7 @@ static void stick_to(March* m, double end) {
     }
 }
 
-// The same along the bound.
+// Slips along the bound to the time `end`.
 static void slip_to(March* m, double end) {
     const FcScene* bound = bound_of_slip(m);
     if (fc_scene_limit_is_constant(bound)) {
@@ -602,11 +612,13 @@ static FcRootFunction way_to_bound(void* context, double t) {
                             .curvature = of->side * at.rate};
 }
 
-// The part of its bracket that the last step to a meeting may have: the error is some cube of it.
+// The largest last step to a meeting, over its bracket: the error is of the order of its cube, 1e-15. Ten
+// times of it would leave 1e-12.
 static const double LAST_STEP = 1e-5;
 
-// Between two reversals of V the deflection goes one way, so it meets the bound D if it would be beyond at the second. A slip ends at
-// the next reversal; under a Stribeck curve and a V that moves, the kinetic bound moves.
+// Between two reversals of V the deflection is monotone. So the bristle meets its bound D if it would be
+// beyond D at the second reversal. A slip ends at the next reversal. With a Stribeck curve and a varying V
+// the kinetic bound varies.
 static void march_between_reversals(March* m, double D) {
     const FcScene* scene = m->scene;
     const FcDrive* drive = &scene->drive;
@@ -639,7 +651,8 @@ static void march_between_reversals(March* m, double D) {
         bool goes_on = !(side * x > way);
         if (!goes_on && way <= ROUNDING_OF_BOUND * D && side * x <= ROUNDING_AT_REVERSAL * D &&
             fc_has_static_friction(scene->friction)) {
-            // It sticks at the static bound if V comes to its reversal faster than it could slip: what is left of the way is rounding.
+            // It sticks at the static bound if V reaches its reversal faster than the bristle could slip: the
+            // rest of the way is rounding.
             goes_on = !(fc_push(scene, scene, sticks_to, side) > 0.0);
         }
         if (goes_on) {
@@ -665,7 +678,7 @@ static void march_between_reversals(March* m, double D) {
 
 // ---- the march ----
 
-// Whether a bristle deflected by delta [m] comes near no bound over the interval.
+// Whether the bristle stays away from every bound over the interval.
 static bool stays_clear(const March* m) {
     const FcDrive* drive = &m->scene->drive;
     double reach =
@@ -748,7 +761,7 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
     return map;
 }
 
-// Whether the bound falls in the step, as far as its scene tells.
+// Whether the bound may fall in the step.
 static bool may_fall(const FcScene* bound) {
     const FcDrive* drive = &bound->drive;
     if (bound_stands(bound)) {

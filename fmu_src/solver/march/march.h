@@ -3,18 +3,19 @@
 //     free      as if there were no bound: delta' = V in ElasticPlastic, by the panels of the unbounded laws in Dahl and LuGre
 //     slipping  along its bound D, delta = side D, while it is pushed beyond it
 //
-// While it is free each panel says whether it meets its bound (meeting.h). The panel is cut there, and the bristle slips, panel by
-// panel, until its push has come to 0. ElasticPlastic is all formulas: delta_0 + displacement while it sticks, D(t) while it
-// slips; what it needs are roots of those and quadratures. With a constant stiffness and limit the quadratures are closed
-// forms too.
+// While it is free each panel says whether it meets its bound (meeting.h). The panel is cut there, and the
+// bristle slips, panel by panel, until its push has come to 0. ElasticPlastic is all formulas: delta_0 +
+// displacement while it sticks, D(t) while it slips; only their roots and quadratures remain. With a constant
+// stiffness and limit the quadratures are closed forms too.
 //
-// With static friction, break-away is a drop from the static bound to the kinetic one, and what the bristle stores less is heat.
+// With static friction, break-away is a drop from the static bound to the kinetic one, and the energy that
+// the bristle loses is heat.
 #ifndef FC_SOLVER_MARCH_H
 #define FC_SOLVER_MARCH_H
 
 #include "solver/methods/periods.h"
 
-// An FcStep: the scene over [0, duration] from a bristle that is within its bound (fc_reach).
+// An FcStep: the scene over [0, duration] from a bristle within its bound (fc_reach).
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result);
 
@@ -22,7 +23,8 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
 FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration,
                      double* evaluations);
 
-// Whether a bristle within its bound may touch it in the step: one that relaxes does not while the bound stands still or recedes.
+// Whether a bristle within its bound may touch the bound in the step. A relaxing bristle does not if the
+// bound is constant or rises.
 bool fc_march_may_touch(const FcScene* scene);
 
 #endif

@@ -5,12 +5,14 @@
 #include "model/regime.h"
 #include "model/root.h"
 
-// p may rise between two points by at most this part of what it moves by from point to point near by. By hand: for a sine
-// whose points are a radian apart an eighth would do.
+// The largest rise of p between two points, over its change from point to point nearby. Chosen empirically:
+// for a sine whose points are a radian apart an eighth suffices. Half of it may miss a meeting, twice of it
+// costs evaluations.
 static const double HIDDEN = 0.5;
 
-// What a cubic may miss of the top between two points, over what p moves by near by. By hand: of a sine whose points are a radian
-// apart 1/384.
+// The largest error of the cubic's maximum between two points, over the change of p nearby. Chosen
+// empirically: 1/384 for a sine whose points are a radian apart. Half of it may miss a meeting, twice of it
+// cuts more panels.
 static const double MISSED_BY_CUBIC = 0.01;
 
 static double beyond_at(const FcCourse* course, int side, int i) {
@@ -66,7 +68,7 @@ static Cubic cubic_of(const FcCourse* course, int side, int i) {
                    length * fc_approach(course, side, i), length * fc_approach(course, side, i + 1)};
 }
 
-// The crossing in the cell from point i on, at the end of which p is above 0.
+// The crossing in the cell after point i, if p is above 0 at its end.
 static double crossing(const FcCourse* course, int side, int i, double over, double close,
                        double* evaluations) {
     const double a = course->t[i];
@@ -83,7 +85,7 @@ static double crossing(const FcCourse* course, int side, int i, double over, dou
     return a + (b - a) * fc_root_between(of_cubic, &cubic, 0.0, p_a, 1.0, cubic.p_b, 0.0, 0.0, &none);
 }
 
-// How much p moves from point to point near the cell.
+// The largest change of p from point to point near the cell.
 static double moves(const FcCourse* course, int side, int i) {
     double most = 0.0;
     for (int k = i > 0 ? i - 1 : 0; k <= i + 1 && k + 1 < course->count; k++) {
@@ -92,7 +94,8 @@ static double moves(const FcCourse* course, int side, int i) {
     return most;
 }
 
-// Whether p goes, or may go, above `over` inside the cell, being below at both ends; *t is where it crosses 0, or where its top is.
+// Whether p rises, or may rise, above `over` inside the cell while it is below at both ends. *t is the time
+// at which p crosses 0, or that of its maximum.
 static bool crosses_unseen(const FcCourse* course, int side, int i, double over, double close, double* t,
                            double* evaluations) {
     const double p_a = beyond_at(course, side, i);
@@ -124,7 +127,7 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
         fc_root_between(slope_of_cubic, &cubic, 0.0, cubic.slope_a, 1.0, cubic.slope_b, 0.0, 0.0, &none);
     const double p = of_cubic(&cubic, top);
     const double at_middle =
-        16.0 * top * top * (1.0 - top) * (1.0 - top); // what a cubic misses, over that in the middle
+        16.0 * top * top * (1.0 - top) * (1.0 - top); // the error of a cubic, over that in the middle
     double part = top;                                // it may be: a panel that is cut at the top says it
     if (p > over) {
         part = p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, 0.0, &none) : 0.0;

@@ -1,10 +1,10 @@
-// Where a bristle meets its bound in a panel, told by the panel's own points.
+// The meeting of a bristle with its bound in a panel, by the panel's own points.
 //
 //     p = side delta - D      p' = side delta' - D'
 //
-// The panel's points lie so near to each other that p is nearly a cubic between two of them. It crosses 0 if p changes its sign from
-// one point to the next. It may also do so in between, if p rises at the first and falls at the second: only then, and only
-// if p is near enough to 0, p' is asked for.
+// The panel's points lie so near to each other that p is nearly a cubic between two of them. It crosses 0 if
+// p changes its sign from one point to the next. It may also do so in between, if p rises at the first and
+// falls at the second: only then, and only if p is near enough to 0, p' is asked for.
 #ifndef FC_SOLVER_MEETING_H
 #define FC_SOLVER_MEETING_H
 
@@ -22,20 +22,20 @@ typedef struct {
     double delta[FC_MOST_POINTS]; // m
     double r[FC_MOST_POINTS];     // 1/s, sigma |V| / g; 0 in ElasticPlastic
     double D[FC_MOST_POINTS];     // m
-    double from; // s, the bristle's motion is delta[0] + the displacement since then if it is exact
-    bool exact;  // delta' = V
-    bool still;  // the bound does not move
-    int left;    // the side of a bound that the bristle has just left, as it is not pushed any more; else 0
+    double from;                  // s: delta[0] + the displacement since then is the motion, if it is exact
+    bool exact;                   // delta' = V
+    bool still;                   // the bound does not move
+    int left; // the side of a bound that the bristle has just left, since its push ended; else 0
 } FcCourse;
 
 typedef struct {
     int side; // 1 or -1; 0 for no meeting
-    double t; // s; of a course that is not exact by the cubic, and only what may be a meeting
+    double t; // s; by the cubic, and only a possible meeting, if the course is not exact
 } FcMeeting;
 
-// The first meeting of the course with its bound, of which it goes beyond by more than `over` [m]; told to within `close` [m] of the
-// bound. At the start it counts if the
-// bristle is within `over` of the bound and pushed, and has not just left it. Adds to *evaluations what it takes.
+// The first meeting of the course with its bound, beyond which it goes by more than `over` [m]; found to
+// within `close` [m] of the bound. A meeting at the start counts if the bristle is within `over` of the bound
+// and pushed, and has not just left it. Adds its evaluations to *evaluations.
 FcMeeting fc_first_meeting(const FcCourse* course, double over, double close, double* evaluations);
 
 // p' [m/s] at point i.

@@ -9,11 +9,13 @@
 static const FcGaussRule* const RULE[FC_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
 static const int NODES[FC_RULES] = {4, 6, 8, 12};
 
-// No panel of 12 nodes is longer, in times over which the scene moves by 1 over 12: planned for three digits, 10^(-3 / 24). By hand:
-// points that lie farther apart tell too little of what is between them.
+// The longest panel of 12 nodes, over 12 and over the time in which the scene moves by 1: planned for three
+// digits, 10^(-3 / 24). Chosen empirically: points farther apart show too little of the motion between them.
+// Half of it costs panels.
 static const double LONGEST_OF_12 = 0.75;
 
-// Panels that are refused in a row before one is taken as it is. By hand: 2^-22 of the planned length, where rounding rules.
+// The number of refused panels in a row, after which the next one is accepted: 2^-22 of the planned length,
+// at which rounding limits it. Twice as many would cost time alone.
 enum { MOST_TRIES = 25 };
 
 const FcGaussRule* fc_rule(int rule) { return RULE[rule]; }

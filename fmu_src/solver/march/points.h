@@ -1,5 +1,4 @@
-// A panel of something that is a formula in time: a Gauss rule with the panel's ends, how long it may be, and the root of a
-// function that is known at its points.
+// A panel of a function that is a formula in time: a Gauss rule with the panel's ends, and its length.
 #ifndef FC_SOLVER_POINTS_H
 #define FC_SOLVER_POINTS_H
 
@@ -11,23 +10,24 @@
 // The rules: of 4, 6, 8 and 12 nodes.
 enum { FC_RULES = 4, FC_MOST_POINTS = FC_GAUSS_MOST_NODES + 2 };
 
-// The longest panel of each rule, in times over which the scene moves by 1: n 10^(-digits / 2 n), since the error falls with
-// the length to the power 2 n.
+// The longest panel of each rule, over the time in which the scene moves by 1: n 10^(-digits / 2 n), since
+// the error goes with the length to the power 2 n.
 typedef struct {
     double longest[FC_RULES];
 } FcPlanner;
 FcPlanner fc_planner(double tolerance);
 
-// The length [s] of the next panel of equal ones over `left` [s], of a scene that moves by 1 in smooth_time [s], and its rule.
+// The length [s] of the next panel of equal ones over `left` [s], of a scene that moves by 1 in smooth_time
+// [s], and its rule.
 double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule);
 
-// Where a panel [t, t + h] on the way to `end` ends: at `end`, if what is left is rounding.
+// The end of a panel [t, t + h] on the way to `end`: `end` itself, if only rounding remains.
 double fc_panel_end(double t, double h, double end);
 
 const FcGaussRule* fc_rule(int rule);
 int fc_rule_nodes(int rule);
 
-// A panel that is not accurate is taken again, with more nodes or half as long; false if it has been so too often.
+// Refines a panel that is not accurate: more nodes, or half the length. False after too many refusals.
 bool fc_refine_panel(double* h, int* rule, int tries);
 
 // The panel [t, t + h]: its start, its nodes, its end.

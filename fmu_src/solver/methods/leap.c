@@ -9,17 +9,19 @@
 #include "model/regime.h"
 #include "solver/budget.h"
 
-// Points of the interpolation: 4, 7 and 13, which lie among each other.
+// The numbers of points of the interpolation: 4, 7 and 13, each of which contains the points before.
 enum { FEWEST_POINTS = 4, MOST_POINTS = 13 };
 
-// Fewer periods are gone through one by one. By hand: a block costs about as many.
+// The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
+// one by one.
 static const double FEWEST = 9.0;
-// In the plane a bristle that slips forgets its angle in so many periods. By hand: fewer are refused more often, more cost more; each
-// sample costs two times as many, so that fewer periods than FEWEST_OF_SLIPS are gone through one by one.
+// The number of periods in which a bristle that slips in the plane forgets its angle. Chosen empirically:
+// fewer are refused more often, more cost more. Each sample costs two times as many, so fewer periods than
+// FEWEST_OF_SLIPS are computed one by one.
 enum { WARM_UP = 3 };
 static const double FEWEST_OF_SLIPS = 60.0;
 
-// The numbers of a map, and of the one across.
+// The numbers of the two maps, along and transverse.
 enum { OF_MAP = sizeof(FcMap) / sizeof(double), NUMBERS = 2 * OF_MAP };
 typedef union {
     struct {
@@ -59,7 +61,8 @@ static FcBristle on_bound(const FcScene* scene, int side) {
                        .slips = fc_has_static_friction(scene->friction) ? side : 0};
 }
 
-// Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k, but for what is not seen.
+// Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k, within
+// the tolerance.
 static bool lies_on_bound(const Block* block, double k, double delta) {
     const FcScene scene = scene_at(block, k);
     const double allowed = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
@@ -85,7 +88,7 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     return bristle;
 }
 
-// The result of period k in the plane, if the period before leaves the same whatever the bristle began with earlier.
+// The result of period k in the plane, if its start does not depend on the earlier start.
 static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
     const FcBristle start = warmed_up(block, k, block->warm_up);
     const FcBristle other = warmed_up(block, k, block->warm_up - 1);
@@ -102,7 +105,8 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     return result.slips == start.slips;
 }
 
-// The map of period k of the block; false if it has pieces, or does not go from the bound to the bound where it should.
+// The map of period k of the block; false if it has pieces, or does not lead from the bound to the bound as
+// it should.
 static bool sample(const Block* block, double k, Numbers* numbers) {
     FcScene scene = scene_at(block, k);
     if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period ||
@@ -126,7 +130,7 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
     return lies_on_bound(block, k + 1.0, result.delta);
 }
 
-// What an error of each number of a map may be, for a force of 1 N.
+// The effect of an error of each number of a map on a force of 1 N.
 static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene begin = scene_at(block, 0.0);
     const FcScene end = scene_at(block, block->count - 1.0);
@@ -135,7 +139,7 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const double delta = fmax(block->delta, at.limit / at.sigma);
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->scene->friction->sigma_1;
-    // Errors of the deflection add up until they are forgotten.
+    // Errors of the deflection add up until they have relaxed.
     const double lives = fmin(block->count, 1.0 / fmax(typical->map.relaxation, 1.0 / block->count));
     const FcMap of_map = {
         .relaxation = sigma * delta * lives,
@@ -199,8 +203,8 @@ static double place_of(const Block* block, int j, int points) {
 
 typedef enum { SMOOTH, ROUGH, NO_MAP } Interpolated;
 
-// Interpolates the block through so many points, of which sampled holds the first half, each second one, if there are more than the
-// fewest.
+// Interpolates the block through that number of points. If it is more than the fewest, sampled holds every
+// second point in its first half.
 static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
     const bool has_half = points > FEWEST_POINTS;
     for (int j = points - 1; j >= 0 && has_half; j -= 2) {
@@ -218,7 +222,7 @@ static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
     if (!(largest_error(block->numbers, &weight, block->point[points - 1].of) <= may)) {
         return ROUGH;
     }
-    // A period between two points, off the middle, where even and odd errors are seen.
+    // A period between two points, not in the middle, at which even and odd errors appear.
     Numbers between;
     const double k =
         0.6 * place_of(block, points / 2, points) + 0.4 * place_of(block, points / 2 - 1, points);
@@ -232,7 +236,7 @@ static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
     return largest_error(block->numbers, &weight, found.of) <= may ? SMOOTH : ROUGH;
 }
 
-// Whether a bristle that has a bound would meet it in period k, from where it then is.
+// Whether a bounded bristle would meet its bound in period k, from its state at the start of that period.
 static bool meets(const Block* block, double k, const FcStepResult* at) {
     const FcScene scene = scene_at(block, k);
     const FcBristle start = {.delta = at->delta, .delta_y = at->delta_y};
@@ -243,7 +247,8 @@ static bool meets(const Block* block, double k, const FcStepResult* at) {
     return take_period(block, &scene, start).meetings > 0;
 }
 
-// Takes *total through the block; false, with *total as it was, if the block is not smooth or a free bristle meets its bound.
+// Takes *total through the block. False, with *total unchanged, if the block is not smooth or a free bristle
+// meets its bound.
 static bool take_block(Block* block, FcStepResult* total) {
     Numbers sampled[MOST_POINTS];
     int points = FEWEST_POINTS;
@@ -290,7 +295,7 @@ static void take_part(FcIntegration law, const FcScene* scene, const FcSolverOpt
     fc_periods_take(law, &part, options, to - from, total);
 }
 
-// Periods from k on up to where |V| is V_1, from where on V has reversals or has none.
+// The number of periods from k to the kink at |V| = V_1, beyond which V begins or ends to reverse.
 static double to_kink(const FcScene* scene, double k) {
     const FcDrive* drive = &scene->drive;
     double nearest = HUGE_VAL;

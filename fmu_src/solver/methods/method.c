@@ -38,7 +38,7 @@ static bool may_touch_bound(const FcScene* scene) {
     return fc_is_bounded(scene->friction) && fc_march_may_touch(scene);
 }
 
-// How the default method integrates the law.
+// The integration of the law by the default method.
 static FcIntegration integration(const FcScene* scene, bool is_planar) {
     if (is_planar) {
         return (FcIntegration){fc_plane_step, fc_plane_map, may_touch_bound(scene), true};
@@ -108,7 +108,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
         FcStepResult end = fc_result_from(from, *evaluations);
         *force = fc_periods_settled(integration(scene, is_planar), scene, options, &end);
         *evaluations = end.evaluations;
-        // What rounding leaves beyond a bound would be heat of the first step.
+        // An excess over a bound by rounding would become heat of the first step.
         const FcBristle bristle = fc_bristle_of(&end);
         return is_planar ? fc_plane_reach(scene, bristle) : fc_reach(scene, bristle);
     }

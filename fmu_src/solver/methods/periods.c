@@ -7,7 +7,8 @@
 #include "solver/methods/leap.h"
 #include "solver/pieces.h"
 
-// The largest number of periods with moving inputs. More are refused: they may take minutes.
+// The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
+// minutes.
 static const double MOST_CHANGING_PERIODS = 1e6;
 
 // The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
@@ -17,8 +18,8 @@ static const double MOST_CHANGING_PERIODS = 1e6;
 static const double SAME_END = 1e-10;
 static const double LEAST_PART = 1e-4;
 
-// The distance from the edge of the free starts, over it, below which a start is at the edge. Rounding: 450
-// eps.
+// The largest distance from the edge of the free starts that counts as 0, over the edge. Rounding: 450 eps.
+// Twice of it moves the edge by as much.
 static const double ROUNDING_OF_EDGE = 1e-13;
 
 // The largest number of periods that meet the bound before a repetition is given up. With static friction the
@@ -105,7 +106,7 @@ static void take_free(const Walk* walk, double n, FcStepResult* total) {
     }
 }
 
-// To where infinitely many free periods lead.
+// Takes *total to the limit of infinitely many free periods.
 static void settle(const Walk* walk, FcStepResult* total) {
     const FcMap* map = &walk->free_map;
     const FcMap* across = &walk->free_map_across;
@@ -135,8 +136,8 @@ static bool meets_after(Walk* walk, double n) {
     return end.meetings > 0;
 }
 
-// free_periods in the plane. The starts of free periods lie on a straight line, along which |delta| is convex at each of their times:
-// those that meet no bound are all up to a last one.
+// free_periods in the plane. The starts of free periods lie on a straight line, along which |delta| is convex
+// at each phase. So all periods up to a last one are free.
 static double free_periods_in_plane(Walk* walk, double left) {
     const FcMap map = free_map_of(walk);
     const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
@@ -166,8 +167,8 @@ static double free_periods_in_plane(Walk* walk, double left) {
     return fmin(free, left);
 }
 
-// How many periods from the free start delta on meet no bound. The deflection moves by s (1 - P^n) / (1 - P) in n of them,
-// s being how far it moves in the first.
+// The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
+// (1 - P) in n of them, with the first shift s.
 static double free_periods(Walk* walk, double left) {
     if (walk->law.is_planar) {
         return free_periods_in_plane(walk, left);
@@ -218,9 +219,9 @@ static bool repeats(Walk* walk) {
     return changed <= SAME_END * part * size;
 }
 
-// In the plane a bristle that slips little in each period forgets its direction slowly: its ends converge by a ratio near 1, and are
-// extrapolated to where they lead, from the last three of four. Between two ends that move towards each other they lead to where the
-// motion vanishes (false position, Illinois), else by the ratio (Aitken).
+// In the plane a bristle that slips little in each period forgets its direction slowly: its ends converge by
+// a ratio near 1. The last three of four ends are extrapolated to their limit: by that ratio (Aitken), or
+// between two ends that move towards each other by the vanishing of the motion (false position, Illinois).
 typedef struct {
     FcVector at, moves; // the end of a period, and by how much it has moved in it
 } End;
@@ -233,7 +234,8 @@ typedef struct {
     int replaced; // the one that was last
 } Ends;
 
-// Of the deflection: a smaller change tells no ratio. Rounding: 4500 eps.
+// The smallest change, over the deflection, that determines a ratio. Rounding: 4500 eps. Half of it takes
+// ratios of rounding.
 static const double LEAST_CHANGE = 1e-12;
 
 static FcVector way(FcVector from, FcVector to) { return (FcVector){to.x - from.x, to.y - from.y}; }

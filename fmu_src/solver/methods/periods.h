@@ -26,8 +26,8 @@ typedef enum { FC_MAP_THIS_START, FC_MAP_ANY_START } FcMapScope;
 typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
                        FcStepResult* result);
 
-// The map of [0, duration] that holds for any start of the size of delta_0 [m] from which no bound is met. In the plane *across becomes
-// the map of delta_y. Adds what it spends to *evaluations.
+// The map of [0, duration] that holds for any start of the size of delta_0 [m] from which no bound is met. In
+// the plane *across becomes the map of delta_y. Adds its evaluations to *evaluations.
 typedef FcMap (*FcFreeMap)(const FcScene* scene, const FcSolverOptions* options, double duration,
                            double delta_0, FcMap* across, double* evaluations);
 
@@ -60,8 +60,9 @@ bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMess
 bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
                      FcStepResult* result, FcMessage* message);
 
-// What the bristle in *end tends to after infinitely many periods of a scene that vibrates with its inputs held, and the mean of F
-// (solver.h) [N] over a period from there on, or over those that repeat. Adds what it spends to end->evaluations.
+// The limit of the bristle in *end after infinitely many periods of a vibrating scene with held inputs.
+// Returns the mean of F (solver.h) [N] over a period of that state, or over the periods that repeat. Adds its
+// evaluations to end->evaluations.
 FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
                             FcStepResult* end);
 

@@ -1,23 +1,24 @@
-// What a panel by Radau IIA of 9 stages misses, by functions that are known at its stages and its start.
+// The errors of a panel by Radau IIA of 9 stages, from functions that are known at its stages and its start.
 #ifndef FC_SOLVER_RADAU_ERROR_H
 #define FC_SOLVER_RADAU_ERROR_H
 
 #include "solver/panels/panel.h"
 #include "solver/panels/panel_tables.h"
 
-// By hand: fewer stages need more panels for the same error, more cost a larger linear system. The points: the stages, and the
-// start after them.
+// The number of stages. Chosen empirically: fewer stages need more panels for the same error, more stages a
+// larger linear system. The points are the stages, and then the start.
 enum { FC_RADAU_STAGES = 9, FC_RADAU_POINTS = FC_RADAU_STAGES + 1 };
 
-// x^6: what is left of an error that is orthogonal to the polynomials of degree 7 when it is weighted with a function whose
-// Legendre coefficients fall by x. Three quarters of that degree, since x is an estimate.
+// x^6: the rest of an error that is orthogonal to the polynomials of degree 7, weighted with a function whose
+// Legendre coefficients fall by x. The exponent is three quarters of 8, since x is an estimate.
 FC_INLINE double fc_acting_part(double x) {
     const double x_3 = x * x * x;
     return x_3 * x_3;
 }
 
-// The part of the slope that the collocation leaves unresolved and that acts on the end. at_start is its defect at the
-// panel's start, where it is largest; the tail's own continuation counts where that happens to vanish.
+// The part of the slope that the collocation does not resolve and that acts on the end. at_start is the
+// defect at the panel's start, where it is largest. The continuation of the tail counts if at_start happens
+// to vanish.
 FC_INLINE double fc_radau_unresolved(const double* slope, double z) {
     const double at_start = fc_dot(FC_RADAU_POINTS, FC_RADAU_9.start, slope);
     const FcTail tail = fc_tail_of(FC_RADAU_POINTS, FC_RADAU_9.tail, slope);
@@ -31,8 +32,8 @@ FC_INLINE double fc_radau_quadrature_error(const double* f) {
            fc_acting_part(tail.fall);
 }
 
-// What the mean over a panel sees of a defect: it changes sign between the nodes. By hand: less lets panels pass that miss the
-// tolerance, more costs panels.
+// The part of a defect that acts on the mean over a panel, since the defect changes sign between the nodes.
+// Chosen empirically: half of it lets panels pass that miss the tolerance, twice of it costs panels.
 static const double FC_MEAN_OF_DEFECT = 0.1;
 
 #endif

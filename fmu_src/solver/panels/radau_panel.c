@@ -15,7 +15,8 @@
 #define UNROLL _Pragma("GCC unroll 16")
 #endif
 
-// A row of the linear system: the matrix, a pad, the two right-hand sides. COUNT: the stages, and the start after them.
+// A row of the linear system: the matrix, a pad, the two right-hand sides. COUNT: the stages, and the start
+// after them.
 enum { STAGES = FC_RADAU_STAGES, COUNT = FC_RADAU_POINTS, WIDEST = STAGES + 3 };
 typedef double StageSystem[STAGES][WIDEST] FC_PAIRED;
 

@@ -42,14 +42,15 @@ static double rate_of_square(void* drive, double t) { return sample_at(drive, t)
 
 static double bend_of_square(void* drive, double t) { return sample_at(drive, t).bend; }
 
-// Samples in a period. By hand: the rate of |V|^2, of two harmonics, has at most one extremum between two of them.
+// The number of samples in a period. Chosen empirically: the rate of |V|^2 has two harmonics and at most one
+// extremum between two samples. Half as many might miss a near-zero, twice as many cost time alone.
 enum { SAMPLES = 16, MOST_CENTERS = FC_MOST_HALVES / 2 };
 
-// Whether |V| has a least between two samples; its time [s] in *center.
+// Whether |V| has a minimum between two samples; its time [s] in *center.
 static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
     double none = 0.0;
     if (a.rate * b.rate > 0.0 && a.bend * b.bend < 0.0 && a.rate * a.bend < 0.0) {
-        // The rate comes nearest to 0 inside, and may pass it.
+        // The rate comes nearest to 0 inside the cell, and may pass it.
         const double t = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, 0.0, &none);
         const Sample nearest = sample_at(drive, t);
         if (nearest.rate < 0.0) {
@@ -65,7 +66,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
     return true;
 }
 
-// The times [s] of the least |V| in and beside [0, h].
+// The times [s] of the minima of |V| in and beside [0, h].
 static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS]) {
     FcDrive drive = *of;
     int count = 0;
@@ -87,7 +88,7 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     return count;
 }
 
-// L of the center; infinite for a dip that is too flat.
+// L of the center; infinite if the dip is too flat to matter.
 static double length_of(const FcPlane* plane, double center, double h, double tolerance) {
     const FcDrive* drive = &plane->scene->drive;
     const Sample at = sample_at(drive, center);

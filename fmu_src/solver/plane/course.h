@@ -1,7 +1,8 @@
-// The course of V = (V, V_y) over an interval: where |V| comes near 0, and the variable in which it is smooth there.
+// The course of V = (V, V_y) over an interval: the near-zeros of |V|, and the variable in which |V| is smooth
+// there.
 //
-// At a near-zero t_c the square of |V| is c^2 ((t - t_c)^2 + eps^2), to the lowest order: |V| has branch points at the distance eps from
-// the real axis, and a kink if eps = 0, which is a reversal. With
+// At a near-zero t_c the square of |V| is c^2 ((t - t_c)^2 + eps^2), to the lowest order: |V| has branch
+// points at the distance eps from the real axis, and a kink if eps = 0, which is a reversal. With
 //
 //     t = t_c + L sinh(u)      L = max(eps, sqrt(tolerance) times the layer, sqrt(2 g / (sigma c)), over which a bristle relaxes there)
 //
@@ -20,7 +21,7 @@ double fc_straight_time(const FcStraight* in, double u); // s
 double fc_straight_pace(const FcStraight* in, double u); // s, dt/du
 double fc_straight_place(const FcStraight* in, double t);
 
-// A part of the interval that has no near-zero inside, from there to halfway to the next one or the other way round.
+// A part of the interval without a near-zero inside, from a near-zero to halfway to the next one, or back.
 typedef struct {
     double start, end; // s
     FcStraight in;
@@ -28,10 +29,11 @@ typedef struct {
 
 double fc_half_time(const FcHalf* half, double u); // s; rounding takes it out of no half
 
-// Up to two near-zeros a period, over less than three periods.
+// Room for two near-zeros a period, over less than three periods.
 enum { FC_MOST_HALVES = 24 };
 
-// The halves of [0, h], in their order; their number. h [s] < 2 periods of a scene that vibrates.
+// Finds the halves of [0, h], in their order; returns their number. If the scene vibrates, h [s] is less than
+// two periods.
 int fc_halves(const FcPlane* plane, double h, double tolerance, FcHalf halves[FC_MOST_HALVES]);
 
 #endif

@@ -13,7 +13,7 @@
 
 enum { POINTS = FC_RADAU_POINTS, STAGES = FC_RADAU_STAGES };
 
-// How the bristle moves; Coulomb's law has none.
+// The motion of the bristle; Coulomb's law has no bristle.
 typedef enum { FREE, SLIPS, NO_BRISTLE } Motion;
 
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
     double path_after; // m, at least, from the end of the half to that of the interval
     double h;          // of the next panel, in u; 0 before the first of a half
     FcMap along, across;
-    double transient; // N, by which the start is behind what it tends to, as far as it has not relaxed
+    double transient; // N, the rest of the transient of the start
     double scale;     // m, of the starts that the maps are for, beside the one they have
     double heat;      // J, of break-away
     double drag;      // m2/s, of its drops
@@ -37,7 +37,7 @@ typedef struct {
     double evaluations;
 } March;
 
-// How fast [m/s] the bristle and its bound may move, together.
+// The largest velocity [m/s] of the bristle and its bound together.
 static double largest_push(const March* march) {
     const FcInterval* interval = march->interval;
     return interval->speed + interval->saturation * interval->pace.log_sigma;
@@ -50,28 +50,34 @@ static FcPlaneFrom from_of(const March* march) {
                          .push = largest_push(march) + DBL_MIN};
 }
 
-// Panels that are refused in a row before one is taken as it is. By hand: 0.3^12 of the first, where rounding rules.
+// The number of refused panels in a row, after which the next one is accepted: 0.3^12 of the first length, at
+// which rounding limits it. Twice as many would cost time alone.
 enum { MOST_TRIES = 12 };
-// What a panel of 9 stages resolves. Derived: of a function that is smooth but for branch points at the distance pi/2, the polynomials
-// miss rho^-17, sinh(ln rho) = pi over the panel's length. And of a decaying exponential, by hand: costs tries, not accuracy.
+// ORDER: derived. Polynomials through 9 stages err by rho^-17 for a function with branch points at the
+// distance pi / 2, with sinh(ln rho) = pi over the panel's length. LAYERS: the length for a decaying
+// exponential, in layers. Chosen empirically: half of it costs panels, twice of it tries.
 static const double ORDER = 17.0;
 static const double LAYERS = 6.3;
-// Of that length, by hand: most panels of the whole are refused, those of a third no less often than those of a half.
+// The planned part of that length. Chosen empirically: most panels of the whole length are refused; panels of
+// a third are refused as often as those of a half.
 static const double PART_OF_ELLIPSE = 0.5;
-// Radii of the disc that a bristle which sticks may go in a panel: its points tell then where it comes to the bound. By hand.
+// The largest way of a sticking bristle in a panel, in radii of its disc. Chosen empirically: up to it the
+// panel's points show the meeting with the bound. Twice of it makes panels that are cut.
 static const double MOST_OF_DISC = 4.0;
-// A panel may last so many times the time over which the contact moves by 1. By hand: costs tries, not accuracy.
+// The longest panel, over the time in which the contact moves by 1. Chosen empirically: twice of it costs
+// tries, not accuracy.
 static const double SMOOTH = 5.0;
 
-// A panel whose points do not tell what happens near its start is shortened by this. By hand: costs tries, not accuracy.
+// The factor that shortens a panel whose points do not resolve the motion near its start. Chosen empirically:
+// half or twice of it changes the number of tries, not the accuracy.
 static const double SHORTENED_BY = 1.0 / 32.0;
 
 static FcPlaneCoefficients coefficients_at(const March* march, double t) {
     return fc_plane_coefficients(march->plane, t, fc_drive_phase(&march->interval->scene->drive, t));
 }
 
-// The force [N] by which the bristle at the start is behind what it tends to: Coulomb's force, less by how far that moves in the time
-// 1 / r.
+// The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
+// minus its change in the time 1 / r.
 static double first_transient(const March* march) {
     const FcPlaneFrom from = from_of(march);
     const FcPlaneCoefficients at = coefficients_at(march, 0.0);
@@ -118,21 +124,23 @@ static double planned(const March* march) {
     return h;
 }
 
-// The way [m] from start to end in a straight line, which is at most the path.
+// The straight distance [m] from start to end, which is at most the path.
 static double straight_way(const March* march, double start, double end) {
     return hypot(fc_drive_displacement(&march->interval->scene->drive, start, end),
                  fc_drive_displacement(&march->across_drive, start, end));
 }
 
-// What estimated errors are multiplied by, and those of a bristle that slips through a Stribeck peak, whose force and push follow the
-// curve at once. By hand: half of them lets a few panels in 100 000 pass that miss the tolerance, twice costs a twentieth more panels.
+// The safety factors on estimated errors: of all panels, and of a slip through a Stribeck peak, in which
+// force and push follow the curve at once. Chosen empirically: half of them lets a few panels in 100 000 pass
+// that miss the tolerance, twice of them costs a twentieth more panels.
 static const double SURE = 2.0;
 static const double SURE_IN_PEAK = 10.0;
 
-// The least of a share that falls with what relaxes in the panel, over what relaxes in the interval. By hand: below it rounding rules.
+// The least value of a share that is proportional to the relaxation in the panel, over the relaxation in the
+// interval. Chosen empirically: below it rounding limits a panel.
 static const double LEAST_SHARE = 1e-5;
 
-// How many times the panel's errors are too large.
+// The factor by which the panel's errors are too large.
 static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcPanel* panel) {
     const FcInterval* interval = march->interval;
     const double end = nodes->t[STAGES - 1];
@@ -163,7 +171,7 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
 // Coulomb's law: the force is known.
 static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel);
 
-// The panel from the place reached, of the length h; false if it is too long to be solved.
+// Makes the panel of the length h at the present place; false if it is too long to be solved.
 static bool make_panel(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
     const FcPlaneFrom from = from_of(march);
     fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
@@ -180,7 +188,8 @@ static bool make_panel(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel
     }
 }
 
-// The panel from the place reached, of the length h, or shorter until it is accurate; its length.
+// Takes the panel of the length h at the present place, or a shorter one that is accurate; returns its
+// length.
 static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
     for (int tries = 0;; tries++) {
         const bool is_solved = make_panel(march, h, nodes, panel);
@@ -200,7 +209,7 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
 static void append(March* march, FcPlanePanel* panel, double h) {
     const double next = march->u + h;
     const double end = march->end - next < 1e-12 * h ? march->end : next;
-    if (is_stuck(march)) { // it goes as the surfaces do: a drift over many periods is told to rounding
+    if (is_stuck(march)) { // it moves with the surfaces: a drift over many periods is exact to rounding
         const double t_0 = fc_straight_time(&march->half.in, march->u);
         const double t_1 = fc_straight_time(&march->half.in, end);
         panel->along.map.offset = fc_drive_displacement(&march->interval->scene->drive, t_0, t_1);
@@ -226,7 +235,7 @@ static void set_delta(March* march, FcVector delta) {
     march->across.offset = delta.y;
 }
 
-// Where the march is now.
+// The present place of the march.
 typedef struct {
     double t;
     FcPhase phase;
@@ -250,12 +259,14 @@ static Place place_of(const March* march) {
     return place;
 }
 
-// Of the largest push: a smaller one is rounding, and a bristle that slips may be let go with the other. By hand: what is left of a push
-// acts with its square.
+// Parts of the largest push. A push below the first is rounding. Below the second a slipping bristle may be
+// released, since the rest of a push acts with its square. Chosen empirically: half or twice of them
+// moves the end of a slip by as little.
 static const double ROUNDING_OF_PUSH = 1e-13;
 static const double LITTLE_PUSH = 1e-9;
 
-// A free bristle at its bound slips if it is pushed; one with static friction breaks away. False if it is not pushed.
+// A free bristle at its bound slips if it is pushed; one with static friction breaks away. False if it is not
+// pushed.
 static bool begins_to_slip(March* march) {
     const Place place = place_of(march);
     const bool breaks_away = fc_has_static_friction(march->plane->scene->friction) && march->slips == 0;
@@ -264,7 +275,7 @@ static bool begins_to_slip(March* march) {
     if (!(push > ROUNDING_OF_PUSH * largest_push(march))) {
         return false;
     }
-    // What it stores less is heat, also of the little that it went too far.
+    // The energy that it loses is heat, also that of its small excess over the bound.
     march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
     march->drag += (place.bound.D - place.size) * fc_product(place.n, place.at.V);
     set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
@@ -277,15 +288,15 @@ static bool begins_to_slip(March* march) {
     return true;
 }
 
-// What is within rounding of the bound, or within what heat and force may miss [m2], of |delta|^2 - D^2.
+// The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow.
 static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
-    // What it goes too far costs heat at break-away, which is held to the path.
+    // An excess over the bound costs heat at break-away, whose tolerance goes with the path.
     const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->half.in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
-    return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // where D moves by decades nothing is near it
+    return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
 }
 
 static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
@@ -294,8 +305,8 @@ static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel
     }
 }
 
-// Whether a bristle that slips, and lies inside its bound since an input has jumped, is not pushed outwards any more within the panel,
-// which then ends there: it sticks, if it has not met its bound before.
+// Whether the push of a slipping bristle that lies inside its bound, after an input has jumped, ends in the
+// panel. The panel then ends there, and the bristle sticks unless it has met its bound before.
 static bool catches_up(March* march, FcPlaneNodes* nodes, FcPlanePanel* panel, double* h) {
     const double rounding = ROUNDING_OF_PUSH * largest_push(march);
     for (int cuts = 0;; cuts++) {
@@ -329,8 +340,8 @@ static void free_panel(March* march, double h) {
         return;
     }
     const bool gives_up = march->slips != 0 && catches_up(march, &nodes, &panel, &h);
-    // The panel is taken again up to where it meets the bound, which its own points tell better; one that dips inside the bound between
-    // them is shortened.
+    // The panel is repeated up to its meeting with the bound, which its own points show more accurately. A
+    // panel that dips inside the bound between its points is shortened.
     enum { MOST_CUTS = 40 };
     bool is_cut = false;
     double over = 0.0;
@@ -358,7 +369,8 @@ static void free_panel(March* march, double h) {
     }
 }
 
-// The place of a panel, of its length, from where on a bristle that slips is pushed inwards; 2 for none.
+// The place in a panel, over its length, after which the push of a slipping bristle is negative; 2 if there
+// is none.
 static double end_of_push(const March* march, const FcPlanePanel* panel) {
     const double rounding = ROUNDING_OF_PUSH * largest_push(march);
     double inwards[POINTS];

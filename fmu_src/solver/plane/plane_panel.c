@@ -16,8 +16,8 @@ void fc_plane_nodes(const FcPlane* plane, const FcHalf* half, double u, double h
     }
 }
 
-// The linear system: the matrix A^-1 plus a diagonal that is not negative, and its right-hand sides, which become the solutions.
-// Gaussian elimination without pivoting.
+// The linear system: the matrix A^-1 plus a non-negative diagonal, and its right-hand sides, which become the
+// solutions. Gaussian elimination without pivoting.
 typedef struct {
     double row[STAGES][STAGES];
     double side[STAGES][MOST_SIDES];
@@ -73,7 +73,8 @@ static double error_of_direction(const FcPlaneNodes* nodes, double speed, const 
     return error_of_mean(nodes, f);
 }
 
-// What a defect, an error [N] of the force at the end if nothing of it is damped, does to the end and the mean.
+// Sets the errors of the end and the mean due to a defect, an error [N] of the force at the end without
+// damping.
 static void set_errors(const FcPlaneNodes* nodes, const double* z, double defect, double quadrature,
                        FcPanel* panel) {
     const double z_last = fmax(0.0, fmin(z[LAST], panel->z));
@@ -166,12 +167,13 @@ void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     set_errors(nodes, z, sigma[LAST] * defect, quadrature, &panel->along);
 }
 
-// By hand: a panel in which Newton's method needs more is too long.
+// The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
+// long. Half of it refuses good panels, twice of it costs time.
 enum { MOST_ITERATIONS = 12 };
-// Of the angle [rad], below which a step of Newton's method leaves rounding.
+// The step of the angle [rad] below which Newton's method leaves only rounding: its square is 1e-16.
 static const double LAST_STEP = 1e-8;
 
-// The angles a at the stages from a_0 on, of slope tau / D (V_y cos a - V sin a).
+// The angles a at the stages, beginning at a_0, with the slope tau / D (V_y cos a - V sin a).
 static bool find_angles(const FcPlaneNodes* nodes, const FcPlaneBound* bound, double a_0, double* a) {
     for (int i = 0; i < STAGES; i++) {
         a[i] = a_0;
@@ -250,7 +252,8 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         map->impulse_offset += weight * F_x[i];
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
-        // The heat is the work less what the bristle stores, whose rate follows Stribeck's curve at once, and what the stiffness takes.
+        // The heat is the work, minus the stored energy, whose rate follows Stribeck's curve at once, minus
+        // the part of the stiffness.
         const double power = force * (outwards + 0.5 * D * bound[i].log_sigma_rate);
         heat[i] = power / from->push;
         map->heat_offset += weight * power;

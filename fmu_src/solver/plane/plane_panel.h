@@ -1,17 +1,18 @@
-// Panels in the plane, by Radau IIA collocation of 9 stages in the variable u that straightens |V| (course.h).
+// Panels in the plane, by Radau IIA collocation of 9 stages in the variable u that straightens |V|
+// (course.h).
 //
-// Free: r is a number, so the equations of delta and delta_y are two of one kind (panels/radau_panel.h), with one matrix. Each has an
-// affine map of its own, and the work, the heat and the drag of both add up.
+// Free: r is a number, so the equations of delta and delta_y are two of one kind (panels/radau_panel.h), with
+// one matrix. Each has an affine map of its own, and the work, the heat and the drag of both add up.
 //
-// Slipping along the bound, delta = D (cos a, sin a): D a' = V_y cos a - V sin a. One equation, not linear, by
-// Newton's method.
+// Slipping along the bound, delta = D (cos a, sin a): D a' = V_y cos a - V sin a. One equation, not linear,
+// by Newton's method.
 #ifndef FC_SOLVER_PLANE_PANEL_H
 #define FC_SOLVER_PLANE_PANEL_H
 
 #include "solver/panels/radau_error.h"
 #include "solver/plane/course.h"
 
-// What a panel is made of at its stages and its start.
+// The coefficients of a panel at its stages and its start.
 typedef struct {
     double t[FC_RADAU_POINTS];   // s
     double tau[FC_RADAU_POINTS]; // s, dt/du times the panel's length in u
@@ -42,11 +43,12 @@ typedef struct {
 void fc_plane_force_errors(const FcPlaneNodes* nodes, double speed, const double* F_x, const double* F_y,
                            const double* V_x, const double* V_y, FcPanel* panel);
 
-// A free panel; to_bound is left alone.
+// A free panel; does not set to_bound.
 void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const FcPlaneFrom* from,
                          FcPlanePanel* panel);
 
-// A panel that slips along its bound, from from->delta on it, for that start alone. False if it is too long to be solved.
+// A panel that slips along its bound, beginning at from->delta on the bound, for that start alone. False if
+// it is too long to be solved.
 bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const FcPlaneFrom* from,
                          FcPlanePanel* panel);
 

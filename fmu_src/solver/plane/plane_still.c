@@ -10,7 +10,7 @@ static FcPlaneCoefficients at_start(const FcScene* scene) {
     return fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
 }
 
-// Along V as along a line, across it by relaxation alone.
+// Along V as on a line, transverse to V by relaxation alone.
 void fc_plane_constant(const FcScene* scene, double h, FcStepResult* result) {
     const FcPlaneCoefficients at = at_start(scene);
     const FcVector n =

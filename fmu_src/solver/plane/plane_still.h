@@ -5,10 +5,11 @@
 #include "model/plane.h"
 #include "solver/solver.h"
 
-// A step of h [s] >= 0 in which nothing moves, of Dahl's or LuGre's law without a bound: exact.
+// A step of h [s] >= 0 with all inputs held, of Dahl's or LuGre's law without a bound: exact.
 void fc_plane_constant(const FcScene* scene, double h, FcStepResult* result);
 
-// What a bristle that is within its bound tends to without vibration, sliding for ever, and its force [N]; itself if nothing moves.
+// The limit of a bristle within its bound in steady sliding without vibration, and its force [N]; the bristle
+// itself if nothing moves.
 FcBristle fc_plane_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force);
 
 #endif

@@ -42,7 +42,8 @@ double fc_stretch_displacement(const FcStretch* stretch, double t, double end) {
                : fc_drive_displacement(&stretch->interval->scene->drive, t, end);
 }
 
-// An event farther beyond the interval's end than the end is from t does not shape the panels that begin there.
+// An event farther beyond the interval's end than the end is from t does not shape the panels that begin
+// there.
 static double horizon(const FcInterval* interval, double t) {
     return interval->duration + (interval->duration - t);
 }
