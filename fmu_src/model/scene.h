@@ -1,5 +1,5 @@
 // The scene of one communication step: a contact, its drive, and the law of friction. It gives the
-// coefficients of the equation of the bristle needs at any time of the step,
+// coefficients of the bristle's equation at any time of the step,
 //
 //     delta' = V(t) - sigma(t) |V(t)| delta / g(t)                       (Eq. 2; g = F_C in the paper)
 //

@@ -63,7 +63,7 @@ def rows(values: list[list[mpf]]) -> str:
 
 
 def header(guard: str, body: list[str]) -> str:
-    lines = ["// Made by workshop.constants.panel_tables, which says what the entries are."]
+    lines = ["// Made by workshop.constants.panel_tables, which describes the entries."]
     lines += ["// clang-format off", f"#ifndef {guard}", f"#define {guard}", ""]
     lines += ['#include "solver/panels/arithmetic.h"', "", *body, f"#endif  // {guard}"]
     return "\n".join(lines) + "\n"
