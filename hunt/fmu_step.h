@@ -1,4 +1,4 @@
-// The FMU's core, taken through steps.
+// The steps of the FMU's core.
 #ifndef HUNT_FMU_STEP_H
 #define HUNT_FMU_STEP_H
 
@@ -29,11 +29,11 @@ void fmu_close(FmuRun* run);
 // core refuses it, or refused to start.
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step);
 
-// F_t_settled and F_y_settled [N] at the inputs that the run was opened with. Returns false where the core refuses it, or
-// refused to start.
+// F_t_settled and F_y_settled [N] at the inputs with which the run was opened. Returns false if the core
+// refuses it, or refused to start.
 bool fmu_settled_force(FmuRun* run, double force[2]);
 
-// Why the core refused.
+// The reason why the core refused.
 const char* fmu_message(const FmuRun* run);
 
 #endif

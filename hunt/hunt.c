@@ -5,10 +5,11 @@
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
 //     build/hunt/hunt --replay "V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2" --tolerance 1e-6
 //
-// With --plane the scenes slide and vibrate across as well. Each miss is one line: the tolerance, the error over it, the result that missed, the number of the
-// sequence, and the sequence as name=value for each value that is not the start value. --replay takes such a
-// line. The sequences take the tolerances in turn. The last lines are tables by law and by kappa = sigma V /
-// (2 pi f limit), and counts of the kinds of step. Ends with 1 if a step missed.
+// With --plane the scenes slide and vibrate across as well. Each miss is one line: the tolerance, the error
+// over it, the result that missed, the number of the sequence, and the sequence as name=value for each value
+// that is not the start value. --replay takes such a line. The sequences take the tolerances in turn. The
+// last lines are tables by law and by kappa = sigma V / (2 pi f limit), and counts of the kinds of step. Ends
+// with 1 if a step missed.
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
@@ -133,7 +134,7 @@ static long print_tally(const Tally* tally, const Options* options, double secon
 // One sequence
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Whether the sequence misses by half as much again as the tolerance, whatever of.
+// Whether the sequence misses by 1.5 tolerances or more, in any result.
 static bool still_misses(const Sequence* sequence, double tolerance) {
     static Trial trial;
     trial_run(&trial, sequence, tolerance);

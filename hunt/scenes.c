@@ -60,7 +60,7 @@ static double velocity(Draw* draw, double V_1) {
     return sign(draw) * log_between(draw, 1e-5, 10.0);
 }
 
-// A velocity of the plane for that size of the vibration: zeta, and any direction, or along or across.
+// A velocity in the plane for that size of the vibration: zeta, and any direction, or along or transverse.
 static void planar_velocity(Draw* draw, double swing, double* V, double* V_y) {
     const double size = swing * log_between(draw, 1e-4, 10.0);
     const double angle = chance(draw, 0.5) ? TURN / 4.0 * pick(draw, 4) : between(draw, 0.0, TURN);
@@ -68,7 +68,7 @@ static void planar_velocity(Draw* draw, double swing, double* V, double* V_y) {
     *V_y = size * sin(angle) * (fabs(sin(angle)) > 1e-9);
 }
 
-// A vibration across alone, along a line, around a circle, or any ellipse.
+// A transverse vibration alone, or on a line, a circle or any ellipse.
 static void planar(Draw* draw, ReferenceScene* s) {
     const double kind = unit(draw);
     s->V_2 = log_between(draw, 1e-3, 3.0);
@@ -176,7 +176,8 @@ static double deflection(Draw* draw, const ReferenceScene* s) {
                                 : between(draw, -1.0, 1.0));
 }
 
-// A length of a step [s]. With inputs that move the reference goes through each period: they are fewer.
+// The length of a step [s]. If inputs move, the reference goes through each period, so there are fewer
+// periods.
 static double length(Draw* draw, const ReferenceScene* s, double most_periods) {
     const double kind = unit(draw);
     const double periods = kind < 0.1    ? log_between(draw, 1e-6, 1e-3)

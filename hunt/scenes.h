@@ -6,16 +6,18 @@
 
 #include "sequence.h"
 
-// The same for the same seed and number, whatever is drawn besides. law 0: any. plane: with a vibration across the sliding.
+// A sequence, which depends only on the seed and the number. law 0: any law. plane: with a transverse
+// vibration.
 Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane);
 
 // sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
 double scene_kappa(const ReferenceScene* scene);
 
-// By how much a drop at break-away that sticks at once multiplies an error of the deflection (docs/reliability.md).
+// The factor by which a break-away that sticks at once multiplies an error of the deflection
+// (docs/reliability.md).
 double scene_gain(const ReferenceScene* scene);
 
-// The least kappa of a vibration that the promise covers.
+// The smallest kappa of a vibration in the domain of the promise.
 #define LEAST_KAPPA 1e-3
 
 #endif

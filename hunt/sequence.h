@@ -28,11 +28,10 @@ extern const char* const LAW_NAMES[]; // of the numbers from 1 on; NULL ends the
 // The scene that a step leaves: inputs at their ends and then held, and the parameters.
 ReferenceScene scene_after(const ReferenceScene* before);
 
-// The scene after that one, with all that the sequence's step k changes.
+// The scene after that one, with the changes of the sequence's step k.
 ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before);
 
-// A step's changes, all of them NaN (0 for an enumeration), or those that make a scene of the one that was
-// left.
+// The changes of a step: all NaN (0 for an enumeration), or those from the scene that was left to this scene.
 ReferenceScene changes_between(const ReferenceScene* left, const ReferenceScene* scene);
 
 // A sequence that still shows the miss, with the fewest steps, the most start values and the fewest digits:
