@@ -113,7 +113,7 @@ def test_recovery_is_what_the_documents_say(
     noisy = from_kind("V_1 uncertain")
     said = re.search(
         rf"in (\d+) %, (\d+) % and (\d+) % of {SEEDS} seeds; .* in (\d+) %, (\d+) % and (\d+) % of {SEEDS}.*"
-        rf"in (\d+) % and (\d+) % of {SEEDS} seeds.*hold the phase in (\d+) %",
+        rf"in (\d+) % and (\d+) % of {SEEDS} seeds.*contain the phase in (\d+) %",
         " ".join(PHYSICS.split()),
     )
     recovered = (from_kind("scatter estimated"), noisy, from_law("Dahl"))
