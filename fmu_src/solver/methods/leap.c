@@ -9,8 +9,11 @@
 #include "model/regime.h"
 #include "solver/budget.h"
 
-// Points of the interpolation: 4, 7 and 13, which lie among each other.
-enum { FEWEST_POINTS = 4, MOST_POINTS = 13 };
+// Points of the interpolation, and of a block's periods the part that they may be. By hand: a block that needs more gains nothing.
+enum { FEWEST_POINTS = 4, MOST_POINTS = 17 };
+static const double MOST_PART = 0.7;
+// The error that is accepted at the last point but one, over that at the last. By hand: both are seldom small by chance.
+static const double MOST_BEFORE = 30.0;
 
 // Fewer periods are gone through one by one. By hand: a block costs about as many.
 static const double FEWEST = 9.0;
@@ -42,7 +45,8 @@ typedef struct {
     double delta;    // m, size of the start
     double* evaluations;
     int numbers;                // of a map, or of two in the plane
-    Numbers point[MOST_POINTS]; // at the Chebyshev points, then their coefficients
+    double place[MOST_POINTS];  // of the points, in [-2, 2]
+    Numbers point[MOST_POINTS]; // Newton's coefficients: divided differences
     int points;
 } Block;
 
@@ -153,6 +157,22 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     return (Numbers){.map = of_map, .across = of_map};
 }
 
+// Over pi, the angle of point j: Chebyshev's points, in the order in which they halve the angles between them (van der Corput).
+static double angle_of(int j) {
+    double angle = j == 1 ? 1.0 : 0.0;
+    double part = 0.5;
+    for (int bits = j - 1; bits > 0; bits /= 2) {
+        angle += bits % 2 == 1 ? part : 0.0;
+        part *= 0.5;
+    }
+    return angle;
+}
+
+// In [-2, 2], whose length keeps products of distances near 1.
+static double place_in(const Block* block, double k) {
+    return block->count > 1.0 ? 4.0 * k / (block->count - 1.0) - 2.0 : 0.0;
+}
+
 static double largest_error(int count, const Numbers* weight, const double* error) {
     double largest = 0.0;
     for (int i = 0; i < count; i++) {
@@ -162,74 +182,56 @@ static double largest_error(int count, const Numbers* weight, const double* erro
     return largest;
 }
 
-// Chebyshev coefficients from the values at the points.
-static void find_coefficients(int count, const Numbers* point, int points, Numbers* coefficient) {
-    const int last = points - 1;
-    for (int c = 0; c <= last; c++) {
-        for (int i = 0; i < count; i++) {
-            double sum = 0.0;
-            for (int j = 0; j <= last; j++) {
-                const double part = j == 0 || j == last ? 0.5 : 1.0;
-                sum += part * point[j].of[i] * cos(FC_PI * c * (last - j) / last);
-            }
-            coefficient[c].of[i] = (c == 0 || c == last ? 1.0 : 2.0) / last * sum;
-        }
-    }
-}
-
-// The interpolated map of period k, by Clenshaw's rule.
+// The interpolated map of period k: Newton's polynomial.
 static Numbers map_at(const Block* block, double k) {
-    const int count = block->numbers;
-    const double x = block->count > 1.0 ? 2.0 * k / (block->count - 1.0) - 1.0 : 0.0;
-    Numbers b = block->point[block->points - 1];
-    Numbers before = {.of = {0.0}};
-    for (int c = block->points - 2; c >= 0; c--) {
-        for (int i = 0; i < count; i++) {
-            const double next = block->point[c].of[i] + (c > 0 ? 2.0 : 1.0) * x * b.of[i] - before.of[i];
-            before.of[i] = b.of[i];
-            b.of[i] = next;
+    Numbers map = {.of = {0.0}};
+    for (int j = block->points - 1; j >= 0; j--) {
+        for (int i = 0; i < block->numbers; i++) {
+            map.of[i] = map.of[i] * (place_in(block, k) - block->place[j]) + block->point[j].of[i];
         }
     }
-    return b;
+    return map;
 }
 
-static double place_of(const Block* block, int j, int points) {
-    return 0.5 * (block->count - 1.0) * (1.0 - cos(FC_PI * j / (points - 1)));
-}
-
-typedef enum { SMOOTH, ROUGH, NO_MAP } Interpolated;
-
-// Interpolates the block through so many points, of which sampled holds the first half, each second one, if there are more than the
-// fewest.
-static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
-    const bool has_half = points > FEWEST_POINTS;
-    for (int j = points - 1; j >= 0 && has_half; j -= 2) {
-        sampled[j] = sampled[j / 2];
-    }
-    for (int j = has_half ? 1 : 0; j < points; j += has_half ? 2 : 1) {
-        if (!sample(block, place_of(block, j, points), &sampled[j])) {
-            return NO_MAP;
-        }
-    }
-    find_coefficients(block->numbers, sampled, points, block->point);
-    block->points = points;
-    const Numbers weight = weights(block, &sampled[points / 2]);
+// Interpolates the block, point by point, up to one that the points before foretell; false if none is or a period has no map.
+static bool interpolate(Block* block) {
     const double may = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
-    if (!(largest_error(block->numbers, &weight, block->point[points - 1].of) <= may)) {
-        return ROUGH;
+    const double most = fmin(MOST_POINTS, floor(MOST_PART * block->count));
+    double before_last = HUGE_VAL;
+    double largest = 0.0;
+    for (block->points = 0; block->points < most;) {
+        const int j = block->points;
+        const double k = (block->count - 1.0) * 0.5 * (1.0 - cos(FC_PI * angle_of(j)));
+        Numbers sampled;
+        if (!sample(block, k, &sampled)) {
+            return false;
+        }
+        const Numbers foretold = map_at(block, k);
+        Numbers error;
+        double product = 1.0;
+        block->place[j] = place_in(block, k);
+        for (int before = 0; before < j; before++) {
+            product *= block->place[j] - block->place[before];
+        }
+        for (int i = 0; i < block->numbers; i++) {
+            error.of[i] = sampled.of[i] - foretold.of[i];
+            block->point[j].of[i] = error.of[i] / product;
+        }
+        block->points++;
+        const Numbers weight = weights(block, &sampled);
+        const double last = largest_error(block->numbers, &weight, error.of);
+        if (j >= FEWEST_POINTS && last <= may && before_last <= MOST_BEFORE * may) {
+            return true;
+        }
+        before_last = last;
+        largest = j > 0 ? fmax(largest, last) : 0.0;
+        // The errors fall by a ratio from point to point. If the points left are too few for that, it is given up.
+        const double left = j > 1 ? (j - 1) * log(last / may) / log(largest / last) : 0.0;
+        if (j >= FEWEST_POINTS && !(j + left <= most)) {
+            return false;
+        }
     }
-    // A period between two points, off the middle, where even and odd errors are seen.
-    Numbers between;
-    const double k =
-        0.6 * place_of(block, points / 2, points) + 0.4 * place_of(block, points / 2 - 1, points);
-    if (!sample(block, k, &between)) {
-        return NO_MAP;
-    }
-    Numbers found = map_at(block, k);
-    for (int i = 0; i < block->numbers; i++) {
-        found.of[i] -= between.of[i];
-    }
-    return largest_error(block->numbers, &weight, found.of) <= may ? SMOOTH : ROUGH;
+    return false;
 }
 
 // Whether a bristle that has a bound would meet it in period k, from where it then is.
@@ -245,14 +247,7 @@ static bool meets(const Block* block, double k, const FcStepResult* at) {
 
 // Takes *total through the block; false, with *total as it was, if the block is not smooth or a free bristle meets its bound.
 static bool take_block(Block* block, FcStepResult* total) {
-    Numbers sampled[MOST_POINTS];
-    int points = FEWEST_POINTS;
-    Interpolated is = interpolate(block, points, sampled);
-    while (is == ROUGH && 2 * points - 1 <= fmin(MOST_POINTS, block->count)) {
-        points = 2 * points - 1;
-        is = interpolate(block, points, sampled);
-    }
-    if (is != SMOOTH) {
+    if (!interpolate(block)) {
         return false;
     }
     FcStepResult result = *total;
@@ -308,6 +303,8 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
              FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
     double longest = periods;
+    double tries_at = 0.0;
+    double alone = FEWEST; // periods that are gone through one by one if no block is smooth, before the next try
     for (double k = 0.0; k < periods && total->evaluations <= FC_MOST_EVALUATIONS;) {
         bool slipped = false;
         if (law.is_bounded) { // the first period says whether it slips
@@ -334,7 +331,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                        .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};
         bool taken = false;
-        if (block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
+        if (k >= tries_at && block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
             FcStepResult before = *total;
             if (on_line) {
                 take_part(law, scene, options, k, 0.0, block.phase, total);
@@ -347,10 +344,14 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                 *total = before;
             }
             longest = taken ? 2.0 * room : floor(0.5 * room);
-        } else {
-            longest = fmax(longest, 2.0 * fewest);
+            if (longest < fewest) {
+                longest = 2.0 * fewest;
+                tries_at = k + alone;
+                alone *= 2.0;
+            }
         }
         if (taken) {
+            alone = FEWEST;
             k += block.count + (on_line ? 1.0 : 0.0);
         } else if (!law.is_bounded) {
             take_part(law, scene, options, k, 0.0, period, total);
