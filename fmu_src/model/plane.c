@@ -80,7 +80,7 @@ FcBristle fc_plane_reach(const FcScene* scene, FcBristle bristle) {
         bristle.delta = bound.D * n.x;
         bristle.delta_y = bound.D * n.y;
     }
-    if (bristle.slips != 0 && !(fc_plane_push(&plane, &at, &bound, n) > 0.0)) {
+    if (bristle.slips != 0 && fc_plane_push(&plane, &at, &bound, n) < 0.0) {
         bristle.slips = 0;
     }
     return bristle;

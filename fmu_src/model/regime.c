@@ -98,7 +98,8 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
         }
         bristle.delta = side * D;
     }
-    if (bristle.slips != 0 && !(push(scene, bristle.slips, bristle.slips) > 0.0)) {
+    // At a push of 0 it goes on: the motion says whether it slips.
+    if (bristle.slips != 0 && push(scene, bristle.slips, bristle.slips) < 0.0) {
         bristle.slips = 0;
     }
     return bristle;

@@ -62,7 +62,7 @@ static const double FC_SHARE_OF_CUT = 0.1;
 static const double FC_SHARE_OF_GRAZE = 0.1;
 
 // The largest error of the interpolated maps of moving periods.
-static const double FC_SHARE_OF_LEAP = 0.1;
+static const double FC_SHARE_OF_LEAP = 0.2;
 
 // The largest effect of the Stribeck curve beyond the edges of its peak.
 static const double FC_SHARE_BEYOND_PEAK = 0.01;

@@ -9,8 +9,14 @@
 #include "model/regime.h"
 #include "solver/budget.h"
 
-// The numbers of points of the interpolation: 4, 7 and 13, each of which contains the points before.
-enum { FEWEST_POINTS = 4, MOST_POINTS = 13 };
+// FEWEST_POINTS, MOST_POINTS: the numbers of points of the interpolation. MOST_PART: the largest part of a
+// block's periods that may be points. Chosen empirically: a block that needs more gains nothing. Half of them
+// refuses more blocks.
+enum { FEWEST_POINTS = 4, MOST_POINTS = 17 };
+static const double MOST_PART = 0.7;
+// The largest accepted error at the last point but one, over that at the last. Chosen empirically: both are
+// seldom small by chance. Half of it costs points.
+static const double MOST_BEFORE = 30.0;
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
 // one by one.
@@ -44,7 +50,8 @@ typedef struct {
     double delta;    // m, size of the start
     double* evaluations;
     int numbers;                // of a map, or of two in the plane
-    Numbers point[MOST_POINTS]; // at the Chebyshev points, then their coefficients
+    double place[MOST_POINTS];  // of the points, in [-2, 2]
+    Numbers point[MOST_POINTS]; // Newton's coefficients: divided differences
     int points;
 } Block;
 
@@ -157,6 +164,23 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     return (Numbers){.map = of_map, .across = of_map};
 }
 
+// The angle of point j, over pi: Chebyshev's points, in the order that halves the angles between them (van
+// der Corput).
+static double angle_of(int j) {
+    double angle = j == 1 ? 1.0 : 0.0;
+    double part = 0.5;
+    for (int bits = j - 1; bits > 0; bits /= 2) {
+        angle += bits % 2 == 1 ? part : 0.0;
+        part *= 0.5;
+    }
+    return angle;
+}
+
+// The place of period k in [-2, 2], a length that keeps products of distances near 1.
+static double place_in(const Block* block, double k) {
+    return block->count > 1.0 ? 4.0 * k / (block->count - 1.0) - 2.0 : 0.0;
+}
+
 static double largest_error(int count, const Numbers* weight, const double* error) {
     double largest = 0.0;
     for (int i = 0; i < count; i++) {
@@ -166,74 +190,58 @@ static double largest_error(int count, const Numbers* weight, const double* erro
     return largest;
 }
 
-// Chebyshev coefficients from the values at the points.
-static void find_coefficients(int count, const Numbers* point, int points, Numbers* coefficient) {
-    const int last = points - 1;
-    for (int c = 0; c <= last; c++) {
-        for (int i = 0; i < count; i++) {
-            double sum = 0.0;
-            for (int j = 0; j <= last; j++) {
-                const double part = j == 0 || j == last ? 0.5 : 1.0;
-                sum += part * point[j].of[i] * cos(FC_PI * c * (last - j) / last);
-            }
-            coefficient[c].of[i] = (c == 0 || c == last ? 1.0 : 2.0) / last * sum;
-        }
-    }
-}
-
-// The interpolated map of period k, by Clenshaw's rule.
+// The interpolated map of period k: Newton's polynomial.
 static Numbers map_at(const Block* block, double k) {
-    const int count = block->numbers;
-    const double x = block->count > 1.0 ? 2.0 * k / (block->count - 1.0) - 1.0 : 0.0;
-    Numbers b = block->point[block->points - 1];
-    Numbers before = {.of = {0.0}};
-    for (int c = block->points - 2; c >= 0; c--) {
-        for (int i = 0; i < count; i++) {
-            const double next = block->point[c].of[i] + (c > 0 ? 2.0 : 1.0) * x * b.of[i] - before.of[i];
-            before.of[i] = b.of[i];
-            b.of[i] = next;
+    Numbers map = {.of = {0.0}};
+    for (int j = block->points - 1; j >= 0; j--) {
+        for (int i = 0; i < block->numbers; i++) {
+            map.of[i] = map.of[i] * (place_in(block, k) - block->place[j]) + block->point[j].of[i];
         }
     }
-    return b;
+    return map;
 }
 
-static double place_of(const Block* block, int j, int points) {
-    return 0.5 * (block->count - 1.0) * (1.0 - cos(FC_PI * j / (points - 1)));
-}
-
-typedef enum { SMOOTH, ROUGH, NO_MAP } Interpolated;
-
-// Interpolates the block through that number of points. If it is more than the fewest, sampled holds every
-// second point in its first half.
-static Interpolated interpolate(Block* block, int points, Numbers* sampled) {
-    const bool has_half = points > FEWEST_POINTS;
-    for (int j = points - 1; j >= 0 && has_half; j -= 2) {
-        sampled[j] = sampled[j / 2];
-    }
-    for (int j = has_half ? 1 : 0; j < points; j += has_half ? 2 : 1) {
-        if (!sample(block, place_of(block, j, points), &sampled[j])) {
-            return NO_MAP;
-        }
-    }
-    find_coefficients(block->numbers, sampled, points, block->point);
-    block->points = points;
-    const Numbers weight = weights(block, &sampled[points / 2]);
+// Interpolates the block, point by point, up to a point that the points before it predict. False if there is
+// none, or if a period has no map.
+static bool interpolate(Block* block) {
     const double may = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
-    if (!(largest_error(block->numbers, &weight, block->point[points - 1].of) <= may)) {
-        return ROUGH;
+    const double most = fmin(MOST_POINTS, floor(MOST_PART * block->count));
+    double before_last = HUGE_VAL;
+    double largest = 0.0;
+    for (block->points = 0; block->points < most;) {
+        const int j = block->points;
+        const double k = (block->count - 1.0) * 0.5 * (1.0 - cos(FC_PI * angle_of(j)));
+        Numbers sampled;
+        if (!sample(block, k, &sampled)) {
+            return false;
+        }
+        const Numbers foretold = map_at(block, k);
+        Numbers error;
+        double product = 1.0;
+        block->place[j] = place_in(block, k);
+        for (int before = 0; before < j; before++) {
+            product *= block->place[j] - block->place[before];
+        }
+        for (int i = 0; i < block->numbers; i++) {
+            error.of[i] = sampled.of[i] - foretold.of[i];
+            block->point[j].of[i] = error.of[i] / product;
+        }
+        block->points++;
+        const Numbers weight = weights(block, &sampled);
+        const double last = largest_error(block->numbers, &weight, error.of);
+        if (j >= FEWEST_POINTS && last <= may && before_last <= MOST_BEFORE * may) {
+            return true;
+        }
+        before_last = last;
+        largest = j > 0 ? fmax(largest, last) : 0.0;
+        // The errors fall by a ratio from point to point. If the remaining points are too few for this ratio,
+        // the block is refused.
+        const double left = j > 1 ? (j - 1) * log(last / may) / log(largest / last) : 0.0;
+        if (j >= FEWEST_POINTS && !(j + left <= most)) {
+            return false;
+        }
     }
-    // A period between two points, not in the middle, at which even and odd errors appear.
-    Numbers between;
-    const double k =
-        0.6 * place_of(block, points / 2, points) + 0.4 * place_of(block, points / 2 - 1, points);
-    if (!sample(block, k, &between)) {
-        return NO_MAP;
-    }
-    Numbers found = map_at(block, k);
-    for (int i = 0; i < block->numbers; i++) {
-        found.of[i] -= between.of[i];
-    }
-    return largest_error(block->numbers, &weight, found.of) <= may ? SMOOTH : ROUGH;
+    return false;
 }
 
 // Whether a bounded bristle would meet its bound in period k, from its state at the start of that period.
@@ -250,14 +258,7 @@ static bool meets(const Block* block, double k, const FcStepResult* at) {
 // Takes *total through the block. False, with *total unchanged, if the block is not smooth or a free bristle
 // meets its bound.
 static bool take_block(Block* block, FcStepResult* total) {
-    Numbers sampled[MOST_POINTS];
-    int points = FEWEST_POINTS;
-    Interpolated is = interpolate(block, points, sampled);
-    while (is == ROUGH && 2 * points - 1 <= fmin(MOST_POINTS, block->count)) {
-        points = 2 * points - 1;
-        is = interpolate(block, points, sampled);
-    }
-    if (is != SMOOTH) {
+    if (!interpolate(block)) {
         return false;
     }
     FcStepResult result = *total;
@@ -313,6 +314,8 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
              FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
     double longest = periods;
+    double tries_at = 0.0;
+    double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
     for (double k = 0.0; k < periods && total->evaluations <= FC_MOST_EVALUATIONS;) {
         bool slipped = false;
         if (law.is_bounded) { // the first period says whether it slips
@@ -339,7 +342,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                        .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};
         bool taken = false;
-        if (block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
+        if (k >= tries_at && block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
             FcStepResult before = *total;
             if (on_line) {
                 take_part(law, scene, options, k, 0.0, block.phase, total);
@@ -352,10 +355,14 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                 *total = before;
             }
             longest = taken ? 2.0 * room : floor(0.5 * room);
-        } else {
-            longest = fmax(longest, 2.0 * fewest);
+            if (longest < fewest) {
+                longest = 2.0 * fewest;
+                tries_at = k + alone;
+                alone *= 2.0;
+            }
         }
         if (taken) {
+            alone = FEWEST;
             k += block.count + (on_line ? 1.0 : 0.0);
         } else if (!law.is_bounded) {
             take_part(law, scene, options, k, 0.0, period, total);

@@ -1,15 +1,15 @@
-// Many vibration periods with moving inputs, for the price of some.
+// Many vibration periods with moving inputs, at the cost of some.
 //
 // Period k of a step begins with the inputs V + V' k T, d + d' k T, ... at the same phase. Its map is a
-// smooth function of k, which need not be whole: it is sampled at the Chebyshev points of a block of n
-// periods and interpolated, and the n maps are applied one after the other, some 50 ns each.
+// smooth function of k, which need not be whole: it is sampled at Chebyshev points of a block of n periods and
+// interpolated, and the n maps are applied one after the other.
 //
-//     block of n periods      k = (n - 1) (1 - cos(pi j / (m - 1))) / 2,  j = 0 .. m - 1,  m = 4, 7 or 13
+//     block of n periods      k = (n - 1) (1 - cos(angle)) / 2,    angle = 0, pi, pi / 2, pi / 4, 3 pi / 4, ...
 //
-// A bristle that slips in each period forgets: then periods begin while it slips, at the bound, and their
-// results are smooth functions of k. The last coefficients of the interpolation, and a period between its
-// points, decide whether the block is smooth. If not, it is halved: a bound that is met for the first time, a
-// slip that disappears, a contact that opens. The rest is computed period by period.
+// A bristle that slips in each period forgets its past. Then periods begin while it slips, at the bound, and
+// their results are smooth functions of k. The block is smooth if the points so far predict the map at the
+// next one. If not, it is halved: a bound is met for the first time, a slip disappears, a contact opens. The
+// rest is computed period by period.
 #ifndef FC_SOLVER_LEAP_H
 #define FC_SOLVER_LEAP_H
 

@@ -22,6 +22,10 @@ static const double LEAST_PART = 1e-4;
 // Twice of it moves the edge by as much.
 static const double ROUNDING_OF_EDGE = 1e-13;
 
+// The largest part of a start that a period may forget if its end determines its start: at one half the start
+// has twice the error of the end. More would multiply the error further.
+static const double MOST_FORGOTTEN = 0.5;
+
 // The largest number of periods that meet the bound before a repetition is given up. With static friction the
 // place of sticking may depend on the place of break-away. Then periods need not repeat, and the mean over
 // the last half of the meetings counts. Half as many would give a mean over fewer periods; twice as many
@@ -92,7 +96,7 @@ static double edge_of(Walk* walk, int side) {
     walk->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
     const double room = side * (end.delta - map->offset);
-    *edge = kept > 0.0 ? fmin(side * farthest, room / kept) * side : room < 0.0 ? -side * HUGE_VAL : farthest;
+    *edge = side * fmin(side * farthest, room / kept);
     return *edge;
 }
 
@@ -136,9 +140,9 @@ static bool meets_after(Walk* walk, double n) {
     return end.meetings > 0;
 }
 
-// free_periods in the plane. The starts of free periods lie on a straight line, along which |delta| is convex
-// at each phase. So all periods up to a last one are free.
-static double free_periods_in_plane(Walk* walk, double left) {
+// free_periods by steps. The starts of free periods lie on a straight line, along which |delta| is convex at
+// each phase. So all periods up to a last one are free.
+static double free_periods_by_steps(Walk* walk, double left) {
     const FcMap map = free_map_of(walk);
     const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
@@ -170,26 +174,25 @@ static double free_periods_in_plane(Walk* walk, double left) {
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
 // (1 - P) in n of them, with the first shift s.
 static double free_periods(Walk* walk, double left) {
-    if (walk->law.is_planar) {
-        return free_periods_in_plane(walk, left);
-    }
     const FcMap map = free_map_of(walk);
+    if (walk->law.is_planar || map.relaxation > MOST_FORGOTTEN) {
+        return free_periods_by_steps(walk, left);
+    }
     const double delta = walk->total.delta;
     const double s = map.offset - map.relaxation * delta;
     if (s == 0.0) {
         return left;
     }
     const int side = s > 0.0 ? 1 : -1;
-    const double relaxation = fmin(1.0, map.relaxation); // rounding may exceed 1
     const double edge = edge_of(walk, side);
     const double room = side * (edge - delta) / fabs(s);
-    if (!(room * relaxation < 1.0)) { // never
+    if (!(room * map.relaxation < 1.0)) { // never
         return left;
     }
     if (!(side * (edge - delta) > ROUNDING_OF_EDGE * fabs(edge))) {
         return 0.0;
     }
-    const double n = relaxation > 0.0 ? log1p(-relaxation * room) / log1p(-relaxation) : room;
+    const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * room) / log1p(-map.relaxation) : room;
     assert(!(n < 0.0));
     return fmin(left, floor(n) + 1.0);
 }
