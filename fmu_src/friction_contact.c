@@ -264,25 +264,22 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// The finest tolerance of the solver. Rounding: 4500 eps. A finer one asks for digits that do not exist.
+// The finest tolerance of the bristle's force. Rounding: 4500 eps. A finer one asks for digits that do not
+// exist.
 static const double SMALLEST_TOLERANCE = 1e-12;
 
-// The scale [N] of solver.tolerance: the largest of the limit at both ends of the step, the bristle's force
-// at its start, and the forces of damping and viscosity.
-static double force_scale(const FcScene* scene, double h, FcBristle from) {
+// The bristle's force [N]: the largest of the limit at both ends of the step and the force at its start.
+static double force_of_bristle(const FcScene* scene, double h, FcBristle from) {
     const FcFriction* friction = scene->friction;
     double limit = fc_scene_mean_limit(scene, 0.0);
     if (fc_scene_has_pieces(scene)) {
         limit = fmax(limit, fc_scene_mean_limit(scene, h));
     }
-    const double speed = fc_drive_largest_speed(&scene->drive, h);
-    const double viscous =
-        friction->model == FC_COULOMB ? friction->sigma_2 : friction->sigma_1 + friction->sigma_2;
     const double delta = hypot(from.delta, from.delta_y);
     const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);
-    return fmax(fmax(fc_static_ratio(friction) * limit, elastic), fmax(viscous * speed, DBL_MIN));
+    return fmax(fmax(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
 }
 
 // The least limit of the step. If the contact opens or closes in the step, the mean limit at its closed end.
@@ -292,17 +289,22 @@ static double least_limit(const FcScene* scene, double h) {
                          : fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
 }
 
-// An error of the deflection acts through sigma delta and, since delta' = V - sigma |V| delta / g, through
-// sigma_1 delta', where it is multiplied by sigma |V| / g. So the damping divides the tolerance of the
-// bristle's force.
+// solver.tolerance is relative to the largest of the forces of bristle, damping and viscosity. An error of
+// the deflection acts through sigma delta and, since delta' = V - sigma |V| delta / g, through sigma_1
+// delta', where it is multiplied by sigma |V| / g. So the damping divides the allowed error of the bristle's
+// force.
 static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, FcBristle from) {
-    double tolerance = v->solver.tolerance;
-    const double limit = v->friction.sigma_1 != 0.0 ? least_limit(scene, h) : 0.0;
+    const bool is_coulomb = v->friction.model == FC_COULOMB;
+    const double speed = fc_drive_largest_speed(&scene->drive, h);
+    const double damping = is_coulomb ? 0.0 : v->friction.sigma_1 * speed;
+    const double bristle = force_of_bristle(scene, h, from);
+    const double limit = damping != 0.0 ? least_limit(scene, h) : 0.0;
+    double force = fmax(bristle, damping + v->friction.sigma_2 * speed);
     if (limit > 0.0) {
-        tolerance /= 1.0 + v->friction.sigma_1 * fc_drive_largest_speed(&scene->drive, h) / limit;
+        force = fmax(force / (1.0 + damping / limit), bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
     }
-    return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, tolerance),
-                             .force = force_scale(scene, h, from),
+    return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance),
+                             .force = force,
                              .step_size = v->solver.stepSize};
 }
 
