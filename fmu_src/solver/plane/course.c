@@ -114,8 +114,11 @@ int fc_halves(const FcPlane* plane, double h, double tolerance, FcHalf halves[FC
         if (!(end > start)) {
             continue;
         }
-        const FcStraight in = {centers[i], length_of(plane, centers[i], h, tolerance)};
         const double middle = centers[i];
+        // From farther off than it lasts |V| is smooth in t, and u would round its times.
+        const bool is_far = fmax(start - middle, middle - end) > end - start;
+        const FcStraight in = is_far ? (FcStraight){0.0, INFINITY}
+                                     : (FcStraight){middle, length_of(plane, middle, h, tolerance)};
         if (middle > start && middle < end) {
             halves[count++] = (FcHalf){start, middle, in};
             start = middle;
