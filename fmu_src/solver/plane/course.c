@@ -115,7 +115,8 @@ int fc_halves(const FcPlane* plane, double h, double tolerance, FcHalf halves[FC
             continue;
         }
         const double middle = centers[i];
-        // From farther off than it lasts |V| is smooth in t, and u would round its times.
+        // If the near-zero is farther away than the part lasts, |V| is smooth in t, and u would round the
+        // times.
         const bool is_far = fmax(start - middle, middle - end) > end - start;
         const FcStraight in = is_far ? (FcStraight){0.0, INFINITY}
                                      : (FcStraight){middle, length_of(plane, middle, h, tolerance)};
