@@ -305,21 +305,33 @@ static void take_again(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel
     }
 }
 
+// The place in a panel, over its length, after which that push is negative; 0 if it is nowhere positive, 2 if
+// there is none.
+static double end_of_push(const March* march, const double push[POINTS]) {
+    const double rounding = ROUNDING_OF_PUSH * largest_push(march);
+    double inwards[POINTS];
+    bool is_pushed = false;
+    for (int i = 0; i < POINTS; i++) {
+        inwards[i] = -push[i];
+        is_pushed = is_pushed || push[i] > rounding;
+    }
+    return inwards[STAGES] > rounding || !is_pushed ? 0.0 : fc_first_rise(inwards, rounding);
+}
+
 // Whether the push of a slipping bristle that lies inside its bound, after an input has jumped, ends in the
 // panel. The panel then ends there, and the bristle sticks unless it has met its bound before.
 static bool catches_up(March* march, FcPlaneNodes* nodes, FcPlanePanel* panel, double* h) {
-    const double rounding = ROUNDING_OF_PUSH * largest_push(march);
     for (int cuts = 0;; cuts++) {
-        double inwards[POINTS];
+        double push[POINTS];
         for (int i = 0; i < POINTS; i++) {
             const FcVector delta = panel->delta[i];
             const double size = fmax(hypot(delta.x, delta.y), DBL_MIN);
             const FcPlaneBound bound =
                 fc_plane_bound(march->plane, &nodes->at[i], 1, nodes->t[i], nodes->phase[i]);
-            inwards[i] = -fc_plane_push(march->plane, &nodes->at[i], &bound,
-                                        (FcVector){delta.x / size, delta.y / size});
+            push[i] = fc_plane_push(march->plane, &nodes->at[i], &bound,
+                                    (FcVector){delta.x / size, delta.y / size});
         }
-        const double ends = inwards[STAGES] > rounding ? 0.0 : fc_first_rise(inwards, rounding);
+        const double ends = end_of_push(march, push);
         if (ends > 1.0 || cuts >= 4) {
             return cuts > 0;
         }
@@ -369,17 +381,6 @@ static void free_panel(March* march, double h) {
     }
 }
 
-// The place in a panel, over its length, after which the push of a slipping bristle is negative; 2 if there
-// is none.
-static double end_of_push(const March* march, const FcPlanePanel* panel) {
-    const double rounding = ROUNDING_OF_PUSH * largest_push(march);
-    double inwards[POINTS];
-    for (int i = 0; i < POINTS; i++) {
-        inwards[i] = -panel->to_bound[i];
-    }
-    return inwards[STAGES] > rounding ? 0.0 : fc_first_rise(inwards, rounding);
-}
-
 static void slip_panel(March* march, double h) {
     FcPlaneNodes nodes;
     FcPlanePanel panel;
@@ -387,12 +388,12 @@ static void slip_panel(March* march, double h) {
     if (isnan(march->along.offset)) {
         return;
     }
-    double ends = end_of_push(march, &panel);
+    double ends = end_of_push(march, panel.to_bound);
     bool is_over = ends < 1.0;
     for (int cuts = 0; cuts < MOST_TRIES && ends > 0.0 && ends < 1.0; cuts++) {
         h *= ends;
         take_again(march, h, &nodes, &panel);
-        ends = end_of_push(march, &panel);
+        ends = end_of_push(march, panel.to_bound);
     }
     if (ends > 0.0) {
         append(march, &panel, h);
