@@ -54,6 +54,17 @@ class TestLaw:
         assert law.derivative(speed, "V_y", of="F_y_settled") == pytest.approx(force / speed, rel=1e-6)
         assert law.derivative(speed, "V_y") == pytest.approx(0.0, abs=1e-4)
 
+    def test_the_derivative_at_a_jump_is_none(self, fmu_path: Path) -> None:
+        """Coulomb's at rest, and what sticks in a small vibration; a force that is continuous has one."""
+        stuck = SOFT | {"friction.model": "ElasticPlastic", "vibration.V_1": 0.1}
+        for scene in ({"friction.model": "Coulomb"}, {}, stuck):
+            law = fc.friction_law(scene, fmu=fmu_path)
+            assert np.isnan(law.derivative([0.0, 0.1])).tolist() == [True, False]
+            assert law.derivative(0.0, "d") == pytest.approx(0.0, abs=1e-3)
+        law = fc.friction_law(COULOMB, fmu=fmu_path)
+        assert law.derivative(0.0) == pytest.approx(110 / np.pi / 1.44, rel=1e-6)
+        assert law.derivative(1.44) == 0.0  # a kink
+
     def test_it_is_the_mean_over_a_period(self, fmu_path: Path) -> None:
         mean = fc.simulate_many(SOFT | {"V": 0.5}, ["F_t_mean"], fmu=fmu_path)["F_t_mean"]
         assert fc.friction_law(SOFT, fmu=fmu_path)(0.5) == pytest.approx(float(mean), rel=1e-5)
