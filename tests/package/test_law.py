@@ -16,8 +16,10 @@ import pandas as pd
 import pytest
 
 import frictioncontact as fc
+from frictioncontact.command import main
 from frictioncontact.doubts import LIKELY, USED
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.law import command
 from workshop.project import ROOT
 
 COULOMB = {"friction.model": "Coulomb", "vibration.V_1": 1.44}
@@ -182,10 +184,24 @@ class TestWarnings:
     def test_commands_say_them_in_a_line(self) -> None:
         command = [sys.executable, "-m", "frictioncontact", "simulate", "--stop", "1e-5", "--step", "1e-5"]
         done = subprocess.run([*command, "--set", "load=10"], capture_output=True, text=True)
-        assert done.returncode == 0 and done.stdout.startswith(" time")
+        assert done.returncode == 0 and done.stdout.startswith(" time [s]  F_t [N]")
         assert (
             done.stderr == "warning: load has no effect: contact.input = Separation; it is used with Load\n"
         )
+
+
+def test_tables_for_people_have_units_and_no_rounding(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of 4e-15 N, a sum of 55 N and -55 N, nothing is shown; a CSV file has the number."""
+    scene = ["--set", "friction.model=Coulomb", "--set", "vibration.V_1=1", "--vary", "V=0"]
+    main(command, scene)
+    heads, row = capsys.readouterr().out.splitlines()
+    assert heads.split("  ") == [" V [m/s]", "F_t_settled [N]", "d/dV [N s/m]"]
+    assert row.split()[:2] == ["0", "0"] and float(row.split()[2]) == pytest.approx(110 / np.pi, rel=1e-5)
+    main(command, [*scene, "--output", str(tmp_path / "law.csv")])
+    heads, row = (tmp_path / "law.csv").read_text().splitlines()
+    assert heads == "V,F_t_settled,d/dV" and 0.0 < abs(float(row.split(",")[1])) < 1e-12
 
 
 class TestSessions:
@@ -247,6 +263,18 @@ def test_a_file_with_other_separators_is_told_so(tmp_path: Path, separator: str,
         fc.UserError, match=f"{re.escape(str(path))}: its columns are separated by {kind}; write"
     ):
         fc.identify(path, "F_C")
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [(["simulate", "--stop", "1", "--step", "1"], "--output"), (["law"], "--output"), (["law"], "--picture"),
+     (["playground"], "--output")],
+)  # fmt: skip
+def test_a_file_is_written_into_a_folder_that_is_there(tmp_path: Path, words: list[str], option: str) -> None:
+    command = [sys.executable, "-m", "frictioncontact", *words, option, "nowhere/file.png"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 2 and f"argument {option}: there is no folder nowhere" in done.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_output_that_can_t_be_written_is_the_user_s(tmp_path: Path) -> None:
