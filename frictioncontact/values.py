@@ -24,10 +24,16 @@ def number(text: str, where: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise UserError(f"{where}: {shown(text)} is not a number") from None
+        raise UserError(f"{where}: {shown(text)} is not a number{_point(text)}") from None
     if not math.isfinite(value):
         raise UserError(f"{where}: {shown(text)} is not a finite number")
     return value
+
+
+def _point(text: str) -> str:
+    """What to write instead of a decimal comma."""
+    is_comma = re.fullmatch(r"'?[-+]?\d*,\d+(e[-+]?\d+)?'?", text, re.IGNORECASE)
+    return f"; write {text.strip(chr(39)).replace(',', '.')}" if is_comma else ""
 
 
 def real(value: Any, where: str) -> float:
@@ -79,7 +85,9 @@ def csv_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
                 if any(cells) and not cells[0].lstrip().startswith("#"):
                     if first and len(cells) == 1 and re.search("[;\t]", cells[0].strip()):
                         kind = "semicolons" if ";" in cells[0] else "tabs"
-                        raise UserError(f"{path}: its columns are separated by {kind}; write commas")
+                        raise UserError(
+                            f"{path}: its columns are separated by {kind}; write commas, and decimal points"
+                        )
                     first = False
                     yield reader.line_num, [cell.strip() for cell in cells]
     except OSError as error:
@@ -152,7 +160,7 @@ def row_of(array: np.ndarray, flat_index: int) -> str:
 def _wanted(given: str, items: Mapping[str, float], kind: str) -> str:
     """What is wrong with a value."""
     if not items:
-        return f"{given} is not a {kind}"
+        return f"{given} is not a {kind}{_point(given)}"
     return f"{given} is not one of {', '.join(items)}, nor a number from 1 to {len(items)}"
 
 
