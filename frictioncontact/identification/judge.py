@@ -14,6 +14,8 @@ from frictioncontact.identification.search import SAME
 # e-fold of sigma outside of these, the first pair with d constant, the second where it vibrates.
 INFORMATIVE = {False: (0.1, 100.0), True: (0.01, 3000.0)}
 STIFFNESS_LIKE = ("contact.stiffnessScale", "contact.sigma", "d", "E", "load")
+SMALL = 1e-5  # a difference over the force that the search for the fit may leave
+PERMUTATIONS = 10_000
 LARGE = 0.2  # a misfit over the force that no scatter of a mean explains
 MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
 
@@ -57,7 +59,30 @@ def _misfits(experiment: Experiment, result: Fit) -> list[str]:
         size = float(np.sqrt(np.mean(experiment.force**2)))
         if rms > LARGE * size:
             found.append(
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.0%} of the measured one"
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.3g} of the measured one"
+            )
+    return found or (_trends(experiment, result) if experiment.word == "row" else [])
+
+
+def _trends(experiment: Experiment, result: Fit) -> list[str]:
+    """Conditions along which the differences do not scatter: neighbouring rows miss by nearly the same.
+
+    A permutation test of the sum of squares of what neighbouring rows differ by.
+    """
+    miss, found = result.residuals * experiment.weight, []
+    if np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
+        return []
+    columns = {name: [row[name] for row in experiment.rows.conditions] for name in experiment.rows.names}
+    columns = {name: values for name, values in columns.items() if len(set(values)) > 2}
+    shuffled = np.random.default_rng(0).permuted(np.tile(miss, (PERMUTATIONS, 1)), axis=1)
+    by_chance = np.sum(np.diff(shuffled) ** 2, axis=1)
+    for name, values in columns.items():
+        along = miss[np.argsort(values, kind="stable")]
+        chance = np.mean(by_chance <= np.sum(np.diff(along) ** 2) * (1 + 1e-9)) * len(columns)
+        if chance < 0.01:
+            found.append(
+                f"the law does not fit: its differences to rows of neighbouring {name} are alike, which "
+                f"scatter hardly explains (probability {max(chance, 1 / PERMUTATIONS):.1e})"
             )
     return found
 
