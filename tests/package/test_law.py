@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pickle
 import re
 import subprocess
 import sys
@@ -18,7 +19,7 @@ import pytest
 import frictioncontact as fc
 from frictioncontact.command import main
 from frictioncontact.doubts import LIKELY, USED
-from frictioncontact.fmu import FrictionFmu
+from frictioncontact.fmu import FrictionFmu, Session
 from frictioncontact.law import command
 from workshop.project import ROOT
 
@@ -205,6 +206,25 @@ def test_tables_for_people_have_units_and_no_rounding(
 
 
 class TestSessions:
+    def test_a_saved_state_goes_on_as_the_first_time(self, fmu: FrictionFmu) -> None:
+        """Here and in another session, whose parameters and inputs it brings along."""
+
+        def go_on(session: Session) -> list[float]:
+            session.set("V", -0.3)
+            session.step(2e-5)
+            return [session.time, *session.read()]
+
+        with fmu.session({"V": 0.5, "friction.model": "ElasticPlastic", **SOFT}) as session:
+            session.step(3e-5)
+            state = pickle.loads(pickle.dumps(session.save()))
+            expected = go_on(session)
+            session.step(1e-5)
+            session.restore(state)
+            assert session.time == 3e-5 and session.get("V") == 0.5 and go_on(session) == expected
+        with fmu.session() as other:
+            other.restore(state)
+            assert go_on(other) == expected
+
     @pytest.mark.parametrize(
         ("call", "message"),
         [
@@ -222,6 +242,11 @@ class TestSessions:
             (lambda session: session.step("1"), "h = '1' is not a number"),
             (lambda session: session.step(-1.0), "fmi2DoStep: "),
             (lambda session: session.slope("F_t", "vv"), "slope: vv is no variable of the FMU"),
+            (
+                lambda session: session.restore(b"state"),
+                "restore: \"b'state'\" is not a state that save() gave",
+            ),
+            (lambda session: session.restore((0.0, b"state")), "fmi2DeSerializeFMUstate: "),
             (lambda session: session.fmu.session({"V": None}), "set V: 'None' is not a number"),
             (lambda session: session.fmu.session(["V"]), "start_values = \"['V']\": must be a mapping"),
             (lambda session: fc.FrictionFmu("nowhere.fmu"), "nowhere.fmu: No such file or directory"),
