@@ -22,7 +22,7 @@ from rich.table import Table
 
 from frictioncontact import resources
 from frictioncontact.errors import FrictionWarning, UserError
-from frictioncontact.files import whole_file
+from frictioncontact.files import reason, whole_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -93,7 +93,7 @@ def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespac
         sys.exit(f"error: {error}")
     except OSError as error:
         where = error.filename or ("standard output" if _stdout_fails() else getattr(options, "output", None))
-        sys.exit(f"error: {f'{where}: ' if where else ''}{error.strerror or error}")
+        sys.exit(f"error: {f'{where}: ' if where else ''}{reason(error)}")
 
 
 def main(command: ModuleType, argv: Sequence[str] | None = None) -> None:

@@ -80,10 +80,10 @@ class TestLaw:
         [
             (lambda law: law("fast"), "V: 'fast' is not a number"),
             (lambda law: law(0.5, f=3.0), "inputs: f is no variable of the FMU"),
-            (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU and can't be set"),
+            (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law([1.0, 2.0], E=[1e9, 2e9, 3e9]), "the shapes do not go together: V (2,), E (3,)"),
             (lambda law: law(0.5, d=-1e-6), "fmi2SetReal: d = -1e-06 m is below"),
-            (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU and can't be set"),
+            (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law.derivative(0.5, of="F_t"), "of F_t: must be F_t_settled or F_y_settled"),
         ],
     )
@@ -288,6 +288,23 @@ def test_a_file_with_other_separators_is_told_so(tmp_path: Path, separator: str,
         fc.UserError, match=f"{re.escape(str(path))}: its columns are separated by {kind}; write"
     ):
         fc.identify(path, "F_C")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: run({"V": "5 mm/s"})(), "start: V: '5 mm/s' is not a number; write the number alone, in SI"),
+        (lambda: run({"V": "0,5"})(), "start: V: '0,5' is not a number; write 0.5"),
+        (lambda: run({}, outputs=["F_t,W_f"])(), "outputs: 'F_t,W_f' is no variable of the FMU; give one"),
+        (lambda: fc.friction_law(fc.contacts["steel-dry"]), "scene = 'steel-dry: 40Cr"),
+        (lambda: fc.identify(fc.contacts["steel-dry"].data, "contact.sigma", uncertain={"F_t": 1},
+                             start={"contact.model": "Constant"}), "the uncertainty of F_t: rows of means"),
+        (lambda: fc.sweep(output=__file__, vary={"V": "1,2"}), f"{__file__}: can't be written: is a file"),
+    ],
+)  # fmt: skip
+def test_an_error_says_what_to_do(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(fc.UserError, match="^" + re.escape(message)):
+        call()
 
 
 @pytest.mark.parametrize(
