@@ -147,17 +147,12 @@ def print_frame(frame: pd.DataFrame, known: Variables, scene: Mapping[str, Any],
     Below 1e-12 of the largest force or F_C for a force. units: of columns that are no variables.
     """
     units = {name: variable.unit for name, variable in known.all.items()} | {"time": "s"} | units
-    largest = frame.abs().max()
-    forces = [name for name in frame if units[name] == "N"]
-    is_constant = scene.get("friction.limit", "Constant") == "Constant"
-    limit = float(scene.get("F_C", known.all["F_C"].start)) if is_constant else 0.0
-    largest[forces] = max(limit, largest[forces].max())
-    headings = {name: f"{name} [{units[name]}]" for name in frame if units[name] not in (None, "1")}
-    print(
-        frame.mask(frame.abs() < 1e-12 * largest, 0.0)
-        .rename(columns=headings)
-        .to_string(index=False, float_format="{:.6g}".format)
-    )
+    scale, forces = frame.abs().max(), [name for name in frame if units[name] == "N"]
+    limit = 0.0 if scene.get("friction.limit") == "Load" else scene.get("F_C", known.all["F_C"].start)
+    scale[forces] = max(float(limit), scale[forces].max())
+    rounded = frame.mask(frame.abs() < 1e-12 * scale, 0.0)
+    rounded.columns = [f"{name} [{units[name]}]" for name in frame]
+    print(rounded.to_string(index=False, float_format="{:.6g}".format))
 
 
 @contextmanager

@@ -65,20 +65,19 @@ def _misfits(experiment: Experiment, result: Fit) -> list[str]:
 
 
 def _trends(experiment: Experiment, result: Fit) -> list[str]:
-    """Conditions along which the differences do not scatter: neighbouring rows miss by nearly the same.
-
-    A permutation test of the sum of squares of what neighbouring rows differ by.
-    """
+    """Conditions along which neighbouring rows miss by nearly the same: by a permutation test of the sum of
+    squares of what neighbours differ by."""
     miss, found = result.residuals * experiment.weight, []
     if np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
         return []
-    columns = {name: [row[name] for row in experiment.rows.conditions] for name in experiment.rows.names}
-    columns = {name: values for name, values in columns.items() if len(set(values)) > 2}
+    rows = experiment.rows
+    columns = {name: [row[name] for row in rows.conditions] for name in rows.names}
+    varied = {name: values for name, values in columns.items() if len(set(values)) > 2}
     shuffled = np.random.default_rng(0).permuted(np.tile(miss, (PERMUTATIONS, 1)), axis=1)
     by_chance = np.sum(np.diff(shuffled) ** 2, axis=1)
-    for name, values in columns.items():
-        along = miss[np.argsort(values, kind="stable")]
-        chance = np.mean(by_chance <= np.sum(np.diff(along) ** 2) * (1 + 1e-9)) * len(columns)
+    for name, values in varied.items():
+        rise = np.sum(np.diff(miss[np.argsort(values, kind="stable")]) ** 2)
+        chance = np.mean(by_chance <= rise * (1 + 1e-9)) * len(varied)
         if chance < 0.01:
             found.append(
                 f"the law does not fit: its differences to rows of neighbouring {name} are alike, which "

@@ -37,12 +37,9 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact law", DESCRIPTION)
     add_set(parser, "of the scene")
     parser.add_argument(
-        "--vary",
-        action="append",
-        default=[],
-        metavar="NAME=VALUES",
+        "--vary", action="append", default=[], metavar="NAME=VALUES",
         help="a,b,c or low:high:count[:log] of an input",
-    )
+    )  # fmt: skip
     parser.add_argument("--output", type=new_file, metavar="CSV", help="write the table there")
     parser.add_argument(
         "--picture", type=new_file, metavar="PNG", help="draw the law over V there (.png, .svg, .pdf)"
@@ -81,8 +78,6 @@ def run(options: argparse.Namespace) -> None:
         for name, values in inputs.items():
             if len(np.unique(values)) > 1:
                 raise UserError(f"--picture draws the law over V alone: give one value of {name}")
-        style.save(
-            law.plot(np.unique(V), **{name: float(values[0]) for name, values in inputs.items()}),
-            options.picture,
-        )
+        held = {name: float(values[0]) for name, values in inputs.items()}
+        style.save(law.plot(np.unique(V), **held), options.picture)
     say_written([path for path in (options.output, options.picture) if path])
