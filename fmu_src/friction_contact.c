@@ -72,17 +72,35 @@ FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
                       state->next_rate_set ? state->next_rate : state->rate, 0.0);
 }
 
+// The largest load [N] under which a vibration of the amplitude a_d [m] leaves the surfaces apart.
+static double most_load(const FcContactAtModulus* at_E, double a_d) {
+    return at_E->load_0 * exp(fc_contact_log_swell(at_E, a_d) - at_E->decay * a_d);
+}
+
+static bool fail_load(const FcContactAtModulus* at_E, double load, double a_d, FcMessage* message) {
+    if (!(load < at_E->load_0)) {
+        return fc_message_set(message,
+                              "load = %.9g N presses the surfaces together: their separation must stay above "
+                              "0 m, which it does up to %.9g N",
+                              load, most_load(at_E, a_d));
+    }
+    double low = 0.0;
+    double high = a_d;
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        *(load < most_load(at_E, middle) ? &low : &high) = middle;
+    }
+    return fc_message_set(message,
+                          "vibration.a_d = %.9g m presses the surfaces together under load = %.9g N: their "
+                          "separation must stay above 0 m, which it does up to %.9g m, or up to %.9g N",
+                          a_d, load, low, most_load(at_E, a_d));
+}
+
 static bool fail_separation(const FcScene* scene, double h, FcMessage* message) {
     const FcDrive* drive = &scene->drive;
     const double a_d = drive->vibration.a_d;
     if (scene->contact->input == FC_CONTACT_LOAD) {
-        const FcContactAtModulus* at_E = &scene->at_E;
-        return fc_message_set(message,
-                              "load = %.9g N presses the surfaces together: with vibration.a_d = %.9g m the "
-                              "separation must stay "
-                              "above 0 m, which it does up to %.9g N",
-                              fmax(drive->load.value, fc_drive_load(drive, h)), a_d,
-                              at_E->load_0 * exp(scene->log_swell - at_E->decay * a_d));
+        return fail_load(&scene->at_E, fmax(drive->load.value, fc_drive_load(drive, h)), a_d, message);
     }
     if (drive->d.rate == 0.0) {
         return fc_message_set(

@@ -75,7 +75,7 @@ def numbers_below(
     for row, (line, cells) in enumerate(lines, 1):
         at = f"{path}, row {row} (line {line})"
         if len(cells) > len(columns):
-            raise UserError(f"{at}: {len(cells)} cells, but {len(columns)} columns")
+            raise UserError(f"{at}: {len(cells)} cells, but {len(columns)} columns; decimals have a point")
         for column, cell in zip_longest(columns, cells, fillvalue=""):
             where = f"{at}, column '{column.heading}'"
             if not cell:

@@ -1,5 +1,7 @@
 """What all commands share: options, the one line that an error becomes, progress, shown paths, CSV files."""
 
+from __future__ import annotations
+
 import argparse
 import csv
 import importlib.util
@@ -11,7 +13,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from types import ModuleType
-from typing import NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich.console import Console
 from rich.markup import escape
@@ -20,7 +22,12 @@ from rich.table import Table
 
 from frictioncontact import resources
 from frictioncontact.errors import FrictionWarning, UserError
-from frictioncontact.files import whole_file
+from frictioncontact.files import reason, whole_file
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from frictioncontact.values import Variables
 
 TABLE = 120  # characters, of the widest table
 called_as: str | None = None  # what a file of scripts/ calls the command of its user
@@ -57,7 +64,17 @@ def add_set(parser: argparse.ArgumentParser, of: str) -> None:
 
 
 def add_output(parser: argparse.ArgumentParser, default: Path) -> None:
-    parser.add_argument("--output", type=Path, default=default, help=f"folder to write to ({place(default)})")
+    parser.add_argument(
+        "--output", type=Path, default=default, help=f"folder to write to, made if missing ({place(default)})"
+    )
+
+
+def new_file(text: str) -> Path:
+    """The path of a file to write, of an option; its folder must be there."""
+    path = Path(text)
+    if not path.parent.is_dir():
+        raise argparse.ArgumentTypeError(f"there is no folder {path.parent}")
+    return path
 
 
 def place(path: Path) -> str:
@@ -76,7 +93,7 @@ def finish(run: Callable[[argparse.Namespace], None], options: argparse.Namespac
         sys.exit(f"error: {error}")
     except OSError as error:
         where = error.filename or ("standard output" if _stdout_fails() else getattr(options, "output", None))
-        sys.exit(f"error: {f'{where}: ' if where else ''}{error.strerror or error}")
+        sys.exit(f"error: {f'{where}: ' if where else ''}{reason(error)}")
 
 
 def main(command: ModuleType, argv: Sequence[str] | None = None) -> None:
@@ -122,6 +139,20 @@ def as_table(
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def print_frame(frame: pd.DataFrame, known: Variables, scene: Mapping[str, Any], **units: str) -> None:
+    """A table for people: units in its headings, and 0 for rounding, below 1e-12 of its column.
+
+    Below 1e-12 of the largest force or F_C for a force. units: of columns that are no variables.
+    """
+    units = {name: variable.unit for name, variable in known.all.items()} | {"time": "s"} | units
+    scale, forces = frame.abs().max(), [name for name in frame if units[name] == "N"]
+    limit = 0.0 if scene.get("friction.limit") == "Load" else scene.get("F_C", known.all["F_C"].start)
+    scale[forces] = max(float(limit), scale[forces].max())
+    rounded = frame.mask(frame.abs() < 1e-12 * scale, 0.0)
+    rounded.columns = [f"{name} [{units[name]}]" for name in frame]
+    print(rounded.to_string(index=False, float_format="{:.6g}".format))
 
 
 @contextmanager

@@ -70,6 +70,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 def unknown_variable(name: str, known: Iterable[str]) -> str:
     """The error for a name that is not among the known variables of the FMU."""
+    if "," in name:
+        return f"{shown(name)} is no variable of the FMU; give one name each, without commas"
     named = name if len(name) <= SHOWN else shown(name)
     return f"{named or 'a variable without a name'} is no variable of the FMU{did_you_mean(name, known)}"
 

@@ -32,6 +32,12 @@ def whole_file(path: Path) -> Iterator[Path]:
             unfinished.unlink()
 
 
+def reason(error: OSError) -> str:
+    """Why a path can't be used."""
+    is_file = isinstance(error, FileExistsError)
+    return "is a file, and not a folder" if is_file else error.strerror or str(error)
+
+
 def write_whole(path: Path, text: str) -> None:
     """Writes a text in UTF-8."""
     with whole_file(path) as unfinished:

@@ -245,6 +245,26 @@ class Session(Closing):
         of, by = ([self.fmu.known.readable(each, "slope").valueReference] for each in (output, name))
         return self._call(self.slave.getDirectionalDerivative, of, by, [1.0])[0]
 
+    def save(self) -> tuple[float, bytes]:
+        """The whole state, to go on from again with `restore`: the time [s], and what the FMU keeps."""
+        state = self._call(self.slave.getFMUstate)
+        try:
+            return self.time, self._call(self.slave.serializeFMUstate, state)
+        finally:
+            self.slave.freeFMUstate(state)
+
+    def restore(self, saved: tuple[float, bytes]) -> None:
+        """Goes back to a state that `save` gave, here or in another session of this FMU."""
+        if not isinstance(saved, tuple) or [type(part) for part in saved] != [float, bytes]:
+            raise UserError(f"restore: {shown(saved)} is not a state that save() gave")
+        time, kept = saved
+        state = self._call(self.slave.deSerializeFMUstate, kept)
+        try:
+            self._call(self.slave.setFMUstate, state)
+        finally:
+            self.slave.freeFMUstate(state)
+        self.time = time
+
     def close(self) -> None:
         """Frees the instance."""
         if self.slave.component is not None:

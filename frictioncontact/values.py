@@ -24,10 +24,18 @@ def number(text: str, where: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise UserError(f"{where}: {shown(text)} is not a number") from None
+        raise UserError(f"{where}: {shown(text)} is not a number{_hint(text)}") from None
     if not math.isfinite(value):
         raise UserError(f"{where}: {shown(text)} is not a finite number")
     return value
+
+
+def _hint(text: str) -> str:
+    """What to write instead of a decimal comma, or of a number with a unit."""
+    text = text.strip("'")
+    if re.fullmatch(r"[-+]?\d*,\d+(e[-+]?\d+)?", text, re.IGNORECASE):
+        return f"; write {text.replace(',', '.')}"
+    return "; write the number alone, in SI units" if re.match(r"[-+]?[\d.]+ ?[a-zA-Z%]", text) else ""
 
 
 def real(value: Any, where: str) -> float:
@@ -52,7 +60,8 @@ def pairs(values: Any, where: str) -> Mapping[Any, Any]:
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise UserError(f"{where} = {shown(values)}: must be a mapping of names to values")
+        hint = "; it has one, .start" if hasattr(values, "start") else ""
+        raise UserError(f"{where} = {shown(values)}: must be a mapping of names to values{hint}")
     return values
 
 
@@ -79,7 +88,9 @@ def csv_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
                 if any(cells) and not cells[0].lstrip().startswith("#"):
                     if first and len(cells) == 1 and re.search("[;\t]", cells[0].strip()):
                         kind = "semicolons" if ";" in cells[0] else "tabs"
-                        raise UserError(f"{path}: its columns are separated by {kind}; write commas")
+                        raise UserError(
+                            f"{path}: its columns are separated by {kind}; write commas, and decimal points"
+                        )
                     first = False
                     yield reader.line_num, [cell.strip() for cell in cells]
     except OSError as error:
@@ -152,7 +163,7 @@ def row_of(array: np.ndarray, flat_index: int) -> str:
 def _wanted(given: str, items: Mapping[str, float], kind: str) -> str:
     """What is wrong with a value."""
     if not items:
-        return f"{given} is not a {kind}"
+        return f"{given} is not a {kind}{_hint(given)}"
     return f"{given} is not one of {', '.join(items)}, nor a number from 1 to {len(items)}"
 
 
@@ -178,11 +189,12 @@ class Variables:
     def find(self, name: object, where: str, causalities: Sequence[str] = SETTABLE) -> ScalarVariable:
         """The variable of this name that can be set."""
         found = self.all.get(name) if isinstance(name, str) else None
+        names = [each for each, other in self.all.items() if other.causality in causalities]
         if found is None:
-            names = [each for each, other in self.all.items() if other.causality in causalities]
             raise UserError(f"{where}: {unknown_variable(str(name), names)}")
         if found.causality not in causalities:
-            raise UserError(f"{where}: {name} is {indefinite(found.causality)} of the FMU and can't be set")
+            those = " and can't be set" if causalities == SETTABLE else f", not one of {', '.join(names)}"
+            raise UserError(f"{where}: {name} is {indefinite(found.causality)} of the FMU{those}")
         return found
 
     def readable(self, name: object, where: str) -> ScalarVariable:

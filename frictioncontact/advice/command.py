@@ -38,12 +38,9 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         "--mass", type=float, help="mass that moves with the contact, kg: advise on the coupling"
     )
     parser.add_argument(
-        "--master",
-        choices=MASTERS,
-        default=MASTERS[0],
-        metavar="NAME",
+        "--master", choices=MASTERS, default=MASTERS[0], metavar="NAME",
         help=f"how the master exchanges values: {' or '.join(map(repr, MASTERS))} ({MASTERS[0]})",
-    )
+    )  # fmt: skip
     parser.add_argument("--output-of", choices=OUTPUTS, default="both", help="which output must be accurate")
     parser.add_argument("--inputs", type=Path, help="CSV with time, in even steps, and any of V, d, E, load")
     parser.add_argument("--linear", action="store_true", help="inputs move linearly between their samples")

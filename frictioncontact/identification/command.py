@@ -56,21 +56,16 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact identify", DESCRIPTION, EPILOG)
     parser.add_argument("csv", type=Path, nargs="?", default=EXAMPLE, help="measurements (data/table2.csv)")
     parser.add_argument(
-        "--fit",
-        action="append",
-        metavar="NAME[=START|=LOW..HIGH]",
+        "--fit", action="append", metavar="NAME[=START|=LOW..HIGH]",
         help="parameter to fit, with a start value or a range that it stays in, in SI units; again for each "
         "(contact.stiffnessScale and vibration.phase_d)",
-    )
+    )  # fmt: skip
     add_set(parser, "of all rows")
     parser.add_argument(
-        "--uncertain",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE|PERCENT%",
+        "--uncertain", action="append", default=[], metavar="NAME=VALUE|PERCENT%",
         help="standard uncertainty, in SI units or per cent: of the measured force, of a column (each row "
         "its own error), or of another variable (one error in all rows); again for each",
-    )
+    )  # fmt: skip
     parser.add_argument(
         "--bootstrap", type=int, metavar="N", help="intervals by N refits of data with new noise, too"
     )

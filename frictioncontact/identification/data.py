@@ -157,6 +157,8 @@ def _rows(
             if 0.0 in uncertainty:
                 row = uncertainty.index(0.0) + 1
                 raise UserError(f"the uncertainty of {MEASURED}: row {row} measures 0 N, so give it in N")
+        elif one.name == FORCE:
+            raise UserError(f"the uncertainty of {FORCE}: rows of means take that of {MEASURED}")
         elif one.name in names:
             uncertain += [Uncertain(one.name, one.of(measured[one.name][k]), k) for k in range(len(force))]
         else:

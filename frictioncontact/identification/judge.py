@@ -14,6 +14,8 @@ from frictioncontact.identification.search import SAME
 # e-fold of sigma outside of these, the first pair with d constant, the second where it vibrates.
 INFORMATIVE = {False: (0.1, 100.0), True: (0.01, 3000.0)}
 STIFFNESS_LIKE = ("contact.stiffnessScale", "contact.sigma", "d", "E", "load")
+SMALL = 1e-5  # a difference over the force that the search for the fit may leave
+PERMUTATIONS = 10_000
 LARGE = 0.2  # a misfit over the force that no scatter of a mean explains
 MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
 
@@ -57,7 +59,29 @@ def _misfits(experiment: Experiment, result: Fit) -> list[str]:
         size = float(np.sqrt(np.mean(experiment.force**2)))
         if rms > LARGE * size:
             found.append(
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.0%} of the measured one"
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.3g} of the measured one"
+            )
+    return found or (_trends(experiment, result) if experiment.word == "row" else [])
+
+
+def _trends(experiment: Experiment, result: Fit) -> list[str]:
+    """Conditions along which neighbouring rows miss by nearly the same: by a permutation test of the sum of
+    squares of what neighbours differ by."""
+    miss, found = result.residuals * experiment.weight, []
+    if np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
+        return []
+    rows = experiment.rows
+    columns = {name: [row[name] for row in rows.conditions] for name in rows.names}
+    varied = {name: values for name, values in columns.items() if len(set(values)) > 2}
+    shuffled = np.random.default_rng(0).permuted(np.tile(miss, (PERMUTATIONS, 1)), axis=1)
+    by_chance = np.sum(np.diff(shuffled) ** 2, axis=1)
+    for name, values in varied.items():
+        rise = np.sum(np.diff(miss[np.argsort(values, kind="stable")]) ** 2)
+        chance = np.mean(by_chance <= rise * (1 + 1e-9)) * len(varied)
+        if chance < 0.01:
+            found.append(
+                f"the law does not fit: its differences to rows of neighbouring {name} are alike, which "
+                f"scatter hardly explains (probability {max(chance, 1 / PERMUTATIONS):.1e})"
             )
     return found
 

@@ -114,5 +114,6 @@ class _End:
         return 0.0 if abs(excess) < CLOSE else min(excess, STEEP)
 
     def _say(self, text: str) -> None:
-        if text not in self.result.warnings:
+        about = text.partition(":")[0]
+        if not any(told.startswith(about) for told in self.result.warnings):
             self.result.warnings.append(text)

@@ -10,6 +10,7 @@ from frictioncontact.command import as_table
 from frictioncontact.identification.bootstrap import quantiles
 from frictioncontact.identification.data import Measurements
 from frictioncontact.identification.experiment import Experiment
+from frictioncontact.identification.parameter import Parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.parameters import E_FULL, SEPARATION
 
@@ -63,16 +64,25 @@ def _values(result: Fit, spread: np.ndarray | None) -> Table:
         intervals = [result.interval(k), result.profiles[k]]
         if spread is not None:
             intervals.append(quantiles(result, spread, k))
-        rows.append([p.name, p.unit, f"{result.values[k]:.6g}", *(_interval(*one) for one in intervals)])
+        rows.append([p.name, p.unit, f"{result.values[k]:.6g}", *(_interval(p, *one) for one in intervals)])
         if p.unit == "rad":
-            degrees = [_interval(*np.degrees(one)) for one in intervals]
+            degrees = [_interval(p, *one, math.degrees(1.0)) for one in intervals]
             rows.append(["", "deg", f"{math.degrees(result.values[k]):.6g}", *degrees])
     headings += [] if spread is None else [f"by {len(spread)} refits"]
     return as_table(headings, rows, "Fitted parameters")
 
 
-def _interval(low: float, high: float) -> str:
-    return "none" if math.isnan(low) else f"{low:.5g} .. {high:.5g}"
+def _interval(p: Parameter, low: float, high: float, factor: float = 1.0) -> str:
+    """Within the values that were searched."""
+    is_open = p.periodic and high - low >= 2.0 * math.pi
+    no_low, no_high = is_open or low <= p.low, is_open or high >= p.high
+    if math.isnan(low):
+        return "none"
+    if no_low and no_high:
+        return "not determined"
+    if no_low or no_high:
+        return f"at most {factor * high:.5g}" if no_low else f"at least {factor * low:.5g}"
+    return f"{factor * low:.5g} .. {factor * high:.5g}"
 
 
 def _rows(experiment: Experiment, result: Fit) -> Table:

@@ -2,12 +2,19 @@
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from frictioncontact.command import add_fmu, add_set, can_draw, command_line, say_written
+from frictioncontact.command import (
+    add_fmu,
+    add_set,
+    can_draw,
+    command_line,
+    new_file,
+    print_frame,
+    say_written,
+)
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import opened
@@ -18,7 +25,8 @@ from frictioncontact.values import assignments
 DESCRIPTION = """\
 The friction law that a machine sees which is slower than the vibration: the mean force over a period, once
 settled, and its derivative by V, at every combination of the values that --vary gives to inputs. With motion
-transverse to V the mean transverse force is there, too.
+transverse to V the mean transverse force is there, too. All values are in SI units; the headings of a CSV
+file are the names alone.
 
   %(prog)s --set vibration.V_1=1.44 --set contact.stiffnessScale=4.4e-7
   %(prog)s --set vibration.V_1=1.44 --vary V=0.01:2:50:log --vary E=40e9,58e9 --output law.csv
@@ -29,15 +37,12 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact law", DESCRIPTION)
     add_set(parser, "of the scene")
     parser.add_argument(
-        "--vary",
-        action="append",
-        default=[],
-        metavar="NAME=VALUES",
+        "--vary", action="append", default=[], metavar="NAME=VALUES",
         help="a,b,c or low:high:count[:log] of an input",
-    )
-    parser.add_argument("--output", type=Path, metavar="CSV", help="write the table there")
+    )  # fmt: skip
+    parser.add_argument("--output", type=new_file, metavar="CSV", help="write the table there")
     parser.add_argument(
-        "--picture", type=Path, metavar="PNG", help="draw the law over V there (.png, .svg, .pdf)"
+        "--picture", type=new_file, metavar="PNG", help="draw the law over V there (.png, .svg, .pdf)"
     )
     add_fmu(parser)
     return parser.parse_args(argv)
@@ -66,15 +71,13 @@ def run(options: argparse.Namespace) -> None:
     if options.output:
         write_whole(options.output, table.to_csv(index=False))
     else:
-        print(table.to_string(index=False, float_format="{:.6g}".format))
+        print_frame(table, known, scene, **{"d/dV": "N s/m"})
     if options.picture and can_draw():
         from frictioncontact import style
 
         for name, values in inputs.items():
             if len(np.unique(values)) > 1:
                 raise UserError(f"--picture draws the law over V alone: give one value of {name}")
-        style.save(
-            law.plot(np.unique(V), **{name: float(values[0]) for name, values in inputs.items()}),
-            options.picture,
-        )
+        held = {name: float(values[0]) for name, values in inputs.items()}
+        style.save(law.plot(np.unique(V), **held), options.picture)
     say_written([path for path in (options.output, options.picture) if path])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORCE, TRANSVERSE = "F_t_settled", "F_y_settled"
+SCALES = ("vibration.V_1", "vibration.V_2", "friction.V_S")  # of velocities
+NEAR = 1e-12  # of their scale: a change of the force within it is a jump
 
 
 class FrictionLaw:
@@ -57,7 +60,7 @@ class FrictionLaw:
     def derivative(
         self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
     ) -> float | np.ndarray:
-        """The derivative of a force by one of the inputs; one-sided at a kink.
+        """The derivative of a force by one of the inputs: at a kink that of one side, at a jump nan.
 
         V         velocity, m/s: a number, or an array of any shape
         by        the input: V, V_y, d, load or E
@@ -69,7 +72,20 @@ class FrictionLaw:
         self._fmu.known.find(by, "by", ("input",))
         if of not in (FORCE, TRANSVERSE):
             raise UserError(f"of {of}: must be {FORCE} or {TRANSVERSE}")
-        return self._at(V, inputs, lambda: self._session.slope(of, by))
+        return self._at(V, inputs, lambda: math.nan if self._jumps(by) else self._session.slope(of, by))
+
+    def _jumps(self, by: str) -> bool:
+        """Whether the forces jump here over a velocity, as Coulomb's at V = 0: by 1 % of those far away."""
+        if by not in ("V", "V_y"):
+            return False
+        here, scale = self._session.get(by), max(self._session.read(SCALES))
+        forces = []
+        for place in (here - NEAR * scale, here + NEAR * scale, here + 10.0 * scale):
+            self._session.set(by, place)
+            forces.append(self._session.read((FORCE, TRANSVERSE)))
+        self._session.set(by, here)
+        below, above, far = forces
+        return bool(np.linalg.norm(above - below) > 0.01 * np.linalg.norm(far))
 
     def _at(
         self, V: npt.ArrayLike, inputs: Mapping[str, npt.ArrayLike], read: Callable[[], float]
@@ -111,7 +127,7 @@ class FrictionLaw:
         from frictioncontact import style
 
         if V is None:
-            V_1, V_2, V_S = self._session.read(("vibration.V_1", "vibration.V_2", "friction.V_S"))
+            V_1, V_2, V_S = self._session.read(SCALES)
             V = np.linspace(0.0, 1.5 * max(V_1, V_2) or 10.0 * V_S, 201)[1:]
         with matplotlib.rc_context():
             figure, (force, slope) = style.subplots(1, 2, size=(9.0, 3.5))

@@ -3,10 +3,9 @@
 import argparse
 import webbrowser
 from collections.abc import Sequence
-from pathlib import Path
 
 from frictioncontact import resources
-from frictioncontact.command import command_line, say_written, shown
+from frictioncontact.command import command_line, new_file, say_written, shown
 from frictioncontact.files import whole_file
 
 DESCRIPTION = """\
@@ -16,7 +15,7 @@ means. The page loads nothing and sends nothing."""
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact playground", DESCRIPTION)
-    parser.add_argument("--output", type=Path, metavar="HTML", help="write the page there, and open nothing")
+    parser.add_argument("--output", type=new_file, metavar="HTML", help="write the page there, open nothing")
     return parser.parse_args(argv)
 
 

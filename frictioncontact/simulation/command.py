@@ -5,15 +5,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from frictioncontact.columns import MEASURED, columns_of, numbers_below
-from frictioncontact.command import add_fmu, add_set, command_line, say_written
+from frictioncontact.command import add_fmu, add_set, command_line, new_file, print_frame, say_written
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, FrictionFmu, opened
 from frictioncontact.simulation.run import simulate
 from frictioncontact.values import csv_rows
 
 DESCRIPTION = """\
-Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file. All values
-are in SI units, as in the FMU; what is not set has the FMU's start value.
+Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file, whose
+headings are the names alone. All values are in SI units, as in the FMU; what is not set has the FMU's start
+value.
 
   %(prog)s --set V=0.5 --set vibration.V_1=1.44 --stop 1e-3 --step 5e-5
   %(prog)s --inputs drive.csv --stop 2 --step 1e-3 --outputs F_t_mean W_f --output out.csv"""
@@ -32,15 +33,16 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--outputs", nargs="+", default=OUTPUTS, metavar="NAME", help=f"variables ({' '.join(OUTPUTS)})"
     )
-    parser.add_argument("--output", type=Path, metavar="CSV", help="file to write to")
+    parser.add_argument("--output", type=new_file, metavar="CSV", help="file to write to")
     add_fmu(parser)
     return parser.parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:
     fmu = opened(options.fmu)
+    scene = fmu.known.assigned(options.set)
     table = simulate(
-        fmu.known.assigned(options.set),
+        scene,
         stop=options.stop,
         step=options.step,
         inputs=read_inputs(options.inputs, fmu) if options.inputs else None,
@@ -51,7 +53,7 @@ def run(options: argparse.Namespace) -> None:
         write_whole(options.output, table.to_csv(index=False))
         say_written([options.output])
     else:
-        print(table.to_string(index=False, float_format="{:.6g}".format))
+        print_frame(table, fmu.known, scene)
 
 
 def read_inputs(path: Path, fmu: FrictionFmu) -> dict[str, list[float]]:

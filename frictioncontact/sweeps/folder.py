@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from frictioncontact.errors import UserError
-from frictioncontact.files import whole_file, write_whole
+from frictioncontact.files import reason, whole_file, write_whole
 from frictioncontact.sweeps.group import Group, Part
 
 
@@ -74,7 +74,7 @@ class Folder:
         try:
             yield
         except OSError as error:
-            raise UserError(f"{self.path}: can't be written: {error.strerror or error}") from None
+            raise UserError(f"{self.path}: can't be written: {reason(error)}") from None
 
 
 def _discard(folder: Path) -> None:

@@ -101,7 +101,8 @@ def from_csv(variables: Variables, path: Path) -> Scenarios:
     table = []
     for row, cells in rows:
         if len(cells) != len(names):
-            raise UserError(f"{path}: row {row}: has {len(cells)} cells where the header has {len(names)}")
+            counts = f"{len(cells)} cells where the header has {len(names)}"
+            raise UserError(f"{path}: row {row}: has {counts}; decimals have a point")
         where = f"{path}: row {row}, column"
         table.append([variables.text(n, cell, f"{where} {n}") for n, cell in zip(names, cells, strict=True)])
     if not table:

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.command import add_fmu, command_line
+from frictioncontact.command import add_fmu, command_line, print_frame
 from frictioncontact.errors import quiet
 from frictioncontact.fmu import opened
 from frictioncontact.identification.data import read
@@ -35,6 +35,6 @@ def run(options: argparse.Namespace) -> None:
             found = simulate_many(scenes, fmu=options.fmu)["F_t_mean"].to_numpy()
         miss = found - rows.force
         table = scenes[list(rows.names)].assign(measured=rows.force, FMU=found, difference=miss)
-        print(f"{contact.name}: {contact.title}. SI units, mean friction [N]")
-        print(table.to_string(index=False, float_format="{:.5g}".format))
+        print(f"{contact.name}: {contact.title}, mean friction")
+        print_frame(table, opened(options.fmu).known, contact.start, measured="N", FMU="N", difference="N")
         print(f"misfit: {np.sqrt(np.mean(miss**2)):.3f} N (rms)")

@@ -265,7 +265,7 @@ class TestRefusals:
             ({"steps": [[1.0]]}, "steps: must be a row of numbers"),
             ({"steps": [1.0, -1.0]}, "steps, row 1: -1 must be at least 0"),
             ({"inputs": {"V": [0.1]}, "steps": [1.0, 1.0]}, "input V: 1 values for 2 steps"),
-            ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is a parameter of the FMU and can't be set"),
+            ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is a parameter of the FMU, not one of V, d, E"),
             ({"inputs": {"V": [math.nan]}}, "input V, row 0: nan is not a finite number"),
         ],
     )

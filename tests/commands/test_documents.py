@@ -25,13 +25,14 @@ ROWS = [
     for line in USING.splitlines()
     if line.startswith("|")
 ]
+BLOCK = re.compile(  # and what it prints
+    r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE
+)
 EXAMPLES = [
-    pytest.param(code, id=f"{path.name}-{number}")
+    pytest.param(*block, id=f"{path.name}-{number}")
     for path in DOCUMENTS
     if path not in tutorial.PAGES  # whose blocks follow each other: tests/package/test_wheel.py
-    for number, code in enumerate(
-        re.findall(r"^```python\n(.*?)^```", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    )
+    for number, block in enumerate(BLOCK.findall(path.read_text(encoding="utf-8")))
 ]
 
 
@@ -60,8 +61,8 @@ def test_commands_exist(document: Path) -> None:
         assert (ROOT / "scripts" / name).exists(), f"scripts/{name}"
 
 
-@pytest.mark.parametrize("code", EXAMPLES)
-def test_python_examples_run(fmu_path: Path, tmp_path: Path, code: str) -> None:
+@pytest.mark.parametrize(("code", "shown"), EXAMPLES)
+def test_python_examples_run(fmu_path: Path, tmp_path: Path, code: str, shown: str) -> None:
     """In a folder that has what the project's root has; what an example writes beside it stays there."""
     for path in ROOT.iterdir():
         (tmp_path / path.name).symlink_to(path)
@@ -70,6 +71,7 @@ def test_python_examples_run(fmu_path: Path, tmp_path: Path, code: str) -> None:
     command = [sys.executable, "-W", "error", "-c", code]
     finished = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600)
     assert finished.returncode == 0, finished.stderr
+    assert shown in ("", finished.stdout)
 
 
 def test_fmpy_example_of_the_readme_runs_the_scene_of_its_picture(fmu: FrictionFmu, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -24,6 +25,7 @@ from frictioncontact.identification.bootstrap import bootstrap
 from frictioncontact.identification.data import Measurements, Series, Uncertain, read
 from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import Fit, fit
+from frictioncontact.identification.judge import _trends
 from frictioncontact.identification.parameter import parameter
 from frictioncontact.identification.series import Record
 from frictioncontact.parameters import STIFFNESS_PRINTED
@@ -251,7 +253,8 @@ GOOD = "20,0.5,31\n40,0.5,33\n"
             HEADER + "# a remark\n50,x,3\n",
             r"row 1 \(line 3\), column 'vibration.V_1 \[m/s\]': 'x' is not a number",
         ),
-        (HEADER + "1,2,3,4\n", r"row 1 \(line 2\): 4 cells, but 3 columns"),
+        (HEADER + "1,2,3,4\n", r"row 1 \(line 2\): 4 cells, but 3 columns; decimals have a point"),
+        (HEADER + '0.1,"0,5",3\n', r"V_1 \[m/s\]': '0,5' is not a number; write 0.5"),
         ("V [m/s],load [N],d [um],F_t_mean [N]\n1,2,3,4\n", "load and d both give the separation"),
         (HEADER, "no rows of numbers"),
         (HEADER + GOOD + "50,0.5,-1e308\n", r"row 3 \(line 4\), column .*: -1e308 must be from -1e\+50 to"),
@@ -508,6 +511,39 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
     for name, low, high in (("friction.staticRatio", "1", "3"), ("friction.V_S", "0.001", "1 m/s")):
         assert f"the data can't tell {name}: within 95 % it may be anything from {low} to {high}" in printed
     assert "can't tell contact.sigma" not in printed
+
+
+@pytest.mark.parametrize("is_sorted", [True, False])
+def test_differences_with_a_trend_are_a_misfit(fmu_path: Path, tmp_path: Path, is_sorted: bool) -> None:
+    """Of one force, F_C, at eight velocities: measured ones that grow with V, or the same without order."""
+    V = [k / 10 for k in (range(1, 9) if is_sorted else (3, 8, 1, 5, 7, 2, 6, 4))]
+    rows = "".join(f"{v},{50 + k}\n" for k, v in enumerate(V))
+    path = tmp_path / "rows.csv"
+    path.write_text("V,F_t_mean\n" + rows)
+    misfits = fc.identify(path, "F_C", fmu=fmu_path).misfits
+    assert len(misfits) == is_sorted
+    assert all("rows of neighbouring V are alike" in text for text in misfits)
+
+
+def test_scatter_is_seldom_a_trend() -> None:
+    random = np.random.default_rng(1)
+    rows = SimpleNamespace(names=("V", "d"), conditions=[{"V": k, "d": -abs(k - 3)} for k in range(8)])
+    told = 0
+    for _ in range(2000):
+        miss = random.standard_normal(8)
+        experiment = SimpleNamespace(rows=rows, weight=1.0, force=np.ones(8))
+        told += bool(_trends(experiment, SimpleNamespace(residuals=miss)))
+    assert told <= 20
+
+
+def test_an_interval_that_the_data_do_not_determine_is_not_printed(
+    fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "rows.csv"
+    path.write_text("V,F_t_mean\n0.5,55\n0.6,55.2\n0.7,54.9\n")
+    main(identify, [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "contact.stiffnessScale"])
+    (row,) = [line for line in capsys.readouterr().out.splitlines() if "stiffnessScale │" in line]
+    assert [cell.strip() for cell in row.split("│")][-3:-1] == ["not determined"] * 2
 
 
 def test_missing_file_is_named(fmu_path: Path) -> None:

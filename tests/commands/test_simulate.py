@@ -153,7 +153,7 @@ def test_the_command_prints_or_writes_the_same_table(
 ) -> None:
     words = ["--set", "V=0.5", "--set", "friction.model=LuGre", "--stop", "1e-3", "--step", "5e-4"]
     main(command, [*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path)])
-    printed = capsys.readouterr().out.split()
+    printed = capsys.readouterr().out.splitlines()
     main(
         command,
         [*words, "--outputs", "F_t", "W_f", "--fmu", str(fmu_path), "--output", str(tmp_path / "out.csv")],
@@ -163,7 +163,7 @@ def test_the_command_prints_or_writes_the_same_table(
         {"V": 0.5, "friction.model": "LuGre"}, stop=1e-3, step=5e-4, outputs=["F_t", "W_f"], fmu=fmu_path
     )
     pd.testing.assert_frame_equal(written, table, check_exact=True)
-    assert printed[:3] == ["time", "F_t", "W_f"] and len(printed) == 3 * 4
+    assert printed[0].split() == ["time", "[s]", "F_t", "[N]", "W_f", "[J]"] and len(printed) == 4
 
 
 @pytest.mark.parametrize(

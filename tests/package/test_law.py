@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pickle
 import re
 import subprocess
 import sys
@@ -16,8 +17,10 @@ import pandas as pd
 import pytest
 
 import frictioncontact as fc
+from frictioncontact.command import main
 from frictioncontact.doubts import LIKELY, USED
-from frictioncontact.fmu import FrictionFmu
+from frictioncontact.fmu import FrictionFmu, Session
+from frictioncontact.law import command
 from workshop.project import ROOT
 
 COULOMB = {"friction.model": "Coulomb", "vibration.V_1": 1.44}
@@ -54,6 +57,17 @@ class TestLaw:
         assert law.derivative(speed, "V_y", of="F_y_settled") == pytest.approx(force / speed, rel=1e-6)
         assert law.derivative(speed, "V_y") == pytest.approx(0.0, abs=1e-4)
 
+    def test_the_derivative_at_a_jump_is_none(self, fmu_path: Path) -> None:
+        """Coulomb's at rest, and what sticks in a small vibration; a force that is continuous has one."""
+        stuck = SOFT | {"friction.model": "ElasticPlastic", "vibration.V_1": 0.1}
+        for scene in ({"friction.model": "Coulomb"}, {}, stuck):
+            law = fc.friction_law(scene, fmu=fmu_path)
+            assert np.isnan(law.derivative([0.0, 0.1])).tolist() == [True, False]
+            assert law.derivative(0.0, "d") == pytest.approx(0.0, abs=1e-3)
+        law = fc.friction_law(COULOMB, fmu=fmu_path)
+        assert law.derivative(0.0) == pytest.approx(110 / np.pi / 1.44, rel=1e-6)
+        assert law.derivative(1.44) == 0.0  # a kink
+
     def test_it_is_the_mean_over_a_period(self, fmu_path: Path) -> None:
         mean = fc.simulate_many(SOFT | {"V": 0.5}, ["F_t_mean"], fmu=fmu_path)["F_t_mean"]
         assert fc.friction_law(SOFT, fmu=fmu_path)(0.5) == pytest.approx(float(mean), rel=1e-5)
@@ -66,10 +80,10 @@ class TestLaw:
         [
             (lambda law: law("fast"), "V: 'fast' is not a number"),
             (lambda law: law(0.5, f=3.0), "inputs: f is no variable of the FMU"),
-            (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU and can't be set"),
+            (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law([1.0, 2.0], E=[1e9, 2e9, 3e9]), "the shapes do not go together: V (2,), E (3,)"),
             (lambda law: law(0.5, d=-1e-6), "fmi2SetReal: d = -1e-06 m is below"),
-            (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU and can't be set"),
+            (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law.derivative(0.5, of="F_t"), "of F_t: must be F_t_settled or F_y_settled"),
         ],
     )
@@ -171,13 +185,46 @@ class TestWarnings:
     def test_commands_say_them_in_a_line(self) -> None:
         command = [sys.executable, "-m", "frictioncontact", "simulate", "--stop", "1e-5", "--step", "1e-5"]
         done = subprocess.run([*command, "--set", "load=10"], capture_output=True, text=True)
-        assert done.returncode == 0 and done.stdout.startswith(" time")
+        assert done.returncode == 0 and done.stdout.startswith(" time [s]  F_t [N]")
         assert (
             done.stderr == "warning: load has no effect: contact.input = Separation; it is used with Load\n"
         )
 
 
+def test_tables_for_people_have_units_and_no_rounding(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of 4e-15 N, a sum of 55 N and -55 N, nothing is shown; a CSV file has the number."""
+    scene = ["--set", "friction.model=Coulomb", "--set", "vibration.V_1=1", "--vary", "V=0"]
+    main(command, scene)
+    heads, row = capsys.readouterr().out.splitlines()
+    assert heads.split("  ") == [" V [m/s]", "F_t_settled [N]", "d/dV [N s/m]"]
+    assert row.split()[:2] == ["0", "0"] and float(row.split()[2]) == pytest.approx(110 / np.pi, rel=1e-5)
+    main(command, [*scene, "--output", str(tmp_path / "law.csv")])
+    heads, row = (tmp_path / "law.csv").read_text().splitlines()
+    assert heads == "V,F_t_settled,d/dV" and 0.0 < abs(float(row.split(",")[1])) < 1e-12
+
+
 class TestSessions:
+    def test_a_saved_state_goes_on_as_the_first_time(self, fmu: FrictionFmu) -> None:
+        """Here and in another session, whose parameters and inputs it brings along."""
+
+        def go_on(session: Session) -> list[float]:
+            session.set("V", -0.3)
+            session.step(2e-5)
+            return [session.time, *session.read()]
+
+        with fmu.session({"V": 0.5, "friction.model": "ElasticPlastic", **SOFT}) as session:
+            session.step(3e-5)
+            state = pickle.loads(pickle.dumps(session.save()))
+            expected = go_on(session)
+            session.step(1e-5)
+            session.restore(state)
+            assert session.time == 3e-5 and session.get("V") == 0.5 and go_on(session) == expected
+        with fmu.session() as other:
+            other.restore(state)
+            assert go_on(other) == expected
+
     @pytest.mark.parametrize(
         ("call", "message"),
         [
@@ -195,6 +242,11 @@ class TestSessions:
             (lambda session: session.step("1"), "h = '1' is not a number"),
             (lambda session: session.step(-1.0), "fmi2DoStep: "),
             (lambda session: session.slope("F_t", "vv"), "slope: vv is no variable of the FMU"),
+            (
+                lambda session: session.restore(b"state"),
+                "restore: \"b'state'\" is not a state that save() gave",
+            ),
+            (lambda session: session.restore((0.0, b"state")), "fmi2DeSerializeFMUstate: "),
             (lambda session: session.fmu.session({"V": None}), "set V: 'None' is not a number"),
             (lambda session: session.fmu.session(["V"]), "start_values = \"['V']\": must be a mapping"),
             (lambda session: fc.FrictionFmu("nowhere.fmu"), "nowhere.fmu: No such file or directory"),
@@ -236,6 +288,35 @@ def test_a_file_with_other_separators_is_told_so(tmp_path: Path, separator: str,
         fc.UserError, match=f"{re.escape(str(path))}: its columns are separated by {kind}; write"
     ):
         fc.identify(path, "F_C")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: run({"V": "5 mm/s"})(), "start: V: '5 mm/s' is not a number; write the number alone, in SI"),
+        (lambda: run({"V": "0,5"})(), "start: V: '0,5' is not a number; write 0.5"),
+        (lambda: run({}, outputs=["F_t,W_f"])(), "outputs: 'F_t,W_f' is no variable of the FMU; give one"),
+        (lambda: fc.friction_law(fc.contacts["steel-dry"]), "scene = 'steel-dry: 40Cr"),
+        (lambda: fc.identify(fc.contacts["steel-dry"].data, "contact.sigma", uncertain={"F_t": 1},
+                             start={"contact.model": "Constant"}), "the uncertainty of F_t: rows of means"),
+        (lambda: fc.sweep(output=__file__, vary={"V": "1,2"}), f"{__file__}: can't be written: is a file"),
+    ],
+)  # fmt: skip
+def test_an_error_says_what_to_do(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(fc.UserError, match="^" + re.escape(message)):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [(["simulate", "--stop", "1", "--step", "1"], "--output"), (["law"], "--output"), (["law"], "--picture"),
+     (["playground"], "--output")],
+)  # fmt: skip
+def test_a_file_is_written_into_a_folder_that_is_there(tmp_path: Path, words: list[str], option: str) -> None:
+    command = [sys.executable, "-m", "frictioncontact", *words, option, "nowhere/file.png"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 2 and f"argument {option}: there is no folder nowhere" in done.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_output_that_can_t_be_written_is_the_user_s(tmp_path: Path) -> None:

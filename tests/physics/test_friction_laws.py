@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -281,8 +282,32 @@ def test_a_stuck_mass_creeps_with_dahl_and_not_with_elastic_plastic(fmu: Frictio
     ("scene", "message"),
     [
         ({"contact.input": "Load", "load": 1e9}, "load = 1e+09 N presses the surfaces together"),
+        (
+            {"contact.input": "Load", "vibration.a_d": 1.1},
+            "vibration.a_d = 1.1 m presses the surfaces together under load = 312.44 N: ",
+        ),
     ],
 )
 def test_what_has_no_meaning_is_refused(fmu: FrictionFmu, scene: dict[str, Value], message: str) -> None:
     with pytest.raises(FrictionError, match=message.replace("+", r"\+")), fmu.session(scene):
         pass
+
+
+def test_the_bound_of_an_amplitude_under_a_load_is_said(fmu: FrictionFmu) -> None:
+    """The one in the message is a bound: a little less is accepted, a little more is not."""
+    pressed = {"contact.input": "Load", "load": 1e4}
+    with pytest.raises(FrictionError) as refused, fmu.session(pressed | {"vibration.a_d": 1e-3}):
+        pass
+    bound = float(re.search(r"up to (\S+) m,", str(refused.value))[1])
+    with fmu.session(pressed | {"vibration.a_d": (1 - 1e-8) * bound}):
+        pass
+    with pytest.raises(FrictionError), fmu.session(pressed | {"vibration.a_d": (1 + 1e-8) * bound}):
+        pass
+
+
+def test_methods_that_know_no_motion_across_are_named(fmu: FrictionFmu) -> None:
+    for method in fmu.known.items["solver.method"].keys() - {"collocation"}:
+        across = {"vibration.V_2": 1.0, "solver.method": method}
+        message = f"solver.method = {method} knows no motion across V"
+        with fmu.session(across) as session, pytest.raises(FrictionError, match=message):
+            session.step(1e-5)

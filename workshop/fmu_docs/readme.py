@@ -31,7 +31,7 @@ V_1 = TABLE_2[1].V_1
 
 def overview(fmu: FrictionFmu, path: Path) -> None:
     """What the vibration does within microseconds, and what a tool that steps at a millisecond sees of it."""
-    figure, (inside, coupled) = style.subplots(2, 1, size=(6.8, 6.0))
+    figure, (inside, coupled) = style.subplots(2, 1, size=(4.8, 5.6))
     _switched_on(inside, fmu)
     _ramped(coupled, fmu)
     style.save(figure, path)
@@ -89,16 +89,14 @@ def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
     amplitude.grid(visible=False)
     axes.set_zorder(amplitude.get_zorder() + 1)
     axes.patch.set_visible(False)
-    axes.plot(
-        1e3 * time, sample, "o", color=style.BLUE, ms=3.5, mfc="white", label="$F_t$: a sample, any phase"
-    )
-    axes.plot(1e3 * time, mean, color=style.ORANGE, lw=2.4, label="$F_t$ mean of the step: couple this")
+    axes.plot(1e3 * time, sample, "o", color=style.BLUE, ms=3.5, mfc="white", label="$F_t$: a sample")
+    axes.plot(1e3 * time, mean, color=style.ORANGE, lw=2.4, label="its mean over the step")
     axes.set_xlim(0.0, 1e3 * time[-1])
-    axes.set_ylim(0.0, 82.0)
-    axes.set_yticks([0, 20, 40, 60])
+    axes.set_ylim(0.0, 95.0)
+    axes.set_yticks([0, 20, 40, 60, 80])
     axes.set_xlabel("time [ms]")
     axes.set_ylabel("friction force [N]")
-    axes.set_title("The same contact in a tool that steps at 1 ms")
+    axes.set_title("The same contact in steps of 1 ms")
     axes.legend(loc="upper center", ncols=2)
 
 

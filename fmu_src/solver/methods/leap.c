@@ -142,8 +142,9 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene begin = scene_at(block, 0.0);
     const FcScene end = scene_at(block, block->count - 1.0);
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
-    const double sigma = fmax(at.sigma, fc_scene_stiffness(&end, 0.0));
-    const double delta = fmax(block->delta, at.limit / at.sigma);
+    const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
+    const double sigma = fmax(at.sigma, at_end.sigma);
+    const double delta = fmax(block->delta, fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->scene->friction->sigma_1;
     // Errors of the deflection add up until they have relaxed.

@@ -76,12 +76,18 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
     if (is_affine && method != FC_METHOD_COLLOCATION &&
         !(method == FC_METHOD_CVODE && may_touch_bound(scene))) {
         if (is_planar) {
+            static const char* const NAME[] = {
+                [FC_METHOD_CVODE] = "cvode",
+                [FC_METHOD_BACKWARD_EULER] = "backwardEuler",
+                [FC_METHOD_TRAPEZOID] = "trapezoid",
+                [FC_METHOD_RK4] = "rk4",
+                [FC_METHOD_EXPLICIT_EULER] = "explicitEuler",
+            };
             return fc_message_set(
                 message,
-                "solver.method = %d knows no motion across: V_y = %.9g m/s, vibration.V_2 = %.9g m/s, "
-                "delta_y = %.9g m; use collocation, which is %d",
-                (int)method, scene->drive.V_y.value, scene->drive.vibration.V_2, from.delta_y,
-                (int)FC_METHOD_COLLOCATION);
+                "solver.method = %s knows no motion across V, and V_y = %.9g m/s, "
+                "vibration.V_2 = %.9g m/s, delta_y = %.9g m: set solver.method = collocation",
+                NAME[method], scene->drive.V_y.value, scene->drive.vibration.V_2, from.delta_y);
         }
         return other_step(scene, method, cvode, options, h, result, message);
     }
