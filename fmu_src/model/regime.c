@@ -197,10 +197,10 @@ static double relaxation_rate(const FcScene* scene, const Moment* at) {
 
 static Parts parts_of(const FcScene* scene, const FcContactResponse* contact, FcRegime regime,
                       FcBristle bristle) {
-    const Moment at = moment(scene, contact);
     if (fc_scene_is_loose(scene)) {
-        return (Parts){.V = at.V};
+        return (Parts){.V = {fc_drive_V(&scene->drive, 0.0), fc_drive_V_y(&scene->drive, 0.0)}};
     }
+    const Moment at = moment(scene, contact);
     if (scene->friction->model == FC_COULOMB) {
         return (Parts){.V = at.V, .force = times(at.limit, direction(at.V.x, at.V.y))};
     }
