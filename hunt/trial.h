@@ -52,7 +52,6 @@ typedef struct {
     ReferenceStep truth;
     double settled[2][2]; // N, F_t_settled and F_y_settled of the FMU and of the reference, at the first step
     Verdict verdict;
-    bool planar; // it is in the plane
     bool is[KINDS];
 } TrialStep;
 
