@@ -204,12 +204,12 @@ Real sine(Real x, int shift) {
 }
 
 Vector plus(Vector a, Real factor, Vector b) { return (Vector){a.x + factor * b.x, a.y + factor * b.y}; }
-Vector times(Real factor, Vector a) { return (Vector){factor * a.x, factor * a.y}; }
+Vector scaled(Real factor, Vector a) { return (Vector){factor * a.x, factor * a.y}; }
 Real dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
 Real length_of(Vector a) { return a.y == 0.0L ? fabsl(a.x) : sqrtl(dot(a, a)); }
 Vector along(Vector a, Real length) {
     const Real now = length_of(a);
-    return now > 0.0L ? times(length / now, a) : a;
+    return now > 0.0L ? scaled(length / now, a) : a;
 }
 
 bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }

@@ -38,7 +38,7 @@ typedef struct {
 } Vector;
 
 Vector plus(Vector a, Real factor, Vector b); // a + factor b
-Vector times(Real factor, Vector a);
+Vector scaled(Real factor, Vector a);
 Real dot(Vector a, Vector b);
 Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0

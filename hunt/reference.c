@@ -42,7 +42,7 @@ static void add(Sums* sums, const Sums* part) {
 
 // Of a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
-    const Vector rest = plus(times(w->scene.sigma_2, V), w->scene.sigma_1, rate);
+    const Vector rest = plus(scaled(w->scene.sigma_2, V), w->scene.sigma_1, rate);
     const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
     sums->impulse = plus(sums->impulse, time, plus(spring, w->scene.sigma_2, V));
     sums->work += time * (dot(spring, V) + dot(rest, V));
@@ -192,7 +192,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
 // Coulomb's force. At the end of a panel V may be 0 but for rounding: it comes there against its rate.
 static Vector coulomb_force(const World* w, const At* at, Real t) {
     const bool reverses = length_of(at->V) <= 1e-15L * w->top;
-    return along(reverses ? times(-1.0L, velocity(w, t, 1)) : at->V, at->coulomb);
+    return along(reverses ? scaled(-1.0L, velocity(w, t, 1)) : at->V, at->coulomb);
 }
 
 static Panel panel(const March* march, Real a, Real b, Vector delta) {
@@ -226,8 +226,8 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         if (slips) {
             const Vector now = turned(start, angle[i]), across = {-now.y, now.x};
             const Real lies = bound(w, &at[i], false);
-            change[i] = plus(times(lies, now), -1.0L, delta);
-            rate = plus(times(bound_rate(w, &at[i], false), now), lies * turn(w, &at[i], now), across);
+            change[i] = plus(scaled(lies, now), -1.0L, delta);
+            rate = plus(scaled(bound_rate(w, &at[i], false), now), lies * turn(w, &at[i], now), across);
         } else if (bristle && w->elastic) {
             change[i] = travel(w, a, t);
             rate = V;
@@ -238,7 +238,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         }
         const Vector now = plus(delta, 1.0L, change[i]);
         if (bristle) {
-            spring = times(at[i].sigma, now);
+            spring = scaled(at[i].sigma, now);
             longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
         } else if (w->scene.law == LAW_COULOMB) {
@@ -290,7 +290,12 @@ static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
            least - low > rounding;
 }
 
-static bool is_over(const Signs* sign) { return sign->room < 0.0L || sign->lead < 0.0L; }
+// Whether the motion is over at node k, the start for 0. Beyond its bound by a double's rounding, and on its way inside, it is not.
+static bool is_over(const Panel* p, int k) {
+    const Real start = p->sign[0].room, room = p->sign[k == 0 ? 1 : k].room;
+    const bool rounded = start > -10.0L * AS_DOUBLE * p->sums.length;
+    return p->sign[k].lead < 0.0L || (p->sign[k].room < 0.0L && !(rounded && room >= start));
+}
 
 // Whether a motion may end unseen in a panel; where it has just begun a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
@@ -300,7 +305,7 @@ static bool hides(const World* w, const Panel* p) {
         x[k + 1] = w->rule->node[k];
     }
     const Real of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
-    for (int k = 0; has_bound(w) && k + 2 <= n && !is_over(&p->sign[k + 2]); k++) {
+    for (int k = 0; has_bound(w) && k + 2 <= n && !is_over(p, k + 2); k++) {
         const Signs* s = &p->sign[k];
         if ((s->room < INFINITY && dips(&x[k], s[0].room, s[1].room, s[2].room, of_room)) ||
             (s->lead < INFINITY && dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead))) {
@@ -333,7 +338,7 @@ static Real beyond(const void* context, Real t) {
 static void commit(March* march, Real a, Real b, const Panel* p) {
     const int n = march->w->rule->stages;
     int k = has_bound(march->w) ? 0 : n + 1;
-    while (k <= n && !is_over(&p->sign[k])) {
+    while (k <= n && !is_over(p, k)) {
         k++;
     }
     Panel part = *p;
@@ -530,7 +535,7 @@ static void begin(March* march, Real a, Real b) {
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
     const Vector from = march->delta, to = along(from, bound(w, at, false));
-    const Vector damping = times(w->scene.sigma_1, plus(to, -1.0L, from));
+    const Vector damping = scaled(w->scene.sigma_1, plus(to, -1.0L, from));
     const Real lost = dot(plus(from, -1.0L, to), plus(from, 1.0L, to));
     march->sums.impulse = plus(march->sums.impulse, 1.0L, damping);
     march->sums.work += dot(damping, at->V);
@@ -654,9 +659,9 @@ static Map find_map(World* w, Real unit) {
     Vector shift = {0};
     w->open_ends = true;
     for (int k = 0; k < 4; k++) {
-        const March march = march_from(w, (State){times(unit, AT[k]), false});
+        const March march = march_from(w, (State){scaled(unit, AT[k]), false});
         const Sums* s = &march.sums;
-        shift = k == 0 ? times(1.0L / unit, s->change) : shift;
+        shift = k == 0 ? scaled(1.0L / unit, s->change) : shift;
         way[k] = s->change.x / unit;
         of[k][0] = s->impulse.x, of[k][1] = s->impulse.y, of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
@@ -706,7 +711,7 @@ static Vector after_untouched(Period* p, Vector delta, Real n, Sums* sums) {
         p->power[k] = k == 0 ? find_map(&p->world, p->unit) : twice(&p->power[k - 1]);
     }
     p->mapped = true;
-    Vector x = times(1.0L / p->unit, delta);
+    Vector x = scaled(1.0L / p->unit, delta);
     for (int k = 0; k < POWERS; k++) {
         if (fmodl(floorl(ldexpl(n, -k)), 2.0L) == 0.0L) {
             continue;
@@ -720,7 +725,7 @@ static Vector after_untouched(Period* p, Vector delta, Real n, Sums* sums) {
         add_times(sums, &part, 1.0L);
         x = (Vector){of[1], of[2]};
     }
-    return times(p->unit, x);
+    return scaled(p->unit, x);
 }
 
 // Whether period number n from delta on touches a bound, if none before it does.
@@ -784,7 +789,7 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
             *state = (State){after_untouched(p, state->delta, many, sums), march.broke};
             done += many;
             if (isinf(n) && many == ldexpl(1.0L, POWERS - 1)) {
-                *mean = times(w->scene.f, march_from(w, *state).sums.impulse);
+                *mean = scaled(w->scene.f, march_from(w, *state).sums.impulse);
                 break;
             }
             continue;
@@ -801,7 +806,7 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
             add_times(&cycle, &marks[k].sums, -1.0L);
             const Real length = done - marks[k].count;
             if (isinf(n)) {
-                *mean = times(w->scene.f / length, cycle.impulse);
+                *mean = scaled(w->scene.f / length, cycle.impulse);
                 for (; k < count; k++) {
                     *state = length_of(marks[k].state.delta) < length_of(state->delta) ? marks[k].state : *state;
                 }
@@ -825,8 +830,8 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
 // Newton's step to the fixed point of a period's map, which from a state misses it so.
 static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
     const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
-    const Vector by_x = times(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
-    const Vector by_y = times(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).delta));
+    const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
+    const Vector by_y = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).delta));
     const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
     return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
 }
@@ -835,13 +840,13 @@ static const Real MOST_OF_NEWTON = 1e5L; // panels
 
 // The periodic state where it does not depend on the start, by Newton: soon where slips are so small that each forgets little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Vector shift = times(1.0L / w->scene.f, (Vector){w->drive[0].V, w->drive[1].V});
+    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->drive[0].V, w->drive[1].V});
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
     w->panels = 0.0L;
     for (int k = 0; k < 60 && w->panels <= MOST_OF_NEWTON; k++) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
-        *mean = times(w->scene.f, march.sums.impulse);
+        *mean = scaled(w->scene.f, march.sums.impulse);
         const Vector newton = newton_step(w, *state, march.delta, miss, step);
         const bool free = w->elastic && !march.slipped; // it drifts to where it slips
         if (!free && length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
@@ -867,7 +872,7 @@ static bool settle(World* w, State* state, Vector* mean) {
     if (length_of(at.V) > 0.0L) {
         *state = (State){along(at.V, at.g / at.sigma), has_static(w)};
     }
-    *mean = plus(times(at.sigma, state->delta), s->sigma_2, at.V);
+    *mean = plus(scaled(at.sigma, state->delta), s->sigma_2, at.V);
     return true;
 }
 
@@ -889,9 +894,9 @@ static Vector force_at(const World* w, Real t, State state) {
     if (may_slip && length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
         outward(w, &at, state.delta) > 0.0L) {
         const Vector n = along(state.delta, 1.0L), across = {-n.y, n.x};
-        rate = plus(times(bound_rate(w, &at, false), n), dot(at.V, across), across);
+        rate = plus(scaled(bound_rate(w, &at, false), n), dot(at.V, across), across);
     }
-    return plus(plus(times(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
+    return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
 }
 
 static State start_of(const ReferenceScene* s) {
@@ -934,7 +939,7 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     }
     const Vector start = force_at(&held, 0.0L, state);
     result->known = advance(&w, &state, &sums) && result->known;
-    const Vector force = force_at(&w, w.h, state), mean = times(1.0L / w.h, sums.impulse);
+    const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
     result->delta = (double)state.delta.x, result->delta_y = (double)state.delta.y;
     result->slips = state.broke;
     result->F_t = (double)force.x, result->F_y = (double)force.y;
