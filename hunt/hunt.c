@@ -283,8 +283,7 @@ static void replay_file(const Options* options, Tally* tally) {
     char line[SEQUENCE_TEXT];
     for (uint64_t number = 1; fgets(line, sizeof line, file) != NULL; number++) {
         int read = 0;
-        Options mine = *options;
-        mine.tolerances = 1;
+        double tolerance;
         if (line[0] == '#' || line[0] == '\n') {
             continue;
         }

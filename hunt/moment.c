@@ -220,9 +220,7 @@ bool is_held(const ReferenceScene* s) {
 }
 
 static Real component(const World* w, const Drive* drive, Real t, int order) {
-    const Real smooth = order == 0   ? drive->V + drive->rate * t
-                        : order == 1 ? drive->rate
-                                     : 0.0L;
+    const Real smooth = order == 0 ? drive->V + drive->rate * t : order == 1 ? drive->rate : 0.0L;
     if (drive->swing == 0.0L) {
         return smooth;
     }
@@ -245,10 +243,9 @@ Vector velocity(const World* w, Real t, int order) {
 static Real way_of(const World* w, const Drive* drive, Real a, Real b) {
     const Real span = b - a, half = 0.5L * w->omega * span;
     const Real smooth = (drive->V + drive->rate * 0.5L * (a + b)) * span;
-    return drive->swing == 0.0L
-               ? smooth
-               : smooth + 2.0L * drive->swing / w->omega * sine(drive->theta + w->omega * a + half, 1) *
-                              sinl(half);
+    return drive->swing == 0.0L ? smooth
+                                : smooth + 2.0L * drive->swing / w->omega *
+                                               sine(drive->theta + w->omega * a + half, 1) * sinl(half);
 }
 
 Vector travel(const World* w, Real a, Real b) {
@@ -332,7 +329,8 @@ At scene_at(const World* w, Real t, bool with_rates) {
         const Real curve = 1.0L + excess * fall;
         at.g *= curve;
         if (with_rates) {
-            const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(at.V, velocity(w, t, 1)) / (V_S * V_S));
+            const Real squares =
+                2.0L * (square * w->ln_rate.V_S - dot(at.V, velocity(w, t, 1)) / (V_S * V_S));
             at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
         }
     }

@@ -72,10 +72,11 @@ typedef struct {
     bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
     bool ramp;      // between two steps: nothing moves a bristle but its bound
     struct {
-        Real limit, scale, ratio, V_S; // 1/s, rates of the logarithms of F_C or mu, of the stiffness's factor, ..
-    } ln_rate;                         // on a ramp
-    Real S;                            // N
-    Real top;                          // m/s, the largest |V|
+        Real limit, scale, ratio,
+            V_S; // 1/s, rates of the logarithms of F_C or mu, of the stiffness's factor, ..
+    } ln_rate;   // on a ramp
+    Real S;      // N
+    Real top;    // m/s, the largest |V|
     const Rule* rule;
     int fineness;
     Real panels; // taken so far

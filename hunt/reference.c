@@ -15,7 +15,8 @@
 typedef enum { STICKS, CATCHES, SLIPS } Motion;
 
 typedef struct {
-    Vector end, change;    // m, delta at the end, and its change: a soft bristle's has more digits than the difference
+    Vector end,
+        change; // m, delta at the end, and its change: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
     Real length;           // m, what errors of the end are measured by
@@ -71,7 +72,8 @@ typedef struct {
 } Signs;
 
 static const Real ROUNDING = 1e-17L; // of what a sign is made from
-static const Real ON_BOUND = 1e-10L;  // of a bound: what the rounding of a phase leaves a bristle that slips inside it
+static const Real ON_BOUND =
+    1e-10L; // of a bound: what the rounding of a phase leaves a bristle that slips inside it
 static const Real AS_DOUBLE = 1e-15L; // of a bound: what the rounding of a deflection does
 
 // The state of a march through the step.
@@ -267,7 +269,8 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
 static const Real LEAST = 1e-16L; // of the force of the step: what errors of a panel are left alone
 static const int DEEPEST = 110;
-static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not known
+static const Real MOST_PANELS = 1e6L,
+                  MOST_OF_SETTLING = 1e5L; // more are not taken, and the result is not known
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
@@ -808,7 +811,8 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
             if (isinf(n)) {
                 *mean = scaled(w->scene.f / length, cycle.impulse);
                 for (; k < count; k++) {
-                    *state = length_of(marks[k].state.delta) < length_of(state->delta) ? marks[k].state : *state;
+                    *state =
+                        length_of(marks[k].state.delta) < length_of(state->delta) ? marks[k].state : *state;
                 }
                 break;
             }
@@ -816,7 +820,7 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
             add_times(sums, &cycle, repeats);
             done += repeats * length;
             count = 0;
-        } else if (count == most || w->panels > MOST_PANELS) {
+        } else if (count == most || w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
             known = false;
         } else {
             marks[count++] = (Mark){*state, done, *sums};
@@ -836,26 +840,31 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
     return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
 }
 
-static const Real MOST_OF_NEWTON = 1e5L; // panels
-
 // The periodic state where it does not depend on the start, by Newton: soon where slips are so small that each forgets little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
     const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->drive[0].V, w->drive[1].V});
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
+    bool found = false;
+    Period* p = memory(NULL, sizeof *p);
     w->panels = 0.0L;
-    for (int k = 0; k < 60 && w->panels <= MOST_OF_NEWTON; k++) {
+    for (int k = 0; k < 60 && !found && w->panels <= MOST_OF_SETTLING; k++) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
         *mean = scaled(w->scene.f, march.sums.impulse);
-        const Vector newton = newton_step(w, *state, march.delta, miss, step);
-        const bool free = w->elastic && !march.slipped; // it drifts to where it slips
-        if (!free && length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
-            return true;
+        if (w->elastic && !march.slipped) { // it drifts to where it slips
+            Sums unused = {0};
+            *p = (Period){.world = *w, .unit = unit};
+            state->delta =
+                after_untouched(p, state->delta, count_untouched(p, state->delta, INFINITY), &unused);
+            continue;
         }
-        const bool plain = free || k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
-        state->delta = plus(state->delta, 1.0L, plain ? miss : newton);
+        const Vector newton = newton_step(w, *state, march.delta, miss, step);
+        found = length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit);
+        const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
+        state->delta = found ? state->delta : plus(state->delta, 1.0L, plain ? miss : newton);
     }
-    return false;
+    free(p);
+    return found;
 }
 
 // To the periodic state of held inputs, w of one period, or to sliding for ever; the mean force.
