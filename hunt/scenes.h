@@ -6,8 +6,8 @@
 
 #include "sequence.h"
 
-// The same for the same seed and number, whatever is drawn besides. law 0: any. plane: with a vibration across the sliding.
-Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane);
+// The same for the same seed and number, whatever is drawn besides. plane: with a vibration across the sliding.
+Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane);
 
 // sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
 double scene_kappa(const ReferenceScene* scene);
