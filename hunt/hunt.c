@@ -31,9 +31,9 @@ typedef struct {
     uint64_t seed, scenes, first;
     double seconds; // INFINITY: no end but the number of scenes
     double tolerance[MOST_TOLERANCES];
-    int tolerances, jobs, law;
+    int tolerances, jobs;
     const char *replay, *file;
-    bool brief, plane;
+    bool plane;
     int minimize; // misses that a job makes plain, at the most, of each law and grade
 } Options;
 
@@ -149,13 +149,10 @@ static void report_miss(const Options* options, const Sequence* sequence, const 
                         uint64_t number, double tolerance, Tally* tally) {
     const TrialStep* taken = &trial->taken[step];
     char text[SEQUENCE_TEXT];
-    if (!options->brief) {
-        sequence_text(sequence, text, sizeof text);
-        printf("miss law=%s tolerance=%g ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
-               LAW_NAMES[taken->scene.law - 1], tolerance, taken->verdict.ratio,
-               GRADE_NAMES[taken->verdict.of], step + 1, scene_kappa(&taken->scene),
-               (unsigned long long)number, text);
-    }
+    sequence_text(sequence, text, sizeof text);
+    printf("miss law=%s tolerance=%g ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
+           LAW_NAMES[taken->scene.law - 1], tolerance, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of],
+           step + 1, scene_kappa(&taken->scene), (unsigned long long)number, text);
     int* done = &tally->minimized[taken->scene.law - 1][taken->verdict.of];
     if (*done < options->minimize && still_misses(sequence, tolerance)) {
         (*done)++;
@@ -197,7 +194,7 @@ static void try_at(const Options* options, const Sequence* sequence, uint64_t nu
     trial_run(&trial, sequence, tolerance);
     tally->unknown += trial.unknown;
     tally->refused += trial.refused;
-    if (trial.refused && !options->brief) {
+    if (trial.refused) {
         char text[SEQUENCE_TEXT];
         sequence_text(sequence, text, sizeof text);
         printf("refused number=%llu step=%d: %s; %s\n", (unsigned long long)number, trial.steps + 1,
@@ -229,7 +226,7 @@ static void run_job(const Options* options, int job, Tally* tally) {
     for (uint64_t n = (uint64_t)job; n < options->scenes && now() - begin < options->seconds;
          n += (uint64_t)options->jobs) {
         const uint64_t number = options->first + n;
-        const Sequence sequence = sequence_drawn(options->seed, number, options->law, options->plane);
+        const Sequence sequence = sequence_drawn(options->seed, number, options->plane);
         tally->drawn++;
         try_at(options, &sequence, number, (int)(number % (uint64_t)options->tolerances), tally);
     }
@@ -265,35 +262,43 @@ static void run_all(const Options* options, Tally* total) {
     printf("\nseed %llu\n", (unsigned long long)options->seed);
 }
 
-static void replay(const Options* options, const char* text, uint64_t number, Tally* tally) {
+static Sequence sequence_of_text(const char* text) {
     Sequence sequence;
     char wrong[100];
     if (!sequence_read(text, &sequence, wrong, sizeof wrong)) {
         fprintf(stderr, "hunt: %s is no name=value of a scene\n", wrong);
         exit(2);
     }
-    tally->drawn++;
-    for (int k = 0; k < options->tolerances; k++) {
-        try_at(options, &sequence, number, k, tally);
-    }
+    return sequence;
 }
 
-// Each line is a sequence, with its tolerance first; # begins a comment.
-static void replay_file(const Options* options, Tally* tally) {
+// Each line is a sequence, with its tolerance first, for which the tables get a column; # begins a comment.
+static void replay_file(Options* options, Tally* tally) {
     FILE* file = or_end(fopen(options->file, "r"), options->file);
     char line[SEQUENCE_TEXT];
+    options->tolerances = 0;
     for (uint64_t number = 1; fgets(line, sizeof line, file) != NULL; number++) {
-        int read = 0;
-        Options mine = *options;
-        mine.tolerances = 1;
+        int read = 0, column = 0;
+        double tolerance;
         if (line[0] == '#' || line[0] == '\n') {
             continue;
         }
-        if (sscanf(line, "tolerance=%lf%n", &mine.tolerance[0], &read) != 1) {
+        if (sscanf(line, "tolerance=%lf%n", &tolerance, &read) != 1) {
             fprintf(stderr, "hunt: line %llu does not begin with a tolerance\n", (unsigned long long)number);
             exit(2);
         }
-        replay(&mine, line + read, number, tally);
+        while (column < options->tolerances && options->tolerance[column] != tolerance) {
+            column++;
+        }
+        if (column == MOST_TOLERANCES) {
+            fprintf(stderr, "hunt: line %llu: too many tolerances\n", (unsigned long long)number);
+            exit(2);
+        }
+        options->tolerance[column] = tolerance;
+        options->tolerances += column == options->tolerances;
+        const Sequence sequence = sequence_of_text(line + read);
+        tally->drawn++;
+        try_at(options, &sequence, number, column, tally);
     }
     fclose(file);
 }
@@ -304,12 +309,11 @@ static void replay_file(const Options* options, Tally* tally) {
 
 static void usage(void) {
     fprintf(stderr,
-            "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--law NAME] "
-            "[--jobs J]\n"
-            "     [--minimize K] [--brief] [--plane] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
+            "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--jobs J]\n"
+            "     [--minimize K] [--plane] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--first: number of the first sequence; with --scenes 1 a single one. --minimize: makes K misses "
             "of each\n"
-            "law and grade plain. --file: the sequences of a file, one a line. --brief: only the tables.\n"
+            "law and grade plain. --file: the sequences of a file, one a line.\n"
             "--plane: scenes that slide, or vibrate, across.\n");
     exit(2);
 }
@@ -332,10 +336,8 @@ static Options read_options(int argc, char** argv) {
         JOBS,
         MINIMIZE,
         NUMBERS,
-        BRIEF = NUMBERS,
-        PLANE,
+        PLANE = NUMBERS,
         TOLERANCE,
-        LAW,
         FILE_NAME,
         REPLAY
     };
@@ -345,10 +347,8 @@ static Options read_options(int argc, char** argv) {
                                           {"minutes", 1, NULL, MINUTES},
                                           {"jobs", 1, NULL, JOBS},
                                           {"minimize", 1, NULL, MINIMIZE},
-                                          {"brief", 0, NULL, BRIEF},
                                           {"plane", 0, NULL, PLANE},
                                           {"tolerance", 1, NULL, TOLERANCE},
-                                          {"law", 1, NULL, LAW},
                                           {"file", 1, NULL, FILE_NAME},
                                           {"replay", 1, NULL, REPLAY},
                                           {0}};
@@ -357,8 +357,6 @@ static Options read_options(int argc, char** argv) {
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
         if (name < NUMBERS) {
             number[name] = number_of(optarg);
-        } else if (name == BRIEF) {
-            o.brief = true;
         } else if (name == PLANE) {
             o.plane = true;
         } else if (name == FILE_NAME || name == REPLAY) {
@@ -369,15 +367,11 @@ static Options read_options(int argc, char** argv) {
                  part = strtok(NULL, ",")) {
                 o.tolerance[o.tolerances++] = number_of(part);
             }
-        } else if (name == LAW) {
-            for (o.law = 1; o.law <= LAWS && strcmp(optarg, LAW_NAMES[o.law - 1]) != 0;) {
-                o.law++;
-            }
         } else {
             usage();
         }
     }
-    if (optind < argc || o.tolerances == 0 || o.law > LAWS) {
+    if (optind < argc || o.tolerances == 0) {
         usage();
     }
     o.seed = (uint64_t)number[SEED];
@@ -391,10 +385,13 @@ static Options read_options(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     static Tally total;
-    const Options options = read_options(argc, argv);
+    Options options = read_options(argc, argv);
     const double begin = now();
     if (options.replay) {
-        replay(&options, options.replay, 0, &total);
+        const Sequence sequence = sequence_of_text(options.replay);
+        for (int k = 0; k < options.tolerances; k++) {
+            try_at(&options, &sequence, 0, k, &total);
+        }
         return 0;
     }
     if (options.file) {

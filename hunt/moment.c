@@ -62,24 +62,8 @@ const Rule* rule_of(int stages) {
     return &rules[stages];
 }
 
-static void swap(Real* a, Real* b) {
-    const Real kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
 void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STAGES]) {
     for (int k = 0; k < n; k++) {
-        int best = k;
-        for (int i = k + 1; i < n; i++) {
-            best = fabsl(A[i][k]) > fabsl(A[best][k]) ? i : best;
-        }
-        for (int j = k; best != k && j < n; j++) {
-            swap(&A[k][j], &A[best][j]);
-        }
-        for (int c = 0; c < count; c++) {
-            swap(&b[c][k], &b[c][best]);
-        }
         for (int i = k + 1; i < n; i++) {
             const Real factor = A[i][k] / A[k][k];
             for (int j = k + 1; j < n; j++) {
@@ -219,9 +203,14 @@ Real sine(Real x, int shift) {
     }
 }
 
-int sign_of(Real x) { return (x > 0.0L) - (x < 0.0L); }
-
-static Real phase_at(const World* w, Real t) { return w->theta_0 + w->omega * t; }
+Vector plus(Vector a, Real factor, Vector b) { return (Vector){a.x + factor * b.x, a.y + factor * b.y}; }
+Vector scaled(Real factor, Vector a) { return (Vector){factor * a.x, factor * a.y}; }
+Real dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
+Real length_of(Vector a) { return a.y == 0.0L ? fabsl(a.x) : sqrtl(dot(a, a)); }
+Vector along(Vector a, Real length) {
+    const Real now = length_of(a);
+    return now > 0.0L ? scaled(length / now, a) : a;
+}
 
 bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }
 
@@ -230,35 +219,37 @@ bool is_held(const ReferenceScene* s) {
            s->load_rate == 0.0;
 }
 
-static Drive drive_of(Real V, Real rate, Real swing, Real theta) {
-    return (Drive){V, rate, swing, theta, V + swing * sine(theta, 1)};
-}
-
-Real velocity(const World* w, const Drive* drive, Real t) {
-    const Real change = drive->rate * t;
-    if (drive->swing == 0.0L) {
-        return drive->V + change;
-    }
-    const Real half = 0.5L * w->omega * t;
-    if (fabsl(half) < 0.25L) { // a step of 1e-14 s may lie next to a reversal as a whole
-        return drive->start + change - 2.0L * drive->swing * sine(drive->theta + half, 0) * sinl(half);
-    }
-    return drive->V + change + drive->swing * sine(drive->theta + w->omega * t, 1);
-}
-
-Real velocity_rate(const World* w, const Drive* drive, Real t) {
-    const Real swing = drive->swing * w->omega;
-    return swing == 0.0L ? drive->rate : drive->rate - swing * sine(drive->theta + w->omega * t, 0);
-}
-
-Real travel(const World* w, const Drive* drive, Real a, Real b) {
-    const Real span = b - a;
-    const Real smooth = (drive->V + drive->rate * 0.5L * (a + b)) * span;
+static Real component(const World* w, const Drive* drive, Real t, int order) {
+    const Real smooth = order == 0 ? drive->V + drive->rate * t : order == 1 ? drive->rate : 0.0L;
     if (drive->swing == 0.0L) {
         return smooth;
     }
-    const Real half = 0.5L * w->omega * span;
-    return smooth + 2.0L * drive->swing / w->omega * sine(drive->theta + w->omega * a + half, 1) * sinl(half);
+    const Real half = 0.5L * w->omega * t;
+    if (order == 0 && fabsl(half) < 0.25L) { // a step of 1e-14 s may lie next to a reversal as a whole
+        const Real change = -2.0L * drive->swing * sine(drive->theta + half, 0) * sinl(half);
+        return drive->start + drive->rate * t + change;
+    }
+    Real swing = drive->swing;
+    for (int k = 0; k < order; k++) {
+        swing *= w->omega;
+    }
+    return smooth + swing * sine(drive->theta + w->omega * t, 1 + order);
+}
+
+Vector velocity(const World* w, Real t, int order) {
+    return (Vector){component(w, &w->drive[0], t, order), component(w, &w->drive[1], t, order)};
+}
+
+static Real way_of(const World* w, const Drive* drive, Real a, Real b) {
+    const Real span = b - a, half = 0.5L * w->omega * span;
+    const Real smooth = (drive->V + drive->rate * 0.5L * (a + b)) * span;
+    return drive->swing == 0.0L ? smooth
+                                : smooth + 2.0L * drive->swing / w->omega *
+                                               sine(drive->theta + w->omega * a + half, 1) * sinl(half);
+}
+
+Vector travel(const World* w, Real a, Real b) {
+    return w->ramp ? (Vector){0} : (Vector){way_of(w, &w->drive[0], a, b), way_of(w, &w->drive[1], a, b)};
 }
 
 static Real load_at(const World* w, Real t) {
@@ -287,7 +278,7 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
         return;
     }
     const AtModulus at = modulus_at(w, t);
-    const Real theta = phase_at(w, t) + s->phase_d;
+    const Real theta = w->theta_0 + w->omega * t + s->phase_d;
     const Real swing = s->a_d == 0.0 ? 0.0L : s->a_d * sine(theta, 1);
     Real d, rest_rate;
     if (s->input == INPUT_LOAD) {
@@ -296,9 +287,9 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
         d = logl(at.force * w->swell / load) / w->decay + swing;
         rest_rate = (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
     } else {
-        d = (Real)s->d + s->d_rate * t + swing;
+        d = w->d + w->d_rate * t + swing;
         *force = at.force * expl(-w->decay * d);
-        rest_rate = s->d_rate;
+        rest_rate = w->d_rate;
     }
     *sigma = stiffness_at(s, &at, *force, d);
     if (with_rates) {
@@ -318,24 +309,34 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
 
 At scene_at(const World* w, Real t, bool with_rates) {
     const ReferenceScene* s = &w->scene;
-    At at = {.V = velocity(w, &w->along, t), .V_y = velocity(w, &w->transverse, t)};
-    Real force;
+    At at = {.V = velocity(w, t, 0)};
+    Real force, excess = w->excess, V_S = s->V_S;
     contact_at(w, t, with_rates, &force, &at.sigma, &at.bound_rate);
-    at.kinetic_rate = at.bound_rate;
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
-    Real curve = 1.0L;
-    if (w->excess != 0.0L) {
-        const Real square = (Real)s->V_S * s->V_S;
-        const Real peak = w->excess * expl(-(at.V * at.V + at.V_y * at.V_y) / square);
-        curve = 1.0L + peak;
+    if (w->ramp) {
+        at.sigma *= expl(w->ln_rate.scale * t);
+        at.coulomb *= expl(w->ln_rate.limit * t);
+        excess = (1.0L + w->excess) * expl(w->ln_rate.ratio * t) - 1.0L;
+        V_S *= expl(w->ln_rate.V_S * t);
+        at.bound_rate += w->ln_rate.limit - w->ln_rate.scale;
+    }
+    at.kinetic_rate = at.bound_rate;
+    at.bound_rate += w->ln_rate.ratio;
+    at.B = at.coulomb * (1.0L + excess);
+    at.g = at.coulomb;
+    if (excess != 0.0L) {
+        const Real square = dot(at.V, at.V) / (V_S * V_S), fall = expl(-square);
+        const Real curve = 1.0L + excess * fall;
+        at.g *= curve;
         if (with_rates) {
-            at.kinetic_rate -=
-                2.0L * peak / (square * curve) *
-                (at.V * velocity_rate(w, &w->along, t) + at.V_y * velocity_rate(w, &w->transverse, t));
+            const Real squares =
+                2.0L * (square * w->ln_rate.V_S - dot(at.V, velocity(w, t, 1)) / (V_S * V_S));
+            at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
         }
     }
-    at.g = at.coulomb * curve;
-    at.B = at.coulomb * (1.0L + w->excess);
+    if (w->ramp) {
+        at.V = (Vector){0};
+    }
     return at;
 }
 
@@ -367,59 +368,8 @@ bool is_open(const World* w, Real t) {
         return !(load_at(w, t) > 0.0L);
     }
     const AtModulus at = modulus_at(w, t);
-    const Real d = (Real)s->d + s->d_rate * t, force = at.force * expl(-w->decay * d);
+    const Real d = w->d + w->d_rate * t, force = at.force * expl(-w->decay * d);
     return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
-}
-
-static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
-
-Closed closed_part(const World* w) {
-    const bool at_start = is_open(w, 0.0L), at_end = is_open(w, w->h);
-    if (at_start == at_end) {
-        return (Closed){at_start ? w->h : 0.0L, w->h};
-    }
-    const Real t = crossing(openness, w, 0.0L, w->h);
-    return at_start ? (Closed){t, w->h} : (Closed){0.0L, t};
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Cuts
-// ---------------------------------------------------------------------------------------------------------------------
-
-void* memory(void* old, size_t size) {
-    void* found = realloc(old, size);
-    if (found == NULL) {
-        abort();
-    }
-    return found;
-}
-
-const Real MULTIPLES[LEVELS] = {0.0L, 0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-
-void cut(Cuts* cuts, Real t) {
-    if (cuts->count == cuts->room) {
-        cuts->room = cuts->room ? 2 * cuts->room : 256;
-        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
-    }
-    cuts->time[cuts->count++] = t;
-}
-
-static int by_time(const void* a, const void* b) {
-    const Real x = *(const Real*)a, y = *(const Real*)b;
-    return (x > y) - (x < y);
-}
-
-// Sorted, without repetition, inside the part.
-void tidy(Cuts* cuts, Closed part) {
-    qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
-    size_t kept = 0;
-    for (size_t k = 0; k < cuts->count; k++) {
-        const Real t = cuts->time[k];
-        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
-            cuts->time[kept++] = t;
-        }
-    }
-    cuts->count = kept;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -439,25 +389,24 @@ static Real mean_limit(const World* w, Real t) {
         return s->mu * load_at(w, t);
     }
     const AtModulus at = modulus_at(w, t);
-    return s->mu * at.force * w->swell * expl(-w->decay * ((Real)s->d + s->d_rate * t));
+    return s->mu * at.force * w->swell * expl(-w->decay * (w->d + w->d_rate * t));
 }
 
-Real largest_force(const World* w, Real delta) {
+Real largest_force(const World* w, Vector delta) {
     const ReferenceScene* s = &w->scene;
     const bool bristle = s->law != LAW_COULOMB;
     Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
     if (bristle && !is_open(w, 0.0L)) {
-        S = fmaxl(S, scene_at(w, 0.0L, false).sigma * fabsl(delta));
+        S = fmaxl(S, scene_at(w, 0.0L, false).sigma * length_of(delta));
     }
     return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
 }
 
-// The same with its inputs held.
 World held_world(const World* w, Real h) {
     World held = *w;
-    held.along.rate = held.transverse.rate = 0.0L;
-    held.scene.V_rate = held.scene.V_y_rate = held.scene.d_rate = held.scene.E_rate = held.scene.load_rate =
-        0.0;
+    ReferenceScene* s = &held.scene;
+    s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
+    held.drive[0].rate = held.drive[1].rate = held.d_rate = 0.0L;
     held.no_load = -INFINITY;
     held.h = h;
     return held;
@@ -468,22 +417,27 @@ static Real fastest(const Drive* drive, Real h) {
     return fmaxl(fabsl(drive->V), fabsl(drive->V + drive->rate * h)) + fabsl(drive->swing);
 }
 
+static Drive drive_of(Real V, Real rate, Real swing, Real theta) {
+    return (Drive){V, rate, swing, theta, V + swing * sine(theta, 1)};
+}
+
 World make_world(const ReferenceScene* scene, Real h, int fineness) {
     World w = {.scene = *scene, .h = h, .fineness = fineness, .elastic = scene->law == LAW_ELASTIC_PLASTIC};
     w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
-    w.excess =
-        scene->law == LAW_LUGRE || scene->law == LAW_ELASTIC_PLASTIC ? (Real)scene->staticRatio - 1.0L : 0.0L;
+    w.excess = scene->law == LAW_LUGRE || w.elastic ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
     // f start, of which whole numbers are taken off, exactly: the product and what it loses in rounding
     const double cycles = scene->f * scene->start;
     const double lost = fma(scene->f, scene->start, -cycles);
     w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);
-    w.along = drive_of(scene->V, scene->V_rate, scene->V_1, w.theta_0);
-    w.transverse = drive_of(scene->V_y, scene->V_y_rate, scene->V_2, w.theta_0 + scene->phase_2);
-    w.top = hypotl(fastest(&w.along, h), fastest(&w.transverse, h));
+    w.drive[0] = drive_of(scene->V, scene->V_rate, scene->V_1, w.theta_0);
+    w.drive[1] = drive_of(scene->V_y, scene->V_y_rate, scene->V_2, w.theta_0 + scene->phase_2);
+    w.top = hypotl(fastest(&w.drive[0], h), fastest(&w.drive[1], h));
     w.decay = (Real)scene->lambda / scene->R_q;
     w.swell = bessel_I0(w.decay * scene->a_d);
     w.held = at_modulus(scene, scene->E);
+    w.d = scene->d;
+    w.d_rate = scene->d_rate;
     w.rule = rule_of(fineness == 1 ? 10 : 12);
     const Real load_end = (Real)scene->load + scene->load_rate * h;
     w.no_load = (scene->load > 0.0) != (load_end > 0.0L) && scene->load_rate != 0.0
@@ -492,194 +446,35 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     return w;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// An input that jumps: the limit of a fast ramp
-// ---------------------------------------------------------------------------------------------------------------------
-
-// The ends of the ramp: what is linear, and what is so in its logarithm.
-typedef struct {
-    Real V, V_y, d, E;
-    Real ln_limit, ln_scale, ln_ratio, ln_V_S; // of F_C or mu, of the stiffness's factor, of R and V_S
-} Corner;
-
-static Corner corner_of(const World* w) {
+// The separation [m] at the start, with the vibration.
+static Real separation(const World* w) {
     const ReferenceScene* s = &w->scene;
     const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
-    const Real rest =
-        s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : (Real)s->d;
-    Corner corner = {.V = w->along.start, .V_y = w->transverse.start, .d = rest + swing, .E = s->E};
-    corner.ln_limit = logl(s->limit == LIMIT_LOAD ? s->mu : s->F_C);
-    corner.ln_scale = logl(s->contact == CONTACT_CONSTANT ? s->contact_sigma : s->stiffnessScale);
-    corner.ln_ratio = logl(1.0L + w->excess);
-    corner.ln_V_S = logl(s->V_S);
-    return corner;
+    return swing + (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
 }
 
-typedef struct {
-    const World* w;
-    Corner from, to;
-} Ramp;
-
-typedef struct {
-    Real g, sigma, B;
-} OnRamp;
-
-static OnRamp ramp_at(const Ramp* ramp, Real x) {
-#define LINEAR(name) (ramp->from.name + x * (ramp->to.name - ramp->from.name))
-    ReferenceScene s = ramp->w->scene;
-    s.stiffnessScale = 1.0;
-    s.contact_sigma = 1.0;
-    const AtModulus at = at_modulus(&s, LINEAR(E));
-    const Real d = LINEAR(d), force = at.force * expl(-ramp->w->decay * d);
-    const Real ratio = expl(LINEAR(ln_ratio));
-    const Real slow = hypotl(LINEAR(V), LINEAR(V_y)) / expl(LINEAR(ln_V_S));
-    const Real coulomb = expl(LINEAR(ln_limit)) * (s.limit == LIMIT_LOAD ? force : 1.0L);
-    OnRamp on = {.sigma = expl(LINEAR(ln_scale)) * stiffness_at(&s, &at, force, d), .B = ratio * coulomb};
-    on.g = ramp->w->elastic ? coulomb * (1.0L + (ratio - 1.0L) * expl(-slow * slow)) : on.B;
-    return on;
-#undef LINEAR
-}
-
-// Integral of g |dD| over [a, b], where D = g / sigma falls: D' by the rule's matrix, and by halves until they agree.
-static Real heat_along(const Ramp* ramp, Real a, Real b, int depth) {
-    const Rule* rule = ramp->w->rule;
-    const Real half[3] = {a, 0.5L * (a + b), b};
-    Real sum[3] = {0}; // of the halves, of the whole
-    for (int part = 0; part < 3; part++) {
-        const Real from = half[part % 2], to = part == 2 ? b : half[part + 1];
-        const OnRamp first = ramp_at(ramp, from);
-        Real A[MOST_STAGES][MOST_STAGES], D[MOST_STAGES], g[MOST_STAGES];
-        for (int i = 0; i < rule->stages; i++) {
-            const OnRamp on = ramp_at(ramp, from + (to - from) * rule->node[i]);
-            g[i] = on.g;
-            D[i] = on.g / on.sigma - first.g / first.sigma;
-            for (int j = 0; j < rule->stages; j++) {
-                A[i][j] = rule->to[i][j];
-            }
-        }
-        solve(rule->stages, A, 1, &D);
-        for (int i = 0; i < rule->stages; i++) {
-            sum[part] -= rule->weight[i] * g[i] * D[i];
-        }
+World ramp_between(const World* from, const World* to) {
+    World w = *from;
+    ReferenceScene* s = &w.scene;
+    const ReferenceScene* end = &to->scene;
+    w.ramp = true;
+    w.h = 1.0L;
+    w.S = to->S;
+    w.top = 0.0L;
+    s->input = INPUT_SEPARATION;
+    s->V_1 = s->V_2 = s->a_d = 0.0;
+    s->E_rate = end->E - s->E;
+    w.d = separation(from);
+    w.d_rate = separation(to) - w.d;
+    for (int k = 0; k < 2; k++) {
+        w.drive[k] = drive_of(from->drive[k].start, to->drive[k].start - from->drive[k].start, 0.0L, 0.0L);
     }
-    const OnRamp on = ramp_at(ramp, a);
-    const Real least = 1e-17L * on.g * on.g / on.sigma;
-    const bool agree = fabsl(sum[0] + sum[1] - sum[2]) <= 1e-14L * fabsl(sum[2]) + least;
-    return agree || depth == 0
-               ? sum[0] + sum[1]
-               : heat_along(ramp, a, half[1], depth - 1) + heat_along(ramp, half[1], b, depth - 1);
-}
-
-// A length [m] and the bound on the ramp that it is to hold.
-typedef struct {
-    const Ramp* ramp;
-    Real length;
-    bool sticks;
-} Held;
-
-static Real excess_length(const void* context, Real x) {
-    const Held* held = context;
-    const OnRamp on = ramp_at(held->ramp, x);
-    return held->length - (held->sticks ? on.B : on.g) / on.sigma;
-}
-
-// Where in [a, b] the bound is the lowest: at an end, or inside if it falls at a, and rises at b or is higher there.
-static Real lowest(const Held* held, Real a, Real b) {
-    const Real near = 1e-6L * (b - a);
-    const Real at_a = excess_length(held, a), at_b = excess_length(held, b);
-    if (excess_length(held, a + near) > at_a && fmaxl(excess_length(held, b - near), at_a) > at_b) {
-        for (int k = 0; k < 45; k++) { // golden section
-            const Real x = a + 0.381966L * (b - a), y = b - 0.381966L * (b - a);
-            *(excess_length(held, x) > excess_length(held, y) ? &b : &a) =
-                excess_length(held, x) > excess_length(held, y) ? y : x;
-        }
-        return 0.5L * (a + b);
-    }
-    return at_a > at_b ? a : b;
-}
-
-// Equal pieces of the ramp, pieces by halves towards its ends, where V and V_S change together, and where V is a multiple of the old
-// or the new V_S.
-static Cuts cuts_of_ramp(const Ramp* ramp, Real V_S_before) {
-    enum { PIECES = 64, HALVES = 40 };
-    const Real V_S[2] = {V_S_before, ramp->w->scene.V_S}, V = ramp->from.V, change = ramp->to.V - V;
-    Cuts cuts = {0};
-    for (int k = 0; k <= PIECES; k++) {
-        cut(&cuts, (Real)k / PIECES);
-    }
-    for (int k = 7; k < HALVES; k++) {
-        cut(&cuts, ldexpl(1.0L, -k));
-        cut(&cuts, 1.0L - ldexpl(1.0L, -k));
-    }
-    for (int m = 0; m < 4 * LEVELS && change != 0.0L; m++) {
-        cut(&cuts, ((m % 2 ? 1.0L : -1.0L) * MULTIPLES[m / 4] * V_S[m / 2 % 2] - V) / change);
-    }
-    tidy(&cuts, (Closed){0.0L, 1.0L});
-    return cuts;
-}
-
-// Moves the bristle along the ramp from before to the start of w; returns the heat.
-static Real ride(const World* before, const World* w, Real* delta, int* slip) {
-    const Ramp ramp = {w, corner_of(before), corner_of(w)};
-    const Cuts cuts = cuts_of_ramp(&ramp, before->scene.V_S);
-    const int side = sign_of(*delta);
-    const bool sticks = w->elastic && w->excess + before->excess > 0.0L && *slip == 0;
-    Held held = {&ramp, fabsl(*delta), sticks};
-    Real heat = 0.0L;
-    for (size_t k = 0; k + 1 < cuts.count; k++) {
-        Real from = cuts.time[k];
-        for (;;) {
-            const Real to = lowest(&held, from, cuts.time[k + 1]);
-            // the state's rounding is no excess, nor what a bound loses of its digits that stays as it is
-            if (!(excess_length(&held, to) > (held.sticks ? 1e-11L : 1e-16L) * held.length)) {
-                break;
-            }
-            from = excess_length(&held, from) > 0.0L ? from : crossing(excess_length, &held, from, to);
-            const OnRamp there = ramp_at(&ramp, from), end = ramp_at(&ramp, to);
-            if (held.sticks) { // it breaks away
-                const Real kinetic = there.g / there.sigma;
-                heat += 0.5L * there.sigma * (held.length - kinetic) * (held.length + kinetic);
-                held.length = kinetic;
-                held.sticks = false;
-                *slip = side;
-            } else {
-                heat += heat_along(&ramp, from, to, 12);
-                held.length = end.g / end.sigma;
-                from = to;
-            }
-        }
-    }
-    free(cuts.time);
-    *delta = (Real)side * held.length;
-    return heat;
-}
-
-// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
-Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip) {
-    const ReferenceScene* s = &w->scene;
-    const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
-    const bool was_open = before && is_open(&past, 0.0L); // at the very start something held the bristle
-    if (is_open(w, 0.0L) || was_open) {
-        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !was_open;
-        const Real heat = slides ? 0.5L * s->contact_sigma * *delta * *delta : 0.0L;
-        *delta = 0.0L;
-        *slip = 0;
-        return heat;
-    }
-    if (!w->bounded) {
-        return 0.0L;
-    }
-    if (before != NULL) {
-        return ride(&past, w, delta, slip);
-    }
-    const At at = scene_at(w, 0.0L, false);
-    const Real length = fabsl(*delta), lies = bound(w, &at, false);
-    if (length <= (1.0L + 1e-11L) * bound(w, &at, *slip == 0)) {
-        return 0.0L;
-    }
-    *slip = w->elastic ? sign_of(*delta) : 0;
-    *delta = (Real)sign_of(*delta) * lies;
-    return 0.5L * at.sigma * (length - lies) * (length + lies);
+    w.ln_rate.limit = s->limit == LIMIT_LOAD ? logl((Real)end->mu / s->mu) : logl((Real)end->F_C / s->F_C);
+    w.ln_rate.scale = s->contact == CONTACT_CONSTANT ? logl((Real)end->contact_sigma / s->contact_sigma)
+                                                     : logl((Real)end->stiffnessScale / s->stiffnessScale);
+    w.ln_rate.ratio = logl((1.0L + to->excess) / (1.0L + from->excess));
+    w.ln_rate.V_S = logl((Real)end->V_S / s->V_S);
+    return w;
 }
 
 ReferenceScene reference_scene(void) {
@@ -708,9 +503,4 @@ ReferenceScene reference_scene(void) {
                             .contact = CONTACT_ASPERITIES,
                             .input = INPUT_SEPARATION,
                             .initial = START_GIVEN};
-}
-
-bool reference_is_open(const ReferenceScene* scene) {
-    const World w = make_world(scene, 0.0L, 1);
-    return is_open(&w, 0.0L);
 }

@@ -1,18 +1,13 @@
-// The scene at a time, the jump of its inputs, and tools: what the references along the sliding and in the plane share.
+// The scene at a time, and tools of the reference.
 #ifndef HUNT_MOMENT_H
 #define HUNT_MOMENT_H
-
-#include <stddef.h>
 
 #include "reference.h"
 
 typedef long double Real;
 
-// By how much of its bound a bristle that slips may be inside it: what the rounding of a phase leaves.
-#define ON_BOUND 1e-10L
-
 // ---------------------------------------------------------------------------------------------------------------------
-// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
+// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots; vectors
 // ---------------------------------------------------------------------------------------------------------------------
 
 enum { MOST_STAGES = 12 };
@@ -26,7 +21,7 @@ typedef struct {
 
 const Rule* rule_of(int stages);
 
-// Solves A x = b in place for each b, pivoting by columns.
+// Solves A x = b in place for each b, without pivoting.
 void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STAGES]);
 
 typedef Real Function(const void* context, Real x);
@@ -34,10 +29,19 @@ typedef Real Function(const void* context, Real x);
 // Where a function passes zero between low and high, on the side of high.
 Real crossing(Function* function, const void* context, Real low, Real high);
 
-int sign_of(Real x);
-
 // Sine of x + shift pi / 2.
 Real sine(Real x, int shift);
+
+// Along the sliding, and across.
+typedef struct {
+    Real x, y;
+} Vector;
+
+Vector plus(Vector a, Real factor, Vector b); // a + factor b
+Vector scaled(Real factor, Vector a);
+Real dot(Vector a, Vector b);
+Real length_of(Vector a);
+Vector along(Vector a, Real length); // of that length along another, or 0
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The scene at a time
@@ -57,7 +61,8 @@ typedef struct {
 
 typedef struct {
     ReferenceScene scene;
-    Drive along, transverse;
+    Drive drive[2]; // along and across
+    Real d, d_rate; // m, m/s, of the separation without the vibration
     Real h, omega, theta_0, decay, swell, excess;
     Real no_load;   // s, when a load that moves is 0
     AtModulus held; // at the modulus of the start
@@ -65,16 +70,21 @@ typedef struct {
     bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
     bool open;      // nothing touches
     bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
-    Real S;         // N
-    Real top;       // m/s, the largest |V|
+    bool ramp;      // between two steps: nothing moves a bristle but its bound
+    struct {
+        Real limit, scale, ratio,
+            V_S; // 1/s, rates of the logarithms of F_C or mu, of the stiffness's factor, ..
+    } ln_rate;   // on a ramp
+    Real S;      // N
+    Real top;    // m/s, the largest |V|
     const Rule* rule;
     int fineness;
-    Real panels;
+    Real panels; // taken so far
 } World;
 
 // At a local time; rates are time derivatives of logarithms, found only when they are asked for.
 typedef struct {
-    Real V, V_y;                   // m/s
+    Vector V;                      // m/s
     Real sigma;                    // N/m
     Real coulomb;                  // N, F_C or mu F_n
     Real g;                        // N, where the bristle's force tends
@@ -87,13 +97,17 @@ World make_world(const ReferenceScene* scene, Real h, int fineness);
 // The same with its inputs held.
 World held_world(const World* w, Real h);
 
+// The limit of a fast ramp from the start of a world to that of another, in a time of 1.
+World ramp_between(const World* from, const World* to);
+
 bool is_held(const ReferenceScene* s);
+bool is_open(const World* w, Real t);
 
-Real velocity(const World* w, const Drive* drive, Real t);
-Real velocity_rate(const World* w, const Drive* drive, Real t);
+// The velocity at a time, or its derivative of order 1, 2 or 3.
+Vector velocity(const World* w, Real t, int order);
 
-// Integral of a component over [a, b].
-Real travel(const World* w, const Drive* drive, Real a, Real b);
+// Integral of the velocity that moves a bristle over [a, b].
+Vector travel(const World* w, Real a, Real b);
 
 At scene_at(const World* w, Real t, bool with_rates);
 
@@ -101,39 +115,7 @@ At scene_at(const World* w, Real t, bool with_rates);
 Real bound(const World* w, const At* at, bool sticks);
 Real bound_rate(const World* w, const At* at, bool sticks);
 
-// What the tolerance is relative to [N], from the length [m] of the deflection at the start.
-Real largest_force(const World* w, Real length);
-
-// What the jump of the inputs, or a start beyond the bound, does to the deflection [m], or its length in the plane; returns
-// its heat [J].
-Real jump(const ReferenceScene* before, const World* w, Real* delta, int* slip);
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Cuts of the step
-// ---------------------------------------------------------------------------------------------------------------------
-
-bool is_open(const World* w, Real t);
-
-// The part of [0, h] in which the contact is closed; empty: from = to = h.
-typedef struct {
-    Real from, to;
-} Closed;
-
-Closed closed_part(const World* w);
-
-typedef struct {
-    Real* time;
-    size_t count, room;
-} Cuts;
-
-void* memory(void* old, size_t size);
-void cut(Cuts* cuts, Real t);
-
-// Of V_S, where Stribeck's curve is cut.
-enum { LEVELS = 10 };
-extern const Real MULTIPLES[LEVELS];
-
-// Sorted, without repetition, inside the part.
-void tidy(Cuts* cuts, Closed part);
+// What the tolerance is relative to [N], from the deflection at the start.
+Real largest_force(const World* w, Vector delta);
 
 #endif

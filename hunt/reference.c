@@ -1,49 +1,31 @@
+#include "reference.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "moment.h"
 
-static const Real PI = 3.141592653589793238462643383279502884L;
-
-// -d(delta') / d(delta) [1/s] with |V| = side V, which holds between reversals.
-static Real relaxation(const World* w, const At* at, int side) {
-    return w->elastic ? 0.0L : at->sigma * (Real)side * at->V / at->g;
-}
-
-// How fast [m/s] the law alone would carry a bristle that lies on the bound of this side beyond it.
-static Real outward(const World* w, Real t, int side, bool sticks) {
-    const At at = scene_at(w, t, true);
-    const Real forward = (Real)side * at.V;
-    const Real own = w->elastic ? forward : forward - fabsl(forward) * at.B / at.g;
-    return own - bound_rate(w, &at, sticks);
-}
-
-// How far [m] the bristle is inside its bound.
-static Real gap(const World* w, Real t, Real delta, int side, bool sticks) {
-    const At at = scene_at(w, t, false);
-    return bound(w, &at, sticks) - (Real)side * delta;
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Panels
 // ---------------------------------------------------------------------------------------------------------------------
 
+// STICKS: the bristle follows its law inside a bound, if there is one. CATCHES: it has broken away, and its kinetic bound has
+// risen since. SLIPS: along its bound.
+typedef enum { STICKS, CATCHES, SLIPS } Motion;
+
 typedef struct {
-    Real end;     // m, delta at the end
-    Real change;  // m, of delta, which for a soft bristle has more digits than the difference of its ends
-    Real impulse; // N s
-    Real work;    // J
-    Real heat;    // J
-    Real path;    // m, integral of |V|
-    // The scales of their errors: the length is the deflection at the end, or the remaining part of a longer
-    // one.
-    Real length, force, power;
-    Real blur; // m, of delta at the end by the rounding of time
+    Vector end,
+        change; // m, delta at the end, and its change: a soft bristle's has more digits than the difference
+    Vector impulse;        // N s
+    Real work, heat, path; // J, J, m
+    Real length;           // m, what errors of the end are measured by
+    Real force, power;     // N s, J, what errors of impulse and energies are measured by
+    Real blur;             // m, of the end by the rounding of time
 } Sums;
 
 static void add_times(Sums* sums, const Sums* one, Real factor) {
-    sums->impulse += factor * one->impulse;
+    sums->impulse = plus(sums->impulse, factor, one->impulse);
     sums->work += factor * one->work;
     sums->heat += factor * one->heat;
     sums->path += factor * one->path;
@@ -52,120 +34,288 @@ static void add_times(Sums* sums, const Sums* one, Real factor) {
 static void add(Sums* sums, const Sums* part) {
     add_times(sums, part, 1.0L);
     sums->end = part->end;
-    sums->change += part->change;
+    sums->change = plus(sums->change, 1.0L, part->change);
     sums->length = part->length;
     sums->blur = part->blur;
     sums->force += part->force;
     sums->power += part->power;
 }
 
-// Of a time [s] in which the bristle has that force, deflection's rate and V.
-static void account(const World* w, Sums* sums, Real spring, Real rate, Real V, Real time) {
-    const Real damping = w->scene.sigma_1 * rate, viscous = w->scene.sigma_2 * V;
-    sums->impulse += time * (spring + viscous);
-    sums->work += time * (spring + damping + viscous) * V;
-    sums->heat += time * (spring * (V - rate) + (damping + viscous) * V);
-    sums->force += time * (fabsl(spring) + fabsl(viscous) + w->S);
-    sums->power += time * (fabsl(spring) + fabsl(damping) + fabsl(viscous) + w->S) *
-                   (fabsl(V) + (spring == 0.0L ? 0.0L : fabsl(rate)));
+// Of a time [s] with that force of the bristle, rate of its deflection and velocity.
+static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
+    const Vector rest = plus(scaled(w->scene.sigma_2, V), w->scene.sigma_1, rate);
+    const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
+    sums->impulse = plus(sums->impulse, time, plus(spring, w->scene.sigma_2, V));
+    sums->work += time * (dot(spring, V) + dot(rest, V));
+    sums->heat += time * (dot(spring, plus(V, -1.0L, rate)) + dot(rest, V));
+    sums->path += time * speed;
+    sums->force += time * (strong + viscous + w->S);
+    sums->power +=
+        time * (strong + length_of(rest) + w->S) * (speed + (strong == 0.0L ? 0.0L : length_of(rate)));
 }
 
-// What moves on a stretch between cuts: V has one sign; the bristle follows its law, or slips along the bound
-// of a side.
-typedef struct {
-    int sign; // of V
-    int slip; // 0, +1, -1
-} Motion;
+// -d(delta') / d(delta) [1/s].
+static Real relaxation(const World* w, const At* at) {
+    return w->elastic ? 0.0L : at->sigma * length_of(at->V) / at->g;
+}
 
-// The deflections at the nodes of a panel by the bristle's own law: delta + Y, Y_i = size sum_j to_ij (V_j -
-// r_j delta - r_j Y_j). Returns the change of delta.
-static Real collocate(const World* w, const At* at, const Real* r, Real size, Real delta, Real* at_delta) {
+// How fast [m/s] the law alone would carry a bristle of that direction, on its kinetic bound, beyond it.
+static Real outward(const World* w, const At* at, Vector delta) {
+    const Real own = dot(along(delta, 1.0L), at->V) - relaxation(w, at) * bound(w, at, false);
+    return own - bound_rate(w, at, false);
+}
+
+// What must stay above 0 for the motion to go on; both are large where nothing can end it.
+typedef struct {
+    Real room; // m, to the bound
+    Real lead; // m/s, outward
+} Signs;
+
+static const Real ROUNDING = 1e-17L; // of what a sign is made from
+static const Real ON_BOUND =
+    1e-10L; // of a bound: what the rounding of a phase leaves a bristle that slips inside it
+static const Real AS_DOUBLE = 1e-15L; // of a bound: what the rounding of a deflection does
+
+// The state of a march through the step.
+typedef struct {
+    World* w;
+    Sums sums;
+    Vector delta;
+    Motion motion;
+    bool broke;    // with static friction: it slips, or catches up
+    bool slipped;  // at any time
+    bool met;      // the motion has come to its end,
+    Real met_at;   // then,
+    bool at_bound; // at its bound, not by its lead
+} March;
+
+static bool has_bound(const World* w) { return w->bounded && !w->open && !w->open_ends; }
+static bool has_static(const World* w) { return w->elastic && w->excess + w->ln_rate.ratio != 0.0L; }
+
+// With a little more than the rounding of each.
+static Signs signs_at(const March* march, const At* at, Vector delta) {
+    const World* w = march->w;
+    Signs signs = {INFINITY, INFINITY};
+    if (march->motion != SLIPS) {
+        // a ramp in which nothing moves finds the bristle where a double holds it
+        const Real slack = w->ramp && has_static(w) && !march->broke ? 1e-11L : ROUNDING;
+        signs.room = bound(w, at, !march->broke) * (1.0L + slack) - length_of(delta);
+    }
+    if (march->motion == SLIPS || (march->motion == CATCHES && !w->ramp)) {
+        signs.lead = outward(w, at, delta) + ROUNDING * (w->top + fabsl(bound_rate(w, at, false)));
+    }
+    return signs;
+}
+
+typedef struct {
+    Sums sums;
+    Signs sign[MOST_STAGES + 1]; // at the start and at the nodes, of a bristle with a bound
+} Panel;
+
+// The changes of delta at the nodes by Dahl's and LuGre's law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
+static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
     const int n = w->rule->stages;
-    Real A[MOST_STAGES][MOST_STAGES], Y[MOST_STAGES] = {0};
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
+    Real A[MOST_STAGES][MOST_STAGES], Y[2][MOST_STAGES] = {{0}};
+    bool across = false;
+    for (int j = 0; j < n; j++) {
+        const Real r = relaxation(w, &at[j]);
+        const Vector rate = plus(at[j].V, -r, delta);
+        across = across || rate.y != 0.0L;
+        for (int i = 0; i < n; i++) {
             const Real weight = size * w->rule->to[i][j];
-            Y[i] += weight * (at[j].V - r[j] * delta);
-            A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r[j];
+            A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
+            Y[0][i] += weight * rate.x;
+            Y[1][i] += weight * rate.y;
         }
     }
-    solve(n, A, 1, &Y);
+    solve(n, A, across ? 2 : 1, Y);
     for (int i = 0; i < n; i++) {
-        at_delta[i] = delta + Y[i];
+        change[i] = (Vector){Y[0][i], Y[1][i]};
     }
-    return Y[n - 1];
 }
 
-static Sums panel(World* w, const Motion* motion, Real a, Real b, Real delta) {
+// That direction, turned by an angle.
+static Vector turned(Vector n, Real angle) {
+    if (angle == 0.0L) {
+        return n;
+    }
+    const Real x = sine(angle, 1), y = sine(angle, 0);
+    return (Vector){x * n.x - y * n.y, x * n.y + y * n.x};
+}
+
+// How fast [rad/s] a deflection of direction n turns that slips.
+static Real turn(const World* w, const At* at, Vector n) {
+    return (at->V.y * n.x - at->V.x * n.y) / bound(w, at, false);
+}
+
+// The angles from the direction n at the nodes of a bristle that slips, by Newton; false if it finds none.
+static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
+    const int stages = w->rule->stages;
+    for (int i = 0; i < stages; i++) {
+        angle[i] = 0.0L;
+    }
+    for (int k = 0; k < 25; k++) {
+        Real A[MOST_STAGES][MOST_STAGES], step[1][MOST_STAGES], most = 0.0L;
+        bool turns = false;
+        for (int i = 0; i < stages; i++) {
+            step[0][i] = -angle[i];
+        }
+        for (int j = 0; j < stages; j++) {
+            const Vector now = turned(n, angle[j]);
+            const Real rate = turn(w, &at[j], now), slope = -dot(at[j].V, now) / bound(w, &at[j], false);
+            turns = turns || rate != 0.0L || angle[j] != 0.0L;
+            if (!(size * slope < 1.0L)) { // it turns away from where it is: a long panel would not see that
+                return false;
+            }
+            for (int i = 0; i < stages; i++) {
+                const Real weight = size * w->rule->to[i][j];
+                A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
+                step[0][i] += weight * rate;
+            }
+        }
+        if (!turns) {
+            return true;
+        }
+        solve(stages, A, 1, step);
+        for (int i = 0; i < stages; i++) {
+            angle[i] += step[0][i];
+            most = fmaxl(most, fabsl(step[0][i]));
+        }
+        if (!(most < 3.0L)) {
+            return false;
+        }
+        if (most < 1e-9L && k > 0) { // the next would be 1e-18
+            return true;
+        }
+    }
+    return false;
+}
+
+// Coulomb's force. At the end of a panel V may be 0 but for rounding: it comes there against its rate.
+static Vector coulomb_force(const World* w, const At* at, Real t) {
+    const bool reverses = length_of(at->V) <= 1e-15L * w->top;
+    return along(reverses ? scaled(-1.0L, velocity(w, t, 1)) : at->V, at->coulomb);
+}
+
+static Panel panel(const March* march, Real a, Real b, Vector delta) {
+    World* w = march->w;
     const Rule* rule = w->rule;
     const int n = rule->stages, last = n - 1;
     const Real size = b - a;
-    const bool bristle = !w->open && w->scene.law != LAW_COULOMB;
-    Sums sums = {.path = fabsl(travel(w, &w->along, a, b)), .end = delta};
+    const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
+    const bool rates = march->motion != STICKS, bounded = has_bound(w);
+    Panel p = {.sums = {.end = delta}};
     At at[MOST_STAGES];
-    Real r[MOST_STAGES] = {0}, rate[MOST_STAGES] = {0}, at_delta[MOST_STAGES] = {0};
+    Vector change[MOST_STAGES] = {{0}};
+    Real angle[MOST_STAGES];
+    const Vector start = along(delta, 1.0L);
+    w->panels += 1.0L;
+    for (int i = 0; i < n; i++) {
+        at[i] = scene_at(w, a + size * rule->node[i], rates);
+    }
+    if (slips && !turn_over(w, at, size, start, angle)) {
+        p.sums.end.x = NAN; // agrees with nothing
+        return p;
+    }
+    if (bristle && !slips && !w->elastic) {
+        collocate(w, at, size, delta, change);
+    }
+    Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
     for (int i = 0; i < n; i++) {
         const Real t = a + size * rule->node[i];
-        at[i] = scene_at(w, t, motion->slip != 0);
-        if (motion->slip) {
-            at_delta[i] = (Real)motion->slip * bound(w, &at[i], false);
-            rate[i] = (Real)motion->slip * bound_rate(w, &at[i], false);
+        const Vector V = at[i].V;
+        Vector rate = {0}, spring = {0};
+        if (slips) {
+            const Vector now = turned(start, angle[i]), across = {-now.y, now.x};
+            const Real lies = bound(w, &at[i], false);
+            change[i] = plus(scaled(lies, now), -1.0L, delta);
+            rate = plus(scaled(bound_rate(w, &at[i], false), now), lies * turn(w, &at[i], now), across);
         } else if (bristle && w->elastic) {
-            at_delta[i] = delta + travel(w, &w->along, a, t);
-            rate[i] = at[i].V;
+            change[i] = travel(w, a, t);
+            rate = V;
         } else if (bristle) {
-            r[i] = relaxation(w, &at[i], motion->sign);
+            const Real r = relaxation(w, &at[i]);
+            rate = plus(V, -r, plus(delta, 1.0L, change[i]));
+            relaxed += size * rule->weight[i] * r;
         }
-    }
-    sums.change = motion->slip            ? at_delta[last] - delta
-                  : bristle && w->elastic ? travel(w, &w->along, a, b)
-                                          : 0.0L;
-    if (bristle && !motion->slip && !w->elastic) {
-        sums.change = collocate(w, at, r, size, delta, at_delta);
-        for (int i = 0; i < n; i++) {
-            rate[i] = at[i].V - r[i] * at_delta[i];
+        const Vector now = plus(delta, 1.0L, change[i]);
+        if (bristle) {
+            spring = scaled(at[i].sigma, now);
+            longest = fmaxl(longest, length_of(now));
+            fastest = fmaxl(fastest, length_of(rate));
+        } else if (w->scene.law == LAW_COULOMB) {
+            spring = coulomb_force(w, &at[i], t);
+        }
+        account(w, &p.sums, spring, rate, V, size * rule->weight[i]);
+        if (bounded) {
+            p.sign[i + 1] = signs_at(march, &at[i], now);
         }
     }
     if (bristle) {
-        Real relaxed = 0.0L, longest = fabsl(delta), fastest = 0.0L;
-        for (int i = 0; i < n; i++) {
-            relaxed += size * rule->weight[i] * r[i];
-            longest = fmaxl(longest, fabsl(at_delta[i]));
-            fastest = fmaxl(fastest, fabsl(rate[i]));
-        }
-        sums.end = at_delta[last];
-        sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
-        sums.length = fmaxl(longest * expl(-relaxed), fmaxl(fabsl(sums.end), at[last].g / at[last].sigma));
+        p.sums.change = change[last];
+        p.sums.end = plus(delta, 1.0L, change[last]);
+        p.sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
+        p.sums.length = fmaxl(longest * expl(-relaxed), at[last].g / at[last].sigma);
+        p.sums.impulse = plus(p.sums.impulse, w->scene.sigma_1, p.sums.change);
+        p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
-    for (int i = 0; i < n; i++) {
-        const Real spring = bristle                       ? at[i].sigma * at_delta[i]
-                            : w->scene.law == LAW_COULOMB ? (Real)motion->sign * at[i].coulomb
-                                                          : 0.0L;
-        account(w, &sums, spring, rate[i], at[i].V, size * rule->weight[i]);
+    if (bounded) {
+        const At first = scene_at(w, a, rates);
+        p.sign[0] = signs_at(march, &first, delta);
     }
-    sums.impulse += w->scene.sigma_1 * sums.change;
-    sums.force += w->scene.sigma_1 * fabsl(sums.change);
-    w->panels += 1.0L;
-    return sums;
+    return p;
 }
 
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
+static const Real LEAST = 1e-16L; // of the force of the step: what errors of a panel are left alone
 static const int DEEPEST = 110;
-static const Real MOST_PANELS = 1e6L; // more are not taken, and the step is not known
-
-// An error in a panel is left alone when it is less than this share of the panel's mean force acting over the
-// whole step.
-static const Real LEAST = 1e-16L;
+static const Real MOST_PANELS = 1e6L,
+                  MOST_OF_SETTLING = 1e5L; // more are not taken, and the result is not known
 
 // Whether a panel of this size [s] and its halves give the same.
 static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real share = w->fineness == 1 ? 1.0L : 0.01L, same = share * AGREE;
     const Real force = share * LEAST * two->force / size;
-    const Real impulse = same * two->force + force * w->h,
-               energy = same * two->power + force * (w->top * w->h + two->length);
-    return fabsl(one->end - two->end) <= same * two->length + two->blur &&
-           fabsl(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
-           fabsl(one->heat - two->heat) <= energy;
+    const Real impulse = same * two->force + force * w->h;
+    const Real energy = same * two->power + force * (w->top * w->h + two->length);
+    return length_of(plus(one->end, -1.0L, two->end)) <= same * two->length + two->blur &&
+           length_of(plus(one->impulse, -1.0L, two->impulse)) <= impulse &&
+           fabsl(one->work - two->work) <= energy && fabsl(one->heat - two->heat) <= energy;
+}
+
+// Whether a sign that is positive at three nodes may be negative between them: by the parabola through them.
+static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
+    const Real left = (y_1 - y_0) / (x[1] - x[0]), right = (y_2 - y_1) / (x[2] - x[1]);
+    const Real curve = (right - left) / (x[2] - x[0]), least = fminl(y_0, fminl(y_1, y_2));
+    const Real lowest = 0.5L * (x[0] + x[1] - left / curve);
+    const Real low = y_0 + (lowest - x[0]) * (left + curve * (lowest - x[1]));
+    return y_0 > rounding && curve > 0.0L && lowest > x[0] && lowest < x[2] && low < 0.5L * least &&
+           least - low > rounding;
+}
+
+// Whether the motion is over at node k, the start for 0. Beyond its bound by a double's rounding, and on its way inside, it is not.
+static bool is_over(const Panel* p, int k) {
+    const Real start = p->sign[0].room, room = p->sign[k == 0 ? 1 : k].room;
+    const bool rounded = start > -10.0L * AS_DOUBLE * p->sums.length;
+    return p->sign[k].lead < 0.0L || (p->sign[k].room < 0.0L && !(rounded && room >= start));
+}
+
+// Whether a motion may end unseen in a panel; where it has just begun a sign is 0 and rises.
+static bool hides(const World* w, const Panel* p) {
+    const int n = w->rule->stages;
+    Real x[MOST_STAGES + 1] = {0.0L};
+    for (int k = 0; k < n; k++) {
+        x[k + 1] = w->rule->node[k];
+    }
+    const Real of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
+    for (int k = 0; has_bound(w) && k + 2 <= n && !is_over(p, k + 2); k++) {
+        const Signs* s = &p->sign[k];
+        if ((s->room < INFINITY && dips(&x[k], s[0].room, s[1].room, s[2].room, of_room)) ||
+            (s->lead < INFINITY && dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static bool is_smallest(const World* w, Real a, Real b, int depth) {
@@ -173,211 +323,188 @@ static bool is_smallest(const World* w, Real a, Real b, int depth) {
     return depth >= DEEPEST || w->panels > MOST_PANELS || !(middle > a && middle < b);
 }
 
-// The state of a march through the step.
-typedef struct {
-    World* w;
-    Sums sums;
-    Real delta;
-    int slip;      // side along whose bound the bristle slips, or 0
-    bool slipped;  // at any time
-    bool watch[2]; // whether the bound of the side +1, -1 may be met
-    int met;       // the side that was met, or 0
-    Real met_at;   // when
-} March;
-
-static int side_met(const March* march, const Motion* motion, Real t, Real delta) {
-    for (int side = 1; side >= -1 && !motion->slip; side -= 2) {
-        if (march->watch[side < 0] && gap(march->w, t, delta, side, march->slip == 0) < 0.0L) {
-            return side;
-        }
-    }
-    return 0;
-}
-
-static void commit(March* march, const Sums* part) {
-    add(&march->sums, part);
-    march->delta = part->end;
-}
-
-// A free bristle on its way to the bound of a side.
+// A motion on its way to its end.
 typedef struct {
     const March* march;
-    const Motion* motion;
-    Real from; // s
-    int side;
+    Real from;
+    bool at_bound;
 } Way;
 
 static Real beyond(const void* context, Real t) {
-    const Way* way = context;
-    World* w = way->march->w;
-    const Real start = way->march->delta;
-    const Real delta = t > way->from ? panel(w, way->motion, way->from, t, start).end : start;
-    return -gap(w, t, delta, way->side, way->march->slip == 0);
+    const Way* to = context;
+    const Panel p = panel(to->march, to->from, t, to->march->delta);
+    const Signs* last = &p.sign[to->march->w->rule->stages];
+    return -(to->at_bound ? last->room : last->lead);
 }
 
-static void go_over(March* march, const Motion* motion, Real a, Real b);
+// Over a part that is accurate, up to the motion's end if that is in it.
+static void commit(March* march, Real a, Real b, const Panel* p) {
+    const int n = march->w->rule->stages;
+    int k = has_bound(march->w) ? 0 : n + 1;
+    while (k <= n && !is_over(p, k)) {
+        k++;
+    }
+    Panel part = *p;
+    if (k <= n) {
+        march->met = true;
+        march->at_bound = p->sign[k].room < 0.0L;
+        const Way to = {march, a, march->at_bound};
+        const Real low = k <= 1 ? a : a + (b - a) * march->w->rule->node[k - 2];
+        march->met_at = k == 0 ? a : crossing(beyond, &to, low, a + (b - a) * march->w->rule->node[k - 1]);
+        if (!(march->met_at > a)) {
+            return;
+        }
+        part = panel(march, a, march->met_at, march->delta);
+    }
+    add(&march->sums, &part.sums);
+    march->delta = part.sums.end;
+}
 
-// Over [a, b], of which one is the sum of a single panel, by halves until they agree with the whole; a
-// bristle that is free stops at a bound.
-static void go_on(March* march, const Motion* motion, Real a, Real b, const Sums* one, int depth) {
+// Over [a, b], of which one is a single panel, by halves until they agree with the whole; to the motion's end.
+static void go_on(March* march, Real a, Real b, const Panel* one, int depth) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
-    const Sums left = panel(w, motion, a, middle, march->delta);
-    const Sums right = panel(w, motion, middle, b, left.end);
-    Sums two = left;
-    add(&two, &right);
-    if (!agree(w, one, &two, b - a) && !is_smallest(w, a, b, depth)) {
-        go_on(march, motion, a, middle, &left, depth + 1);
+    const Panel left = panel(march, a, middle, march->delta);
+    const Panel right = panel(march, middle, b, left.sums.end);
+    Sums two = left.sums;
+    add(&two, &right.sums);
+    const bool good = agree(w, &one->sums, &two, b - a) && !hides(w, &left) && !hides(w, &right);
+    if (!good && !is_smallest(w, a, b, depth)) {
+        go_on(march, a, middle, &left, depth + 1);
         if (!march->met) {
-            const Sums again = motion->slip ? right : panel(w, motion, middle, b, march->delta);
-            go_on(march, motion, middle, b, &again, depth + 1);
+            const Panel again = panel(march, middle, b, march->delta);
+            go_on(march, middle, b, &again, depth + 1);
         }
         return;
     }
-    int side = side_met(march, motion, middle, left.end);
-    if (!side) {
-        commit(march, &left);
-        side = side_met(march, motion, b, right.end);
-        a = middle;
-        if (!side) {
-            commit(march, &right);
-            return;
-        }
-    } else {
-        b = middle;
+    commit(march, a, middle, &left);
+    if (!march->met) {
+        commit(march, middle, b, &right);
     }
-    const Way way = {march, motion, a, side};
-    const Real met_at = beyond(&way, a) >= 0.0L ? a : crossing(beyond, &way, a, b);
-    march->watch[0] = march->watch[1] = false;
-    if (met_at > a) {
-        go_over(march, motion, a, met_at);
-    }
-    march->met = side;
-    march->met_at = met_at;
-}
-
-static void go_over(March* march, const Motion* motion, Real a, Real b) {
-    const Sums one = panel(march->w, motion, a, b, march->delta);
-    go_on(march, motion, a, b, &one, 0);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Cuts of the step
 // ---------------------------------------------------------------------------------------------------------------------
 
+// A part of the step; empty: from = to.
+typedef struct {
+    Real from, to;
+} Part;
+
+static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
+
+// Where the contact is closed.
+static Part closed_part(const World* w) {
+    const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
+    if (at_start == at_end) {
+        return (Part){at_start ? w->h : 0.0L, w->h};
+    }
+    const Real t = crossing(openness, w, 0.0L, w->h);
+    return at_start ? (Part){t, w->h} : (Part){0.0L, t};
+}
+
+typedef struct {
+    Real* time;
+    size_t count, room;
+} Cuts;
+
+static void* memory(void* old, size_t size) {
+    void* found = realloc(old, size);
+    if (found == NULL) {
+        abort();
+    }
+    return found;
+}
+
+static void cut(Cuts* cuts, Real t) {
+    if (cuts->count == cuts->room) {
+        cuts->room = cuts->room ? 2 * cuts->room : 256;
+        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
+    }
+    cuts->time[cuts->count++] = t;
+}
+
+static int by_time(const void* a, const void* b) {
+    const Real x = *(const Real*)a, y = *(const Real*)b;
+    return (x > y) - (x < y);
+}
+
+// Sorts them, without repetition, inside the part.
+static void tidy(Cuts* cuts, Part part) {
+    qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
+    size_t kept = 0;
+    for (size_t k = 0; k < cuts->count; k++) {
+        const Real t = cuts->time[k];
+        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
+            cuts->time[kept++] = t;
+        }
+    }
+    cuts->count = kept;
+}
+
 typedef struct {
     const World* w;
-    Real level; // m/s, of V
-    int side;   // of a bound
-    bool sticks;
+    Real level; // m2/s2
+    int order;
 } Zero;
 
-static Real velocity_less(const void* context, Real t) {
+static Real square_less(const void* context, Real t) {
     const Zero* zero = context;
-    return velocity(zero->w, &zero->w->along, t) - zero->level;
+    const Vector V = velocity(zero->w, t, 0);
+    return dot(V, V) - zero->level;
 }
 
-static Real outward_of(const void* context, Real t) {
+// The derivative of half of V^2, of order 1, 2 or 3.
+static Real change_of_square(const void* context, Real t) {
     const Zero* zero = context;
-    return outward(zero->w, t, zero->side, zero->sticks);
+    Vector V[4];
+    for (int k = 0; k <= zero->order; k++) {
+        V[k] = velocity(zero->w, t, k);
+    }
+    return zero->order == 1   ? dot(V[0], V[1])
+           : zero->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
+                              : 3.0L * dot(V[1], V[2]) + dot(V[0], V[3]);
 }
 
-// The zeros of dV/dt, the turns of the vibration, and equal pieces in between.
-static void cut_at_bends(const World* w, Cuts* cuts) {
-    const ReferenceScene* s = &w->scene;
-    const int pieces = 4 * w->fineness;
-    if (!vibrates(s)) {
-        return;
-    }
-    const long first = (long)floorl(w->theta_0 / (2.0L * PI)) - 1;
-    const long last = (long)ceill((w->theta_0 + w->omega * w->h) / (2.0L * PI)) + 1;
-    const Real ratio = s->V_1 == 0.0 ? 2.0L : s->V_rate / (s->V_1 * w->omega);
-    for (long k = first; k <= last; k++) {
-        for (int j = 0; j < pieces; j++) {
-            cut(cuts, (2.0L * PI * ((Real)k + (Real)j / (Real)pieces) - w->theta_0) / w->omega);
-        }
-        if (fabsl(ratio) < 1.0L) {
-            const Real angle = asinl(ratio);
-            cut(cuts, (2.0L * PI * (Real)k + angle - w->theta_0) / w->omega);
-            cut(cuts, (2.0L * PI * (Real)k + PI - angle - w->theta_0) / w->omega);
-        }
-    }
-}
-
-// Where V is a multiple of V_S, and 0; V is monotone between the cuts so far.
-static void cut_at_velocities(const World* w, Cuts* cuts) {
-    const size_t count = cuts->count, levels = w->excess == 0.0L ? 1 : LEVELS;
+static void cut_where(Cuts* cuts, Part part, Function* function, const Zero* zero) {
+    const size_t count = cuts->count;
     for (size_t k = 0; k + 1 < count; k++) {
         const Real a = cuts->time[k], b = cuts->time[k + 1];
-        for (size_t m = 0; m < 2 * levels; m++) {
-            const Zero zero = {.w = w, .level = (m % 2 ? 1.0L : -1.0L) * MULTIPLES[m / 2] * w->scene.V_S};
-            if (velocity_less(&zero, a) * velocity_less(&zero, b) < 0.0L) {
-                cut(cuts, crossing(velocity_less, &zero, a, b));
-            }
+        if (function(zero, a) * function(zero, b) < 0.0L) {
+            cut(cuts, crossing(function, zero, a, b));
         }
     }
+    tidy(cuts, part);
 }
 
-// Cuts at the times between a and b at which a bristle may leave its bound, as the samples at the ends of
-// cells show. A push that passes zero only just, between two samples, counts too: the extreme next to a
-// sample is searched.
-static void cut_at_zeros(const Zero* zero, Cuts* cuts, Real a, Real b) {
-    const int cells = 12 * zero->w->fineness;
-    Real t[3] = {a, a, a}, value[3] = {0.0L, 0.0L, outward_of(zero, a)};
-    for (int k = 1; k <= cells; k++) {
-        t[0] = t[1], t[1] = t[2], value[0] = value[1], value[1] = value[2];
-        t[2] = k == cells ? b : 0.5L * (a + b) - 0.5L * (b - a) * cosl(PI * (Real)k / (Real)cells);
-        value[2] = outward_of(zero, t[2]);
-        if (value[1] * value[2] < 0.0L) {
-            cut(cuts, crossing(outward_of, zero, t[1], t[2]));
-            continue;
-        }
-        Real low = t[0], high = t[2];
-        const Real size = fabsl(value[1]);
-        const bool least = value[1] * value[0] > 0.0L && size <= fabsl(value[0]) && size <= fabsl(value[2]);
-        for (int i = 0; i < 60 && least; i++) { // golden section
-            const Real x = low + 0.381966L * (high - low), y = high - 0.381966L * (high - low);
-            const Real at_x = outward_of(zero, x), at_y = outward_of(zero, y);
-            if (at_x * value[1] < 0.0L || at_y * value[1] < 0.0L) {
-                const Real inside = at_x * value[1] < 0.0L ? x : y;
-                cut(cuts, crossing(outward_of, zero, low, inside));
-                cut(cuts, crossing(outward_of, zero, inside, high));
-                break;
-            }
-            *(fabsl(at_x) < fabsl(at_y) ? &high : &low) = fabsl(at_x) < fabsl(at_y) ? y : x;
-        }
-    }
-}
-
-// Of the part in which the contact is closed, or open.
-static Cuts all_cuts(const World* w, Closed part) {
+// Equal pieces of a period, or of a ramp; where a load may fall or rise by decades; the extremes of |V|, and multiples of V_S.
+static Cuts all_cuts(const World* w, Part part) {
+    static const Real OF_V_S[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
     Cuts cuts = {0};
     const ReferenceScene* s = &w->scene;
-    const Real span = part.to - part.from;
+    const Real span = part.to - part.from, pieces = w->ramp ? 32.0L : 8.0L * s->f;
+    const Real first = w->ramp ? 0.0L : w->theta_0 / w->omega; // s, since the start of the period
     cut(&cuts, part.from);
     cut(&cuts, part.to);
-    cut_at_bends(w, &cuts);
-    if (!w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || s->d_rate != 0.0)) {
-        // a load may fall by decades toward the end, or rise by as much from the start
-        for (int k = 1; k <= 60; k += 2) {
-            cut(&cuts, part.from + ldexpl(span, -k));
-            cut(&cuts, part.to - ldexpl(span, -k));
-        }
+    for (Real k = ceill(first * pieces); (w->ramp || vibrates(s)) && k < (first + w->h) * pieces; k += 1.0L) {
+        cut(&cuts, k / pieces - first);
+    }
+    for (int k = 1; k <= 60 && !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
+         k += 2) {
+        cut(&cuts, part.from + ldexpl(span, -k));
+        cut(&cuts, part.to - ldexpl(span, -k));
     }
     tidy(&cuts, part);
-    cut_at_velocities(w, &cuts);
-    tidy(&cuts, part);
-    const size_t count = cuts.count;
-    const int kinds = w->excess != 0.0L && w->elastic
-                          ? 4
-                          : 2; // of both sides; the bound that slips, then the one that sticks
-    for (size_t k = 0; w->bounded && !w->open && k + 1 < count; k++) {
-        for (int kind = 0; kind < kinds; kind++) {
-            const Zero zero = {.w = w, .side = kind % 2 ? 1 : -1, .sticks = kind >= 2};
-            cut_at_zeros(&zero, &cuts, cuts.time[k], cuts.time[k + 1]);
-        }
+    for (int order = 3; order >= 1; order--) { // between the zeros of one there is but one of the next
+        const Zero zero = {.w = w, .order = order};
+        cut_where(&cuts, part, change_of_square, &zero);
     }
-    tidy(&cuts, part);
+    for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
+        const Real V = OF_V_S[m] * s->V_S;
+        const Zero zero = {.w = w, .level = V * V};
+        cut_where(&cuts, part, square_less, &zero);
+    }
     return cuts;
 }
 
@@ -385,122 +512,178 @@ static Cuts all_cuts(const World* w, Closed part) {
 // The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-// The bristle meets its bound. One that stuck drops to the kinetic bound: the limit of a fast motion, so the
-// damping does work.
-static void break_away(March* march, Real t, int side) {
-    const At at = scene_at(march->w, t, false);
-    const Real from = march->delta, to = (Real)side * bound(march->w, &at, false);
-    const Real damping = march->w->scene.sigma_1 * (to - from);
-    march->delta = to;
-    march->slip = side;
-    march->slipped = true;
-    march->sums.impulse += damping;
-    march->sums.work += damping * at.V;
-    march->sums.heat += damping * at.V + 0.5L * at.sigma * (from - to) * (from + to);
-}
-
-static void stretch(March* march, Real a, Real b) {
+// How the bristle begins a part. A push that is just 0 counts by what follows: the limit of a ramp of V, or of the bound, goes
+// on slipping. If nothing follows either, it sticks.
+static void begin(March* march, Real a, Real b) {
     World* w = march->w;
-    const Real middle = 0.5L * (a + b);
-    Motion motion = {.sign = sign_of(velocity(w, &w->along, middle))};
-    bool arrived = false; // at the bound just now
-    int stays = 0;        // where V is 0 it may break away and stick without end
-    while (a < b) {
-        if (march->slip && !(outward(w, middle, march->slip, false) > 0.0L)) {
-            march->slip = 0; // it sticks, or leaves the bound
-        }
-        const bool blind = stays > 4;
-        const Real to = blind && a + 1e-12L * (b - a) > a ? a + 1e-12L * (b - a) : b;
-        const int slip = march->slip;
-        march->slipped = march->slipped || slip;
-        march->met = 0;
-        for (int side = 1; side >= -1; side -= 2) {
-            march->watch[side < 0] = !blind && w->bounded && !w->open && !w->open_ends &&
-                                     (slip ? side == slip : outward(w, middle, side, true) > 0.0L);
-        }
-        // on the bound, or catching up
-        const bool lies =
-            slip && (arrived || gap(w, a, march->delta, slip, false) <= 1e-18L * fabsl(march->delta));
-        motion.slip = lies ? slip : 0;
-        go_over(march, &motion, a, to);
-        stays = march->met && !(march->met_at > a) ? stays + 1 : 0;
-        a = march->met ? march->met_at : to;
-        arrived = march->met != 0;
-        if (march->met && !slip) {
-            break_away(march, a, march->met);
-        }
+    march->motion = STICKS;
+    if (!has_bound(w)) {
+        return;
     }
+    const At at = scene_at(w, a, true), later = scene_at(w, 0.5L * (a + b), true);
+    const Real push = outward(w, &at, march->delta);
+    const Real rounding = ROUNDING * (w->top + fabsl(bound_rate(w, &at, false)));
+    const bool pushed = push > rounding || (push >= -rounding && outward(w, &later, march->delta) > 0.0L);
+    const bool lies = length_of(march->delta) >= (1.0L - (w->ramp ? 0.0L : AS_DOUBLE)) * bound(w, &at, false);
+    if (pushed && lies && (march->broke || !has_static(w))) {
+        march->motion = SLIPS;
+    } else if (march->broke && (pushed || w->ramp)) {
+        march->motion = CATCHES;
+    }
+    march->broke = march->broke && march->motion != STICKS;
+    march->slipped = march->slipped || march->motion != STICKS;
 }
 
-static void march_part(March* march, Closed part, bool open) {
+// Break-away: it drops along its direction, and the damping feels it.
+static void break_away(March* march, const At* at) {
+    const World* w = march->w;
+    const Vector from = march->delta, to = along(from, bound(w, at, false));
+    const Vector damping = scaled(w->scene.sigma_1, plus(to, -1.0L, from));
+    const Real lost = dot(plus(from, -1.0L, to), plus(from, 1.0L, to));
+    march->sums.impulse = plus(march->sums.impulse, 1.0L, damping);
+    march->sums.work += dot(damping, at->V);
+    march->sums.heat += dot(damping, at->V) + 0.5L * at->sigma * lost;
+    march->delta = to;
+    march->broke = true;
+}
+
+// The motion has come to its end: what follows. On a ramp what has broken away does not stick again.
+static void change_motion(March* march) {
+    const World* w = march->w;
+    const At at = scene_at(w, march->met_at, true);
+    bool slips = false;
+    if (march->at_bound) {
+        if (has_static(w) && !march->broke) {
+            break_away(march, &at);
+        } else {
+            march->delta = along(march->delta, bound(w, &at, false));
+        }
+        slips = outward(w, &at, march->delta) > 0.0L;
+        march->slipped = true;
+    }
+    march->broke = march->broke && (slips || w->ramp);
+    march->motion = slips ? SLIPS : march->broke ? CATCHES : STICKS;
+}
+
+static void march_part(March* march, Part part, bool open) {
+    World* w = march->w;
     if (!(part.to > part.from)) {
         return;
     }
-    march->w->open = open;
-    Cuts cuts = all_cuts(march->w, part);
+    w->open = open;
+    Cuts cuts = all_cuts(w, part);
+    begin(march, cuts.time[0], cuts.time[1]);
     for (size_t k = 0; k + 1 < cuts.count; k++) {
-        stretch(march, cuts.time[k], cuts.time[k + 1]);
+        Real a = cuts.time[k];
+        for (const Real b = cuts.time[k + 1]; a < b && w->panels <= MOST_PANELS;) {
+            const Panel one = panel(march, a, b, march->delta);
+            march->met = false;
+            go_on(march, a, b, &one, 0);
+            a = march->met ? march->met_at : b;
+            if (march->met) {
+                change_motion(march);
+            }
+        }
     }
     free(cuts.time);
 }
 
-static void march_over(March* march) {
-    World* w = march->w;
-    const Closed part = closed_part(w);
-    march_part(march, (Closed){0.0L, part.from}, true);
-    // without a load there is no rate: the last 1e-18 of the way to it is left out
-    const Real edge = ldexpl(part.to - part.from, -58);
-    march_part(
-        march,
-        (Closed){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
-        false);
+// What a march hands on.
+typedef struct {
+    Vector delta;
+    bool broke;
+} State;
+
+static State state_of(const March* march) { return (State){march->delta, march->broke}; }
+
+static March march_from(World* w, State state) {
+    March march = {.w = w, .delta = state.delta, .broke = state.broke};
+    const Part part = closed_part(w);
+    const Real edge = ldexpl(part.to - part.from, -58); // what has no load has no rate
+    march_part(&march, (Part){0.0L, part.from}, true);
+    march_part(&march,
+               (Part){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
+               false);
     if (part.to < w->h) {
         const bool slides = w->scene.contact == CONTACT_CONSTANT && w->scene.law != LAW_COULOMB;
-        march->sums.heat += slides ? 0.5L * w->scene.contact_sigma * march->delta * march->delta : 0.0L;
-        march->delta = 0.0L;
-        march->slip = 0;
+        march.sums.heat += slides ? 0.5L * w->scene.contact_sigma * dot(march.delta, march.delta) : 0.0L;
+        march.delta = (Vector){0};
+        march.broke = false;
     }
-    march_part(march, (Closed){part.to, w->h}, true);
+    march_part(&march, (Part){part.to, w->h}, true);
     w->open = false;
+    return march;
+}
+
+// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
+static Real jump(const ReferenceScene* before, const World* w, State* state) {
+    const ReferenceScene* s = &w->scene;
+    const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
+    const bool was_open = before && is_open(&past, 0.0L); // at the very start something held the bristle
+    if (is_open(w, 0.0L) || was_open) {
+        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !was_open;
+        const Real heat = slides ? 0.5L * s->contact_sigma * dot(state->delta, state->delta) : 0.0L;
+        *state = (State){0};
+        return heat;
+    }
+    if (!w->bounded) {
+        return 0.0L;
+    }
+    if (before != NULL) {
+        World ramp = ramp_between(&past, w);
+        const March march = march_from(&ramp, *state);
+        *state = (State){march.delta, march.broke && has_static(w)};
+        return march.sums.heat;
+    }
+    const At at = scene_at(w, 0.0L, false);
+    const Real length = length_of(state->delta), lies = bound(w, &at, false);
+    if (length <= (1.0L + 1e-11L) * bound(w, &at, !state->broke)) {
+        return 0.0L;
+    }
+    *state = (State){along(state->delta, lies), has_static(w)};
+    return 0.5L * at.sigma * (length - lies) * (length + lies);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Many equal periods
 // ---------------------------------------------------------------------------------------------------------------------
 
-static March one_period(World* w, Real delta, int slip, bool open_ends) {
-    March march = {.w = w, .delta = delta, .slip = slip};
-    w->open_ends = open_ends;
-    march_over(&march);
-    w->open_ends = false;
-    return march;
-}
-
-// As long as it touches no bound, a period maps delta in an affine way, and its sums are polynomials of
-// degree 2 in delta: it multiplies (1, x, x^2, impulse, work, heat, path) by a matrix, x = delta / unit.
-enum { ROWS = 7, POWERS = 50 };
+// As long as it touches no bound, a period maps delta in an affine way, the same along and across, and its sums are
+// polynomials of degree 2 in delta: it multiplies (1, x, y, x^2 + y^2, impulse, work, heat, path) by a matrix, x = delta / unit.
+enum { ROWS = 9, POWERS = 50 };
 typedef struct {
     Real m[ROWS][ROWS];
 } Map;
 
 static Map find_map(World* w, Real unit) {
-    const bool drifts_not = w->elastic && w->scene.V == 0.0;
-    Map map = {0};
-    Real way[3], of[3][4];
-    for (int k = 0; k < 3; k++) {
-        const Sums sums = one_period(w, (Real)(k - 1) * unit, 0, true).sums;
-        way[k] = drifts_not ? 0.0L : sums.change / unit;
-        of[k][0] = sums.impulse, of[k][1] = sums.work, of[k][2] = sums.heat, of[k][3] = sums.path;
+    static const Vector AT[4] = {{0.0L, 0.0L}, {1.0L, 0.0L}, {-1.0L, 0.0L}, {0.0L, 1.0L}};
+    Map map = {.m = {{1.0L}}};
+    Real of[4][5], way[4];
+    Vector shift = {0};
+    w->open_ends = true;
+    for (int k = 0; k < 4; k++) {
+        const March march = march_from(w, (State){scaled(unit, AT[k]), false});
+        const Sums* s = &march.sums;
+        shift = k == 0 ? scaled(1.0L / unit, s->change) : shift;
+        way[k] = s->change.x / unit;
+        of[k][0] = s->impulse.x, of[k][1] = s->impulse.y, of[k][2] = s->work, of[k][3] = s->heat;
+        of[k][4] = s->path;
     }
-    const Real shift = way[1], kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[2] - way[0]));
-    map.m[0][0] = 1.0L;
-    map.m[1][0] = shift, map.m[1][1] = kept;
-    map.m[2][0] = shift * shift, map.m[2][1] = 2.0L * shift * kept, map.m[2][2] = kept * kept;
-    for (int i = 0; i < 4; i++) {
-        map.m[3 + i][0] = of[1][i];
-        map.m[3 + i][1] = 0.5L * (of[2][i] - of[0][i]);
-        map.m[3 + i][2] = 0.5L * (of[2][i] + of[0][i]) - of[1][i];
-        map.m[3 + i][3 + i] = 1.0L;
+    w->open_ends = false;
+    shift.x = w->elastic && w->drive[0].V == 0.0L ? 0.0L : shift.x; // it does not drift
+    shift.y = w->elastic && w->drive[1].V == 0.0L ? 0.0L : shift.y;
+    const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
+    map.m[1][0] = shift.x, map.m[1][1] = kept;
+    map.m[2][0] = shift.y, map.m[2][2] = kept;
+    map.m[3][0] = dot(shift, shift), map.m[3][1] = 2.0L * shift.x * kept, map.m[3][2] = 2.0L * shift.y * kept;
+    map.m[3][3] = kept * kept;
+    for (int i = 0; i < 5; i++) {
+        Real* row = map.m[4 + i];
+        row[0] = of[0][i];
+        row[1] = 0.5L * (of[1][i] - of[2][i]);
+        row[3] = 0.5L * (of[1][i] + of[2][i]) - of[0][i];
+        row[2] = of[3][i] - of[0][i] - row[3];
+        row[4 + i] = 1.0L;
     }
     return map;
 }
@@ -517,16 +700,21 @@ static Map twice(const Map* map) {
     return two;
 }
 
-// A period, and its map's powers of 1, 2, 4 ..
+// A period, and its map's powers of 1, 2, 4 .. when they are needed
 typedef struct {
     World world;
     Real unit; // m, of x
+    bool mapped;
     Map power[POWERS];
 } Period;
 
 // delta after n periods that touch no bound; adds their sums.
-static Real after_untouched(const Period* p, Real delta, Real n, Sums* sums) {
-    Real x = delta / p->unit;
+static Vector after_untouched(Period* p, Vector delta, Real n, Sums* sums) {
+    for (int k = 0; k < POWERS && !p->mapped; k++) {
+        p->power[k] = k == 0 ? find_map(&p->world, p->unit) : twice(&p->power[k - 1]);
+    }
+    p->mapped = true;
+    Vector x = scaled(1.0L / p->unit, delta);
     for (int k = 0; k < POWERS; k++) {
         if (fmodl(floorl(ldexpl(n, -k)), 2.0L) == 0.0L) {
             continue;
@@ -534,23 +722,23 @@ static Real after_untouched(const Period* p, Real delta, Real n, Sums* sums) {
         Real of[ROWS];
         for (int i = 0; i < ROWS; i++) {
             const Real* row = p->power[k].m[i];
-            of[i] = row[0] + x * (row[1] + x * row[2]);
+            of[i] = row[0] + x.x * row[1] + x.y * row[2] + dot(x, x) * row[3];
         }
-        const Sums part = {.impulse = of[3], .work = of[4], .heat = of[5], .path = of[6]};
+        const Sums part = {.impulse = {of[4], of[5]}, .work = of[6], .heat = of[7], .path = of[8]};
         add_times(sums, &part, 1.0L);
-        x = of[1];
+        x = (Vector){of[1], of[2]};
     }
-    return x * p->unit;
+    return scaled(p->unit, x);
 }
 
 // Whether period number n from delta on touches a bound, if none before it does.
-static bool touches(Period* p, Real delta, Real n) {
+static bool touches(Period* p, Vector delta, Real n) {
     Sums unused = {0};
-    return one_period(&p->world, after_untouched(p, delta, n - 1.0L, &unused), 0, false).slipped;
+    return march_from(&p->world, (State){after_untouched(p, delta, n - 1.0L, &unused), false}).slipped;
 }
 
 // How many periods from delta touch no bound, at the most n, or 2^(POWERS - 1); the first one touches none.
-static Real count_untouched(Period* p, Real delta, Real n) {
+static Real count_untouched(Period* p, Vector delta, Real n) {
     Real low = 1.0L, high = fminl(n, ldexpl(1.0L, POWERS - 1));
     if (!touches(p, delta, high)) {
         return high;
@@ -566,193 +754,227 @@ static Real count_untouched(Period* p, Real delta, Real n) {
     return low;
 }
 
-enum { MOST_CYCLE = 4096 };
+enum { MOST_CYCLE = 4096, CYCLE_BEFORE_NEWTON = 32 };
 
 typedef struct {
-    Real delta;
-    int slip;
+    State state;
     Real count; // periods before it
     Sums sums;  // up to it
 } Mark;
 
-// Goes n periods on, INFINITY for ever: then *cycle is the sums of the periods that repeat at last, *length their number, and
-// the state that at the end of one that slips, that of
-// the smallest deflection. False where none repeat.
-static bool go_periods(const World* of, Real* delta, int* slip, Real n, Sums* sums, Sums* cycle,
-                       Real* length) {
-    Period p = {.world = *of, .unit = 1.0L};
-    World* w = &p.world;
-    if (w->scene.law != LAW_COULOMB && !is_open(w, 0.0L)) {
-        const At at = scene_at(w, 0.0L, false);
-        p.unit = bound(w, &at, true);
+static bool are_equal(State a, State b, Real unit) {
+    return a.broke == b.broke &&
+           length_of(plus(a.delta, -1.0L, b.delta)) <= 3e-17L * (unit + length_of(b.delta));
+}
+
+// A length [m] of deflections.
+static Real unit_of(const World* w) {
+    if (w->scene.law == LAW_COULOMB || is_open(w, 0.0L)) {
+        return 1.0L;
     }
-    Mark* marks = memory(NULL, MOST_CYCLE * sizeof *marks);
+    const At at = scene_at(w, 0.0L, false);
+    return bound(w, &at, true);
+}
+
+// Goes n periods on, INFINITY for ever: then *mean is the mean force of the periods that repeat at last, and the state that at
+// the end of one that slips, that of the smallest deflection. False if none of the first most that slip repeat.
+static bool go_periods(const World* of, State* state, Real n, int most, Sums* sums, Vector* mean) {
+    Period* p = memory(NULL, sizeof *p);
+    *p = (Period){.world = *of, .unit = unit_of(of)};
+    World* w = &p->world;
+    Mark* marks = memory(NULL, (size_t)most * sizeof *marks);
     int count = 0;
     bool known = true;
-    for (int k = 0; k < POWERS; k++) {
-        p.power[k] = k == 0 ? find_map(w, p.unit) : twice(&p.power[k - 1]);
-    }
     for (Real done = 0.0L; done < n && known;) {
-        const March march = one_period(w, *delta, *slip, false);
+        const March march = march_from(w, *state);
         if (!march.slipped) {
-            const Real many = count_untouched(&p, *delta, n - done);
-            *delta = after_untouched(&p, *delta, many, sums);
-            *slip = march.slip;
+            const Real many = count_untouched(p, state->delta, n - done);
+            *state = (State){after_untouched(p, state->delta, many, sums), march.broke};
             done += many;
             if (isinf(n) && many == ldexpl(1.0L, POWERS - 1)) {
-                *cycle = one_period(w, *delta, 0, false).sums;
-                *length = 1.0L;
+                *mean = scaled(w->scene.f, march_from(w, *state).sums.impulse);
                 break;
             }
             continue;
         }
         add_times(sums, &march.sums, 1.0L);
-        *delta = march.delta;
-        *slip = march.slip;
+        *state = state_of(&march);
         done += 1.0L;
         int k = count - 1;
-        while (k >= 0 && !(marks[k].slip == *slip &&
-                           fabsl(marks[k].delta - *delta) <= 1e-16L * (p.unit + fabsl(*delta)))) {
+        while (k >= 0 && !are_equal(marks[k].state, *state, p->unit)) {
             k--;
         }
         if (k >= 0) {
-            *cycle = *sums;
-            add_times(cycle, &marks[k].sums, -1.0L);
-            *length = done - marks[k].count;
+            Sums cycle = *sums;
+            add_times(&cycle, &marks[k].sums, -1.0L);
+            const Real length = done - marks[k].count;
             if (isinf(n)) {
+                *mean = scaled(w->scene.f / length, cycle.impulse);
                 for (; k < count; k++) {
-                    if (fabsl(marks[k].delta) < fabsl(*delta)) {
-                        *delta = marks[k].delta;
-                        *slip = marks[k].slip;
-                    }
+                    *state =
+                        length_of(marks[k].state.delta) < length_of(state->delta) ? marks[k].state : *state;
                 }
                 break;
             }
-            const Real times = floorl((n - done) / *length);
-            add_times(sums, cycle, times);
-            done += times * *length;
+            const Real repeats = floorl((n - done) / length);
+            add_times(sums, &cycle, repeats);
+            done += repeats * length;
             count = 0;
-        } else if (count == MOST_CYCLE || w->panels > MOST_PANELS) {
+        } else if (count == most || w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
             known = false;
         } else {
-            marks[count++] = (Mark){*delta, *slip, done, *sums};
+            marks[count++] = (Mark){*state, done, *sums};
         }
     }
     free(marks);
+    free(p);
     return known;
+}
+
+// Newton's step to the fixed point of a period's map, which from a state misses it so.
+static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
+    const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
+    const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
+    const Vector by_y = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).delta));
+    const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
+    return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
+}
+
+// The periodic state where it does not depend on the start, by Newton: soon where slips are so small that each forgets little.
+static bool settle_by_newton(World* w, State* state, Vector* mean) {
+    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->drive[0].V, w->drive[1].V});
+    const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
+    bool found = false;
+    Period* p = memory(NULL, sizeof *p);
+    w->panels = 0.0L;
+    for (int k = 0; k < 60 && !found && w->panels <= MOST_OF_SETTLING; k++) {
+        const March march = march_from(w, *state);
+        const Vector miss = plus(march.delta, -1.0L, state->delta);
+        *mean = scaled(w->scene.f, march.sums.impulse);
+        if (w->elastic && !march.slipped) { // it drifts to where it slips
+            Sums unused = {0};
+            *p = (Period){.world = *w, .unit = unit};
+            state->delta =
+                after_untouched(p, state->delta, count_untouched(p, state->delta, INFINITY), &unused);
+            continue;
+        }
+        const Vector newton = newton_step(w, *state, march.delta, miss, step);
+        found = length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit);
+        const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
+        state->delta = found ? state->delta : plus(state->delta, 1.0L, plain ? miss : newton);
+    }
+    free(p);
+    return found;
+}
+
+// To the periodic state of held inputs, w of one period, or to sliding for ever; the mean force.
+static bool settle(World* w, State* state, Vector* mean) {
+    const ReferenceScene* s = &w->scene;
+    if (vibrates(s) || is_open(w, 0.0L) || s->law == LAW_COULOMB) {
+        Sums sums = {0};
+        const bool drifts = w->drive[0].V != 0.0L || w->drive[1].V != 0.0L;
+        const bool one_state = !w->elastic || (drifts && w->excess == 0.0L);
+        return go_periods(w, state, INFINITY, one_state ? CYCLE_BEFORE_NEWTON : MOST_CYCLE, &sums, mean) ||
+               (one_state && settle_by_newton(w, state, mean));
+    }
+    const At at = scene_at(w, 0.0L, false);
+    if (length_of(at.V) > 0.0L) {
+        *state = (State){along(at.V, at.g / at.sigma), has_static(w)};
+    }
+    *mean = plus(scaled(at.sigma, state->delta), s->sigma_2, at.V);
+    return true;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The step
 // ---------------------------------------------------------------------------------------------------------------------
 
-static bool has_many_periods(const World* w) {
-    return is_held(&w->scene) && vibrates(&w->scene) && w->h * w->scene.f > 4.0L;
-}
-// F_t [N] at a time.
-static Real force_at(const World* w, Real t, Real delta, int slip) {
+// The force [N] at a time.
+static Vector force_at(const World* w, Real t, State state) {
     const ReferenceScene* s = &w->scene;
     World there = *w;
     there.open = is_open(w, t);
     const At at = scene_at(&there, t, true);
-    if (s->law == LAW_COULOMB) {
-        return (Real)sign_of(at.V) * at.coulomb + s->sigma_2 * at.V;
+    if (s->law == LAW_COULOMB || there.open) {
+        return plus(along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L), s->sigma_2, at.V);
     }
-    if (there.open) {
-        return s->sigma_2 * at.V;
+    Vector rate = plus(at.V, -relaxation(w, &at), state.delta);
+    const bool may_slip = w->bounded && (state.broke || !has_static(w));
+    if (may_slip && length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
+        outward(w, &at, state.delta) > 0.0L) {
+        const Vector n = along(state.delta, 1.0L), across = {-n.y, n.x};
+        rate = plus(scaled(bound_rate(w, &at, false), n), dot(at.V, across), across);
     }
-    const Real lies = bound(w, &at, false);
-    const bool slips =
-        slip && fabsl((Real)slip * lies - delta) <= ON_BOUND * lies && outward(w, t, slip, false) > 0.0L;
-    const Real rate =
-        slips ? (Real)slip * bound_rate(w, &at, false) : at.V - relaxation(w, &at, sign_of(at.V)) * delta;
-    return at.sigma * delta + s->sigma_1 * rate + s->sigma_2 * at.V;
+    return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
 }
 
-// The deflection at the start that the periodic state of held inputs has, without vibration the one of sliding for ever.
-static bool settle(const World* w, Real* delta, int* slip, Sums* cycle, Real* length) {
-    const ReferenceScene* s = &w->scene;
-    World held = held_world(w, 1.0L / s->f);
-    if (vibrates(s) || is_open(&held, 0.0L) || s->law == LAW_COULOMB) {
-        Sums sums = {0};
-        return go_periods(&held, delta, slip, INFINITY, &sums, cycle, length);
-    }
-    const At at = scene_at(&held, 0.0L, false);
-    const int side = sign_of(s->V);
-    *delta = side ? (Real)side * at.g / at.sigma : *delta;
-    *slip = w->elastic ? side : 0;
-    cycle->impulse = held.h * (at.sigma * *delta + s->sigma_2 * at.V);
-    *length = 1.0L;
-    return true;
+static State start_of(const ReferenceScene* s) {
+    return s->law == LAW_COULOMB ? (State){0} : (State){{s->delta_0, s->delta_y_0}, s->slips != 0};
 }
 
 // Goes over the step; false if it needs more than the reference takes.
-static bool advance(World* w, Real* delta, int* slip, Sums* sums) {
-    bool known = true;
+static bool advance(World* w, State* state, Sums* sums) {
+    const ReferenceScene* s = &w->scene;
     World rest = *w;
-    if (has_many_periods(w)) {
-        const Real n = floorl(w->h * w->scene.f);
+    bool known = true;
+    if (is_held(s) && vibrates(s) && w->h * s->f > 4.0L) {
         World period = *w;
-        Sums cycle = {0};
-        Real length = 0.0L;
-        period.h = 1.0L / w->scene.f;
-        known = go_periods(&period, delta, slip, n, sums, &cycle, &length);
-        rest.h = w->h - n / w->scene.f;
+        Vector unused;
+        period.h = 1.0L / s->f;
+        const Real n = floorl(w->h * s->f);
+        known = go_periods(&period, state, n, MOST_CYCLE, sums, &unused);
+        rest.h = w->h - n / s->f;
     }
-    if (rest.h > 0.0L) {
-        const March march = one_period(&rest, *delta, *slip, false);
-        add_times(sums, &march.sums, 1.0L);
-        *delta = march.delta;
-        *slip = march.slip;
-    }
+    const March march = march_from(&rest, *state);
+    add_times(sums, &march.sums, 1.0L);
+    *state = state_of(&march);
     return known && rest.panels <= MOST_PANELS;
 }
 
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result) {
     World w = make_world(scene, scene->h, fineness);
-    w.S = largest_force(&w, scene->delta_0);
-    const World held = held_world(&w, w.h);
+    State state = start_of(scene);
+    w.S = largest_force(&w, state.delta);
+    World held = held_world(&w, 1.0L / scene->f);
     *result = (ReferenceStep){.S = (double)w.S, .known = true};
     Sums sums = {0};
-    Real delta = scene->law == LAW_COULOMB ? 0.0L : scene->delta_0;
-    int slip = scene->slips;
     if (scene->law != LAW_COULOMB && scene->initial == START_SETTLED) {
-        Sums cycle = {0};
-        Real length;
-        jump(NULL, &held, &delta, &slip);
-        result->known = settle(&w, &delta, &slip, &cycle, &length);
+        Vector mean;
+        jump(NULL, &held, &state);
+        result->known = settle(&held, &state, &mean);
     } else if (scene->law != LAW_COULOMB) {
-        sums.heat = jump(before, &w, &delta, &slip);
+        sums.heat = jump(before, &w, &state);
     }
-    int slip_start = slip;
-    if (w.bounded && !(w.elastic && w.excess != 0.0L) && !is_open(&w, 0.0L)) {
-        const At at = scene_at(&w, 0.0L, false); // a state that was rounded may lie next to its bound
-        slip_start = fabsl(delta) >= (1.0L - ON_BOUND) * bound(&w, &at, true) ? sign_of(delta) : 0;
-    }
-    result->F_t_start = (double)force_at(&held, 0.0L, delta, slip_start);
-    result->known = advance(&w, &delta, &slip, &sums) && result->known;
-    result->delta = (double)delta;
-    result->slips = w.elastic && w.excess != 0.0L ? slip : 0;
-    result->F_t = (double)force_at(&w, w.h, delta, slip);
-    result->F_t_mean = (double)(sums.impulse / w.h);
+    const Vector start = force_at(&held, 0.0L, state);
+    result->known = advance(&w, &state, &sums) && result->known;
+    const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
+    result->delta = (double)state.delta.x, result->delta_y = (double)state.delta.y;
+    result->slips = state.broke;
+    result->F_t = (double)force.x, result->F_y = (double)force.y;
+    result->F_t_mean = (double)mean.x, result->F_y_mean = (double)mean.y;
+    result->F_t_start = (double)start.x, result->F_y_start = (double)start.y;
     result->work = (double)sums.work;
     result->heat = (double)sums.heat;
     result->path = (double)sums.path;
 }
 
-bool reference_settled_force(const ReferenceScene* scene, double* force, double* S) {
+bool reference_settled_force(const ReferenceScene* scene, double force[2], double* S) {
     ReferenceScene still = *scene;
-    still.V_rate = still.d_rate = still.E_rate = still.load_rate = 0.0;
+    still.V_rate = still.V_y_rate = still.d_rate = still.E_rate = still.load_rate = 0.0;
     still.start = 0.0;
     World w = make_world(&still, 1.0L / still.f, 1);
-    w.S = largest_force(&w, still.delta_0);
+    State state = start_of(&still);
+    Vector mean = {0};
+    w.S = largest_force(&w, state.delta);
+    jump(NULL, &w, &state);
+    const bool known = settle(&w, &state, &mean);
     *S = (double)w.S;
-    Sums cycle = {0};
-    Real length = 1.0L, delta = still.law == LAW_COULOMB ? 0.0L : still.delta_0;
-    int slip = 0;
-    jump(NULL, &w, &delta, &slip);
-    const bool known = settle(&w, &delta, &slip, &cycle, &length);
-    *force = (double)(cycle.impulse / (length / still.f));
+    force[0] = (double)mean.x, force[1] = (double)mean.y;
     return known;
+}
+
+bool reference_is_open(const ReferenceScene* scene) {
+    const World w = make_world(scene, 0.0L, 1);
+    return is_open(&w, 0.0L);
 }

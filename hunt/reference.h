@@ -1,9 +1,10 @@
 // One communication step of a scene by brute force in extended precision: the reference that grades the FMU.
 //
-// Written from docs/physics.md alone; it shares no line with fmu_src. Time is cut at every reversal of V, at
-// every dip and bend of the velocity, and at the times when a bristle may leave its bound. Between cuts the
-// equation of the bristle is solved by Radau collocation on panels that are halved until one panel and its
-// two halves agree. Many equal periods are taken as one map.
+// Written from docs/physics.md alone; it shares no line with fmu_src. Velocity, deflection and force are vectors: a line is a
+// plane with nothing across. Time is cut at every reversal, dip and bend of the velocity. In between a bristle that sticks
+// is a closed form; Dahl's and LuGre's is solved by Radau collocation, and so is the angle of one that slips along its bound.
+// Panels are halved until one panel and its two halves agree, and until no bound can be met unseen between two nodes. Many
+// equal periods that touch no bound are taken as one map.
 #ifndef HUNT_REFERENCE_H
 #define HUNT_REFERENCE_H
 
@@ -31,14 +32,14 @@ typedef struct {
     double contact_sigma, stiffnessScale;      // N/m, 1
     double R_q, R, eta, A_n, nu, Y, c, lambda; // m, m, 1/m2, m2, 1, Pa, 1, 1
     int law, limit, contact, input, initial;
-    int slips; // side along which a bristle with static friction slips at the start, or 0
+    int slips; // other than 0 if a bristle with static friction slips at the start
 } ReferenceScene;
 
 enum { REFERENCE_DOUBLES = 36 };
 
 typedef struct {
     double delta;                             // m, at the end
-    double slips;                             // -1, 0 or 1 at the end
+    double slips;                             // whether a bristle with static friction slips at the end
     double F_t;                               // N, at the end
     double F_t_mean;                          // N
     double work;                              // J, of F_t in the step
@@ -47,8 +48,6 @@ typedef struct {
     double S;                                 // N, what the errors of forces are relative to
     double path;                              // m, time integral of |V|
     double delta_y, F_y, F_y_mean, F_y_start; // the same, transverse
-    double
-        error; // plane_step: of F_t_mean, F_y_mean over S, work and heat over S path, at the most, but for rounding
     bool known; // false: it takes more panels or cycles than the reference goes through, and only S is known
 } ReferenceStep;
 
@@ -65,8 +64,8 @@ bool vibrates(const ReferenceScene* scene);
 // Whether the contact is open at the start of a scene.
 bool reference_is_open(const ReferenceScene* scene);
 
-// F_t_settled [N] of the scene's inputs, held, from delta_0; false if no cycle of periods was found. S is
+// F_t_settled and F_y_settled [N] of the scene's inputs, held, from its start; false if no periods were found that repeat. S is
 // that of a step of length 0.
-bool reference_settled_force(const ReferenceScene* scene, double* force, double* S);
+bool reference_settled_force(const ReferenceScene* scene, double force[2], double* S);
 
 #endif

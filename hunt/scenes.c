@@ -139,8 +139,8 @@ double scene_gain(const ReferenceScene* s) {
     return 2.0 * D * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
 }
 
-static void friction(Draw* draw, int law, ReferenceScene* s) {
-    s->law = law ? law : 1 + pick(draw, 4);
+static void friction(Draw* draw, ReferenceScene* s) {
+    s->law = 1 + pick(draw, 4);
     s->limit = chance(draw, 0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;
     s->F_C = log_between(draw, 1e-2, 1e4);
     s->mu = log_between(draw, 0.03, 1.0);
@@ -187,7 +187,7 @@ static double length(Draw* draw, const ReferenceScene* s, double most_periods) {
     return fmax(SHORTEST, periods / s->f);
 }
 
-static ReferenceScene contact_drawn(Draw* draw, int law, bool plane) {
+static ReferenceScene contact_drawn(Draw* draw, bool plane) {
     ReferenceScene s = reference_scene();
     s.f = log_between(draw, 1e2, 1e5);
     s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
@@ -196,7 +196,7 @@ static ReferenceScene contact_drawn(Draw* draw, int law, bool plane) {
         planar(draw, &s);
     }
     surfaces(draw, &s);
-    friction(draw, law, &s);
+    friction(draw, &s);
     if (chance(draw, 0.6)) {
         s.start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e6 : 1e3) / s.f;
     }
@@ -362,9 +362,9 @@ static bool is_in_domain(const ReferenceScene* s) {
            (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }
 
-static Sequence sequence_of(Draw draw, int law, bool plane) {
+static Sequence sequence_of(Draw draw, bool plane) {
     Sequence sequence = {.method = 1};
-    const ReferenceScene full = contact_drawn(&draw, law, plane);
+    const ReferenceScene full = contact_drawn(&draw, plane);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
@@ -410,9 +410,9 @@ static Sequence sequence_of(Draw draw, int law, bool plane) {
     return sequence;
 }
 
-Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane) {
+Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
     Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
     next(&draw);
     draw.state ^= next(&draw);
-    return sequence_of(draw, law, plane);
+    return sequence_of(draw, plane);
 }

@@ -6,9 +6,8 @@
 
 #include "sequence.h"
 
-// A sequence, which depends only on the seed and the number. law 0: any law. plane: with a transverse
-// vibration.
-Sequence sequence_drawn(uint64_t seed, uint64_t number, int law, bool plane);
+// A sequence, which depends only on the seed and the number. plane: with a transverse vibration.
+Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane);
 
 // sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
 double scene_kappa(const ReferenceScene* scene);

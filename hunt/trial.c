@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "plane_reference.h"
 #include "scenes.h"
 
 const char* const GRADE_NAMES[GRADES] = {"F_t", "F_t_mean", "W_f",       "Q_f",  "F_t_start",
@@ -19,11 +18,10 @@ typedef struct {
     double value[OF_SETTLED];
 } Values;
 
-// In the plane a side is only whether the bristle slips.
-static Values of_fmu(const FmuStep* s, bool planar) {
-    const double side = planar ? (double)(s->slips != 0.0) : s->slips;
+static Values of_fmu(const FmuStep* s) {
+    const double slips = s->slips != 0.0;
     return (Values){
-        {s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->F_y, s->F_y_mean, s->F_y_start, side}};
+        {s->F_t, s->F_t_mean, s->work, s->heat, s->F_t_start, s->F_y, s->F_y_mean, s->F_y_start, slips}};
 }
 
 static Values of_reference(const ReferenceStep* s) {
@@ -45,7 +43,7 @@ static Verdict verdict_between(const TrialStep* taken, const Values* least, cons
         truth->path + hypot(truth->delta - step->delta_start, truth->delta_y - step->delta_y_start);
     const double lengths = hypot(step->delta_start, step->delta_y_start) + hypot(step->delta, step->delta_y);
     const double stored = LEAST_S + DIGITS * S * lengths; // over at least 1 m
-    const Values found = of_fmu(step, taken->planar);
+    const Values found = of_fmu(step);
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < OF_SETTLED; k++) {
         const double x = found.value[k];
@@ -64,8 +62,7 @@ static Verdict verdict_between(const TrialStep* taken, const Values* least, cons
 // The step from the FMU's state before it. A settled start is judged by its own force.
 static void step_of_reference(const ReferenceScene* before, const ReferenceScene* scene, const FmuStep* step,
                               ReferenceStep* truth) {
-    const bool planar = plane_is_needed(before, scene);
-    (planar ? plane_step : reference_step)(before, scene, 1, truth);
+    reference_step(before, scene, 1, truth);
     if (scene->initial == START_SETTLED && scene->law != LAW_COULOMB) {
         const ReferenceStep settled = *truth;
         ReferenceScene from = *scene;
@@ -73,7 +70,7 @@ static void step_of_reference(const ReferenceScene* before, const ReferenceScene
         from.delta_0 = step->delta_start;
         from.delta_y_0 = step->delta_y_start;
         from.slips = step->slips_start;
-        (planar ? plane_step : reference_step)(NULL, &from, 1, truth);
+        reference_step(NULL, &from, 1, truth);
         truth->F_t_start = settled.F_t_start;
         truth->F_y_start = settled.F_y_start;
         truth->known = truth->known && settled.known;
@@ -127,10 +124,7 @@ static double settled_ratio(TrialStep* taken, int method, double tolerance) {
     found[0] = found[1] = truth[0] = truth[1] = NAN;
     still.initial = START_GIVEN;
     FmuRun* run = fmu_open(&still, method, tolerance);
-    const bool planar = plane_is_needed(NULL, &still);
-    truth[1] = planar ? NAN : 0.0;
-    if (fmu_settled_force(run, found) &&
-        (planar ? plane_settled_force : reference_settled_force)(&still, truth, &S)) {
+    if (fmu_settled_force(run, found) && reference_settled_force(&still, truth, &S)) {
         const double off = fmax(fabs(found[0] - truth[0]), fabs(found[1] - truth[1]));
         ratio = isnan(found[0] + found[1]) ? INFINITY : over(off, tolerance, fmax(S, LEAST_S), 0.0);
     }
@@ -157,7 +151,6 @@ static void skip(Trial* trial, TrialStep* taken) {
 static void grade(Trial* trial, TrialStep* taken, const ReferenceScene* before, int method,
                   double tolerance) {
     const ReferenceScene* scene = &taken->scene;
-    taken->planar = plane_is_needed(before, scene);
     step_of_reference(before, scene, &taken->step, &taken->truth);
     if (!taken->truth.known) {
         skip(trial, taken);

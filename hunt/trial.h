@@ -4,7 +4,7 @@
 // (integral of |V| dt + |delta_end - delta_start|),
 // - F_t and F_t_mean are within tolerance S; F_t_start, the force after a jump or a settled start, too; F_y likewise;
 // - the W_f and Q_f of the step are within tolerance S path;
-// - the side along which a bristle with static friction slips is the same at the end;
+// - a bristle with static friction slips at the end, or not, as it does there;
 // - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
 // The allowances are of rounding alone:
 // - 1e-11 S, or S path;
@@ -52,7 +52,6 @@ typedef struct {
     ReferenceStep truth;
     double settled[2][2]; // N, F_t_settled and F_y_settled of the FMU and of the reference, at the first step
     Verdict verdict;
-    bool planar; // it is in the plane
     bool is[KINDS];
 } TrialStep;
 

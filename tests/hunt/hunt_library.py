@@ -1,4 +1,4 @@
-"""The references of hunt/ by ctypes: scenes by name, steps and settled forces."""
+"""The reference of hunt/ by ctypes: scenes by name, steps and settled forces."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CHOICES = {
     "input": ("Separation", "Load"),
     "initial": ("Given", "Settled"),
 }
-RESULTS = "delta slips F_t F_t_mean work heat F_t_start S path delta_y F_y F_y_mean F_y_start error".split()
+RESULTS = "delta slips F_t F_t_mean work heat F_t_start S path delta_y F_y F_y_mean F_y_start".split()
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 
 
@@ -37,7 +37,7 @@ class Step(ctypes.Structure):
 def library() -> Any:
     found = ctypes.CDLL(str(build_targets("default", ["hunt_reference"]) / "hunt/libhunt_reference.so"))
     found.reference_scene.restype = Scene
-    found.plane_settled_force.restype = ctypes.c_bool
+    found.reference_settled_force.restype = ctypes.c_bool
     return found
 
 
@@ -48,22 +48,18 @@ def scene(**values: Any) -> Scene:
     return made
 
 
-def step(now: Scene, before: Scene | None = None, fineness: int = 1, name: str = "reference_step") -> Any:
+def step(now: Scene, before: Scene | None = None, fineness: int = 1) -> Any:
     result = Step()
     past = ctypes.byref(before) if before is not None else None
-    getattr(library(), name)(past, ctypes.byref(now), fineness, ctypes.byref(result))
+    library().reference_step(past, ctypes.byref(now), fineness, ctypes.byref(result))
     assert result.known
     return result
 
 
-def plane_step(now: Scene, before: Scene | None = None, fineness: int = 1) -> Any:
-    return step(now, before, fineness, "plane_step")
-
-
-def plane_settled(now: Scene) -> tuple[float, float]:
+def settled(now: Scene) -> tuple[float, float]:
     """F_t_settled and F_y_settled [N]."""
     force, S = (ctypes.c_double * 2)(), ctypes.c_double()
-    assert library().plane_settled_force(ctypes.byref(now), force, ctypes.byref(S))
+    assert library().reference_settled_force(ctypes.byref(now), force, ctypes.byref(S))
     return force[0], force[1]
 
 
