@@ -192,8 +192,8 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
 }
 
 // Coulomb's force. At the end of a panel V may be 0 but for rounding: it comes there against its rate.
-static Vector coulomb_force(const World* w, const At* at, Real t) {
-    const bool reverses = length_of(at->V) <= 1e-15L * w->top;
+static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
+    const bool reverses = ends && length_of(at->V) <= 1e-17L * w->top;
     return along(reverses ? scaled(-1.0L, velocity(w, t, 1)) : at->V, at->coulomb);
 }
 
@@ -244,7 +244,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
             longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
         } else if (w->scene.law == LAW_COULOMB) {
-            spring = coulomb_force(w, &at[i], t);
+            spring = coulomb_force(w, &at[i], t, i == last);
         }
         account(w, &p.sums, spring, rate, V, size * rule->weight[i]);
         if (bounded) {
