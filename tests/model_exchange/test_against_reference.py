@@ -52,7 +52,7 @@ def by_fmpy(
 
 def test_fmpy_and_co_simulation(fmu: FrictionFmu) -> None:
     """fmpy sets inputs between its steps only, so they are held here."""
-    for scene in held(fmu, 18):
+    for scene in held(fmu, 9):
         exchanged = by_fmpy(fmu, scene, "ModelExchange", TOLERANCE)
         stepped = by_fmpy(fmu, scene, "CoSimulation", 1e-9)
         truth = Course(scene.scene, scene.delta_0).step(scene.scene, scene.h)
