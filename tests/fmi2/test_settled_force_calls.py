@@ -44,7 +44,9 @@ def test_asking_leaves_no_trace(
     for each in (asked, other):
         assert each.call("fmi2ExitInitializationMode") == OK
     assert ask(asked) == first
-    inputs = INPUTS if across else INPUTS[:-1]  # by V_y along the sliding takes a second where static friction is
+    inputs = (
+        INPUTS if across else INPUTS[:-1]
+    )  # by V_y along the sliding takes a second where static friction is
     for k in range(2):
         for each in (asked, other):
             assert each.set({"V": 0.5 - 0.2 * k}) == OK

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from model_exchange.exchange_scenes import ExchangeScene, drawn, errors, run
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.reference.course import Course
 
 TOLERANCE = 1e-7  # of the host, for every step; the error of a run is the sum of some of them
 ALLOWED = 100 * TOLERANCE

@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 import pytest
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
-from workshop.reference.course import Course
 from workshop.reference.start_values import scene_of
 
 MU = 0.176

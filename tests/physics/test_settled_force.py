@@ -7,11 +7,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from physics.course import scale
 from scipy.integrate import solve_ivp
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu, Value
-from workshop.reference.course import scale
 from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
 from workshop.reference.start_values import scene_of

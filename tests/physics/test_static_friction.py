@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionFmu, Session, Value
-from workshop.reference.course import Course
 from workshop.reference.settled import settled
 from workshop.reference.start_values import scene_of
 
