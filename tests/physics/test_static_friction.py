@@ -175,9 +175,20 @@ STEPS = [
 ]
 
 
-@pytest.mark.parametrize("vibration", [{}, {"vibration.V_1": 0.6, "vibration.a_d": 5e-7}])
-@pytest.mark.parametrize("limit", ["Constant", "Load"])
-@pytest.mark.parametrize("model", ["Constant", "Asperities", "Mindlin"])
+VIBRATION: dict[str, Value] = {"vibration.V_1": 0.6, "vibration.a_d": 5e-7}
+
+
+@pytest.mark.parametrize(
+    ("model", "limit", "vibration"),
+    [
+        ("Constant", "Constant", {}),
+        ("Constant", "Load", VIBRATION),
+        ("Asperities", "Constant", VIBRATION),
+        ("Asperities", "Load", {}),
+        ("Mindlin", "Constant", {}),
+        ("Mindlin", "Load", VIBRATION),
+    ],
+)
 def test_a_course_of_steps_and_jumps(
     fmu: FrictionFmu, model: str, limit: str, vibration: dict[str, Value]
 ) -> None:
