@@ -30,7 +30,7 @@ def advised(fmu_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> 
     return {name: float(value) for name, value in zip(pairs[::2], pairs[1::2], strict=True)}
 
 
-SEEDS = (0, 1, 22, 3, 4, 5, 26, 7, 8, 9, 11)  # ElasticPlastic's are the two that its reference solves soonest
+SEEDS = (0, 1, 3, 4, 5, 7, 8, 11, 26)  # one of ElasticPlastic, whose reference takes longest
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -17,7 +17,7 @@ from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import fit
 from frictioncontact.identification.parameter import parameter
 
-SEEDS = 5
+SEEDS = 3
 QUICK = 2  # of the seeds that are no slow test
 TRUTHS = {  # ranges that true values are drawn from, by their logarithms
     "F_C": (20.0, 150.0),

@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from physics.course import Course
 
 from workshop.reference import solution as reference
 from workshop.reference.arithmetic import MP, multiprecision
 from workshop.reference.contact import Contact, normal_force, stiffness
-from workshop.reference.course import Course
 from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
 

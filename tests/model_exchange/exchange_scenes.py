@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.exchange import Host
 from workshop.reference.contact import Contact
-from workshop.reference.course import Course
 from workshop.reference.scene import Scene
 from workshop.reference.start_values import start_values_of
 

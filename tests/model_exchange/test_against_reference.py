@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from model_exchange.exchange_scenes import ExchangeScene, drawn, errors, run
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.reference.course import Course
 
 TOLERANCE = 1e-7  # of the host, for every step; the error of a run is the sum of some of them
 ALLOWED = 100 * TOLERANCE
@@ -52,7 +52,7 @@ def by_fmpy(
 
 def test_fmpy_and_co_simulation(fmu: FrictionFmu) -> None:
     """fmpy sets inputs between its steps only, so they are held here."""
-    for scene in held(fmu, 18):
+    for scene in held(fmu, 9):
         exchanged = by_fmpy(fmu, scene, "ModelExchange", TOLERANCE)
         stepped = by_fmpy(fmu, scene, "CoSimulation", 1e-9)
         truth = Course(scene.scene, scene.delta_0).step(scene.scene, scene.h)

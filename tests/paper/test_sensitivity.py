@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from physics.constant import periodic_mean
 
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
-from workshop.reference.constant import periodic_mean
 from workshop.regimes.mean import (
     PARAMETERS,
     REGIMES,

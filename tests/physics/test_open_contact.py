@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 
 import pytest
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
-from workshop.reference.course import Course
 from workshop.reference.start_values import scene_of
 
 MU = 0.176
@@ -32,10 +32,19 @@ def assert_open(session: Session, sigma_2_V: float = 0.0, *, constant: bool = Fa
         assert session.get("sigma") == 0.0
 
 
-@pytest.mark.parametrize("vibration", [{}, {"vibration.V_1": 0.3, "vibration.a_d": 1e-6}])
+VIBRATION: dict[str, Value] = {"vibration.V_1": 0.3, "vibration.a_d": 1e-6}
+
+
 @pytest.mark.parametrize(
-    ("law", "model"),
-    [*zip(LAWS, ("Mindlin", *CONTACTS), strict=True), ("Dahl", "Constant"), ("ElasticPlastic", "Constant")],
+    ("law", "model", "vibration"),
+    [
+        ("Coulomb", "Mindlin", VIBRATION),
+        ("Dahl", "Asperities", VIBRATION),
+        ("Dahl", "Constant", {}),
+        ("ElasticPlastic", "Mindlin", {}),
+        ("ElasticPlastic", "Constant", VIBRATION),
+        ("LuGre", "Constant", VIBRATION),
+    ],
 )
 def test_a_load_that_falls_to_0_stays_and_comes_back(
     fmu: FrictionFmu, law: str, model: str, vibration: dict[str, Value]

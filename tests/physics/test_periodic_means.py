@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from physics import constant
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
@@ -23,7 +24,6 @@ from frictioncontact.parameters import (
 )
 from frictioncontact.periodic import periodic_mean
 from workshop.project import ROOT
-from workshop.reference import constant as reference_constant
 from workshop.reference import solution as reference
 from workshop.reference.arithmetic import MP
 from workshop.reference.start_values import scene_of
@@ -50,7 +50,7 @@ def test_mean_at_constant_stiffness(fmu: FrictionFmu, kappa: float, zeta: float,
     start = constant_stiffness(kappa, zeta)
     mean = periodic_mean(fmu, start) / 55.0
     assert mean == pytest.approx(printed, abs=1e-8)
-    exact = reference_constant.periodic_mean(start["contact.sigma"], 55.0, zeta, 1.0, 20e3) / 55
+    exact = constant.periodic_mean(start["contact.sigma"], 55.0, zeta, 1.0, 20e3) / 55
     assert mean == pytest.approx(float(exact), abs=1e-10)
 
 

@@ -218,6 +218,32 @@ def test_break_away_is_anywhere_on_a_circle(fmu: FrictionFmu) -> None:
         assert session.get("Q_f") == pytest.approx((ratio**2 - 1) * F_C**2 / (2 * sigma), rel=1e-6)
 
 
+@pytest.mark.parametrize("h", [1e-5, 1e-3])
+@pytest.mark.parametrize("initial", ["Given", "Settled"])
+def test_held_sliding_relaxes_toward_its_direction(fmu: FrictionFmu, initial: str, h: float) -> None:
+    """Dahl without vibration: delta - n D falls as e^(-V t / D) as a vector, n the direction of V."""
+    V, sigma = (0.03, -0.04), 2.5e6
+    size, D = math.hypot(*V), F_C / sigma
+    n = [v / size for v in V]
+    begin = [part * D for part in n] if initial == "Settled" else [0.4 * D, 0.7 * D]
+    scene = {"contact.model": "Constant", "contact.sigma": sigma, "V": V[0], "V_y": V[1]}
+    start = {"initialState": initial, "delta_0": 0.4 * D, "delta_y_0": 0.7 * D}
+    with fmu.session(scene | start) as session:
+        session.step(h)
+        z = size * h / D
+        end = [D * a + (b - D * a) * math.exp(-z) for a, b in zip(n, begin, strict=True)]
+        mean = [F_C * a + sigma * (b - D * a) * -math.expm1(-z) / z for a, b in zip(n, begin, strict=True)]
+        assert session.read(["delta", "delta_y"]).tolist() == pytest.approx(end, rel=1e-12)
+        assert session.read(["F_t", "F_y"]).tolist() == pytest.approx([sigma * x for x in end], rel=1e-12)
+        assert session.read(["F_t_mean", "F_y_mean"]).tolist() == pytest.approx(mean, rel=1e-12)
+        work = F_C * (size * h - sum(a * (x - b) for a, x, b in zip(n, end, begin, strict=True)))
+        assert session.get("W_f") == pytest.approx(work, rel=1e-12)
+        stored = sigma / 2 * (math.hypot(*end) ** 2 - math.hypot(*begin) ** 2)
+        assert session.get("Q_f") == pytest.approx(work - stored, rel=1e-12)
+        settled = session.read(["F_t_settled", "F_y_settled"]).tolist()
+        assert settled == pytest.approx([F_C * part for part in n], rel=1e-12)
+
+
 def test_an_open_contact_has_viscous_friction_alone(fmu: FrictionFmu) -> None:
     scene = {"contact.input": "Load", "friction.limit": "Load", "load": 0.0, "V": 0.3, "V_y": -0.7}
     with fmu.session(scene | {"friction.sigma_2": 2.0, "delta_y_0": 1e-9}) as session:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionFmu, Session, Value
-from workshop.reference.course import Course
 from workshop.reference.settled import settled
 from workshop.reference.start_values import scene_of
 
@@ -175,9 +175,20 @@ STEPS = [
 ]
 
 
-@pytest.mark.parametrize("vibration", [{}, {"vibration.V_1": 0.6, "vibration.a_d": 5e-7}])
-@pytest.mark.parametrize("limit", ["Constant", "Load"])
-@pytest.mark.parametrize("model", ["Constant", "Asperities", "Mindlin"])
+VIBRATION: dict[str, Value] = {"vibration.V_1": 0.6, "vibration.a_d": 5e-7}
+
+
+@pytest.mark.parametrize(
+    ("model", "limit", "vibration"),
+    [
+        ("Constant", "Constant", {}),
+        ("Constant", "Load", VIBRATION),
+        ("Asperities", "Constant", VIBRATION),
+        ("Asperities", "Load", {}),
+        ("Mindlin", "Constant", {}),
+        ("Mindlin", "Load", VIBRATION),
+    ],
+)
 def test_a_course_of_steps_and_jumps(
     fmu: FrictionFmu, model: str, limit: str, vibration: dict[str, Value]
 ) -> None:

@@ -13,6 +13,7 @@ import pytest
 
 from frictioncontact.errors import UserError
 from workshop.release import inspect as release_inspect
+from workshop.release.command import QUICK
 from workshop.release.inspect import Library, check, fmi2_functions, inspect
 from workshop.release.targets import environment, zig
 from workshop.release.universal import universal
@@ -26,7 +27,7 @@ def compiled(folder: Path, target: str, name: str, source: str = "int fmi2One(vo
     return folder / name
 
 
-@pytest.mark.parametrize("platform", ["linux64", "aarch64-linux"])
+@pytest.mark.parametrize("platform", QUICK)
 def test_library(library: Callable[[str], Path], platform: str) -> None:
     """As scripts/release, which checks each platform's."""
     assert check(platform, library(platform)).exports == fmi2_functions()

@@ -18,7 +18,7 @@ from workshop.reference.scene import Scene
 from workshop.reference.start_values import start_values_of
 
 FREQUENCY = 16384.0  # Hz, so that the dips are at exact times
-DEPTHS = [0.0, 1e-14, -1e-14, 1e-11, -1e-11, 1e-8, -1e-8, 1e-5, -1e-5, 1e-2, -1e-2]
+DEPTHS = [0.0, 1e-14, -1e-14, 1e-8, -1e-8, 1e-2, -1e-2]
 OFFSETS = [0.0, 1e-9, -1e-9, 1e-5, -1e-5, 1e-2, -1e-2]  # of a period
 V_1, F_C = 0.25, 2.5
 

@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from rich.progress import Progress
@@ -26,53 +26,62 @@ from workshop.bench.driver import REPORT
 from workshop.build import build_fmu
 from workshop.reference import solution as reference
 from workshop.reference.arithmetic import MP
+from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
 from workshop.reference.start_values import scene_of
 
 
-def largest_errors(
-    fmu: FrictionFmu, case: Case, settings: Mapping[str, Value], phases: tuple[float, ...] = PHASES
-) -> tuple[float, float]:
-    """Largest errors [N] of F_t and F_t_mean of a case's scene solved with settings, against the reference.
+@dataclass(frozen=True)
+class Run:
+    """What the reference gives from a start [s] and a deflection [m]: step by step F_t and its mean [N]."""
 
-    With inputs over their samples, from delta_0 = 0; without over some steps from every phase of the
-    vibration, from delta_0 = 0 and settled.
-    """
+    start: float
+    delta_0: float
+    steps: list[tuple[float, Scene]]  # duration [s], and the scene in it
+    right: list[tuple[float, float]]
+
+
+def runs_of(case: Case, phases: tuple[float, ...]) -> list[Run]:
+    """With inputs over their samples, from delta_0 = 0; without over some steps from every phase of the
+    vibration, from delta_0 = 0 and settled."""
     scene = scene_of(case.start_values)
     if case.inputs:
-        runs = [(case.starts[0], 0.0)]
-    else:
-        period = 1.0 / scene.f
-        starts = [phase * period for phase in phases] if scene.vibrates else [0.0]
-        runs = [
-            (start, delta)
-            for start in starts
-            for delta in (0.0, float(settled(scene, MP.mpf(start), 0).delta))
-        ]
-    errors = np.zeros(2)
-    for start, delta in runs:
-        errors = np.maximum(errors, _run_errors(fmu, case, settings, start, delta))
-    return float(errors[0]), float(errors[1])
+        return [_run(case, case.starts[0], 0.0)]
+    starts = [phase / scene.f for phase in phases] if scene.vibrates else [0.0]
+    return [
+        _run(case, start, delta)
+        for start in starts
+        for delta in (0.0, float(settled(scene, MP.mpf(start), 0).delta))
+    ]
 
 
-def _run_errors(
-    fmu: FrictionFmu, case: Case, settings: Mapping[str, Value], start: float, delta_0: float
+def _run(case: Case, start: float, delta_0: float) -> Run:
+    ratios = [1.0] * case.count if case.inputs else STEPS
+    steps = [(ratio * case.step, case.scene_at(k, start)) for k, ratio in enumerate(ratios)]
+    now, delta, right = MP.mpf(start), MP.mpf(delta_0), []
+    for h, scene in steps:
+        delta, impulse = reference.advance(scene, now, h, delta)[:2]
+        now += MP.mpf(h)
+        right.append((float(reference.force(scene, now, delta)), float(impulse) / h))
+    return Run(start, delta_0, steps, right)
+
+
+def largest_errors(
+    fmu: FrictionFmu, case: Case, settings: Mapping[str, Value], runs: Sequence[Run]
 ) -> np.ndarray:
+    """Largest errors [N] of F_t and F_t_mean of a case's scene solved with settings, against its runs."""
+    errors = np.zeros(2)
     first = {name: float(samples[0]) for name, samples in case.inputs.items()}
-    errors, now, delta = np.zeros(2), MP.mpf(start), MP.mpf(delta_0)
-    values = {**case.start_values, "delta_0": delta_0, **settings, **first}
-    with fmu.session(values, start) as session:
-        for k, ratio in enumerate([1.0] * case.count if case.inputs else STEPS):
-            h, scene = ratio * case.step, case.scene_at(k, start)
-            for name in case.inputs:
-                session.set(name, getattr(scene, name))
-            if case.linear and case.inputs:
-                session.set_rates(**{name: getattr(scene, f"{name}_rate") for name in case.inputs})
-            session.step(h)
-            delta, impulse = reference.advance(scene, now, h, delta)[:2]
-            now += MP.mpf(h)
-            right = float(reference.force(scene, now, delta)), float(impulse) / h
-            errors = np.maximum(errors, np.abs(session.read(("F_t", "F_t_mean")) - right))
+    for run in runs:
+        values = {**case.start_values, "delta_0": run.delta_0, **settings, **first}
+        with fmu.session(values, run.start) as session:
+            for (h, scene), right in zip(run.steps, run.right, strict=True):
+                for name in case.inputs:
+                    session.set(name, getattr(scene, name))
+                if case.linear and case.inputs:
+                    session.set_rates(**{name: getattr(scene, f"{name}_rate") for name in case.inputs})
+                session.step(h)
+                errors = np.maximum(errors, np.abs(session.read(("F_t", "F_t_mean")) - right))
     return errors
 
 
@@ -140,8 +149,9 @@ def rows_of(fmu: FrictionFmu, phases: tuple[float, ...], progress: Progress) -> 
     rows: list[dict[str, object]] = []
     for case in cases:
         row: dict[str, object] = {"scene": case.title}
+        runs = runs_of(case, phases)
         for level, settings in simpler(case).items():
-            errors = largest_errors(fmu, case, settings, phases)
+            errors = largest_errors(fmu, case, settings, runs)
             row[level] = ", ".join(f"{error / case.F_C:.0e}" for error in errors)
         rows.append(row)
         progress.advance(task)

@@ -1,9 +1,10 @@
 """What a solver is graded against: the laws from their formulas; shares no code with the FMU.
 
-- `course`: a contact from step to step, whose inputs may jump between them; made tests/data.
 - `solution`: one step, by quadratures in extended precision or at 40 digits.
 - `settled`: the state and the mean force after infinitely many periods.
-- `constant`: closed forms of a constant stiffness; grades periodic means and sensitivities.
+
+What tests alone need of it is in tests/physics: `course`, a contact from step to step, whose inputs may jump
+between them; it made tests/data. `constant`, closed forms of a constant stiffness.
 
 hunt/reference.c is independent of these: brute force in extended precision, which grades the hunt's scenes.
 """

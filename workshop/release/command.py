@@ -32,7 +32,7 @@ from workshop.release.verify import SUMS, verify, write_sums
 from workshop.release.wheel import wheels
 
 PLAYGROUND = "playground.html"  # the page of the live FMU, inside the FMU and beside it
-QUICK = ("linux64", "aarch64-linux")
+QUICK = ("linux64", "aarch64-darwin")  # the compiler's two ways: with the linker's optimization, and without
 SUNDIALS = ROOT / "build" / "sundials-source"
 # Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
 TOOLCHAIN_LICENSES = {
