@@ -182,11 +182,15 @@ static double place_in(const Block* block, double k) {
     return block->count > 1.0 ? 4.0 * k / (block->count - 1.0) - 2.0 : 0.0;
 }
 
+// Infinite if an error is no number. Without a path work and heat have infinite weights and no errors.
 static double largest_error(int count, const Numbers* weight, const double* error) {
     double largest = 0.0;
     for (int i = 0; i < count; i++) {
-        const double seen = weight->of[i] != 0.0 ? weight->of[i] * fabs(error[i]) : 0.0;
-        largest = seen <= largest ? largest : seen; // also if it is not a number
+        const double seen = error[i] != 0.0 && weight->of[i] != 0.0 ? weight->of[i] * fabs(error[i]) : 0.0;
+        if (isnan(seen)) {
+            return HUGE_VAL;
+        }
+        largest = fmax(largest, seen);
     }
     return largest;
 }
