@@ -317,12 +317,15 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
     const double damping = is_coulomb ? 0.0 : v->friction.sigma_1 * speed;
     const double bristle = force_of_bristle(scene, h, from);
     const double limit = damping != 0.0 ? least_limit(scene, h) : 0.0;
-    double force = fmax(bristle, damping + v->friction.sigma_2 * speed);
+    const double largest = fmax(bristle, damping + v->friction.sigma_2 * speed);
+    double force = largest;
     if (limit > 0.0) {
         force = fmax(force / (1.0 + damping / limit), bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
     }
     return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance),
                              .force = force,
+                             .largest = largest,
+                             .damping = damping,
                              .step_size = v->solver.stepSize};
 }
 

@@ -20,7 +20,9 @@ typedef enum {
 
 typedef struct {
     double tolerance; // 1  bound of the error of F_t and of its mean, over the force
-    double force;     // N  the scale of the tolerance
+    double force;     // N  the scale of the tolerance for the bristle's force
+    double largest;   // N  the largest force of the step
+    double damping;   // N  sigma_1 times the largest |V|; 0 without a bristle
     double step_size; // s  internal step of the fixed-step methods
 } FcSolverOptions;
 

@@ -32,6 +32,18 @@ static const double MOST_FORGOTTEN = 0.5;
 // would cost twice the time.
 enum { MOST_MEETINGS = 1000 };
 
+// A limit that falls by decades is too small at the step's end for the scale of the whole step: a piece has its own.
+static FcSolverOptions options_of_piece(const FcSolverOptions* options, const FcPieces* pieces) {
+    FcSolverOptions own = *options;
+    const double limit = pieces->h < pieces->whole && options->damping > 0.0
+                             ? fc_scene_smallest_limit(pieces->scene, pieces->h)
+                             : 0.0;
+    if (limit > 0.0) {
+        own.force = fmin(own.force, options->largest / (1.0 + options->damping / limit));
+    }
+    return own;
+}
+
 void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
                      FcStepResult* total) {
     FcPieces pieces;
@@ -40,7 +52,8 @@ void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOpti
         if (fc_scene_is_loose(pieces.scene)) {
             fc_loose_step(pieces.scene, total);
         } else {
-            law.step(pieces.scene, options, pieces.h, total);
+            const FcSolverOptions own = options_of_piece(options, &pieces);
+            law.step(pieces.scene, &own, pieces.h, total);
         }
     }
 }
