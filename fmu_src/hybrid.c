@@ -277,7 +277,10 @@ static void begin_regime(FcFrictionContact* contact) {
     View now;
     look(contact, &now);
     double heat;
-    const FcBristle bristle = fc_jump(&now.scene, &state->past, fc_friction_contact_bristle(contact), &heat);
+    FcBristle bristle = fc_jump(&now.scene, &state->past, fc_friction_contact_bristle(contact), &heat);
+    if (bristle.slips != 0 && !(fc_push_in_plane(&now.scene, bristle) > 0.0)) { // the event of a push of 0
+        bristle.slips = 0;
+    }
     move_to(contact, (FcVector){bristle.delta, bristle.delta_y}, heat);
     state->slips = fc_side_of_slip(bristle);
     state->hybrid.regime = fc_regime(&now.scene, bristle);

@@ -59,7 +59,7 @@ def _misfits(experiment: Experiment, result: Fit) -> list[str]:
         size = float(np.sqrt(np.mean(experiment.force**2)))
         if rms > LARGE * size:
             found.append(
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.3g} of the measured force"
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.3g} of the force"
             )
     return found or (_trends(experiment, result) if experiment.word == "row" else [])
 
