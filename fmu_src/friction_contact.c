@@ -320,7 +320,8 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
     const double largest = fmax(bristle, damping + v->friction.sigma_2 * speed);
     double force = largest;
     if (limit > 0.0) {
-        force = fmax(force / (1.0 + damping / limit), bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
+        force = fmax(fc_force_beside_damping(largest, damping, limit),
+                     bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
     }
     return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance),
                              .force = force,

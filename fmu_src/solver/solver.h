@@ -26,6 +26,11 @@ typedef struct {
     double step_size; // s  internal step of the fixed-step methods
 } FcSolverOptions;
 
+// The scale [N] of the tolerance for the bristle's force, beside a damping, if no limit is smaller [N].
+static inline double fc_force_beside_damping(double largest, double damping, double limit) {
+    return largest / (1.0 + damping / limit);
+}
+
 typedef struct {
     double delta;       // m     deflection at the end of the step
     int slips;          //       the other part of the bristle's state (FcBristle)

@@ -198,9 +198,10 @@ static double largest_error(int count, const Numbers* weight, const double* erro
 // The interpolated map of period k: Newton's polynomial.
 static Numbers map_at(const Block* block, double k) {
     Numbers map = {.of = {0.0}};
+    const double place = place_in(block, k);
     for (int j = block->points - 1; j >= 0; j--) {
         for (int i = 0; i < block->numbers; i++) {
-            map.of[i] = map.of[i] * (place_in(block, k) - block->place[j]) + block->point[j].of[i];
+            map.of[i] = map.of[i] * (place - block->place[j]) + block->point[j].of[i];
         }
     }
     return map;

@@ -32,14 +32,15 @@ static const double MOST_FORGOTTEN = 0.5;
 // would cost twice the time.
 enum { MOST_MEETINGS = 1000 };
 
-// A limit that falls by decades is too small at the step's end for the scale of the whole step: a piece has its own.
+// A limit that falls by decades is too small at the step's end for the scale of the whole step: a piece has
+// its own.
 static FcSolverOptions options_of_piece(const FcSolverOptions* options, const FcPieces* pieces) {
     FcSolverOptions own = *options;
     const double limit = pieces->h < pieces->whole && options->damping > 0.0
                              ? fc_scene_smallest_limit(pieces->scene, pieces->h)
                              : 0.0;
     if (limit > 0.0) {
-        own.force = fmin(own.force, options->largest / (1.0 + options->damping / limit));
+        own.force = fmin(own.force, fc_force_beside_damping(options->largest, options->damping, limit));
     }
     return own;
 }
