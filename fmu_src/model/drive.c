@@ -25,8 +25,10 @@ FcDrive fc_drive_make(FcLinearInput V, FcLinearInput d, FcLinearInput E, FcLinea
         drive.omega = FC_TWO_PI * vibration.f;
         drive.cos_phase_d = cos(vibration.phase_d);
         drive.sin_phase_d = sin(vibration.phase_d);
-        drive.cos_phase_2 = cos(vibration.phase_2);
-        drive.sin_phase_2 = sin(vibration.phase_2);
+        if (vibration.V_2 != 0.0) {
+            drive.cos_phase_2 = cos(vibration.phase_2);
+            drive.sin_phase_2 = sin(vibration.phase_2);
+        }
         drive.theta_0 = FC_TWO_PI * (phase_in_cycles(vibration.f, start) + vibration.f * rest);
     }
     return drive;
@@ -142,7 +144,9 @@ double fc_drive_V_y(const FcDrive* drive, double t) {
     return fc_drive_is_planar(drive) ? fc_drive_V_y_at_phase(drive, t, fc_drive_phase(drive, t)) : 0.0;
 }
 
-double fc_drive_d(const FcDrive* drive, double t) { return fc_drive_values(drive, t).d; }
+double fc_drive_d(const FcDrive* drive, double t) {
+    return drive->vibration.a_d == 0.0 ? linear(drive->d, t) : fc_drive_values(drive, t).d;
+}
 
 double fc_drive_E(const FcDrive* drive, double t) { return fc_input_after(drive->E, t); }
 

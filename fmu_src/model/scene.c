@@ -176,7 +176,10 @@ FcCoefficients fc_scene_coefficients(const FcScene* scene, double t) {
     return fc_scene_coefficients_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
-double fc_scene_stiffness(const FcScene* scene, double t) { return fc_scene_coefficients(scene, t).sigma; }
+double fc_scene_stiffness(const FcScene* scene, double t) {
+    const FcContactAtModulus at_E = contact_at(scene, t);
+    return fc_contact_stiffness(&at_E, separation(scene, &at_E, fc_drive_d(&scene->drive, t), t));
+}
 
 FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDrive* drive = &scene->drive;
