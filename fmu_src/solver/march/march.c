@@ -45,21 +45,26 @@ static const double BENDS = 1.5;
 // that is missed lasts less than 1e-3 of the cell. One more halving costs one evaluation.
 enum { MOST_HALVINGS = 10 };
 
+// A bound of the rate of ln D over that of FcPace. Derived: of E, ln sigma goes with at most 2.2 ln E, and of a
+// load, ln g with ln load. A smaller factor could end a slip too late, a larger one costs evaluations.
+static const double FASTEST = 3.0;
+
 typedef struct {
     const FcScene* scene;
     FcScene bound; // of a bristle that is free, or slips in Dahl and LuGre
     FcFriction bound_law;
     FcSolverOptions options;
     FcPlanner planner;
-    double smooth_time; // s, but for Stribeck's curve
-    double duration;    // s
-    double speed;       // m/s, at the most
-    double t;           // s, reached
-    double cut;         // s, that no panel steps over
-    int side;           // of the bound along which it slips, else 0
-    int left;           // of the bound that it has left at left_at, else 0
-    double left_at;     // s
-    double longest;     // s, slip so far
+    double smooth_time;   // s, but for Stribeck's curve
+    double duration;      // s
+    double speed;         // m/s, at the most
+    double fastest_bound; // m/s, |D'| is below it
+    double t;             // s, reached
+    double cut;           // s, that no panel steps over
+    int side;             // of the bound along which it slips, else 0
+    int left;             // of the bound that it has left at left_at, else 0
+    double left_at;       // s
+    double longest;       // s, slip so far
     FcStepResult* result;
 } March;
 
@@ -78,6 +83,7 @@ static void plan(March* m) {
         const FcPace pace = fc_pace(&m->bound, m->duration);
         m->planner = fc_planner(m->options.tolerance);
         m->smooth_time = fc_smooth_time(&pace);
+        m->fastest_bound = FASTEST * pace.log_sigma * fc_scene_largest_saturation(&m->bound, m->duration);
     }
 }
 
@@ -345,17 +351,76 @@ static double latest_end(March* m, double end) {
                : event.time; // V is 0, so the kinetic bound is the static one
 }
 
-// Slips along the bound for a panel, up to `end` at most, or until the bristle leaves the bound. forced: it
-// is known not to leave.
-static void slip(March* m, double end, bool forced) {
+// Slips along the bound for a panel, up to `end` at most, which lies before the bristle leaves the bound.
+static void slip_panel(March* m, double end) {
+    Slip panel;
+    int rule;
+    plan(m);
+    find_cut(m, end);
+    double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
+    for (int tries = 0;; tries++) {
+        slip_points(m, h, rule, m->side, &panel);
+        if (is_slip_accurate(m, &panel) || !fc_refine_panel(&h, &rule, tries)) {
+            break;
+        }
+    }
+    add_slip(m, &panel);
+    advance(m, h);
+}
+
+// Slips along the bound to the time `end`, before which the bristle does not leave the bound.
+static void slip_to(March* m, double end) {
+    const FcScene* bound = bound_of_slip(m);
+    const bool stands = bound_stands(bound);
+    if (fc_scene_limit_is_constant(bound) &&
+        (!fc_has_stribeck_curve(bound->friction) || fc_drive_V_is_constant(&bound->drive)) &&
+        (stands || m->scene->friction->sigma_1 == 0.0)) {
+        const FcCoefficients at = fc_scene_coefficients(bound, end);
+        const double work = m->side * at.limit * fc_drive_displacement(&m->scene->drive, m->t, end);
+        note_slip(m, end - m->t);
+        m->result->impulse += m->side * at.limit * (end - m->t);
+        m->result->work += work;
+        m->result->heat += work;
+        if (!stands) {
+            const double delta = m->side * at.limit / at.sigma;
+            m->result->heat -= m->side * at.limit * (delta - m->result->delta);
+            m->result->delta = delta;
+        }
+        m->result->evaluations += 1.0;
+        m->t = end;
+    }
+    m->cut = 0.0;
+    while (m->t < end && m->result->evaluations <= FC_MOST_EVALUATIONS) {
+        slip_panel(m, end);
+    }
+}
+
+// The time up to which a bristle of ElasticPlastic without static friction is sure to slip: |V| is larger
+// than |D'| may be.
+static double sure_end(const March* m, double end) {
+    FcDrive slower = m->scene->drive;
+    slower.V.value -= m->side * m->fastest_bound;
+    const double event = fc_drive_next_event(&slower, m->t, end).time;
+    return m->side * fc_drive_V(&slower, 0.5 * (m->t + event)) > 0.0 ? event : m->t;
+}
+
+// Slips along the bound for a panel, up to `end` at most, or until the bristle leaves the bound.
+static void slip(March* m, double end) {
+    plan(m);
+    if (!relaxes(m->scene) && !fc_has_static_friction(m->scene->friction)) {
+        const double sure = sure_end(m, end);
+        if (sure > m->t) {
+            slip_to(m, sure);
+            return;
+        }
+    }
     m->result->evaluations += 1.0;
     // If V is 0, the push is 0: the panel decides.
-    if (!forced && !(fc_push(m->scene, bound_of_slip(m), m->t, m->side) >= 0.0)) {
+    if (!(fc_push(m->scene, bound_of_slip(m), m->t, m->side) >= 0.0)) {
         end_slip(m);
         return;
     }
-    plan(m);
-    const double slip_end = forced ? end : latest_end(m, end);
+    const double slip_end = latest_end(m, end);
     find_cut(m, slip_end);
     int rule;
     double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
@@ -366,7 +431,7 @@ static void slip(March* m, double end, bool forced) {
         if (!accurate && fc_refine_panel(&h, &rule, tries)) {
             continue;
         }
-        const double leaves = forced ? INFINITY : end_of_push(m, m->side, &panel);
+        const double leaves = end_of_push(m, m->side, &panel);
         if (leaves > m->t + h) {
             add_slip(m, &panel);
             advance(m, h);
@@ -375,13 +440,7 @@ static void slip(March* m, double end, bool forced) {
             }
             return;
         }
-        if (leaves > m->t) {
-            if (leaves < m->t + h) {
-                slip_points(m, leaves - m->t, rule, m->side, &panel);
-            }
-            add_slip(m, &panel);
-            m->t = leaves;
-        }
+        slip_to(m, leaves);
         end_slip(m);
         return;
     }
@@ -470,22 +529,37 @@ static FcCourse course_of(const March* m, const FcScene* bound, const FcPoints* 
     return course;
 }
 
-// Sticks to the time `end` in the panel from here on.
-static void stick_until(March* m, const FcScene* bound, int rule, double end) {
-    if (end > m->t) {
+// The map up to the time `end`, before which the bristle meets no bound, for starts of the size of delta [m].
+static FcMap map_until(March* m, const FcScene* bound, double delta, double end) {
+    FcMap map = fc_map_identity();
+    plan(m);
+    while (m->t < end && m->result->evaluations <= FC_MOST_EVALUATIONS) {
         FcPoints at;
         double x[FC_MOST_POINTS];
-        fc_points(bound, m->t, end - m->t, rule, &at, &m->result->evaluations);
-        displacements(m, &at, x);
-        const FcMap map = stuck_map(m, &at, x);
-        fc_map_apply(&map, m->result);
-        m->t = end;
+        int rule;
+        double h = fc_plan_panel(&m->planner, end - m->t, m->smooth_time, &rule);
+        for (int tries = 0;; tries++) {
+            fc_points(bound, m->t, h, rule, &at, &m->result->evaluations);
+            displacements(m, &at, x);
+            if (is_stick_accurate(m, &at, x, delta + map.offset) || !fc_refine_panel(&h, &rule, tries)) {
+                break;
+            }
+        }
+        const FcMap part = stuck_map(m, &at, x);
+        fc_map_append(&map, &part);
+        m->t = fc_panel_end(m->t, h, end);
     }
+    return map;
 }
 
-// Sticks for a panel, up to `end` at most, or until it meets its bound. clear: it cannot meet it. A slipping
-// bristle inside its bound moves with V while it comes nearer to its bound.
-static void stick(March* m, double end, bool clear) {
+static void stick_until(March* m, const FcScene* bound, double end) {
+    const FcMap map = map_until(m, bound, m->result->delta, end);
+    fc_map_apply(&map, m->result);
+}
+
+// Sticks for a panel, up to `end` at most, or until it meets its bound. A slipping bristle inside its bound
+// moves with V while it comes nearer to its bound.
+static void stick(March* m, double end) {
     plan(m);
     const int slips = m->result->slips;
     const FcScene* bound = slips != 0 ? m->scene : &m->bound;
@@ -502,51 +576,43 @@ static void stick(March* m, double end, bool clear) {
         m->cut = end;
     }
     const double smooth_time = slips != 0 ? smooth_time_of_slip(m) : m->smooth_time;
-    double left = m->cut - m->t;
-    if (!clear) { // a stiff bristle is soon at its bound: no panel that is far longer
-        const FcVelocity now = fc_drive_velocity(&m->scene->drive, m->t);
-        const double soon = fc_time_to_move(fabs(now.V), fabs(now.rate), SOON * fc_bound(bound, m->t));
-        left = soon > 0.0 ? fmin(left, soon) : left;
-    }
+    // A stiff bristle is soon at its bound: no panel that is far longer.
+    const FcVelocity now = fc_drive_velocity(&m->scene->drive, m->t);
+    const double soon = fc_time_to_move(fabs(now.V), fabs(now.rate), SOON * fc_bound(bound, m->t));
+    const double left = soon > 0.0 ? fmin(m->cut - m->t, soon) : m->cut - m->t;
     int rule;
     double h = fc_plan_panel(&m->planner, left, smooth_time, &rule);
-    for (int tries = 0;; tries++) {
-        FcPoints at;
-        double x[FC_MOST_POINTS];
-        fc_points(bound, m->t, h, rule, &at, &m->result->evaluations);
-        displacements(m, &at, x);
-        if (!is_stick_accurate(m, &at, x, m->result->delta) && fc_refine_panel(&h, &rule, tries)) {
-            continue;
+    FcPoints at;
+    double x[FC_MOST_POINTS];
+    fc_points(bound, m->t, h, rule, &at, &m->result->evaluations);
+    displacements(m, &at, x);
+    const FcCourse course = course_of(m, bound, &at, x);
+    FcMeeting met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0],
+                                     unseen(m, at.sigma[0], course.D[0]), &m->result->evaluations);
+    double until = met.side != 0 ? met.t : fc_panel_end(m->t, h, m->cut);
+    bool sticks = false; // at that time
+    if (slips != 0) {
+        if (met.side != slips) {
+            met.side = 0;
+            until = fc_panel_end(m->t, h, m->cut);
         }
-        const FcCourse course = course_of(m, bound, &at, x);
-        FcMeeting met = {0, INFINITY};
-        if (!clear) {
-            met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0],
-                                   unseen(m, at.sigma[0], course.D[0]), &m->result->evaluations);
-        }
-        if (slips != 0) {
-            met.side = met.side == slips ? slips : 0;
-            Slip panel;
-            slip_points(m, h, rule, slips, &panel);
-            const double sticks = end_of_push(m, slips, &panel);
-            if (sticks <= m->t + h && !(met.side != 0 && met.t <= sticks)) {
-                stick_until(m, bound, rule, sticks);
-                end_slip(m);
-                return;
-            }
-        }
-        if (met.side == 0) {
-            const FcMap map = stuck_map(m, &at, x);
-            fc_map_apply(&map, m->result);
-            advance(m, h);
-            if (slip_end < end && m->t >= slip_end) {
-                end_slip(m);
-            }
-        } else {
-            stick_until(m, bound, rule, met.t);
-            begin_slip(m, met.side);
-        }
-        return;
+        Slip panel;
+        slip_points(m, h, rule, slips, &panel);
+        const double end_of_slip = end_of_push(m, slips, &panel);
+        sticks = end_of_slip <= m->t + h && !(met.side != 0 && met.t <= end_of_slip);
+        until = sticks ? end_of_slip : until;
+    }
+    if (met.side == 0 && !sticks && is_stick_accurate(m, &at, x, m->result->delta)) {
+        const FcMap map = stuck_map(m, &at, x);
+        fc_map_apply(&map, m->result);
+        m->t = until;
+    } else {
+        stick_until(m, bound, until);
+    }
+    if (sticks || (met.side == 0 && slip_end < end && m->t >= slip_end)) {
+        end_slip(m);
+    } else if (met.side != 0) {
+        begin_slip(m, met.side);
     }
 }
 
@@ -574,27 +640,7 @@ static void stick_to(March* m, double end) {
         fc_map_apply(&map, m->result);
         m->t = end;
     }
-    while (m->t < end && m->result->evaluations <= FC_MOST_EVALUATIONS) {
-        stick(m, end, true);
-    }
-}
-
-// Slips along the bound to the time `end`.
-static void slip_to(March* m, double end) {
-    const FcScene* bound = bound_of_slip(m);
-    if (fc_scene_limit_is_constant(bound)) {
-        const double limit = fc_scene_coefficients(bound, m->t).limit;
-        const double x = fc_drive_displacement(&m->scene->drive, m->t, end);
-        note_slip(m, end - m->t);
-        m->result->impulse += m->side * limit * (end - m->t);
-        m->result->work += m->side * limit * x;
-        m->result->heat += m->side * limit * x;
-        m->result->evaluations += 1.0;
-        m->t = end;
-    }
-    while (m->t < end && m->result->evaluations <= FC_MOST_EVALUATIONS) {
-        slip(m, end, true);
-    }
+    stick_until(m, &m->bound, end);
 }
 
 typedef struct {
@@ -627,7 +673,7 @@ static void march_between_reversals(March* m, double D) {
     double delta = m->result->delta;
     while (m->t < m->duration && m->result->evaluations <= FC_MOST_EVALUATIONS) {
         if (m->result->slips != 0 && (m->side == 0 || has_peak)) {
-            m->side != 0 ? slip(m, m->duration, false) : stick(m, m->duration, false);
+            m->side != 0 ? slip(m, m->duration) : stick(m, m->duration);
             sticks_to = m->t;
             delta = m->result->delta;
             continue;
@@ -706,17 +752,20 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
         march_between_reversals(&m, fc_bound(&m.bound, 0.0));
         return;
     }
-    const bool clear = !relaxes(scene) && result->slips == 0 && m.side == 0 && stays_clear(&m);
+    if (!relaxes(scene) && result->slips == 0 && m.side == 0 && stays_clear(&m)) {
+        stick_until(&m, &m.bound, duration);
+        return;
+    }
     double before = -1.0;
     for (int idle = 0; m.t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
         idle = m.t > before ? 0 : idle + 1;
         before = m.t;
         if (m.side != 0) {
-            slip(&m, duration, idle > MOST_IDLE);
+            idle > MOST_IDLE ? slip_panel(&m, duration) : slip(&m, duration);
         } else if (relaxes(scene)) {
             relax(&m);
         } else {
-            stick(&m, duration, clear);
+            stick(&m, duration);
         }
     }
 }
@@ -729,31 +778,10 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
     const double sigma = fc_scene_stiffness(scene, 0.0);
     const double D = fc_bound(&m.bound, 0.0);
     const FcDrive* drive = &scene->drive;
-    FcMap map = fc_map_identity();
     unused.evaluations = 1.0;
-    if (fc_scene_stiffness_is_constant(scene)) {
-        map = still_map(scene, sigma, 0.0, duration, fc_drive_displacement(drive, 0.0, duration));
-    } else {
-        m.cut = duration;
-    }
-    plan(&m);
-    while (!fc_scene_stiffness_is_constant(scene) && m.t < duration &&
-           unused.evaluations <= FC_MOST_EVALUATIONS) {
-        int rule;
-        double h = fc_plan_panel(&m.planner, duration - m.t, m.smooth_time, &rule);
-        for (int tries = 0;; tries++) {
-            FcPoints at;
-            double x[FC_MOST_POINTS];
-            fc_points(&m.bound, m.t, h, rule, &at, &unused.evaluations);
-            displacements(&m, &at, x);
-            if (is_stick_accurate(&m, &at, x, D) || !fc_refine_panel(&h, &rule, tries)) {
-                const FcMap part = stuck_map(&m, &at, x);
-                fc_map_append(&map, &part);
-                advance(&m, h);
-                break;
-            }
-        }
-    }
+    FcMap map = fc_scene_stiffness_is_constant(scene)
+                    ? still_map(scene, sigma, 0.0, duration, fc_drive_displacement(drive, 0.0, duration))
+                    : map_until(&m, &m.bound, D, duration);
     if (!fc_drive_is_linear(drive)) { // whole periods: to the last digit
         map.offset = drive->V.value * duration;
     }

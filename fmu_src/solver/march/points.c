@@ -6,8 +6,8 @@
 
 #include "solver/panels/nodes.h"
 
-static const FcGaussRule* const RULE[FC_RULES] = {&FC_GAUSS_4, &FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
-static const int NODES[FC_RULES] = {4, 6, 8, 12};
+static const FcGaussRule* const RULE[FC_RULES] = {&FC_GAUSS_6, &FC_GAUSS_8, &FC_GAUSS_12};
+static const int NODES[FC_RULES] = {6, 8, 12};
 
 // The longest panel of 12 nodes, over 12 and over the time in which the scene moves by 1: planned for three
 // digits, 10^(-3 / 24). Chosen empirically: points farther apart show too little of the motion between them.
@@ -24,8 +24,7 @@ int fc_rule_nodes(int rule) { return NODES[rule]; }
 
 FcPlanner fc_planner(double tolerance) {
     const double of_12 = fmin(LONGEST_OF_12, pow(tolerance, 1.0 / 24.0)); // 10^(-digits / 2 n)
-    return (FcPlanner){.longest = {4.0 * of_12 * of_12 * of_12, 6.0 * of_12 * of_12,
-                                   8.0 * of_12 * sqrt(of_12), 12.0 * of_12}};
+    return (FcPlanner){.longest = {6.0 * of_12 * of_12, 8.0 * of_12 * sqrt(of_12), 12.0 * of_12}};
 }
 
 double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, int* rule) {

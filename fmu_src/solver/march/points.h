@@ -7,8 +7,8 @@
 #include "model/scene.h"
 #include "solver/panels/gauss_rule.h"
 
-// The rules: of 4, 6, 8 and 12 nodes.
-enum { FC_RULES = 4, FC_MOST_POINTS = FC_GAUSS_MOST_NODES + 2 };
+// The rules: of 6, 8 and 12 nodes.
+enum { FC_RULES = 3, FC_MOST_POINTS = FC_GAUSS_MOST_NODES + 2 };
 
 // The longest panel of each rule, over the time in which the scene moves by 1: n 10^(-digits / 2 n), since
 // the error goes with the length to the power 2 n.
