@@ -56,32 +56,3 @@ double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const 
     const double relaxed = relaxes ? at->sigma * at->speed / at->limit * bound->D : 0.0;
     return fc_product(n, at->V) - relaxed - bound->rate;
 }
-
-FcBristle fc_plane_reach(const FcScene* scene, FcBristle bristle) {
-    if (fc_scene_is_loose(scene)) {
-        return (FcBristle){0};
-    }
-    const double size = hypot(bristle.delta, bristle.delta_y);
-    if (!fc_is_bounded(scene->friction) || size == 0.0) {
-        return bristle;
-    }
-    FcPlane plane;
-    fc_plane_make(&plane, scene);
-    const FcPhase phase = fc_drive_phase(&scene->drive, 0.0);
-    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, phase);
-    FcPlaneBound bound = fc_plane_bound(&plane, &at, bristle.slips, 0.0, phase);
-    const FcVector n = {bristle.delta / size, bristle.delta_y / size};
-    if (size > bound.D) {
-        if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
-            size > (1.0 + FC_ROUNDING_OF_BOUND) * bound.D) {
-            bristle.slips = 1;
-            bound = fc_plane_bound(&plane, &at, 1, 0.0, phase);
-        }
-        bristle.delta = bound.D * n.x;
-        bristle.delta_y = bound.D * n.y;
-    }
-    if (bristle.slips != 0 && fc_plane_push(&plane, &at, &bound, n) < 0.0) {
-        bristle.slips = 0;
-    }
-    return bristle;
-}

@@ -65,7 +65,4 @@ FcPlaneBound fc_plane_bound(const FcPlane* plane, const FcPlaneCoefficients* at,
 double fc_plane_push(const FcPlane* plane, const FcPlaneCoefficients* at, const FcPlaneBound* bound,
                      FcVector n);
 
-// fc_reach in the plane.
-FcBristle fc_plane_reach(const FcScene* scene, FcBristle bristle);
-
 #endif

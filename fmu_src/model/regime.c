@@ -38,18 +38,6 @@ double fc_push_at(void* context, double t) {
     return fc_push(of->scene, of->bound, t, of->side);
 }
 
-// The bound of that side at the start of the scene.
-static double push(const FcScene* scene, int slips, int side) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, slips, &friction);
-    return fc_push(scene, &bound, 0.0, side);
-}
-
-static double bound_of(const FcScene* scene, const FcCoefficients* at, int slips) {
-    const bool is_static = slips == 0 || scene->friction->model != FC_ELASTIC_PLASTIC;
-    return at->limit * (is_static ? fc_static_over_limit(scene->friction, at->V) : 1.0) / at->sigma;
-}
-
 FcBound fc_bound_in_plane(const FcScene* bound, double t) {
     if (fc_drive_is_planar(&bound->drive)) {
         FcPlane plane;
@@ -68,38 +56,59 @@ static FcVector direction(double x, double y) {
     return size > 0.0 ? (FcVector){x / size, y / size} : (FcVector){0.0, 0.0};
 }
 
-double fc_push_in_plane(const FcScene* scene, FcBristle bristle) {
+// The bound of a bristle at the start of a scene, and its push.
+typedef struct {
     FcPlane plane;
-    fc_plane_make(&plane, scene);
-    const FcPhase phase = fc_drive_phase(&scene->drive, 0.0);
-    const FcPlaneCoefficients at = fc_plane_coefficients(&plane, 0.0, phase);
-    const FcPlaneBound bound = fc_plane_bound(&plane, &at, bristle.slips, 0.0, phase);
-    return fc_plane_push(&plane, &at, &bound, direction(bristle.delta, bristle.delta_y));
+    FcPhase phase;
+    FcPlaneCoefficients at;
+    FcPlaneBound bound;
+    FcVector n; // the direction of the deflection, or that in which it slips along a line
+} AtBound;
+
+static void set_bound(AtBound* of, int slips) {
+    of->bound = fc_plane_bound(&of->plane, &of->at, slips, 0.0, of->phase);
+}
+
+static double push(const AtBound* of) { return fc_plane_push(&of->plane, &of->at, &of->bound, of->n); }
+
+// The result points into itself.
+static void find_bound(AtBound* of, const FcScene* scene, FcBristle bristle) {
+    fc_plane_make(&of->plane, scene);
+    of->phase = fc_drive_phase(&scene->drive, 0.0);
+    of->at = fc_plane_coefficients(&of->plane, 0.0, of->phase);
+    of->n = bristle.slips != 0 && !fc_is_planar(scene, bristle) ? (FcVector){bristle.slips, 0.0}
+                                                                 : direction(bristle.delta, bristle.delta_y);
+    set_bound(of, bristle.slips);
+}
+
+double fc_push_in_plane(const FcScene* scene, FcBristle bristle) {
+    AtBound of;
+    find_bound(&of, scene, bristle);
+    return push(&of);
 }
 
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
-    if (fc_is_planar(scene, bristle)) {
-        return fc_plane_reach(scene, bristle);
-    }
     if (fc_scene_is_loose(scene)) {
         return (FcBristle){0};
     }
     if (!fc_is_bounded(scene->friction)) {
         return bristle;
     }
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    double D = bound_of(scene, &at, bristle.slips);
-    const int side = bristle.delta < 0.0 ? -1 : 1;
-    if (fabs(bristle.delta) > D) {
+    AtBound of;
+    find_bound(&of, scene, bristle);
+    const double size = hypot(bristle.delta, bristle.delta_y);
+    if (size > of.bound.D) {
+        const FcVector n = {bristle.delta / size, bristle.delta_y / size};
         if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
-            fabs(bristle.delta) > (1.0 + FC_ROUNDING_OF_BOUND) * D) {
-            bristle.slips = side;
-            D = bound_of(scene, &at, side);
+            size > (1.0 + FC_ROUNDING_OF_BOUND) * of.bound.D) {
+            bristle.slips = fc_is_planar(scene, bristle) ? 1 : fc_side(bristle);
+            set_bound(&of, bristle.slips);
         }
-        bristle.delta = side * D;
+        bristle.delta = of.bound.D * n.x;
+        bristle.delta_y = of.bound.D * n.y;
     }
     // At a push of 0 it goes on: the motion says whether it slips.
-    if (bristle.slips != 0 && push(scene, bristle.slips, bristle.slips) < 0.0) {
+    if (bristle.slips != 0 && push(&of) < 0.0) {
         bristle.slips = 0;
     }
     return bristle;
@@ -115,18 +124,11 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
         (fc_has_static_friction(scene->friction) && bristle.slips == 0)) {
         return FC_FREE;
     }
-    if (fc_is_planar(scene, bristle)) {
-        FcFriction friction;
-        const FcScene bound = fc_scene_of_bound(scene, bristle.slips, &friction);
-        const double D = fc_bound_in_plane(&bound, 0.0).D;
-        const bool on_circle = hypot(bristle.delta, bristle.delta_y) >= (1.0 - INSIDE_BOUND) * D;
-        return on_circle && fc_push_in_plane(scene, bristle) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
-    }
-    const int side = fc_side(bristle);
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
-    const double D = bound_of(scene, &at, bristle.slips);
-    const bool on_bound = fabs(bristle.delta) >= (1.0 - INSIDE_BOUND) * D && side * bristle.slips >= 0;
-    return on_bound && push(scene, bristle.slips, side) > 0.0 ? (FcRegime)side : FC_FREE;
+    AtBound of;
+    find_bound(&of, scene, bristle);
+    const FcVector delta = {bristle.delta, bristle.delta_y};
+    const bool on_bound = fc_product(of.n, delta) >= (1.0 - INSIDE_BOUND) * of.bound.D;
+    return on_bound && push(&of) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
 }
 
 // The coefficients of the bristle's equation at the start of a scene.

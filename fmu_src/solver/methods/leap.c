@@ -254,7 +254,7 @@ static bool interpolate(Block* block) {
 static bool meets(const Block* block, double k, const FcStepResult* at) {
     const FcScene scene = scene_at(block, k);
     const FcBristle start = {.delta = at->delta, .delta_y = at->delta_y};
-    const FcBristle reached = block->law->is_planar ? fc_plane_reach(&scene, start) : fc_reach(&scene, start);
+    const FcBristle reached = fc_reach(&scene, start);
     if (reached.delta != start.delta || reached.delta_y != start.delta_y) {
         return true;
     }

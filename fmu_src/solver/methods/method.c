@@ -116,7 +116,7 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
         *evaluations = end.evaluations;
         // An excess over a bound by rounding would become heat of the first step.
         const FcBristle bristle = fc_bristle_of(&end);
-        return is_planar ? fc_plane_reach(scene, bristle) : fc_reach(scene, bristle);
+        return fc_reach(scene, bristle);
     }
     if (is_planar) {
         return fc_plane_slides_for_ever(scene, from, force);

@@ -143,7 +143,7 @@ static bool meets_after(Walk* walk, double n) {
         take_free(walk, n, &end);
     }
     const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
-    const FcBristle reached = fc_plane_reach(walk->scene, bristle);
+    const FcBristle reached = fc_reach(walk->scene, bristle);
     if (reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) {
         return true;
     }
@@ -304,7 +304,7 @@ static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
         leads = (FcVector){side[0].at.x + part * between.x, side[0].at.y + part * between.y};
     }
     const FcBristle reached =
-        fc_plane_reach(scene, (FcBristle){.delta = leads.x, .delta_y = leads.y, .slips = total->slips});
+        fc_reach(scene, (FcBristle){.delta = leads.x, .delta_y = leads.y, .slips = total->slips});
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
 }

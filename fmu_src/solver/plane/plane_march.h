@@ -9,7 +9,7 @@
 
 #include "solver/methods/periods.h"
 
-// An FcStep of a scene in the plane, from a bristle within its bound (fc_plane_reach).
+// An FcStep of a scene in the plane, from a bristle within its bound (fc_reach).
 void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result);
 
