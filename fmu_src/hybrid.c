@@ -118,23 +118,12 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
 }
 
 // For a bounded bristle of a closed contact.
-static void find_indicators_of_bound(const View* view, FcRegime regime, double delta, double* z) {
-    const double D = fc_bound(&view->bound, 0.0);
-    if (regime == FC_FREE) {
-        z[1] = (1.0 - (view->side != 0 ? view->side * delta : fabs(delta)) / D) + HYSTERESIS;
-    }
-    if (view->side != 0) {
-        const FcDrive* drive = &view->scene.drive;
-        const double speed =
-            fabs(drive->V.value) + drive->vibration.V_1 + fabs(fc_bound_rate(&view->bound, 0.0));
-        z[2] = fc_push(&view->scene, &view->bound, 0.0, view->side) + HYSTERESIS * speed;
-    }
-}
-
-static void find_indicators_in_plane(const View* view, FcRegime regime, FcBristle bristle, double* z) {
+static void find_indicators_of_bound(const View* view, FcRegime regime, FcBristle bristle, double* z) {
     const FcBound bound = fc_bound_in_plane(&view->bound, 0.0);
+    const bool has_side = view->side != 0 && !fc_is_planar(&view->scene, bristle);
     if (regime == FC_FREE) {
-        z[1] = (1.0 - hypot(bristle.delta, bristle.delta_y) / bound.D) + HYSTERESIS;
+        const double size = has_side ? view->side * bristle.delta : hypot(bristle.delta, bristle.delta_y);
+        z[1] = (1.0 - size / bound.D) + HYSTERESIS;
     }
     if (view->side != 0) {
         const double speed = fc_drive_largest_speed(&view->scene.drive, 0.0) + fabs(bound.rate);
@@ -150,7 +139,6 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     View now;
     look(contact, &now);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const bool planar = fc_is_planar(&now.scene, bristle);
     double* z = indicators->of;
     z[0] = z[1] = z[2] = z[3] = 1.0;
     if (fc_scene_depends_on_d(&now.scene)) {
@@ -160,13 +148,10 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     if (!fc_scene_is_loose(&now.scene)) {
         if (v->friction.model != FC_ELASTIC_PLASTIC) {
             const FcDrive* drive = &now.scene.drive;
-            z[0] = fc_drive_V(drive, 0.0);
-            z[0] += planar ? SLANT * fc_drive_V_y(drive, 0.0) : 0.0;
+            z[0] = fc_drive_V(drive, 0.0) + SLANT * fc_drive_V_y(drive, 0.0);
         }
-        if (fc_is_bounded(&v->friction) && planar) {
-            find_indicators_in_plane(&now, regime_of(contact), bristle, z);
-        } else if (fc_is_bounded(&v->friction)) {
-            find_indicators_of_bound(&now, regime_of(contact), v->delta, z);
+        if (fc_is_bounded(&v->friction)) {
+            find_indicators_of_bound(&now, regime_of(contact), bristle, z);
         }
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
@@ -204,7 +189,7 @@ static void look_at_inputs(FcFrictionContact* contact) {
 
 // A slipping bristle: the lag of delta behind the bound, its deflection without the lag, and its force there.
 typedef struct {
-    double lag;     // m, in the plane that of |delta|
+    double lag;     // m, of |delta|
     FcVector delta; // m
     double force;   // N
 } Slip;
@@ -218,17 +203,11 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     View now;
     look(contact, &now);
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
-    const bool loose = fc_scene_is_loose(&now.scene);
+    const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound_in_plane(&now.bound, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    if (fc_is_planar(&now.scene, bristle)) {
-        const double D = loose ? 0.0 : fc_bound_in_plane(&now.bound, 0.0).D;
-        const double size = hypot(bristle.delta, bristle.delta_y);
-        const double onto = size > 0.0 ? D / size : 0.0;
-        *slip = (Slip){D - size, {onto * bristle.delta, onto * bristle.delta_y}, sigma * D};
-    } else {
-        const double bound = loose ? 0.0 : (double)regime_of(contact) * fc_bound(&now.bound, 0.0);
-        *slip = (Slip){bound - bristle.delta, {bound, 0.0}, sigma * bound};
-    }
+    const double size = hypot(bristle.delta, bristle.delta_y);
+    const double onto = size > 0.0 ? D / size : 0.0;
+    *slip = (Slip){D - size, {onto * bristle.delta, onto * bristle.delta_y}, sigma * D};
     return sigma != 0.0;
 }
 
