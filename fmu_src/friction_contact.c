@@ -467,13 +467,15 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
         return false;
     }
     const FcVariables* v = &before->variables;
-    const FcSolverOptions options = solver_options(v, &scene, h, fc_friction_contact_bristle(contact));
     double heat;
     const FcBristle start = fc_jump(&scene, &before->past, fc_friction_contact_bristle(contact), &heat);
     FcStepResult result;
-    if (!fc_method_step(&scene, (FcMethod)v->solver.method, contact->cvode, &options, h, start, &result,
-                        message)) {
-        return false;
+    const FcMethod method = (FcMethod)v->solver.method;
+    if (!fc_method_formula(&scene, method, h, start, &result)) {
+        const FcSolverOptions options = solver_options(v, &scene, h, fc_friction_contact_bristle(contact));
+        if (!fc_method_step(&scene, method, contact->cvode, &options, h, start, &result, message)) {
+            return false;
+        }
     }
     result.heat += heat;
     add_damping(&scene, h, start, &result);
@@ -482,10 +484,14 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     // step's start would lose digits with every period.
     const double time_rest = rounding_of_sum(t, h);
     const bool moves = !fc_drive_is_constant(&scene.drive);
-    const FcScene end = moves ? scene_from(contact, t + h, time_rest, before->next_rate, h) : scene;
+    FcScene moved;
+    if (moves) {
+        moved = scene_from(contact, t + h, time_rest, before->next_rate, h);
+    }
+    const FcScene* end = moves ? &moved : &scene;
     Outputs now;
     const FcBristle reached = fc_bristle_of(&result);
-    if (!find_outputs(&end, reached, &now, message)) {
+    if (!find_outputs(end, reached, &now, message)) {
         return false;
     }
     const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : now.force;
@@ -498,7 +504,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
             "d = %.9g m",
             h, of.name, of.V, v->d);
     }
-    const FcPast past = fc_is_bounded(&v->friction) ? fc_past(&end) : (FcPast){.sigma = 0.0};
+    const FcPast past = fc_is_bounded(&v->friction) ? fc_past(end) : (FcPast){.sigma = 0.0};
     commit(&contact->state, h, &result, reached, &past);
     set_outputs(&contact->state.variables, &now);
     contact->state.variables.F_t_mean = mean.x;

@@ -67,14 +67,37 @@ static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, co
     return true;
 }
 
+static bool is_affine(const FcScene* scene) {
+    return scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
+}
+
+// Whether the method leaves the scene to the default.
+static bool takes_default(const FcScene* scene, FcMethod method) {
+    return !is_affine(scene) || method == FC_METHOD_COLLOCATION ||
+           (method == FC_METHOD_CVODE && may_touch_bound(scene));
+}
+
+bool fc_method_formula(const FcScene* scene, FcMethod method, double h, FcBristle from,
+                       FcStepResult* result) {
+    if (!is_affine(scene) || !fc_drive_is_constant(&scene->drive) || fc_scene_is_loose(scene) ||
+        !takes_default(scene, method)) {
+        return false;
+    }
+    *result = fc_result_from(from, 0.0);
+    if (fc_is_planar(scene, from)) {
+        fc_plane_constant(scene, h, result);
+    } else {
+        fc_collocation_constant(scene, h, from.delta, result);
+    }
+    return true;
+}
+
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, FcBristle from, FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
     *result = fc_result_from(from, 0.0);
     const bool is_planar = fc_is_planar(scene, from);
-    const bool is_affine = scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
-    if (is_affine && method != FC_METHOD_COLLOCATION &&
-        !(method == FC_METHOD_CVODE && may_touch_bound(scene))) {
+    if (!takes_default(scene, method)) {
         if (is_planar) {
             static const char* const NAME[] = {
                 [FC_METHOD_CVODE] = "cvode",
@@ -90,14 +113,6 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
                 NAME[method], scene->drive.V_y.value, scene->drive.vibration.V_2, from.delta_y);
         }
         return other_step(scene, method, cvode, options, h, result, message);
-    }
-    if (is_affine && fc_drive_is_constant(&scene->drive) && !fc_scene_is_loose(scene)) {
-        if (is_planar) {
-            fc_plane_constant(scene, h, result);
-        } else {
-            fc_collocation_constant(scene, h, from.delta, result);
-        }
-        return true;
     }
     return fc_periods_step(integration(scene, is_planar), scene, options, h, result, message);
 }
