@@ -105,7 +105,9 @@ def __getattr__(name: str) -> object:
 
         value = version("frictioncontact")
     else:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from .errors import did_you_mean
+
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{did_you_mean(name, __dir__())}")
     globals()[name] = value
     return value
 

@@ -42,7 +42,7 @@ class Contacts(dict[str, Contact]):
         hint = did_you_mean(str(name), self) or ";"
         raise UserError(f"{shown(name)} is no measured contact{hint} these are: {', '.join(self)}")
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return "\n".join(f"{name:<16} {contact.title}" for name, contact in self.items())
 
 

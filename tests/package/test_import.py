@@ -60,5 +60,30 @@ def test_every_name_is_there_and_stays_what_it_is() -> None:
         assert name in dir(fc)
     assert all(map(callable, (fc.simulate, fc.simulate_many, fc.sweep, fc.identify, fc.advise)))
     assert fc.__version__ == description.read().version
-    with pytest.raises(AttributeError, match="no attribute 'simulated'"):
-        _ = fc.simulated
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("simulated", "; did you mean simulate?"),
+        ("Friction_Law", "; did you mean friction_law?"),
+        ("xyz", ""),
+    ],
+)
+def test_a_name_that_is_none_has_a_hint(name: str, hint: str) -> None:
+    with pytest.raises(AttributeError) as caught:
+        getattr(fc, name)
+    assert str(caught.value) == f"module 'frictioncontact' has no attribute {name!r}{hint}"
+
+
+def test_plots_without_matplotlib_say_how_to_get_it() -> None:
+    code = (
+        "import sys, frictioncontact as fc; sys.modules['matplotlib'] = None\n"
+        "law = {'friction.model': 'ElasticPlastic', 'contact.model': 'Constant'}\n"
+        "fit = fc.identify(fc.contacts['steel-dry'].data, 'contact.sigma', start=law)\n"
+        "for plot in (fc.friction_law({'vibration.V_1': 1.0}).plot, fit.plot):\n"
+        "    try: plot()\n"
+        "    except fc.UserError as error: print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == 2 * "pictures need matplotlib: pip install 'frictioncontact[plot]'\n"
