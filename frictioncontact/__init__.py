@@ -107,7 +107,8 @@ def __getattr__(name: str) -> object:
     else:
         from .errors import did_you_mean
 
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{did_you_mean(name, __dir__())}")
+        hint = did_you_mean(name, __all__, likeness=0.65)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}", name=name)
     globals()[name] = value
     return value
 
