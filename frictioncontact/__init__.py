@@ -105,7 +105,10 @@ def __getattr__(name: str) -> object:
 
         value = version("frictioncontact")
     else:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from .errors import did_you_mean
+
+        hint = did_you_mean(name, __all__, likeness=0.65)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}", name=name)
     globals()[name] = value
     return value
 

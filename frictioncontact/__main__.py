@@ -29,7 +29,7 @@ def main() -> None:
 
 def _chosen() -> Callable[[], None]:
     name = sys.argv[1] if len(sys.argv) > 1 else "--help"
-    if name in ("-h", "--help"):
+    if name in ("-h", "--help", "help"):
         return _usage
     if name in ("version", "--version"):
         return _version

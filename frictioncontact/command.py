@@ -6,6 +6,7 @@ import argparse
 import csv
 import importlib.util
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -34,12 +35,16 @@ called_as: str | None = None  # what a file of scripts/ calls the command of its
 
 
 class Parser(argparse.ArgumentParser):
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # -1e-4 too is a value, and not an option
+
     def error(self, message: str) -> NoReturn:
-        """As argparse's, with the grammar of values."""
+        """One line, with the grammar of values."""
         words = message.partition("unrecognized arguments: ")[2].split()
         if words and "=" in words[0] and "--set" in self.format_usage():
             message += f"; write --set {words[0].lstrip('-')}"
-        super().error(message)
+        self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
 
 
 def command_line(prog: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:

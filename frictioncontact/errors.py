@@ -59,12 +59,12 @@ def shown(value: object) -> str:
     return repr(text if len(text) <= SHOWN else text[:SHOWN] + "...")
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """What an error about a wrong name ends with; empty if no known name is like it."""
+def did_you_mean(name: str, known: Iterable[str], likeness: float = 0.5) -> str:
+    """What an error about a wrong name ends with; empty if no known name is like it (likeness of difflib)."""
     names = list(known)
     by_case = [other for other in names if other.lower() == name.lower()]
     ends = [other for other in names if len(name) > 1 and other.lower().endswith("." + name.lower())]
-    close = by_case or ends or difflib.get_close_matches(name[:SHOWN], names, 1, 0.5)
+    close = by_case or ends or difflib.get_close_matches(name[:SHOWN], names, 1, likeness)
     return f"; did you mean {close[0]}?" if close else ""
 
 

@@ -16,11 +16,13 @@ import tempfile
 import zipfile
 import zlib
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from functools import cache
+from numbers import Integral
 from pathlib import Path
-from typing import Self
+from threading import Lock
+from typing import Any, NoReturn, Self
 
 import numpy as np
 from fmpy import extract, read_model_description
@@ -53,6 +55,9 @@ class Closing(ABC):
     @abstractmethod
     def close(self) -> None:
         """Gives back what it holds."""
+
+    def __reduce__(self) -> NoReturn:
+        raise UserError(f"a {type(self).__name__} can't be copied or pickled; open another one")
 
     def __enter__(self) -> Self:
         return self
@@ -129,6 +134,8 @@ class FrictionFmu(Closing):
         tolerance     solver.tolerance, if the start values have none
         raises        UserError: an unknown name or a wrong value; FrictionError: the FMU refuses them
         """
+        if not self.directory.exists():
+            raise UserError(f"{self.path}: this FrictionFmu is closed; open another one")
         return Session(self, self._slave(), start_values or {}, real(start, "start"), tolerance)
 
     def close(self) -> None:
@@ -156,7 +163,7 @@ class Session(Closing):
 
     Opened by `FrictionFmu.session`, closed at the end of a `with` block or by `close()`. Every call raises
     UserError for an unknown name or a wrong value, and FrictionError if the FMU refuses it; the instance is
-    then as before.
+    then as before. One thread at a time may use it.
     """
 
     def __init__(
@@ -172,6 +179,7 @@ class Session(Closing):
         self.time = start
         self.messages: list[str] = []
         self.warnings: list[str] = []
+        self._in_use = Lock()
         self._callbacks = logging_callbacks(self.messages, self.warnings)
         slave.instantiate(callbacks=self._callbacks, loggingOn=True)
         try:
@@ -185,16 +193,22 @@ class Session(Closing):
             self.close()
             raise
 
-    def _call(self, function: object, *arguments: object) -> object:
-        before = len(self.messages)
+    def _call(self, function: Callable[..., Any], *arguments: object) -> Any:
+        if not self._in_use.acquire(blocking=False):
+            raise UserError("another thread uses this session; open one for each thread")
         try:
-            return function(*arguments)  # type: ignore[operator]
+            if self.slave.component is None:
+                raise UserError("this session is closed; open another one")
+            before = len(self.messages)
+            return function(*arguments)
         except FMICallException as error:
             raise FrictionError("; ".join(self.messages[before:]) or str(error)) from None
+        finally:
+            self._in_use.release()
 
     def set(self, name: str, value: Value) -> None:
         """Sets an input or a parameter, SI units; of an enumeration an item or its number."""
-        variable = self.fmu.variables.get(name)
+        variable = self.fmu.variables.get(name) if isinstance(name, str) else None
         if variable is None or type(value) is not float or variable.type != "Real":
             code = self.fmu.known.number(name, value, f"set {name}")
         else:
@@ -211,26 +225,32 @@ class Session(Closing):
 
     def step(self, h: float) -> None:
         """Advances by h [s], with the inputs held or moving at the rates that were set."""
-        h = real(h, "h")
-        self._call(self.slave.doStep, self.time, h)
-        self.time += h
+        self._call(self._advance, real(h, "h"), 1)
+
+    def _advance(self, h: float, count: int) -> None:
+        do_step, component, start = self.slave.fmi2DoStep, self.slave.component, self.time
+        for k in range(count):
+            do_step(component, self.time, h, 1)
+            self.time = start + (k + 1) * h
 
     def step_many(self, h: float, count: int) -> None:
-        """count steps of h [s] with held inputs, with as little Python as possible between them."""
-        do_step, component, time = self.slave.fmi2DoStep, self.slave.component, self.time
-        for k in range(int(real(count, "count"))):
-            self._call(do_step, component, time + k * h, h, 1)
-        self.time = time + count * h
+        """count steps of h [s] with held inputs."""
+        if not isinstance(count, Integral) or count < 0:
+            raise UserError(f"count = {shown(count)}: must be a whole number from 0 on")
+        self._call(self._advance, real(h, "h"), int(count))
 
     def get(self, name: str) -> float:
         """The value of any variable of type Real now, SI units."""
-        return float(self.read([name])[0])
+        return float(self._read([name], "get")[0])
 
     def read(self, names: Sequence[str] = OUTPUTS) -> np.ndarray:
         """The values of several variables now, an array of their number."""
         if isinstance(names, str) or not isinstance(names, Iterable):
             raise UserError(f"read: {shown(names)} is not a sequence of names")
-        references = [self.fmu.known.readable(name, "read").valueReference for name in names]
+        return self._read(names, "read")
+
+    def _read(self, names: Iterable[str], where: str) -> np.ndarray:
+        references = [self.fmu.known.readable(name, where).valueReference for name in names]
         return np.array(self._call(self.slave.getReal, references))
 
     def force_rate(self, output: str = "F_t") -> float:
@@ -266,10 +286,11 @@ class Session(Closing):
         self.time = time
 
     def close(self) -> None:
-        """Frees the instance."""
-        if self.slave.component is not None:
-            self.slave.fmi2FreeInstance(self.slave.component)
-            self.slave.component = None
+        """Frees the instance, once a call of another thread has ended."""
+        with self._in_use:
+            if self.slave.component is not None:
+                self.slave.fmi2FreeInstance(self.slave.component)
+                self.slave.component = None
 
 
 def simulate(

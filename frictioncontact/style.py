@@ -8,14 +8,20 @@ Colours are those of Okabe and Ito, which people with any colour vision can tell
 identified; each solver) has the same colour in every picture.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import matplotlib
+from frictioncontact.errors import UserError
+from frictioncontact.files import whole_file
+
+try:
+    import matplotlib
+except ImportError:
+    raise UserError("pictures need matplotlib: pip install 'frictioncontact[plot]'") from None
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-from frictioncontact.files import whole_file
 
 BLACK, GREY, LIGHT = "#222222", "#767676", "#d0d0d0"
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#d55e00", "#009e73", "#b2182b"
@@ -66,6 +72,13 @@ def subplots(
     matplotlib.rcParams.update(_SETTINGS)
     figure = Figure(figsize=size)
     return figure, figure.subplots(rows, columns, **options)
+
+
+@contextmanager
+def kept() -> Iterator[None]:
+    """Leaves the user's settings of matplotlib as they were."""
+    with matplotlib.rc_context():
+        yield
 
 
 def save(figure: Figure, *paths: str | Path) -> None:

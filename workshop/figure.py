@@ -3,9 +3,11 @@
 Labels write subscripts as F_t or V_1; pictures and the page turn them into their own form.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -152,6 +154,10 @@ class Figure:
     panels: Sequence[Panel]
     columns: int = 2
     size: tuple[float, float] = (10.0, 4.0)  # inches, of the image files
+
+    def narrow(self) -> Figure:
+        """The same with a panel below the other, for a phone."""
+        return replace(self, columns=1, size=(5.6, 4.1 * len(self.panels)))
 
     def draw(self, *paths: Path) -> None:
         """Writes the figure under each path."""

@@ -78,7 +78,8 @@ top = max(1.0, mean.max())
 shown = axis.pcolormesh(kappa, zeta.ravel(), mean, cmap="RdBu_r", vmin=-top, vmax=top, rasterized=True)
 levels = (-0.1, 0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.01)
 lines = axis.contour(kappa, zeta.ravel(), mean, levels, colors="black", linewidths=0.6)
-axis.clabel(lines, fontsize=7)
+middles = [path.vertices[len(path) // 2] for path in lines.get_paths() if len(path)]
+axis.clabel(lines, fontsize=8, manual=middles)  # away from the borders, which would cut them
 axis.set_xlabel("κ = σ V$_1$ / (2π f F$_C$)")
 axis.set_ylabel("ζ = V / V$_1$")
 figure.colorbar(shown, label="mean F$_t$ / F$_C$")

@@ -71,12 +71,12 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
         return "\n".join(lines), {}
     lines.append(f"At a step of {H:g} s it is stable from {span[0]:.6g} to {span[1]:.6g} N s/m.")
     if damping == 0.0:
-        lines.append("It needs none: the smallest errs least.")
+        lines.append("It needs none. A smaller value errs less.")
     else:
         lines += [
-            f"Set {damping:.6g} N s/m, the smallest and a tenth: more errs more.",
-            "It adds sigma_1 delta' to F_t, also while the contact slides under a vibration: F_t may then",
-            "swing by many times F_C, though its mean stays. Set it only where the mass sticks.",
+            f"Set {damping:.6g} N s/m, the smallest stable value plus 10 %. A larger value errs more.",
+            "It adds sigma_1 der(delta) to F_t. Under a vibration F_t may then swing by many times F_C,",
+            "though its mean stays. Set it only if the mass sticks.",
             f"At break-away F_t exceeds the static friction by sigma_1 V, {damping:.6g} N for each m/s.",
             "If that matters, take Gauss-Seidel, which needs no damping.",
         ]

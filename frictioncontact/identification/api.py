@@ -76,11 +76,10 @@ class Identification:
 
     def plot(self) -> Figure:
         """Measured and fitted forces, and how sharply the data fix the parameters. Needs matplotlib."""
-        import matplotlib
-
+        from frictioncontact import style
         from frictioncontact.identification.figures import picture
 
-        with matplotlib.rc_context():
+        with style.kept():
             return picture(self.experiment, self.fit)
 
 

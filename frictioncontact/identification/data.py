@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frictioncontact.columns import columns_of, numbers_below
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, shown
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.values import csv_rows
 
@@ -107,7 +107,8 @@ def read(
 def _lines(frame: pd.DataFrame) -> list[tuple[int, list[str]]]:
     """A frame as lines of a CSV file."""
     if not hasattr(frame, "itertuples"):
-        raise UserError("data: must be the path of a CSV file, or a pandas frame")
+        hint = "; it has one, .data" if hasattr(frame, "data") else ""
+        raise UserError(f"data = {shown(frame)}: must be the path of a CSV file, or a pandas frame{hint}")
     cells = [[str(cell) for cell in row] for row in frame.itertuples(index=False)]
     return list(enumerate([[str(name) for name in frame.columns], *cells], 1))
 

@@ -35,7 +35,7 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
     if math.isfinite(result.deviation):
         say(f"scatter of one {word}: {result.deviation:.3g} N ({result.degrees} degrees of freedom)")
     if not result.known and not result.misfits:
-        say("whether the law fits within the measurement's scatter can't be said: no uncertainty is stated")
+        say("whether the law fits is open: state the uncertainty of the force (uncertain, --uncertain)")
     names = [p.name for p in result.parameters]
     if "contact.stiffnessScale" in names and isinstance(experiment.rows, Measurements):
         scale = result.values[names.index("contact.stiffnessScale")]

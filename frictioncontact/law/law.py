@@ -122,14 +122,12 @@ class FrictionLaw:
         inputs    as in a call, numbers
         returns   a figure of matplotlib, with `savefig`
         """
-        import matplotlib
-
         from frictioncontact import style
 
         if V is None:
             V_1, V_2, V_S = self._session.read(SCALES)
             V = np.linspace(0.0, 1.5 * max(V_1, V_2) or 10.0 * V_S, 201)[1:]
-        with matplotlib.rc_context():
+        with style.kept():
             figure, (force, slope) = style.subplots(1, 2, size=(9.0, 3.5))
             force.plot(V, self(V, **inputs))
             slope.plot(V, self.derivative(V, **inputs))

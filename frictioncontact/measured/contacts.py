@@ -1,13 +1,17 @@
 """`contacts`: contacts that were measured, as start values with their source, range and uncertainty."""
 
+from __future__ import annotations
+
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from frictioncontact import resources
 from frictioncontact.errors import UserError, did_you_mean, shown
-from frictioncontact.fmu import opened
-from frictioncontact.values import Value
+
+if TYPE_CHECKING:
+    from frictioncontact.values import Value
 
 
 @dataclass(frozen=True)
@@ -26,10 +30,10 @@ class Contact:
     data: Path | None = field(default=None, repr=False)  # the measured rows, a file that `identify` reads
 
     def __str__(self) -> str:
-        units = {name: variable.unit for name, variable in opened(None).variables.items()}
         values = " ".join(f"--set {name}={value}" for name, value in self.start.items())
         rows = [("start, SI", values), ("valid", self.valid)]
-        rows += [(name, f"{low:g} to {high:g} {units[name]}") for name, (low, high) in self.intervals.items()]
+        intervals = [f"{name} {low:g} to {high:g}" for name, (low, high) in self.intervals.items()]
+        rows += [("interval, SI", interval) for interval in intervals]
         rows += [("uncertainty", self.uncertainty), ("source", self.source)]
         rows += [("data", str(self.data))] if self.data else []
         return "\n".join([f"{self.name}: {self.title}", *(f"  {name:<14} {text}" for name, text in rows)])
@@ -42,7 +46,7 @@ class Contacts(dict[str, Contact]):
         hint = did_you_mean(str(name), self) or ";"
         raise UserError(f"{shown(name)} is no measured contact{hint} these are: {', '.join(self)}")
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return "\n".join(f"{name:<16} {contact.title}" for name, contact in self.items())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from frictioncontact.errors import UserError, did_you_mean
+from frictioncontact.errors import UserError, did_you_mean, shown
 from frictioncontact.values import LARGEST, numbers_of
 
 if TYPE_CHECKING:
@@ -56,7 +57,10 @@ class Samples:
 def samples(table: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[str]) -> Samples:
     """The samples of a table with a column time [s] and any of the named inputs; UserError if it is wrong."""
     if not isinstance(table, Mapping) and not hasattr(table, "columns"):
-        raise UserError("inputs: must be a mapping of names to samples, or a pandas frame")
+        hint = "; pandas.read_csv reads a file" if isinstance(table, (str, os.PathLike)) else ""
+        raise UserError(
+            f"inputs = {shown(table)}: must be a mapping of names to samples, or a pandas frame{hint}"
+        )
     columns = {str(name): table[name] for name in table}
     for name in columns:
         if name not in ("time", *names):

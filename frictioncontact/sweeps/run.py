@@ -178,5 +178,5 @@ def _scenarios(
             raise UserError("--csv does not go with --vary or --random: the file names all scenarios")
         return from_csv(variables, csv)
     if not vary:
-        raise UserError("nothing to sweep: give --vary NAME=VALUES or --csv FILE (see --help)")
+        raise UserError("nothing to sweep: give vary (--vary NAME=VALUES) or csv (--csv FILE)")
     return grid(variables, vary) if random is None else drawn(variables, vary, random, seed)

@@ -58,7 +58,7 @@ def test_scripts_build_before_unless_an_fmu_is_named(
     monkeypatch.setattr(sys, "argv", ["identify", "--nonsense"])
     with pytest.raises(SystemExit):
         clone.prepare(identify, "identification")
-    assert "usage: scripts/identify" in capsys.readouterr().err and len(built) == 1
+    assert capsys.readouterr().err.startswith("scripts/identify: error: unrecognized") and len(built) == 1
     monkeypatch.setattr(sys, "argv", ["gap"])
     clone.prepare(importlib.import_module("frictioncontact.gap.command"), "gap")
     assert len(built) == 1
@@ -82,6 +82,30 @@ def test_a_command_that_is_none() -> None:
     assert done.stderr.startswith(
         "error: 'simulte' is no command; did you mean simulate? these are: table2, "
     )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--stop", "1"], "the following arguments are required: --step"),
+        (["--stop", "1", "--step", "fast"], "argument --step: invalid float value: 'fast'"),
+        (["--stop", "1", "--step", "1", "V=2"], "unrecognized arguments: V=2; write --set V=2"),
+    ],
+)
+def test_wrong_arguments_are_one_line(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    simulate = importlib.import_module("frictioncontact.simulation.command")
+    with pytest.raises(SystemExit, match=r"^2$"):
+        simulate.arguments(words)
+    name = "frictioncontact simulate"
+    assert capsys.readouterr().err == f"{name}: error: {message}; see {name} --help\n"
+
+
+def test_a_negative_number_is_a_value() -> None:
+    """Also in the form -1e-4, which argparse takes for an option up to Python 3.13."""
+    simulate = importlib.import_module("frictioncontact.simulation.command")
+    assert simulate.arguments(["--stop", "1", "--step", "-1e-4"]).step == -1e-4
 
 
 def test_a_subcommand_gets_its_arguments() -> None:

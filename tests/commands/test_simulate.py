@@ -125,7 +125,10 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"inputs": {"time": [], "V": []}}, "inputs: no samples"),
         ({"inputs": {"time": np.array(["2026-01-01"], "M8[s]"), "V": [1.0]}}, "inputs: time, row 0: "),
         ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V, row 0: is masked"),
-        ({"inputs": "drive.csv"}, "inputs: must be a mapping of names to samples, or a pandas frame"),
+        (
+            {"inputs": "drive.csv"},
+            "inputs = 'drive.csv': must be a mapping of names to samples, or a pandas frame",
+        ),
         ({"fmu": "absent.fmu"}, "absent.fmu: No such file"),
         ({"fmu": "."}, ".: Is a directory"),
         ({"start": [("V", 1.0)]}, "start = \"[('V', 1.0)]\": must be a mapping of names to values"),

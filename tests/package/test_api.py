@@ -79,7 +79,10 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
         ({"fit": []}, "fit: names no parameter"),
         ({"fit": 3}, "fit = 3: must be a name, names, or a mapping of names"),
         ({"fit": {"F_C": (1.0, 2.0, 3.0)}}, "F_C = (1.0, 2.0, 3.0): a range is (low, high)"),
-        ({"data": {"V [m/s]": [1.0]}}, "data: must be the path of a CSV file, or a pandas frame"),
+        (
+            {"data": {"V [m/s]": [1.0]}},
+            "data = \"{'V [m/s]': [1.0]}\": must be the path of a CSV file, or a pandas",
+        ),
         ({"data": "a\0.csv"}, "data = 'a\\x00.csv': is no path"),
         ({"fit": {"F_C": True}}, "F_C = 'True' is not a number"),
     ],

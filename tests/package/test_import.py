@@ -19,6 +19,15 @@ def test_nothing_heavy_is_imported_with_it() -> None:
     assert done.stdout == "[]\n"
 
 
+def test_a_contact_is_printed_without_the_fmu() -> None:
+    code = (
+        "import sys, frictioncontact as fc; str(fc.contacts); text = str(fc.contacts['steel-dry']);"
+        "print('interval, SI   contact.sigma 7.56e+06 to 7.96e+06' in text, 'fmpy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "True False\n"
+
+
 def test_simulating_loads_nothing_that_draws_or_fits() -> None:
     code = (
         "import sys, frictioncontact as fc; fc.simulate(stop=1e-4, step=5e-5); fc.simulate_many({'V': 0.5});"
@@ -60,5 +69,31 @@ def test_every_name_is_there_and_stays_what_it_is() -> None:
         assert name in dir(fc)
     assert all(map(callable, (fc.simulate, fc.simulate_many, fc.sweep, fc.identify, fc.advise)))
     assert fc.__version__ == description.read().version
-    with pytest.raises(AttributeError, match="no attribute 'simulated'"):
-        _ = fc.simulated
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("simulated", "; did you mean simulate?"),
+        ("Friction_Law", "; did you mean friction_law?"),
+        ("fmu_path", ""),
+    ],
+)
+def test_a_name_that_is_none_has_a_hint(name: str, hint: str) -> None:
+    with pytest.raises(AttributeError) as caught:
+        getattr(fc, name)
+    assert str(caught.value) == f"module 'frictioncontact' has no attribute {name!r}{hint}"
+    assert caught.value.obj is None  # or Python adds a second hint
+
+
+def test_plots_without_matplotlib_say_how_to_get_it() -> None:
+    code = (
+        "import sys, frictioncontact as fc; sys.modules['matplotlib'] = None\n"
+        "law = {'friction.model': 'ElasticPlastic', 'contact.model': 'Constant'}\n"
+        "fit = fc.identify(fc.contacts['steel-dry'].data, 'contact.sigma', start=law)\n"
+        "for plot in (fc.friction_law({'vibration.V_1': 1.0}).plot, fit.plot):\n"
+        "    try: plot()\n"
+        "    except fc.UserError as error: print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == 2 * "pictures need matplotlib: pip install 'frictioncontact[plot]'\n"

@@ -64,12 +64,11 @@ def step_sizes(rows: Sequence[Mapping[str, object]], folder: Path) -> list[Path]
                 label = f"{kind} inputs, {'mean of ' if 'mean' in key else ''}$F_t$"
                 panel.loglog(H, errors, line, marker=marker, color=colour, label=label)
             guide = errors[-1] * (H / H[-1]) ** slope
-            panel.loglog(H, 0.5 * guide, ":", color=style.GREY)
-            panel.annotate(f"slope {slope}", (H[0], 0.5 * guide[0]), fontsize=8, color=style.GREY)
-        panel.set_title(f"V, d from outside, σ {sigma:.0e} N/m".replace("e+", "e"))
+            panel.loglog(H, 0.5 * guide, ":", color=colour, label=f"slope {slope}")
+        panel.set_title(f"V, d from outside, σ {sigma:.0e} N/m".replace("e+0", "e").replace("e+", "e"))
         panel.set_xlabel("communication step over vibration period")
         panel.set_ylabel("largest error over $F_C$")
-        panel.legend()
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return style.save_both(figure, folder, "step-size")
 
 

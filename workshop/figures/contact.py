@@ -63,4 +63,4 @@ def areas(points: int = 61) -> Figure:
         "for d / R_q from 0.55 to 4.1, and useless near zero. Nearly all touching asperities yield "
         "here, which doubles the elastic area."
     )
-    return Figure("heights", "What the exponential height density costs", caption, panels, 3, (14.0, 4.8))
+    return Figure("heights", "Error of the exponential height density", caption, panels, 3, (14.0, 4.8))

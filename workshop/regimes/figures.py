@@ -34,7 +34,7 @@ def grids(quick: bool) -> tuple[np.ndarray, np.ndarray]:
 def means(probe: Probe, quick: bool) -> Figure:
     """Mean friction over kappa and zeta without and with normal vibration, and cuts against the limits."""
     kappas, zetas = grids(quick)
-    levels = (0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
+    levels = (0.0, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8)
     panels = [
         Panel(title, KAPPA, ZETA, [Map(kappas, zetas, z, "mean F_t / F_C", 0.0, 1.0, levels)], True, True)
         for title, z in (
@@ -55,7 +55,8 @@ def means(probe: Probe, quick: bool) -> Figure:
         "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean: at κ = 100 within "
         "0.001 F_C for ζ = 0.3, but not near ζ = 1; with d moving this much only above 3000. Soft ones, "
         "below 0.1, keep a nearly constant deflection and have a limit of their own: π²/4 times Coulomb's "
-        "mean at small ζ. Beyond ζ = 1 nothing reverses and, with d constant, the mean is F_C."
+        "mean at small ζ. Inside the line 0 the mean is negative: the vibration drives the sliding. Beyond "
+        "ζ = 1 nothing reverses and, with d constant, the mean is F_C."
     )
     return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
 

@@ -104,9 +104,10 @@ def _draw(figures: dict[str, Figure], options: argparse.Namespace, progress: Pro
         paths = [options.output / f"{key}.svg"]
         if not options.quick:
             paths.append(options.output / f"{key}.png")
+        figure.draw(*paths)
         if options.docs and key in IN_DOCS:
             paths.append(ROOT / "docs" / "pictures" / f"paper-{key}.png")
-        figure.draw(*paths)
+            figure.narrow().draw(paths[-1])
         written += paths
         progress.advance(task)
     progress.remove_task(task)
