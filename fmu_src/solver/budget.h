@@ -26,13 +26,9 @@
 static const double FC_SHARE_OF_BOUNDED_PANEL = 0.5;
 
 // The largest estimate of a judged Gauss panel that is accepted, over the allowed error: most estimates are
-// 10 to 1e5 times too large. In a Stribeck peak the excess is smaller, and some estimates are too small. If a
-// panel relaxes by more than FC_STEEP, which is not a share, or begins as fast, the estimate of the mean may
-// be half the error.
+// 10 to 1e5 times too large. In a Stribeck peak the excess is smaller, and some estimates are too small.
 static const double FC_SHARE_OF_GAUSS_PANEL = 10.0;
 static const double FC_SHARE_OF_GAUSS_PANEL_IN_PEAK = 1.0;
-static const double FC_STEEP = 4.0;
-static const double FC_SHARE_OF_STEEP_PANEL = 0.05; // of the share above that holds, for the mean
 
 // The errors for which a Radau panel is planned.
 static const double FC_PLAN_FOR_MEAN = 0.003;

@@ -43,7 +43,6 @@ FC_INLINE void panel_of(const FcGaussRule* rule, int n, const FcScene* scene, do
         (FcMap){.relaxation = relaxation, .offset = (1.0 - relaxation) * fc_dot(n, rule->weight, source)};
     fc_panel_integrals(n, rule->weight, P, Q, z, at.V, at.sigma, h, &panel->map);
     panel->z = whole;
-    panel->z_from_start = z[0];
     panel->displacement = h * fc_dot(n, rule->weight, at.V);
     if (!judged) {
         return;

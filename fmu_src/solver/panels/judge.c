@@ -12,9 +12,8 @@ bool fc_gauss_panel_is_accurate(const FcPanel* panel, int nodes, double share, b
                                 double allowed) {
     assert(!(share < 0.0 || share > 1.0) && allowed >= 0.0);
     const double may_be = (in_peak ? FC_SHARE_OF_GAUSS_PANEL_IN_PEAK : FC_SHARE_OF_GAUSS_PANEL) * allowed;
-    const double of_mean = fc_most(panel->z, panel->z_from_start) < FC_STEEP ? 1.0 : FC_SHARE_OF_STEEP_PANEL;
     const double of_end = fc_least(1.0, in_peak ? forgets : panel->z); // may be 0, and so is the error then
-    return is_resolved(panel, nodes) && share * panel->mean_error <= of_mean * may_be &&
+    return is_resolved(panel, nodes) && share * panel->mean_error <= may_be &&
            panel->end_error <= of_end * may_be;
 }
 

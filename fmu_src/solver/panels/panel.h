@@ -17,7 +17,6 @@
 typedef struct {
     FcMap map;
     double z;                  // integral of r = sigma |V| / g over the panel
-    double z_from_start;       // h r at the first node (of a Gauss panel)
     double rate, sigma, limit; // r [1/s], sigma [N/m] and g [N] at the end (of a Radau panel)
     double displacement;       // m, of V by the panel's quadrature
     double end_error;          // N, estimated, of the force at the end

@@ -234,8 +234,7 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     limits.finer = isfinite(limits.peak) && limits.starts && tolerance < FINE_IN_PEAK * fc_most(1.0, excess);
     const double allowed_last = limits.allowed_last;
     const double of_lag = interval->moving_limit || tolerance < COARSE ? 1.0 : LAG_BEHIND_CONSTANT_LIMIT;
-    const double of_heat = fc_most(1.0, 0.5 * transient); // which goes with the square of the force
-    double for_transient = for_mean / (transient * of_heat * life.lives + tiny);
+    double for_transient = for_mean / (transient * life.lives + tiny);
     double for_lag = of_lag * for_mean / (drift * life.lag_counts + tiny);
     FcPlan plan = {.h = planned_length(&limits, for_transient, for_lag, gone_decades, caution)};
 
