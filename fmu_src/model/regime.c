@@ -98,7 +98,7 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
         }
         bristle.delta = side * D;
     }
-    // At a push of 0 it goes on: the motion says whether it slips.
+    // A bristle with a push of 0 remains slipping. Its motion decides whether it sticks.
     if (bristle.slips != 0 && push(scene, bristle.slips, bristle.slips) < 0.0) {
         bristle.slips = 0;
     }
@@ -256,7 +256,7 @@ static double log_limit_along(const FcScene* scene, FcVector V, double log_F_n, 
     return by_load + fc_stribeck_slope(friction, speed) / fc_stribeck(friction, speed) * speed_along;
 }
 
-// Of delta' = V - r delta, r = sigma |V| / g.
+// The derivative of delta' = V - r delta along the direction, with r = sigma |V| / g.
 static FcVector free_rate_along(const FcScene* scene, const Moment* at, FcVector delta, double log_sigma,
                                 double log_limit, const FcDirection* along) {
     const FcVector V_along = {along->V, along->V_y};
