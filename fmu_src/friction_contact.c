@@ -282,7 +282,7 @@ bool fc_friction_contact_prepare(FcFrictionContact* contact, int method, FcMessa
     return method != FC_METHOD_CVODE || contact->cvode != NULL;
 }
 
-// The finest tolerance of the bristle's force. Rounding: 4500 eps. A finer one asks for digits that do not
+// The finest tolerance of the bristle's force. Rounding: 4500 eps. A finer one would need digits that do not
 // exist.
 static const double SMALLEST_TOLERANCE = 1e-12;
 

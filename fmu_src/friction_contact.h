@@ -42,7 +42,7 @@ typedef struct {
         double stepSize;    // s
         double evaluations; // 1, evaluations of the coefficients of the bristle's equation since the start
     } solver;
-    double F_t_settled; // N  output, computed when asked for and kept nowhere: 0 here (settled_force.h)
+    double F_t_settled; // N  output, computed when it is read and not stored: 0 here (settled_force.h)
     double V_y;         // m/s  input, across V
     double F_y;         // N    output
     double F_y_mean;    // N    output
@@ -57,8 +57,8 @@ typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_V_Y, 
 typedef struct {
     int regime;                   // FcRegime
     int changed;                  // a state was changed since the event began
-    double seen_time;             // s, when the inputs were seen last
-    double seen[FC_INPUT_COUNT];  // they themselves
+    double seen_time;             // s, of the inputs that were seen last
+    double seen[FC_INPUT_COUNT];  // these inputs
     double speed[FC_INPUT_COUNT]; // 1/s times their units: how fast they move
     double nominal_delta;         // m
     double nominal_energy;        // J
@@ -139,8 +139,8 @@ typedef struct {
 } FcFastest;
 FcFastest fc_fastest(const FcDrive* drive);
 
-// The vibration is on and a step of h [s] exceeds half a period: F_t is then a sample, F_t_mean the output to
-// use.
+// Whether the vibration is on and a step of h [s] exceeds half a period. F_t is then one sample, and F_t_mean
+// is the output to use.
 bool fc_friction_contact_undersamples(const FcFrictionContact* contact, double h);
 
 #endif

@@ -22,8 +22,8 @@ static const double NEAR_THE_BOUND = 0.9;
 static const double SHORTEST_LOOK = 1e4 * DBL_EPSILON;
 
 // Parts of a vibration period, or changes of V over V_S in Stribeck's peak, within which a push turns at most
-// once. Two turns within a part bound a slip of under 1e-3 of the vibration's amplitude; twice the part
-// bounds an eightfold slip, half of it costs twice the evaluations.
+// once. A slip between two turns within a part is below 1e-3 of the vibration's amplitude. Twice the part
+// allows an eightfold slip, half of it costs twice the evaluations.
 static const double PART_OF_PERIOD = 1.0 / 32.0;
 static const double PART_OF_PEAK = 0.5;
 static const double LEAST_PART_OF_PERIOD = 1e-4;
@@ -38,7 +38,7 @@ static const double END_OF_PEAK = 5.0;
 static const double SLANT = -0.5463024898437905;
 
 // The part of a period by which a time event is later than its turn. Chosen empirically: the indicators see
-// the turn first, and an event at a turn does not ask for a second event. Half of it does the same.
+// the turn first, and an event at a turn does not cause a second event. Half of it does the same.
 static const double AFTER_TURN = 1e-9;
 
 bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {

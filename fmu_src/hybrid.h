@@ -64,9 +64,10 @@ void fc_hybrid_event_begins(FcFrictionContact* contact);
 // *nominals_changed whether the nominal values have. False as fc_hybrid_refresh.
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
 
-// The time [s] of the next event that the indicators may miss, because a step may pass two of their zeros. It
-// is the time at which the vibration, with the present inputs, turns a bounded bristle back from a bound; a
-// period ahead if there is no such turn; in the plane a part of the period ahead. False if there is none.
+// The time [s] of the next event that the indicators may miss, because a step may pass two of their zeros.
+// Along a line it is the time at which the vibration, with the present inputs, turns a bounded bristle back
+// from a bound, or a period ahead without such a turn. In the plane it is a part of the period ahead. False
+// if there is no such event.
 bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
 
 // Ends an event. A jump of the inputs in it is not a motion.

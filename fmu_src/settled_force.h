@@ -2,8 +2,9 @@
 // has settled at the present inputs, held.
 //
 // They are functions of the inputs and parameters alone. If several periodic states are possible, or nothing
-// moves, it is the one to which delta_0 and delta_y_0 lead from the phase of time 0. Damping has no mean over
-// a settled period; viscous friction adds sigma_2 V. Without vibration the state is steady sliding at V.
+// moves, the means are those of the state to which delta_0 and delta_y_0 lead from the phase of time 0.
+// Damping has no mean over a settled period; viscous friction adds sigma_2 V. Without vibration the state is
+// steady sliding at V.
 #ifndef FC_SETTLED_FORCE_H
 #define FC_SETTLED_FORCE_H
 

@@ -12,8 +12,8 @@
 // and remains usable. The same holds for bad arguments, and for a step that can't be computed: the instance
 // stays in FC_STEP_COMPLETE at the time it had, so the host may correct the input and step again. Steps are
 // synchronous and never discarded, so the states from FC_STEP_IN_PROGRESS to FC_STEP_CANCELED, FAILED (the
-// standard's "error") and FATAL are columns of the table that no instance enters; that makes fmi2CancelStep
-// an error always.
+// standard's "error") and FATAL are columns of the table that no instance enters. So fmi2CancelStep is always
+// an error.
 #ifndef FC_FMI2_CALL_TABLE_H
 #define FC_FMI2_CALL_TABLE_H
 

@@ -73,7 +73,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* FMUstate) {
     if (!settled) {
         drop_stale_outputs(instance, saved);
     }
-    if (!settled || !fc_instance_is_hybrid(instance)) { // rates are computed when they are asked for
+    if (!settled || !fc_instance_is_hybrid(instance)) { // rates are computed when they are read
         saved->friction.variables.der = (FcStateRates){.delta = 0.0};
     }
     return fmi2OK;

@@ -74,7 +74,7 @@ static fmi2Status refuse_literal(const FcInstance* instance, const FcVariableInf
 
 // Inputs can be set in every state in which setting is legal. Tunable parameters cannot be set while an
 // integrator runs, fixed parameters not after initialization, outputs and local variables never. Exception:
-// some hosts of model exchange (CasADi) set the states so while they integrate.
+// some hosts of model exchange (CasADi) set the states by fmi2SetReal while they integrate.
 static bool is_settable(const FcInstance* instance, const FcVariableInfo* info) {
     const int mode = instance->experiment.mode;
     if (info->causality != FC_CAUSALITY_PARAMETER) {

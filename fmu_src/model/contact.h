@@ -1,6 +1,6 @@
 // Two rough surfaces pressed to a separation d: real contact area, normal force, tangential stiffness.
 //
-// Asperity heights s (over R_q) have the density c exp(-lambda s); each asperity is elastic up to the
+// Asperity heights s (over R_q) have the density c exp(-lambda s). Each asperity is elastic up to the
 // critical interference omega_c and plastic beyond it (Eq. 3-22 of the paper, with the misprints of Eq. 9, 17
 // and 20 corrected):
 //

@@ -93,7 +93,7 @@ double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t) {
            (drive->V.rate * t - turn * (at_t.sine * at_t.sine / (1.0 + fabs(cosine))));
 }
 
-// Of the angle of the transverse vibration.
+// Sine and cosine of the angle of the transverse vibration.
 static FcPhase phase_across(const FcDrive* drive, FcPhase at_t) {
     return (FcPhase){.sine = at_t.sine * drive->cos_phase_2 + at_t.cosine * drive->sin_phase_2,
                      .cosine = at_t.cosine * drive->cos_phase_2 - at_t.sine * drive->sin_phase_2};

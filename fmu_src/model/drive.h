@@ -58,8 +58,8 @@ bool fc_drive_is_constant(const FcDrive* drive);
 bool fc_drive_is_planar(const FcDrive* drive); // it moves across
 bool fc_drive_V_is_constant(const FcDrive* drive);
 
-// Of the vibration's angle 2 pi f t + theta_0. The sine comes first: the other way round gcc reads both at
-// once as soon as sincos has written them one by one, and the processor waits.
+// Sine and cosine of the vibration's angle 2 pi f t + theta_0. The sine comes first. In the other order gcc
+// reads both at once as soon as sincos has written them one by one, and the processor waits.
 typedef struct {
     double sine;
     double cosine;
@@ -139,7 +139,7 @@ typedef struct {
 // that is ahead by no more than the rounding of the phase or of V is t itself.
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
 
-// The same after an event.
+// The first event after *event and before end.
 FcDriveEvent fc_drive_event_after(const FcDrive* drive, const FcDriveEvent* event, double end);
 
 #endif

@@ -1,6 +1,6 @@
-// The laws of friction. The bristle's deflection delta [m] is the state of all but Coulomb's; g [N] is the
-// limit of its force, constant or proportional to the normal force, and s(V) = 1 + (staticRatio - 1) e^(-(V /
-// V_S)^2) Stribeck's curve:
+// The laws of friction. The bristle's deflection delta [m] is the state of all laws but Coulomb's. g [N] is
+// the limit of the bristle's force, constant or proportional to the normal force. Stribeck's curve is s(V) =
+// 1 + (staticRatio - 1) e^(-(V / V_S)^2).
 //
 //     Coulomb         F = g sgn V
 //     ElasticPlastic  it sticks, delta' = V, until sigma |delta| reaches the static bound, staticRatio g; it breaks away and
@@ -8,8 +8,8 @@
 //     Dahl            delta' = V - sigma |V| delta / g                                                   (Eq. 1, 2)
 //     LuGre           delta' = V - sigma |V| delta / (g s(V))
 //
-// If g follows the load, no bristle of Dahl carries more than g and none of LuGre more than staticRatio g: it
-// slips along that bound.
+// If g follows the load, a bristle of Dahl carries at most g, and one of LuGre at most staticRatio g. The
+// bristle slips along that bound.
 //
 // Every law with a state gives F_t = sigma delta + sigma_1 delta' + sigma_2 V, Coulomb F_t = F + sigma_2 V.
 #ifndef FC_MODEL_FRICTION_H

@@ -77,7 +77,7 @@ static void find_bound(AtBound* of, const FcScene* scene, FcBristle bristle) {
     of->phase = fc_drive_phase(&scene->drive, 0.0);
     of->at = fc_plane_coefficients(&of->plane, 0.0, of->phase);
     of->n = bristle.slips != 0 && !fc_is_planar(scene, bristle) ? (FcVector){bristle.slips, 0.0}
-                                                                 : direction(bristle.delta, bristle.delta_y);
+                                                                : direction(bristle.delta, bristle.delta_y);
     set_bound(of, bristle.slips);
 }
 
@@ -107,7 +107,7 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
         bristle.delta = of.bound.D * n.x;
         bristle.delta_y = of.bound.D * n.y;
     }
-    // At a push of 0 it goes on: the motion says whether it slips.
+    // A bristle with a push of 0 remains slipping. Its motion decides whether it sticks.
     if (bristle.slips != 0 && push(&of) < 0.0) {
         bristle.slips = 0;
     }
@@ -258,7 +258,7 @@ static double log_limit_along(const FcScene* scene, FcVector V, double log_F_n, 
     return by_load + fc_stribeck_slope(friction, speed) / fc_stribeck(friction, speed) * speed_along;
 }
 
-// Of delta' = V - r delta, r = sigma |V| / g.
+// The derivative of delta' = V - r delta along the direction, with r = sigma |V| / g.
 static FcVector free_rate_along(const FcScene* scene, const Moment* at, FcVector delta, double log_sigma,
                                 double log_limit, const FcDirection* along) {
     const FcVector V_along = {along->V, along->V_y};

@@ -6,10 +6,10 @@
 // delta, V and F are vectors in the plane of the contact (model/plane.h), and n is the direction of delta.
 // Along a line n is the bound's side, 1 or -1, and delta' = n D'. The bound D is g / sigma: in ElasticPlastic
 // with the static limit while it sticks and the kinetic one while it slips, in LuGre with the static limit.
-// In model exchange a regime holds from one event to the next, so that the right-hand side is smooth between
-// them; the force of a bristle that slips is that of the bound itself, so an integrator's error of delta does
-// not reach it; nor do inputs that move the bound, which delta lags behind: n turns as on the bound itself.
-// With F_t = F + sigma_1 delta' + sigma_2 V
+// In model exchange a regime lasts from one event to the next, so that the right-hand side is smooth between
+// them. The force of a bristle that slips is that of the bound itself. So an integrator's error of delta does
+// not affect the force, and inputs that move the bound ahead of delta do not either. n turns as on the bound
+// itself. With F_t = F + sigma_1 delta' + sigma_2 V
 //
 //     W_f' = F_t V        Q_f' = F_t V - F delta'
 #ifndef FC_MODEL_REGIME_H
@@ -107,8 +107,8 @@ FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristl
 // The derivative of the deflection along the direction if the bristle is kept on its bound.
 FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along);
 
-// Time derivative of (F_t, F_y) [N/s] of a bristle that is within its bound, the inputs moving as the drive
-// says.
+// Time derivative of (F_t, F_y) [N/s] of a bristle that is within its bound, with the rates of the inputs in
+// the drive.
 FcVector fc_force_rate(const FcScene* scene, FcBristle bristle);
 
 #endif

@@ -57,8 +57,8 @@ static inline bool fc_scene_has_pieces(const FcScene* scene) {
 // goes with its square. Twice the part has four times the effect.
 #define FC_NEARLY_OPEN 0x1p-44
 
-// The margin by which the contact is closed at the start: the load [N], or the way to the separation at which
-// it opens [m]. At 0 and below it is open.
+// The margin by which the contact is closed at the start: the load [N], or the distance to the separation at
+// which it opens [m]. At 0 and below the contact is open.
 double fc_scene_closed_by(const FcScene* scene);
 
 // The time [s], up to `rest`, over which the scene is one piece from its start on, in a step of `whole` [s]:

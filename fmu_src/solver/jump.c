@@ -22,7 +22,7 @@ FcPast fc_past(const FcScene* scene) {
                     .sigma = at.sigma};
 }
 
-// The way from the past to the scene, its places from 0 to 1.
+// The ramp from the past to the scene. Its places run from 0 to 1.
 typedef struct {
     const FcScene* scene;
     FcPast past;
@@ -89,7 +89,7 @@ static Place at_place(const Ramp* ramp, double s) {
     return at;
 }
 
-// Of the bound of a bristle that slips or not.
+// The ramp of the bound of a bristle that slips (slips not 0) or sticks.
 static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
     const FcPast now = fc_past(scene);
     Ramp ramp = {.scene = scene, .past = *past};

@@ -26,7 +26,7 @@ typedef struct {
     double sigma; // N/m, 0 for no past, or an open contact
 } FcPast;
 
-// Of a scene at its start.
+// The past that a scene leaves at its start.
 FcPast fc_past(const FcScene* scene);
 
 // The state at the start of the scene: fc_reach of the bristle, unless the bound was lower on the way. *heat

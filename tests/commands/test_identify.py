@@ -118,7 +118,7 @@ def test_recovery_is_what_the_documents_say(
     """Within a seed: another C library may round it to the other side of an interval's end."""
     noisy = from_kind("V_1 uncertain")
     said = re.search(
-        r"in (\d+) %, (\d+) % and (\d+) % of 100 seeds; .* for (\d+), (\d+) and (\d+) of 40 seeds.*"
+        r"in (\d+) %, (\d+) % and (\d+) % of 100 seeds\. .* for (\d+), (\d+) and (\d+) of 40 seeds.*"
         r"for (\d+) and (\d+) of 40 seeds.*contain the phase for (\d+) of the 40",
         " ".join(PHYSICS.split()),
     )

@@ -24,13 +24,12 @@ static const double CURVE_MOVES = 0.5;
 // a bristle by as much more.
 static const double ROUNDING_OF_BOUND = 1e-13;
 
-// The largest way until V turns back, over the bound, that counts as rounding for a bristle at its static
-// bound. Half or twice of it decides only motions of this size.
+// The largest displacement until V turns back, over the bound, that counts as rounding for a bristle at its
+// static bound. Half or twice of it decides only motions of this size.
 static const double ROUNDING_AT_REVERSAL = 1e-9;
 
-// The length of a panel of a sticking bristle, in bounds that V moves it at its present pace. Chosen
-// empirically: the way from one bound to the other is two. Half of it costs panels; twice of it makes panels
-// that are cut early.
+// The displacement at the present V over a panel of a sticking bristle, over its bound. Chosen empirically:
+// from one bound to the other it is 2. Half of it costs panels; twice of it makes panels that are cut early.
 static const double SOON = 3.0;
 
 // The number of regimes of no duration in a row, after which the next panel slips whatever its push. Chosen
@@ -331,8 +330,8 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
 }
 
-// The latest end of a slip, or of the way of a slipping bristle to its bound: in ElasticPlastic the time at
-// which V reverses, unless the bound falls there; else `end`.
+// The latest end of a slip, or of the motion of a slipping bristle inside its bound. In ElasticPlastic it is
+// the time at which V reverses, unless the bound falls there. Otherwise it is `end`.
 static double latest_end(March* m, double end) {
     const FcDrive* drive = &m->scene->drive;
     if (relaxes(m->scene)) {
@@ -697,8 +696,8 @@ static void march_between_reversals(March* m, double D) {
         bool goes_on = !(side * x > way);
         if (!goes_on && way <= ROUNDING_OF_BOUND * D && side * x <= ROUNDING_AT_REVERSAL * D &&
             fc_has_static_friction(scene->friction)) {
-            // It sticks at the static bound if V reaches its reversal faster than the bristle could slip: the
-            // rest of the way is rounding.
+            // It sticks at the static bound if V reverses before the bristle could slip. The remaining
+            // distance is rounding.
             goes_on = !(fc_push(scene, scene, sticks_to, side) > 0.0);
         }
         if (goes_on) {

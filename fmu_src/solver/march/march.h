@@ -3,10 +3,10 @@
 //     free      as if there were no bound: delta' = V in ElasticPlastic, by the panels of the unbounded laws in Dahl and LuGre
 //     slipping  along its bound D, delta = side D, while it is pushed beyond it
 //
-// While it is free each panel says whether it meets its bound (meeting.h). The panel is cut there, and the
-// bristle slips, panel by panel, until its push has come to 0. ElasticPlastic is all formulas: delta_0 +
-// displacement while it sticks, D(t) while it slips; only their roots and quadratures remain. With a constant
-// stiffness and limit the quadratures are closed forms too.
+// The points of each free panel show whether the bristle meets its bound (meeting.h). The panel is cut there,
+// and the bristle slips, panel by panel, until its push has come to 0. In ElasticPlastic the deflection is a
+// formula: delta_0 + displacement while the bristle sticks, D(t) while it slips. Only roots and quadratures
+// remain. With a constant stiffness and limit the quadratures are closed forms, too.
 //
 // With static friction, break-away is a drop from the static bound to the kinetic one, and the energy that
 // the bristle loses is heat.

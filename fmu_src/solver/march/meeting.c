@@ -128,7 +128,7 @@ static bool crosses_unseen(const FcCourse* course, int side, int i, double over,
     const double p = of_cubic(&cubic, top);
     const double at_middle =
         16.0 * top * top * (1.0 - top) * (1.0 - top); // the error of a cubic, over that in the middle
-    double part = top;                                // it may be: a panel that is cut at the top says it
+    double part = top;                                // a panel that is cut at the top decides
     if (p > over) {
         part = p_a < 0.0 ? fc_root_between(of_cubic, &cubic, 0.0, p_a, top, p, 0.0, 0.0, &none) : 0.0;
     } else if (!(p + MISSED_BY_CUBIC * at_middle * moves(course, side, i) > over)) {

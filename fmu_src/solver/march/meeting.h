@@ -2,9 +2,9 @@
 //
 //     p = side delta - D      p' = side delta' - D'
 //
-// The panel's points lie so near to each other that p is nearly a cubic between two of them. It crosses 0 if
-// p changes its sign from one point to the next. It may also do so in between, if p rises at the first and
-// falls at the second: only then, and only if p is near enough to 0, p' is asked for.
+// The panel's points lie so near to each other that p is nearly a cubic between two of them. p crosses 0 if
+// its sign changes from one point to the next. p may also cross 0 in between, if p rises at the first point
+// and falls at the second. p' is evaluated only if p is near enough to 0.
 #ifndef FC_SOLVER_MEETING_H
 #define FC_SOLVER_MEETING_H
 

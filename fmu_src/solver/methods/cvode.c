@@ -3,11 +3,11 @@
 //     y = delta / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
 //
 // L is g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
-// of F_t / F_C. It is less if the surfaces move less than that. The step is cut at the reversals of V. CVODE
-// is started anew on every piece, in a time that begins at 0: it never steps over a kink, and no history
-// outlives a step. The error of y has an absolute bound, because y is large in a soft contact, and an error
-// made there is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0: steps
-// shrink with |V| so that none passes it unseen.
+// of F_t / F_C. L is smaller if the surfaces move less than g / sigma. The step is cut at the reversals of V.
+// CVODE is started anew on every piece, in a time that begins at 0: it never steps over a kink, and no
+// history outlives a step. The error of y has an absolute bound, because y is large in a soft contact, and an
+// error made there is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0:
+// steps shrink with |V| so that none passes it unseen.
 //
 // Impulse, work, heat and drag are quadratures on the dense output. sigma, V or delta^2 may be less smooth
 // than delta. So a step of CVODE is halved until two rules agree, at no cost to CVODE.
@@ -48,7 +48,7 @@
 // result is the latter. Their difference may be this fraction of solver.tolerance, in each quadrature of a
 // piece.
 #define QUADRATURE_FRACTION 0.1
-#define QUADRATURE_ROUNDING 1e-13 // 450 eps, of the integral of the magnitude: less says nothing
+#define QUADRATURE_ROUNDING 1e-13 // 450 eps, of the integral of the magnitude: a smaller one is rounding
 #define MOST_STEP_HALVINGS 40     // of a step of CVODE, to 1e-12 of it
 enum { KRONROD_NODES = 7 };
 static const double node_at[KRONROD_NODES] = {-1.0, -0.81649658092772603273, -0.44721359549995793928,
@@ -71,7 +71,7 @@ struct FcCvode {
     SUNMatrix matrix;
     SUNLinearSolver linear_solver;
     void* cvode;
-    // The piece under way, as the callbacks see it.
+    // The present piece, for the callbacks.
     const FcScene* scene;
     double start;       // s, local time at which the piece starts; CVODE's time is 0 there
     double L;           // m

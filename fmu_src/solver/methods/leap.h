@@ -7,9 +7,9 @@
 //     block of n periods      k = (n - 1) (1 - cos(angle)) / 2,    angle = 0, pi, pi / 2, pi / 4, 3 pi / 4, ...
 //
 // A bristle that slips in each period forgets its past. Then periods begin while it slips, at the bound, and
-// their results are smooth functions of k. The block is smooth if the points so far predict the map at the
-// next one. If not, it is halved: a bound is met for the first time, a slip disappears, a contact opens. The
-// rest is computed period by period.
+// their results are smooth functions of k. A block is smooth if the points so far predict the map at the next
+// one. A block is halved if it is not smooth, for example if the bristle meets its bound for the first time,
+// a slip disappears or the contact opens. The remaining periods are computed one by one.
 #ifndef FC_SOLVER_LEAP_H
 #define FC_SOLVER_LEAP_H
 

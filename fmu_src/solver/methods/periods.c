@@ -12,9 +12,9 @@
 static const double MOST_CHANGING_PERIODS = 1e6;
 
 // The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
-// costs a part of a period; twice of it accepts ends that still change by twice as much. A bristle that
-// relaxes by a small part of its way in each period has that many times farther to go. LEAST_PART is for
-// ElasticPlastic, whose ends differ by rounding alone.
+// costs a part of a period; twice of it accepts ends that still change by twice as much. If a bristle relaxes
+// by a small part in each period, the remaining distance is many times the change over a period. LEAST_PART
+// is for ElasticPlastic, whose ends differ by rounding alone.
 static const double SAME_END = 1e-10;
 static const double LEAST_PART = 1e-4;
 
@@ -67,8 +67,7 @@ typedef struct {
     double period; // s
     bool has_free_map;
     FcMap free_map, free_map_across;
-    double edge
-        [2]; // m, the highest and the lowest start that meets no bound; infinite before they are asked for
+    double edge[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
     FcStepResult total;
     double done; // periods
     // After a period that met its bound: the last one whose number is a power of 2.
@@ -168,8 +167,8 @@ static double free_periods_by_steps(Walk* walk, double left) {
     if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {
         return left;
     }
-    double free = 0.0; // that many are, and
-    double more = 1.0; // that many are not, once it is found
+    double free = 0.0; // periods that are free
+    double more = 1.0; // periods that are not all free, once they are found
     while (free < left && !meets_after(walk, more - 1.0)) {
         free = more;
         more *= 2.0;

@@ -6,10 +6,11 @@
 //     delta -> clamp(P delta + Q, lo, hi),  0 <= P <= 1
 //
 // The map rises with delta, so the deflection goes one way from period to period. Until the bristle meets its
-// bound, n periods are the n-th power of the affine map, and n has a closed form: the highest start that
-// meets no bound ends at the end of the highest start of all. A period that meets the bound forgets its
-// start, so periods soon repeat. With static friction break-away is a drop, and a cycle of several periods
-// may repeat: some stick, and one slips. With moving inputs the periods differ (leap.h).
+// bound, n periods are the n-th power of the affine map, and n has a closed form. It follows from the highest
+// start that meets no bound, whose period has the same end as the period that begins at the bound. A period
+// that meets the bound forgets its start, so periods soon repeat. With static friction break-away is a drop,
+// and a cycle of several periods may repeat: some stick, and one slips. With moving inputs the periods differ
+// (leap.h).
 #ifndef FC_SOLVER_PERIODS_H
 #define FC_SOLVER_PERIODS_H
 

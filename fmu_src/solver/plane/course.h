@@ -27,7 +27,7 @@ typedef struct {
     FcStraight in;
 } FcHalf;
 
-double fc_half_time(const FcHalf* half, double u); // s; rounding takes it out of no half
+double fc_half_time(const FcHalf* half, double u); // s, within the half in spite of rounding
 
 // Room for two near-zeros a period, over less than three periods.
 enum { FC_MOST_HALVES = 24 };

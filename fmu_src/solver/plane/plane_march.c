@@ -61,8 +61,8 @@ static const double LAYERS = 6.3;
 // The planned part of that length. Chosen empirically: most panels of the whole length are refused; panels of
 // a third are refused as often as those of a half.
 static const double PART_OF_ELLIPSE = 0.5;
-// The largest way of a sticking bristle in a panel, in radii of its disc. Chosen empirically: up to it the
-// panel's points show the meeting with the bound. Twice of it makes panels that are cut.
+// The largest displacement of a sticking bristle in a panel, in radii of its disc. Chosen empirically: up to
+// this value the panel's points show the meeting with the bound. Twice of it makes panels that are cut.
 static const double MOST_OF_DISC = 4.0;
 // The longest panel, over the time in which the contact moves by 1. Chosen empirically: twice of it costs
 // tries, not accuracy.
@@ -156,7 +156,7 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
         .crosses_peak = has_peak || march->motion == NO_BRISTLE, // a force that turns by itself, as in a peak
     };
     FcPanel whole = *panel;
-    if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V asks for the whole share
+    if (interval->scene->friction->model != FC_LUGRE) { // a limit that moves with V needs the share by z
         whole.z = fmax(1.0, panel->z);
     }
     whole.z =
@@ -377,7 +377,7 @@ static void free_panel(March* march, double h) {
         march->touches = false;
     }
     if (is_cut && !march->touches) {
-        march->h = 4.0 * h; // the panel was too long for its points to tell
+        march->h = 4.0 * h; // the panel was too long for its points
     }
 }
 

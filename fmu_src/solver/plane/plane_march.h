@@ -1,9 +1,9 @@
 // A bristle, or Coulomb's law, in the plane over an interval: half by half (course.h), panel by panel
 // (plane_panel.h).
 //
-// It is the march of one line (march/march.h) with a disc for the bound: a bristle goes on as if it were
-// free; each panel says by the polynomial through its points whether |delta| comes to D. It is cut there, and
-// the bristle slips around the disc until it is not pushed outwards any more.
+// The march is that of one line (march/march.h) with a disc for the bound. The polynomial through the points
+// of a free panel shows whether |delta| reaches D. The panel is cut there, and the bristle slips around the
+// disc until it is no longer pushed outwards.
 #ifndef FC_SOLVER_PLANE_MARCH_H
 #define FC_SOLVER_PLANE_MARCH_H
 

@@ -75,15 +75,10 @@ static double error_of_direction(const FcPlaneNodes* nodes, double speed, const 
 
 // Sets the errors of the end and the mean due to a defect, an error [N] of the force at the end without
 // damping.
-static void set_errors(const FcPlaneNodes* nodes, const double* z, double defect, double quadrature,
-                       FcPanel* panel) {
+static void set_errors(const double* z, double defect, double quadrature, FcPanel* panel) {
     const double z_last = fmax(0.0, fmin(z[LAST], panel->z));
-    double longest = 0.0;
-    for (int i = 0; i < STAGES; i++) {
-        longest = fmax(longest, nodes->tau[i]);
-    }
     panel->end_error = defect / (1.0 + z_last);
-    panel->mean_error = quadrature + FC_MEAN_OF_DEFECT * defect * fmin(1.0, longest / nodes->duration);
+    panel->mean_error = quadrature + FC_MEAN_OF_DEFECT * defect;
 }
 
 void fc_plane_force_errors(const FcPlaneNodes* nodes, double speed, const double* F_x, const double* F_y,
@@ -164,7 +159,7 @@ void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         }
         quadrature += error_of_direction(nodes, from->speed, F_x, V_x);
     }
-    set_errors(nodes, z, sigma[LAST] * defect, quadrature, &panel->along);
+    set_errors(z, sigma[LAST] * defect, quadrature, &panel->along);
 }
 
 // The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
@@ -270,7 +265,6 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     const double force = panel->along.sigma * bound[LAST].D;
     const double quadrature = error_of_direction(nodes, from->speed, F_x, V_x) +
                               error_of_direction(nodes, from->speed, F_y, V_y) + error_of_mean(nodes, heat);
-    set_errors(nodes, z, force * fc_radau_unresolved(slope, fmax(0.0, panel->along.z)), quadrature,
-               &panel->along);
+    set_errors(z, force * fc_radau_unresolved(slope, fmax(0.0, panel->along.z)), quadrature, &panel->along);
     return true;
 }

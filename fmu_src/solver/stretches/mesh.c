@@ -13,13 +13,13 @@
 // errors of at least COARSE.
 static const double LAG_BEHIND_CONSTANT_LIMIT = 5.0;
 static const double COARSE = 1e-4;
-// Plans: below this tolerance, times the larger of 1 and the excess of the static ratio over 1, the first
-// panel of a transient in a Stribeck peak is a decade finer, since that transient is not exponential.
+// Plans: the tolerance, over the larger of 1 and the static ratio minus 1, below which the first panel of a
+// transient in a Stribeck peak is planned a decade finer, since that transient is not exponential.
 static const double FINE_IN_PEAK = 5e-5;
 // Accuracy: the part of a stretch's path that panels may have missed, which decides in the stiffest contacts,
-// and safety factors on the relaxation until the end of a stretch: on the measured relaxation of the whole
-// stretch, and on the rest of it. Half of MISSED_OF_PATH, or larger factors, treat errors as forgotten that
-// the end sees. Twice of it costs panels.
+// and two safety factors on the relaxation until the end of a stretch. One is for the measured relaxation of
+// the whole stretch, the other for its rest. Half of MISSED_OF_PATH, or larger factors, treat errors as
+// forgotten that the end sees. Twice of it costs panels.
 static const double MISSED_OF_PATH = 0.1;
 static const double SURE_OF_WHOLE = 0.9;
 static const double SURE_OF_REST = 0.5;
@@ -56,7 +56,7 @@ typedef struct {
     double peak;         // s, that the Stribeck curve allows
     double layer, layer_ahead;
     int finer;   // decades, by which a transient is planned finer
-    bool starts; // with a transient that is seen. It is not stepped over: the estimate would be far off
+    bool starts; // with a transient that is seen, which no panel steps over: the estimate would be far off
     bool ends_at_event;  // or within its layer
     double allowed_last; // relative error of a panel that ends at the event
     int for_transient, for_lag, for_last, for_quadrature;
@@ -176,7 +176,7 @@ typedef struct {
     double lag_counts;
 } Lives;
 
-// The larger of here and at the event ahead. |V| there and here bounds the part of the event.
+// The larger life of two errors: of one made here, and of one made near the event ahead.
 static Lives lives_at(const FcStretch* stretch, const FcPlace* at, double after, double smooth) {
     const double rest = stretch->interval->duration - at->t;
     const bool known = isfinite(stretch->event);
@@ -207,7 +207,7 @@ FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution) {
     const double smooth = fc_smooth_time(&interval->pace);
     const bool in_peak = fc_in_peak(&stretch->peaks, at->t);
     const Peak peak = in_peak ? peak_at(stretch, at->t) : (Peak){.lasts = INFINITY};
-    // d ln(sigma / g) / dt at the most: the lag is that, times the time in which the bristle relaxes
+    // The largest rate of ln(sigma / g). The lag is this rate times the time in which the bristle relaxes.
     const double drift =
         fc_most(0.0, 1.0 / smooth - interval->pace.phase) + fc_least(peak.height, 1.0) / peak.lasts;
     const Lives life = lives_at(stretch, at, after, smooth);

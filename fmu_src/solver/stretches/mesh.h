@@ -1,13 +1,14 @@
 // The length of the next Radau panel.
 //
-// One idea: how large may an error of the force be here, so that F_t at the end and its mean stay within the
-// tolerance? The bristle has a fading memory. An error made at t lives for a time K, until it has relaxed. In
-// the mean over the interval H it counts K / H. The end sees e^-z of it, with the relaxation z in between.
+// The plan follows one question. How large may an error of the force be here if F_t at the end and its mean
+// shall stay within the tolerance? The bristle has a fading memory. An error made at t lives for a time K,
+// until it has relaxed. In the mean over the interval H it counts K / H. The end sees e^-z of it, with the
+// relaxation z in between.
 //
-// A panel resolves two things. The rest of a transient counts while it lives. Its panels are measured in
-// layers, the time in which the bristle relaxes after the reversal. The lag behind a moving limit lasts. It
-// is largest at the events, so its panels are measured in distances from them and grow geometrically
-// (stretches/stretch.h shows them).
+// A panel resolves a transient and a lag. The rest of the transient counts while it lives. The panels of a
+// transient are measured in layers, the time in which the bristle relaxes after the reversal. The lag behind
+// a moving limit lasts. The lag is largest at the events, so its panels are measured in distances from the
+// events and grow geometrically (stretches/stretch.h shows them).
 //
 // Tables give the lengths. The accuracy of a panel is estimated afterwards (panels/judge.h), and a panel that
 // misses it is taken again, shorter.
@@ -35,7 +36,7 @@ typedef struct {
     double grows;      // s, in which sigma may grow e-fold
 } FcPlan;
 
-// The panel from here. Each unit of caution asks for a tenth of the error.
+// The panel from here. Each unit of caution allows a tenth of the error.
 FcPlan fc_mesh_plan(const FcStretch* stretch, const FcPlace* at, int caution);
 
 // The largest part of an error made at t [s], ahead in the stretch, that remains at the interval's end, if

@@ -1,5 +1,5 @@
-// The parts of a stretch that are crossed alike: its Stribeck peaks, and the section between them; and the
-// number of Gauss panels of a part, if they are cheaper than Radau panels.
+// The parts of a stretch that are crossed alike are its Stribeck peaks and the section between them. This
+// file also plans the Gauss panels of a part, if they are cheaper than Radau panels.
 //
 //     |V|  |    .  '  '  .    |
 //          |  '            '  |
@@ -11,7 +11,7 @@
 
 #include "solver/stretches/stretch.h"
 
-// The relaxation, about: in all, in the half with more of it, and at the largest rate throughout.
+// The approximate relaxation: in all, in the half that relaxes more, and at the largest rate throughout.
 typedef struct {
     double whole, half, fastest;
 } FcRelaxation;

@@ -1,6 +1,6 @@
 // A stretch of an interval: the time between two events, on which V keeps its sign. An event is a reversal of
-// V, a kink of |V|, or a dip of |V|. Panels shrink towards the events on both sides. The event ahead may lie
-// beyond the end of the interval.
+// V, which is a kink of |V|, or a dip of |V|. Panels shrink towards the events on both sides. The event ahead
+// may lie beyond the end of the interval.
 //
 //        reversal                                        reversal
 //     |V|   |.  '   '      '         '         '      '   '  .|
@@ -42,15 +42,16 @@ typedef struct {
     FcPeakEdge edge; // with a Stribeck curve
 } FcStretches;
 
-// Before the first stretch, which *stretch is made to come after.
+// Begins at the interval's start. *stretch becomes the stretch before the first one.
 void fc_stretches_start(FcStretches* stretches, const FcInterval* interval, FcCoefficients start,
                         FcPhase start_phase, FcStretch* stretch);
-// Makes *stretch the one after it, for a deflection [m] of at most that; false at the interval's end.
+// Replaces *stretch by the next stretch. No deflection is larger than `deflection` [m]. False at the
+// interval's end.
 bool fc_stretches_next(FcStretches* stretches, double deflection, FcStretch* stretch);
 
 void fc_stretch_add_layers(FcStretch* stretch);
 
-// Of the vibration at t [s] in the stretch.
+// The phase of the vibration at t [s] in the stretch.
 FcPhase fc_stretch_phase(const FcStretch* stretch, double t);
 
 // Displacement [m] of V between two times [s] in the stretch.

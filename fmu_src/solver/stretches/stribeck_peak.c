@@ -26,7 +26,7 @@ FcPeakEdge fc_peak_edge(const FcScene* scene, double t) {
     return (FcPeakEdge){.t = t, .at = at, .tau = fc_velocity_time_of_change(&at, scene->friction->V_S)};
 }
 
-// Width [s] of the peak that goes on from the edge to the side (1 or -1): until |V| is the reach [m/s].
+// Width [s] of the peak from the edge to the side (1 or -1). The peak ends when |V| is the reach [m/s].
 static double width(const FcDrive* drive, const FcPeakEdge* edge, double side, double reach, double most) {
     const double V = fabs(edge->at.V);
     if (V >= reach) {

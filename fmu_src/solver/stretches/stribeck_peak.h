@@ -39,8 +39,8 @@ static inline FcPeaks fc_no_peaks(double start, double end) {
     return (FcPeaks){.after = start, .before = end};
 }
 
-// For a deflection [m] at the start of at most that, the displacement [m] of the stretch, and the path [m]
-// from its end to the next event or the interval's end. The scene must have a Stribeck curve.
+// deflection [m] is the largest at the start, displacement [m] that of the stretch, and path_after [m] the
+// path from its end to the next event or the interval's end. The scene must have a Stribeck curve.
 FcPeaks fc_peaks(const FcInterval* interval, const FcPeakEdge* start, const FcPeakEdge* end,
                  double deflection, double displacement, double path_after);
 

@@ -31,7 +31,7 @@ typedef enum { FC_MEETS_NONE, FC_MEETS, FC_UNRESOLVED } FcWatched;
 
 // Watches the panel taken from there. FC_MEETS: *panel becomes the panel that is cut at the meeting, *h its
 // length, and watch->met the meeting. FC_MEETS_NONE: *h is the panel's length, or less if the panel was cut
-// at a meeting that was none. FC_UNRESOLVED: refused.
+// at a point at which the bristle turned back. FC_UNRESOLVED: refused.
 FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPanelAt* at,
                          const FcTrajectories* from, FcPanel* panel, double* h, double* evaluations);
 
