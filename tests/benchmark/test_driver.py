@@ -32,13 +32,6 @@ def test_the_driver_gives_what_fmpy_gives(bench: Bench, fmu: FrictionFmu, linear
     assert outcome.cpu > 0 and outcome.wall > 0 and outcome.evaluations > 0
 
 
-@pytest.mark.parametrize("case", [c for c in cases() if c.count < 40], ids=lambda c: c.name)
-def test_the_default_keeps_its_tolerance_on_every_scene(bench: Bench, case: Case) -> None:
-    tolerance = 1e-6
-    for start in case.starts:
-        assert error(bench.run(case.job(start, 0.0, solver__tolerance=tolerance)), case, start) <= tolerance
-
-
 @pytest.mark.parametrize("method", PLAIN_PROGRAMS)
 @pytest.mark.parametrize("case", [SOFT, replace(vibrating(6e8), count=2)], ids=lambda case: case.name)
 def test_plain_solvers_solve_the_same_equation(bench: Bench, method: str, case: Case) -> None:

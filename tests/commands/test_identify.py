@@ -164,24 +164,14 @@ def test_fixed_parameter_is_fitted_too(fmu: FrictionFmu) -> None:
     assert result.model == pytest.approx([20.0], abs=1e-4)
 
 
-def test_table_2_example(fmu: FrictionFmu) -> None:
-    """The least-squares solution leaves less than the equal-error one of the paper set, (0.56 N)^2 each."""
-    rows = read(identify.EXAMPLE, fmu, {})
-    named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
-    result = fit(Rows(fmu, rows, named))
-    assert result.values[0] * STIFFNESS_PRINTED == pytest.approx(2.383e6, rel=1e-3)
-    assert math.degrees(result.values[1]) == pytest.approx(224.69, abs=0.05)
-    assert np.sum(result.residuals**2) < 3 * 0.557**2
-    assert any("an identification, not a validation" in text for text in result.warnings)
-    assert any("another solution" in text for text in result.warnings)
-
-
 def test_profile_is_the_hull_of_the_region_on_a_grid(fmu: FrictionFmu) -> None:
     """Every value with which some other makes the misfit small enough, without any search."""
     rows = read(identify.EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
     experiment = Rows(fmu, rows, named)
     result = fit(experiment)
+    assert any("an identification, not a validation" in text for text in result.warnings)
+    assert any("another solution" in text for text in result.warnings)
     edge = result.squares * (1.0 + stats.t.ppf(0.975, 1) ** 2)  # with one degree of freedom
     scale, phase = np.linspace(math.log(1e-8), math.log(1e-5), 150), np.radians(np.arange(0.0, 360.0, 2.0))
     points = np.stack(np.meshgrid(scale, phase, indexing="ij"), axis=-1)
@@ -548,11 +538,6 @@ def test_an_interval_that_the_data_do_not_determine_is_not_printed(
     main(identify, [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "contact.stiffnessScale"])
     (row,) = [line for line in capsys.readouterr().out.splitlines() if "stiffnessScale │" in line]
     assert [cell.strip() for cell in row.split("│")][-3:-1] == ["not determined"] * 2
-
-
-def test_missing_file_is_named(fmu_path: Path) -> None:
-    with pytest.raises(SystemExit, match=r"error: nowhere\.csv: No such file"):
-        main(identify, ["nowhere.csv", "--fmu", str(fmu_path)])
 
 
 def test_command_prints_and_draws(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -275,13 +275,6 @@ class TestRuns:
 
 
 class TestNothingHalfWritten:
-    def test_not_an_fmu(self, tmp_path: Path) -> None:
-        (tmp_path / "text.fmu").write_text("no zip")
-        done = run(tmp_path / "text.fmu", tmp_path / "sweep", "--vary", "V=0.1,0.2")
-        assert done.returncode == 1
-        assert done.stderr == f"error: --fmu {tmp_path / 'text.fmu'}: is no FMU: File is not a zip file\n"
-        assert not (tmp_path / "sweep").exists()
-
     def test_damaged_record(self, fmu_path: Path, tmp_path: Path) -> None:
         """What the results are of is not known."""
         wanted = {"vary": {"V": [0.1, 0.2]}, "fmu": fmu_path, "output": tmp_path, "samples": 1}

@@ -410,15 +410,6 @@ def test_a_saved_state_replays_to_the_bit(new_instance: Callable[..., Instance],
     assert run(other) == first
 
 
-def test_settled_starts_where_co_simulation_starts(new_instance: Callable[..., Instance]) -> None:
-    values = {"V": 0.1, "vibration.V_1": 0.5, "contact.stiffnessScale": 1e-4}
-    both = [new_instance(), new_instance(kind=MODEL_EXCHANGE)]
-    for instance in both:
-        assert instance.set(values) == OK and instance.choose({"initialState": 2}) == OK
-        instance.initialize()
-    assert both[0].get("delta", "F_t") == both[1].get("delta", "F_t")
-
-
 def test_coupled_inputs_that_do_not_go_together_can_be_mended(new_instance: Callable[..., Instance]) -> None:
     instance = block(new_instance, DAHL, **{"vibration.a_d": 1e-6})
     assert instance.set({"d": 0.5e-6}) == OK

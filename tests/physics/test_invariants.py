@@ -37,9 +37,7 @@ def signed(values: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
 
 
 @st.composite
-def scenes(
-    draw: st.DrawFn, constant: bool | None = None, vibrating: bool | None = None
-) -> dict[str, float | str]:
+def scenes(draw: st.DrawFn, constant: bool | None = None) -> dict[str, float | str]:
     """FMU start values."""
     V_1 = draw(st.just(0.0) | logarithmic(1e-9, 1e2))
     near = signed(st.sampled_from([1.0, 1.0 - 1e-9, 1.0 + 1e-9, 1.0 - 1e-3]).map(lambda x: x * V_1))
@@ -48,7 +46,7 @@ def scenes(
     a_d = draw(st.sampled_from([0.0, 1e-300, 1e-18]) | logarithmic(1e-12, 3e-6))
     is_constant = draw(st.booleans()) if constant is None else constant
     F_C = draw(logarithmic(1e-3, 1e4))
-    values: dict[str, float | str] = {
+    return {
         "V": V,
         "d": d,
         "E": draw(logarithmic(1e9, 1e12)),
@@ -62,9 +60,6 @@ def scenes(
         "vibration.phase_d": draw(st.floats(-10.0, 10.0)),
         "solver.tolerance": TOLERANCE,
     }
-    if vibrating is False:
-        values |= {"vibration.V_1": 0.0, "vibration.a_d": 0.0}
-    return values
 
 
 durations = logarithmic(1e-4, 1e3).map(lambda periods: periods * PERIOD)
