@@ -21,7 +21,7 @@ FREQUENCY = 16384.0
 PERIOD = 1.0 / FREQUENCY
 
 every_scene = settings(
-    max_examples=80,
+    max_examples=50,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
