@@ -215,13 +215,6 @@ class Session(Closing):
         self._call(self.slave.doStep, self.time, h)
         self.time += h
 
-    def step_many(self, h: float, count: int) -> None:
-        """count steps of h [s] with held inputs, with as little Python as possible between them."""
-        do_step, component, time = self.slave.fmi2DoStep, self.slave.component, self.time
-        for k in range(int(real(count, "count"))):
-            self._call(do_step, component, time + k * h, h, 1)
-        self.time = time + count * h
-
     def get(self, name: str) -> float:
         """The value of any variable of type Real now, SI units."""
         return float(self.read([name])[0])

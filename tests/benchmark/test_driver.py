@@ -33,7 +33,7 @@ def test_the_driver_gives_what_fmpy_gives(bench: Bench, fmu: FrictionFmu, linear
     rows = simulate(fmu, case.start_values, case.step, case.count, case.inputs, linear)
     assert np.array_equal(outcome.F, rows["F_t"][1:])
     assert np.array_equal(outcome.F_mean, rows["F_t_mean"][1:])
-    assert outcome.cpu > 0 and outcome.wall > 0 and outcome.evaluations > 0
+    assert outcome.cpu > 0 and outcome.evaluations > 0
 
 
 @pytest.mark.parametrize("method", PLAIN_PROGRAMS)

@@ -296,13 +296,6 @@ class TestNothingHalfWritten:
         assert done.stderr == f"error: {tmp_path}: can't be written: Directory not empty\n"
         assert (tmp_path / "parts" / "mine.txt").read_text() == "mine"
 
-    def test_unwritable_output(self, fmu_path: Path, tmp_path: Path) -> None:
-        (tmp_path / "file").write_text("in the way")
-        done = run(fmu_path, tmp_path / "file" / "sweep", "--vary", "V=0.1,0.2")
-        assert done.returncode == 1
-        assert done.stderr == f"error: {tmp_path / 'file' / 'sweep'}: can't be written: Not a directory\n"
-        assert (tmp_path / "file").read_text() == "in the way"
-
     def test_full_disk(self, fmu_path: Path, tmp_path: Path) -> None:
         """A limit of the size of files gives the error that a full disk gives, in the midst of a write."""
 

@@ -200,9 +200,3 @@ def test_the_command_prints_its_tables_and_draws(
     assert "Longitudinal vibration, dry" in text
     assert "Normal vibration" in text
     assert sorted(path.suffix for path in (tmp_path / "out").iterdir()) == [".png", ".png"]
-
-
-def test_an_output_that_can_not_be_written_is_one_line(fmu_path: Path, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(SystemExit, match=r"error: .*file"):
-        main(command, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path / "file" / "out")])

@@ -69,32 +69,6 @@ def test_elastic_plastic_with_a_static_ratio_of_1_has_no_stribeck_velocity(
     assert results[0] == results[1] == results[2]
 
 
-def test_lugre_breaks_away_above_its_sliding_friction(fmu: FrictionFmu) -> None:
-    """Slow sliding has nearly the static friction, fast sliding the Coulomb friction."""
-    for V in (1e-5, 5e-3, 0.02, 1.0):
-        scene = {"friction.model": "LuGre", "friction.staticRatio": 1.4, "V": V, **SETTLED}
-        with fmu.session(scene) as session:
-            expected = 55.0 * (1 + 0.4 * math.exp(-((V / 0.01) ** 2)))
-            assert session.get("F_t") == pytest.approx(expected, rel=1e-12)
-            session.step(1e-3)
-            assert session.get("F_t_mean") == pytest.approx(expected, rel=1e-9)
-
-
-def test_damping_does_nothing_in_steady_sliding_and_viscous_friction_adds(fmu: FrictionFmu) -> None:
-    for law in ("Dahl", "LuGre", "ElasticPlastic"):
-        scene = {
-            "friction.model": law,
-            "V": 0.2,
-            "friction.sigma_1": 50.0,
-            "friction.sigma_2": 7.0,
-            **SETTLED,
-        }
-        with fmu.session(scene) as session:
-            session.step(1e-3)
-            assert session.get("F_t") == pytest.approx(55.0 + 7.0 * 0.2, rel=1e-9)
-            assert session.get("Q_f") == pytest.approx(session.get("W_f"), rel=1e-9)
-
-
 def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:
     """Mean position [m] in each cycle of a mass of 1 kg under a load of 30 N + 10 N cos, at 50 Hz.
 

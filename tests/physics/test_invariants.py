@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from frictioncontact.fmu import OUTPUTS, FrictionFmu
@@ -229,18 +229,3 @@ def test_independence_of_the_start_time(
     now = run(fmu, values, deflection, [h])
     later = run(fmu, values, deflection, [h], start=periods * PERIOD)
     assert later == now
-
-
-@every_scene
-@given(values=scenes(), deflection=fractions)
-def test_a_step_of_no_duration_changes_nothing(fmu: FrictionFmu, values: dict, deflection: float) -> None:
-    with fmu.session(values) as session:
-        delta_0 = deflection * values["F_C"] / session.get("sigma")
-    with fmu.session(values | {"delta_0": delta_0}) as session:
-        before = session.read()
-        session.step(0.0)
-        after = dict(zip(OUTPUTS, session.read(), strict=True))
-        assert after["delta"] == delta_0 and after["W_f"] == 0.0
-        assert after["F_t"] == dict(zip(OUTPUTS, before, strict=True))["F_t"]
-        assume(math.isfinite(after["F_t_mean"]))
-        assert after["F_t_mean"] == pytest.approx(after["F_t"])
