@@ -371,9 +371,9 @@ def test_bootstrap_of_a_mean(fmu: FrictionFmu) -> None:
     """F_C from steady sliding is the rows' mean: its refits scatter by u / sqrt(rows)."""
     rows = Measurements(("V",), [{"V": 0.1}] * 4, [54.0, 55.0, 56.0, 55.0], [1.0] * 4)
     experiment = Rows(fmu, rows, [parameter(fmu, "F_C", 50.0, None, {})])
-    spread = np.exp(bootstrap(experiment, fit(experiment), 500)[:, 0])
-    assert np.mean(spread) == pytest.approx(55.0, abs=4 * 0.5 / math.sqrt(500))
-    assert np.std(spread) == pytest.approx(0.5, rel=4 / math.sqrt(2 * 500))
+    spread = np.exp(bootstrap(experiment, fit(experiment), 200)[:, 0])
+    assert np.mean(spread) == pytest.approx(55.0, abs=4 * 0.5 / math.sqrt(200))
+    assert np.std(spread) == pytest.approx(0.5, rel=4 / math.sqrt(2 * 200))
 
 
 def test_dry_rows_are_the_validation_s(fmu: FrictionFmu) -> None:
@@ -459,14 +459,6 @@ def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> 
         SystemExit, match="error: the uncertainty of F_t_mean: row 3 measures 0 N, so give it in N"
     ):
         main(identify, [str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
-
-
-def test_help_shows_one_per_cent_sign(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        main(identify, ["--help"])
-    printed = capsys.readouterr().out
-    assert "NAME=VALUE|PERCENT%" in printed
-    assert "%%" not in printed
 
 
 LUGRE_FIT = """\

@@ -111,13 +111,6 @@ CALLS = [
     _moved("E", 1e16, 1e-4, "E "),
     _moved("E", -1e15, 1e-4, "E "),
     *(_moved(name, 1.7e308, 1e4, name) for name in ("V", "d", "E")),
-    BadCall(
-        "step beyond the largest number",
-        BETWEEN_STEPS,
-        lambda i: i.step(1.5e308, 1.5e308),
-        ("fmi2DoStep", "no finite end"),
-        setup=lambda i: i.set_up(1.5e308, None),
-    ),
     _moved("V", 1e-6, 100.0, "50 s", **{"vibration.V_1": 0.4}),
     BadCall(
         "explicitEuler beyond its stability limit",

@@ -81,6 +81,12 @@ def test_the_stop_time_is_the_last_end(instance: Instance) -> None:
     assert instance.step(reached(instance), 0.0) == OK
 
 
+def test_a_step_without_a_finite_end_is_refused(instance: Instance) -> None:
+    instance.initialize(start=1.5e308)
+    assert instance.step(1.5e308, 1.5e308) == ERROR
+    assert "no finite end" in instance.last_message.text
+
+
 @pytest.mark.parametrize(("start", "h"), [(0.0, sys.float_info.max), (1e200, 1e200), (-1e308, 1e308)])
 def test_a_step_with_a_finite_end_is_taken_however_long_it_is(
     instance: Instance, start: float, h: float
