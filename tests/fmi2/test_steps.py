@@ -76,8 +76,10 @@ def test_the_stop_time_is_the_last_end(instance: Instance) -> None:
     instance.initialize(start=0.0, stop=0.3)
     for step in range(3):
         assert instance.step(step * 0.1, 0.1) == OK, instance.messages  # 0.2 + 0.1 > 0.3 by rounding
+    before = instance.fingerprint()
     assert instance.step(reached(instance), 1e-6) == ERROR
     assert "after the stop time 0.3 s" in instance.last_message.text
+    assert instance.fingerprint() == before
     assert instance.step(reached(instance), 0.0) == OK
 
 
