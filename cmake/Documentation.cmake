@@ -15,7 +15,7 @@ add_custom_command(
 set(related_folder "${CMAKE_BINARY_DIR}/generated/org.fmi-standard.fmi-ls-ref")
 set(related_manifest "${related_folder}/fmi-ls-manifest.xml")
 set(related_page "${CMAKE_BINARY_DIR}/generated/fmi-ls-ref.html")
-file(GLOB related_parts CONFIGURE_DEPENDS workshop/related/*.py data/related/*.csv)
+file(GLOB related_parts CONFIGURE_DEPENDS workshop/related/*.py data/related/*.csv docs/fmu/related.html)
 add_custom_command(
     OUTPUT "${related_manifest}" "${related_page}"
     COMMAND Python3::Interpreter -B -m workshop.related.files "${related_folder}"

@@ -19,7 +19,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from functools import cache
-from numbers import Integral
 from pathlib import Path
 from threading import Lock
 from typing import Any, NoReturn, Self
@@ -225,19 +224,11 @@ class Session(Closing):
 
     def step(self, h: float) -> None:
         """Advances by h [s], with the inputs held or moving at the rates that were set."""
-        self._call(self._advance, real(h, "h"), 1)
+        self._call(self._advance, real(h, "h"))
 
-    def _advance(self, h: float, count: int) -> None:
-        do_step, component, start = self.slave.fmi2DoStep, self.slave.component, self.time
-        for k in range(count):
-            do_step(component, self.time, h, 1)
-            self.time = start + (k + 1) * h
-
-    def step_many(self, h: float, count: int) -> None:
-        """count steps of h [s] with held inputs."""
-        if not isinstance(count, Integral) or count < 0:
-            raise UserError(f"count = {shown(count)}: must be a whole number from 0 on")
-        self._call(self._advance, real(h, "h"), int(count))
+    def _advance(self, h: float) -> None:
+        self.slave.doStep(self.time, h)
+        self.time += h
 
     def get(self, name: str) -> float:
         """The value of any variable of type Real now, SI units."""

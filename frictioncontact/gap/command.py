@@ -50,9 +50,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--heights", choices=MODELS, default="exponential", help="height density and asperities"
     )
-    parser.add_argument(
-        "--quick", action="store_true", help="accepted like by all commands; nothing here is slow"
-    )
     return parser.parse_args(argv)
 
 

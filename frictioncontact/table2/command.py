@@ -9,6 +9,7 @@ from frictioncontact import resources
 from frictioncontact.command import (
     add_fmu,
     add_output,
+    as_table,
     can_draw,
     command_line,
     progress_bar,
@@ -62,30 +63,26 @@ def run(options: argparse.Namespace) -> None:
 
 def as_text(table: Sequence[Result]) -> Table:
     """The table as it is printed: mean forces, and beside each its reduction against row 1."""
-    text = Table(
-        title="Table 2: mean friction force [N] and its reduction against row 1", title_justify="left"
-    )
-    for heading in ("row", "E_1", "a_d [um]", "V_1 [m/s]"):
-        text.add_column(heading, justify="right")
-    for heading in ("paper", "exact", "identified"):
-        text.add_column(heading, justify="right")
-        text.add_column("%", justify="right", style="dim")
-    first = table[0]
+    headings = ["row", "E_1", "a_d [um]", "V_1 [m/s]", "paper", "%", "exact", "%", "identified", "%"]
+    rows, first = [], table[0]
     for result in table:
         row = result.row
-        text.add_row(
-            str(row.number),
-            "-30 %" if row.softened else "",
-            f"{1e6 * row.a_d:.1f}" if row.a_d else "",
-            f"{row.V_1:.2f}" if row.V_1 else "",
-            f"{row.paper_force:.0f}",
-            f"{row.paper_reduction:.0f}",
-            f"{result.exact:.4f}",
-            percent(result.exact, first.exact),
-            f"{result.identified:.2f}",
-            percent(result.identified, first.identified),
+        rows.append(
+            [
+                str(row.number),
+                "-30 %" if row.softened else "",
+                f"{1e6 * row.a_d:.1f}" if row.a_d else "",
+                f"{row.V_1:.2f}" if row.V_1 else "",
+                f"{row.paper_force:.0f}",
+                f"{row.paper_reduction:.0f}",
+                f"{result.exact:.4f}",
+                percent(result.exact, first.exact),
+                f"{result.identified:.2f}",
+                percent(result.identified, first.identified),
+            ]
         )
-    return text
+    title = "Table 2: mean friction force [N] and its reduction against row 1"
+    return as_table(headings, rows, title, names=0)
 
 
 def percent(mean: float, without: float) -> str:

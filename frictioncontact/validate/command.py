@@ -20,9 +20,6 @@ The documentation's page on validation holds every law against every measurement
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact validate", DESCRIPTION)
-    parser.add_argument(
-        "--quick", action="store_true", help="accepted like by all commands; nothing here is slow"
-    )
     add_fmu(parser)
     return parser.parse_args(argv)
 

@@ -31,7 +31,6 @@ M, SIGMA = 1.0, 1e6
 TIME = math.sqrt(M / SIGMA)
 COUNT = 600  # steps
 GUIDE = (ROOT / "docs" / "tools.md").read_text(encoding="utf-8")
-PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 TITLES = {  # of the rows in docs/tools.md
     JACOBI: "Jacobi, held values",
     REREAD: "Jacobi that reads",
@@ -143,33 +142,6 @@ def test_damping_outside_sets_the_held_step(fmu: FrictionFmu) -> None:
     H = 0.1 * TIME
     assert not grows(fmu, JACOBI, H, 0.0, c=1.03 * H * SIGMA)
     assert grows(fmu, JACOBI, H, 0.0, c=0.97 * H * SIGMA)
-
-
-def test_damping_swings_the_force_of_a_contact_that_slides_under_vibration(fmu: FrictionFmu) -> None:
-    """As docs/tools.md says; from F_t = sigma delta + sigma_1 delta' of the same motion of the bristle."""
-    start = {"V": 0.5, "vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.54e6}
-    ranges, heats, means = [], [], []
-    for sigma_1 in (0.0, 500.0):
-        with fmu.session({**start, "friction.sigma_1": sigma_1, "initialState": "Settled"}) as session:
-            forces = []
-            for _ in range(2000):
-                session.step(5e-5 / 2000)
-                forces.append(session.get("F_t") / 55.0)
-            ranges.append((min(forces), max(forces)))
-            heats.append(session.get("Q_f"))
-            session.step(5e-5)
-            means.append(session.get("F_t_mean"))
-    number = r"(-?[\d.]+)"
-    said = re.search(
-        rf"swings from {number} to {number} F_C\. Without σ₁ it swings from {number} to {number} F_C\. "
-        rf"The mean is the same, and the heat {number} times",
-        " ".join(PHYSICS.split()),
-    )
-    low, high, plain_low, plain_high, heat = map(float, said.groups())
-    assert ranges[1] == pytest.approx((low, high), abs=0.05)
-    assert ranges[0] == pytest.approx((plain_low, plain_high), abs=0.005)
-    assert heats[1] / heats[0] == pytest.approx(heat, abs=0.5)
-    assert means[1] == pytest.approx(means[0], rel=1e-6)
 
 
 def run(capsys: pytest.CaptureFixture[str], master: str, *words: str) -> str:

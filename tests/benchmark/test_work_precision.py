@@ -23,7 +23,7 @@ from workshop.bench.work_precision import (
 
 
 def made(error: float, cpu: float, failure: str = "") -> Point:
-    return Point("case", "method", 0.0, error, error, cpu, cpu, 1.0, failure)
+    return Point("case", "method", 0.0, error, error, cpu, 1.0, failure)
 
 
 def test_the_cost_at_an_error_is_interpolated() -> None:

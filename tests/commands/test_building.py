@@ -119,8 +119,7 @@ def test_interrupted_while_building(project: Path, tmp_path: Path) -> None:
     assert interrupted(start(project, CC=str(compiler)), reached) == "stopped\n"
 
 
-# What they reach is a folder: a file has a destructor, in which Control-C would be lost.
-SLOW = "import os, time\nos.mkdir({reached!r})\ntime.sleep(3600)\n"
+# What it reaches is a folder: a file has a destructor, in which Control-C would be lost.
 SLOW_DESTRUCTOR = """\
 import os, time
 class Slow:
@@ -130,41 +129,18 @@ class Slow:
 Slow()
 time.sleep(3600)
 """
-CHANGED = """\
-import os, time
-try:
-    os.mkdir({reached!r})
-    time.sleep(3600)
-except KeyboardInterrupt:
-    raise ImportError("numpy's own words for it") from None
-"""
-CAUGHT = """\
-import importlib, os, sys, time
-try:
-    os.mkdir({reached!r})
-    time.sleep(3600)
-except KeyboardInterrupt:
-    sys.path.remove({folder!r})
-    del sys.modules["numpy"]
-    sys.modules["numpy"] = importlib.import_module("numpy")
-"""
 
 
 @LINUX_ONLY
-@pytest.mark.parametrize(
-    "numpy",
-    [SLOW, SLOW_DESTRUCTOR, CHANGED, CAUGHT],
-    ids=["module", "destructor", "changed", "caught"],
-)
 @pytest.mark.parametrize(
     "command",
     [["workshop", "frictioncontact.sweeps.command", "--help"], ["frictioncontact", "simulate", "--help"]],
     ids=["clone", "installed"],
 )
-def test_interrupted_while_importing(tmp_path: Path, numpy: str, command: list[str]) -> None:
-    """With a slow numpy. Python drops what is raised in a destructor; imports change or catch it."""
+def test_interrupted_while_importing(tmp_path: Path, command: list[str]) -> None:
+    """With a slow numpy. Python drops an exception in a destructor, and imports may catch or change one."""
     reached = tmp_path / "reached"
-    (tmp_path / "numpy.py").write_text(numpy.format(reached=str(reached), folder=str(tmp_path)))
+    (tmp_path / "numpy.py").write_text(SLOW_DESTRUCTOR.format(reached=str(reached)))
     process = subprocess.Popen(
         [sys.executable, "-m", *command],
         env={**os.environ, "PYTHONPATH": str(tmp_path)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

@@ -15,7 +15,7 @@ from frictioncontact.identification import command as identify
 from frictioncontact.sweeps import command as sweep
 from workshop.validate import command as validate
 
-PLACES = 60
+PLACES = 30
 
 
 @pytest.fixture(params=[b"modelDescription.xml", b"FrictionContact.so"], ids=["description", "library"])

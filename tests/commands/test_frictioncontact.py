@@ -12,7 +12,6 @@ from frictioncontact import __main__ as entry
 from frictioncontact import command
 from workshop import __main__ as clone
 from workshop import build
-from workshop.project import ROOT
 
 ROOMS = {name: room for name, (room, _) in entry.COMMANDS.items() if room}
 
@@ -33,13 +32,6 @@ def test_help_says_what_it_is_called(
     monkeypatch.setattr(command, "called_as", "scripts/other")
     text = usage(ROOMS[name], capsys)
     assert text.startswith("usage: scripts/other ") and f"frictioncontact {name}" not in text
-
-
-@pytest.mark.parametrize("name", ["table2", "sweep", "identify", "advise", "gap"])
-def test_scripts_call_what_users_call(name: str) -> None:
-    script = "run" if name == "table2" else name
-    text = (ROOT / "scripts" / script).read_text(encoding="utf-8")
-    assert f"run_module frictioncontact.{ROOMS[name]}.command" in text
 
 
 def test_scripts_build_before_unless_an_fmu_is_named(

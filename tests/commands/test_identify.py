@@ -45,11 +45,11 @@ from workshop.validate.measurements import sliding
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 
-ROWS = {  # seeds, uncertainty that is stated, relative error of V_1
-    "scatter estimated": (100, None, 0.0),  # as many as the report's figure
-    "V_1 uncertain": (40, [NOISE] * 12, 0.1),
+SEEDS = 40
+ROWS = {  # uncertainty that is stated, relative error of V_1
+    "scatter estimated": (None, 0.0),
+    "V_1 uncertain": ([NOISE] * 12, 0.1),
 }
-SEEDS_OF_LOOPS = 40
 
 
 LOOP_TRUTH = {"contact.sigma": 2.5e6, "F_C": 48.0}
@@ -80,13 +80,13 @@ def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> R
 @pytest.fixture(scope="module")
 def from_kind(fmu: FrictionFmu) -> Callable[[str], Recovered]:
     """What rows of a kind of ROWS give."""
-    return cache(lambda kind: from_rows(fmu, *ROWS[kind]))
+    return cache(lambda kind: from_rows(fmu, SEEDS, *ROWS[kind]))
 
 
 @pytest.fixture(scope="module")
 def from_law(fmu: FrictionFmu) -> Callable[[str], Recovered]:
     """What loops of a law of LOOPS give."""
-    return cache(lambda law: from_loops(fmu, SEEDS_OF_LOOPS, law, LOOPS[law]))
+    return cache(lambda law: from_loops(fmu, SEEDS, law, LOOPS[law]))
 
 
 def least(fits: list[Fit]) -> float:
@@ -118,7 +118,7 @@ def test_recovery_is_what_the_documents_say(
     """Within a seed: another C library may round it to the other side of an interval's end."""
     noisy = from_kind("V_1 uncertain")
     said = re.search(
-        r"in (\d+) %, (\d+) % and (\d+) % of 100 seeds\. .* for (\d+), (\d+) and (\d+) of 40 seeds.*"
+        r"for (\d+), (\d+) and (\d+) of 40 seeds\. .* for (\d+), (\d+) and (\d+) of 40 seeds.*"
         r"for (\d+) and (\d+) of 40 seeds.*contain the phase for (\d+) of the 40",
         " ".join(PHYSICS.split()),
     )
@@ -164,24 +164,14 @@ def test_fixed_parameter_is_fitted_too(fmu: FrictionFmu) -> None:
     assert result.model == pytest.approx([20.0], abs=1e-4)
 
 
-def test_table_2_example(fmu: FrictionFmu) -> None:
-    """The least-squares solution leaves less than the equal-error one of the paper set, (0.56 N)^2 each."""
-    rows = read(identify.EXAMPLE, fmu, {})
-    named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
-    result = fit(Rows(fmu, rows, named))
-    assert result.values[0] * STIFFNESS_PRINTED == pytest.approx(2.383e6, rel=1e-3)
-    assert math.degrees(result.values[1]) == pytest.approx(224.69, abs=0.05)
-    assert np.sum(result.residuals**2) < 3 * 0.557**2
-    assert any("an identification, not a validation" in text for text in result.warnings)
-    assert any("another solution" in text for text in result.warnings)
-
-
 def test_profile_is_the_hull_of_the_region_on_a_grid(fmu: FrictionFmu) -> None:
     """Every value with which some other makes the misfit small enough, without any search."""
     rows = read(identify.EXAMPLE, fmu, {})
     named = [parameter(fmu, name, None, None, {}) for name in ("contact.stiffnessScale", "vibration.phase_d")]
     experiment = Rows(fmu, rows, named)
     result = fit(experiment)
+    assert any("an identification, not a validation" in text for text in result.warnings)
+    assert any("another solution" in text for text in result.warnings)
     edge = result.squares * (1.0 + stats.t.ppf(0.975, 1) ** 2)  # with one degree of freedom
     scale, phase = np.linspace(math.log(1e-8), math.log(1e-5), 150), np.radians(np.arange(0.0, 360.0, 2.0))
     points = np.stack(np.meshgrid(scale, phase, indexing="ij"), axis=-1)
@@ -381,9 +371,9 @@ def test_bootstrap_of_a_mean(fmu: FrictionFmu) -> None:
     """F_C from steady sliding is the rows' mean: its refits scatter by u / sqrt(rows)."""
     rows = Measurements(("V",), [{"V": 0.1}] * 4, [54.0, 55.0, 56.0, 55.0], [1.0] * 4)
     experiment = Rows(fmu, rows, [parameter(fmu, "F_C", 50.0, None, {})])
-    spread = np.exp(bootstrap(experiment, fit(experiment), 500)[:, 0])
-    assert np.mean(spread) == pytest.approx(55.0, abs=4 * 0.5 / math.sqrt(500))
-    assert np.std(spread) == pytest.approx(0.5, rel=4 / math.sqrt(2 * 500))
+    spread = np.exp(bootstrap(experiment, fit(experiment), 200)[:, 0])
+    assert np.mean(spread) == pytest.approx(55.0, abs=4 * 0.5 / math.sqrt(200))
+    assert np.std(spread) == pytest.approx(0.5, rel=4 / math.sqrt(2 * 200))
 
 
 def test_dry_rows_are_the_validation_s(fmu: FrictionFmu) -> None:
@@ -471,14 +461,6 @@ def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> 
         main(identify, [str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
 
 
-def test_help_shows_one_per_cent_sign(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        main(identify, ["--help"])
-    printed = capsys.readouterr().out
-    assert "NAME=VALUE|PERCENT%" in printed
-    assert "%%" not in printed
-
-
 LUGRE_FIT = """\
 V [m/s],vibration.V_1 [m/s],F_t_mean [N]
 0.05,0.3,11.55820
@@ -548,11 +530,6 @@ def test_an_interval_that_the_data_do_not_determine_is_not_printed(
     main(identify, [str(path), "--fmu", str(fmu_path), "--quick", "--fit", "contact.stiffnessScale"])
     (row,) = [line for line in capsys.readouterr().out.splitlines() if "stiffnessScale │" in line]
     assert [cell.strip() for cell in row.split("│")][-3:-1] == ["not determined"] * 2
-
-
-def test_missing_file_is_named(fmu_path: Path) -> None:
-    with pytest.raises(SystemExit, match=r"error: nowhere\.csv: No such file"):
-        main(identify, ["nowhere.csv", "--fmu", str(fmu_path)])
 
 
 def test_command_prints_and_draws(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

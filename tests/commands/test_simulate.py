@@ -99,11 +99,6 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
     ("arguments", "message"),
     [
         ({"start": {"v": 1.0}}, "start: v is no variable of the FMU; did you mean V?"),
-        ({"start": {"F_t": 1.0}}, "start: F_t is an output of the FMU and can't be set"),
-        ({"start": {"V": "fast"}}, "start: V: 'fast' is not a number"),
-        ({"start": {"V": float("nan")}}, "start: V: nan is not a finite number"),
-        ({"start": {"friction.model": "Dal"}}, "start: friction.model: 'Dal' is not one of Dahl, "),
-        ({"start": {"friction.model": 9}}, "start: friction.model: 9 is not one of Dahl, "),
         ({"start": {"d": -1e-6}}, "d = -1e-06 m is below its minimum"),
         ({"outputs": ["F_tt"]}, "outputs: F_tt is no variable of the FMU; did you mean F_t?"),
         (
@@ -116,12 +111,8 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"inputs": {"time": [0.0], "F_C": [1.0]}}, "inputs: F_C is no input of the FMU; these are: V, d"),
         ({"inputs": {"time": [0.0, 1.0], "V": [1.0]}}, "inputs: V has 1 values and time has 2"),
         ({"inputs": {"time": [0.0, 1.0], "V": [-1e308, 1e308]}}, "inputs: V, row 0: -1e+308 must be"),
-        ({"inputs": {"time": [0.0], "V": [True]}}, "inputs: V, row 0: 'True' is not a number"),
         ({"stop": True}, "stop = 'True' is not a number"),
-        ({"stop": "1"}, "stop = '1' is not a number"),
         ({"inputs": {"time": [1.0, 0.5], "V": [1.0, 1.0]}}, "inputs: time falls from 1 to 0.5 s at sample 1"),
-        ({"inputs": {"time": [0.0, 1.0], "V": [1.0, np.inf]}}, "inputs: V, row 1: inf is not a finite"),
-        ({"inputs": {"time": [0.0], "V": ["x"]}}, "inputs: V, row 0: 'x' is not a number"),
         ({"inputs": {"time": [], "V": []}}, "inputs: no samples"),
         ({"inputs": {"time": np.array(["2026-01-01"], "M8[s]"), "V": [1.0]}}, "inputs: time, row 0: "),
         ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V, row 0: is masked"),
@@ -133,8 +124,6 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path) -> None:
         ({"fmu": "."}, ".: Is a directory"),
         ({"start": [("V", 1.0)]}, "start = \"[('V', 1.0)]\": must be a mapping of names to values"),
         ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence of names"),
-        ({"outputs": None}, "outputs = None: must be a sequence of names"),
-        ({"outputs": [3]}, "outputs: 3 is no variable of the FMU"),
     ],
 )
 def test_what_is_wrong_is_named(fmu_path: Path, arguments: dict, message: str) -> None:
@@ -174,10 +163,6 @@ def test_the_command_prints_or_writes_the_same_table(
     [
         ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
         ("time [s],V [km/h]\n0,0.1\n", "line 1, column 2: V is in m/s or mm/s"),
-        ("time,V\n0\n", "row 1 (line 2), column 'V': no value"),
-        ("", "no header row"),
-        ("time,V,V\n0,1,2\n", "column V is there twice"),
-        ("time,speed\n0,1\n", "line 1, column 2: there is no variable 'speed'; columns may be"),
     ],
 )
 def test_wrong_files_of_inputs(fmu_path: Path, tmp_path: Path, text: str, message: str) -> None:

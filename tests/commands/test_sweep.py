@@ -26,7 +26,7 @@ from frictioncontact.sweeps.run import sweep
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
 MANY = [
-    "--random", "100000", "--seed", "3", "--vary", "V=0.01:1:log", "--vary", "d=-0.1e-6:15e-6",
+    "--random", "40000", "--seed", "3", "--vary", "V=0.01:1:log", "--vary", "d=-0.1e-6:15e-6",
     "--vary", "friction.model=Dahl,Coulomb", "--set", "vibration.V_1=1.44", "--samples", "1",
 ]  # fmt: skip
 
@@ -195,8 +195,8 @@ class TestRuns:
             "failed.parquet", "results.parquet", "sweep.json"
         ]  # fmt: skip
         good, bad = (pd.read_parquet(output / name) for name in ("results.parquet", "failed.parquet"))
-        assert np.array_equal(np.union1d(good["scenario"], bad["scenario"]), np.arange(100_000))
-        assert len(good) + len(bad) == 100_000
+        assert np.array_equal(np.union1d(good["scenario"], bad["scenario"]), np.arange(40_000))
+        assert len(good) + len(bad) == 40_000
         assert (bad["d"] < 0.0).all() and (good["d"] >= 0.0).all() and len(bad) > 0
         for row in (0, 1234, len(good) - 1):
             values = {name: good[name][row] for name in ("V", "d", "friction.model", "vibration.V_1")}
@@ -260,7 +260,7 @@ class TestRuns:
         self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
     ) -> None:
         """They do the same work; the slower one may find the folder finished, and says so in a line."""
-        output, arguments = tmp_path / "sweep", (*GRID, "--group", "10", "--samples", "16", "--workers", "1")
+        output, arguments = tmp_path / "sweep", (*GRID, "--group", "20", "--samples", "16", "--workers", "1")
         both = [
             started(command(fmu_path, output, *arguments), stderr=subprocess.PIPE, text=True)
             for _ in range(2)
@@ -275,13 +275,6 @@ class TestRuns:
 
 
 class TestNothingHalfWritten:
-    def test_not_an_fmu(self, tmp_path: Path) -> None:
-        (tmp_path / "text.fmu").write_text("no zip")
-        done = run(tmp_path / "text.fmu", tmp_path / "sweep", "--vary", "V=0.1,0.2")
-        assert done.returncode == 1
-        assert done.stderr == f"error: --fmu {tmp_path / 'text.fmu'}: is no FMU: File is not a zip file\n"
-        assert not (tmp_path / "sweep").exists()
-
     def test_damaged_record(self, fmu_path: Path, tmp_path: Path) -> None:
         """What the results are of is not known."""
         wanted = {"vary": {"V": [0.1, 0.2]}, "fmu": fmu_path, "output": tmp_path, "samples": 1}
@@ -302,13 +295,6 @@ class TestNothingHalfWritten:
         assert done.returncode == 1
         assert done.stderr == f"error: {tmp_path}: can't be written: Directory not empty\n"
         assert (tmp_path / "parts" / "mine.txt").read_text() == "mine"
-
-    def test_unwritable_output(self, fmu_path: Path, tmp_path: Path) -> None:
-        (tmp_path / "file").write_text("in the way")
-        done = run(fmu_path, tmp_path / "file" / "sweep", "--vary", "V=0.1,0.2")
-        assert done.returncode == 1
-        assert done.stderr == f"error: {tmp_path / 'file' / 'sweep'}: can't be written: Not a directory\n"
-        assert (tmp_path / "file").read_text() == "in the way"
 
     def test_full_disk(self, fmu_path: Path, tmp_path: Path) -> None:
         """A limit of the size of files gives the error that a full disk gives, in the midst of a write."""

@@ -80,7 +80,10 @@ def test_cluster_that_loses_a_worker(
     check_grid(output, fmu)
 
 
-def test_workers_of_another_version(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
+def test_no_workers_or_one_of_another_version(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
+    done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", cluster.address)
+    assert done.returncode == 1
+    assert done.stderr == f"error: --cluster {cluster.address}: has no workers\n"
     cluster.worker(with_another_version(tmp_path / "other"))
     cluster.wait_for_workers(1)
     done = run(fmu_path, tmp_path / "sweep", *GRID, "--cluster", cluster.address)
@@ -102,12 +105,6 @@ def test_no_scheduler(fmu_path: Path, tmp_path: Path, address: str, message: str
     assert len(done.stderr.splitlines()) == 1, done.stderr
     assert done.stderr.startswith(f"error: --cluster {address}: {message}")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_no_workers(cluster: Cluster, fmu_path: Path, tmp_path: Path) -> None:
-    done = run(fmu_path, tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", cluster.address)
-    assert done.returncode == 1
-    assert done.stderr == f"error: --cluster {cluster.address}: has no workers\n"
 
 
 @pytest.mark.slow

@@ -71,12 +71,9 @@ def test_csv(fmu_path: Path, tmp_path: Path) -> None:
     ("content", "message"),
     [
         ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
-        ("V\nnan\n", "row 2, column V: nan is not a finite number"),
         ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
         ("V,V\n1,2\n", "row 1, column 2: V is there twice"),
         ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
-        ("solver.method\neuler\n", "row 2, column solver.method: 'euler' is not one of collocation"),
-        ("V,F_t\n1,2\n", "row 1, column 2: F_t is an output of the FMU and can't be set"),
         (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
         ("V\n", "has no row below the header"),
         ("", "is empty; row 1 must name the variables"),
@@ -107,7 +104,6 @@ def test_malformed_csv_names_row_and_column(
             "--samples 100000000000: must be a whole number from 1 to 1000000",
         ),
         (["--vary", "V=0:1", "--random", "99999999999"], "must be a whole number from 1 to 1000000000"),
-        (["--vary", "V=0:1", "--random", "0"], "--random 0: must be a whole number"),
         (["--vary", "V=0:1", "--random", "5", "--seed", "-1"], "--seed -1: must be a whole number from 0"),
         (
             ["--vary", "V=1", "--group", "1000001"],
@@ -116,7 +112,6 @@ def test_malformed_csv_names_row_and_column(
         (["--random", "100001", "--vary", "V=0:1", "--group", "1"], "would be more than 100000 files"),
         (["--vary", "V=0:1:-3"], "the count -3: must be a whole number from 1 to 10000000"),
         (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
-        (["--vary", "V=1", "--set", "V=2"], "--set V: is given twice"),
         (["--vary", "V=0:1:1000000", "--vary", "d=1:2:1001"], "the most that a sweep runs is 1000000000"),
         (["--vary", "V=1", "--workers", "0"], "--workers 0: must be a whole number from 1 to 1000"),
         (["--random", "3", "--vary", "V=0:1:3"], "'0:1:3' is neither low:high"),

@@ -20,12 +20,12 @@ def test_libcosim_and_fmpy_agree(ssp: Path) -> None:
 
 
 def test_coupling_error_is_of_first_order(ssp: Path) -> None:
-    coarse, fine, finest = stick_slip.measure(ssp, (200_000, 50_000, 12_500))
+    coarse, fine, finest = stick_slip.measure(ssp, (400_000, 100_000, 25_000))
     for name in ("largest error of x over F_C/k", "rms error of F_t over F_C"):
         orders = np.log([coarse[name] / fine[name], fine[name] / finest[name]]) / np.log(4)
         assert 0.85 < orders[1] < 1.15, name
         assert 0.8 < orders[0] < 1.4, name
-    assert finest["largest error of x over F_C/k"] < 0.003
+    assert finest["largest error of x over F_C/k"] < 0.006
 
 
 def test_it_sticks_and_slips() -> None:

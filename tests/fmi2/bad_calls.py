@@ -109,6 +109,8 @@ CALLS = [
     ),
     _moved("d", -0.2, 1e-4, "d ", "1.4e-05", "-6e-06"),
     _moved("E", 1e16, 1e-4, "E "),
+    _moved("E", -1e15, 1e-4, "E "),
+    *(_moved(name, 1.7e308, 1e4, name) for name in ("V", "d", "E")),
     _moved("V", 1e-6, 100.0, "50 s", **{"vibration.V_1": 0.4}),
     BadCall(
         "explicitEuler beyond its stability limit",

@@ -64,13 +64,6 @@ def test_bad_call(
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_refused_value_keeps_the_good_ones_of_the_same_call_out(instance: Instance) -> None:
-    instance.bring_to("step complete")
-    before = instance.get("V", "d", "E")
-    assert instance.set({"V": 0.7, "d": 15e-6, "E": float("nan")}) == ERROR
-    assert instance.get("V", "d", "E") == before
-
-
 def test_values_that_do_not_go_together_are_refused_and_can_be_mended(
     new_instance: Callable[..., Instance],
 ) -> None:

@@ -112,22 +112,3 @@ def test_a_hundred_instances_in_threads(library: Library) -> None:
     alone = [one(number) for number in range(100)]
     with ThreadPoolExecutor(max_workers=16) as threads:
         assert list(threads.map(one, range(100))) == alone
-
-
-def test_instances_come_and_go_in_any_order(library: Library) -> None:
-    chance = random.Random(7)
-    alone = []
-    for number in range(20):
-        with Instance(library) as instance:
-            alone.append(run(instance, number, 2))
-    living: list[Instance] = []
-    for _ in range(600):
-        if len(living) == 100 or (living and chance.random() < 0.3):
-            living.pop(chance.randrange(len(living))).free()
-        else:
-            number = chance.randrange(20)
-            living.append(Instance(library, name=f"contact {number}"))
-            assert run(living[-1], number, 2) == alone[number]
-    assert len(living) > 50
-    for instance in living:
-        instance.free()

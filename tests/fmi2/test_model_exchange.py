@@ -324,14 +324,6 @@ def test_rounding_of_an_event_starts_no_second_one(new_instance: Callable[..., I
             assert all(z > 0 for z in instance.indicators())
 
 
-def test_what_lies_beyond_the_bound_becomes_heat(new_instance: Callable[..., Instance]) -> None:
-    """As the first step of co-simulation does with delta_0: sigma (delta_0^2 - D^2) / 2."""
-    instance = block(new_instance, ELASTIC_PLASTIC, V=0.1, delta_0=30e-6)
-    delta, W_f, Q_f, _ = instance.states()
-    assert (delta, W_f) == (pytest.approx(20e-6, rel=1e-15), 0.0)
-    assert Q_f == pytest.approx(0.5 * 2.5e6 * (30e-6**2 - 20e-6**2), rel=1e-14)
-
-
 def test_a_load_that_falls_on_a_bristle_at_rest(new_instance: Callable[..., Instance]) -> None:
     """V is 0 and the bound comes nearer: the bristle goes with it, and the host gets no thousand events."""
     choices = {"friction.model": ELASTIC_PLASTIC, "friction.limit": 2, "contact.input": 2, "contact.model": 2}
@@ -408,15 +400,6 @@ def test_a_saved_state_replays_to_the_bit(new_instance: Callable[..., Instance],
     status, state = other.deserialize(data)
     assert status == OK and other.restore(state) == OK and other.drop(state) == OK
     assert run(other) == first
-
-
-def test_settled_starts_where_co_simulation_starts(new_instance: Callable[..., Instance]) -> None:
-    values = {"V": 0.1, "vibration.V_1": 0.5, "contact.stiffnessScale": 1e-4}
-    both = [new_instance(), new_instance(kind=MODEL_EXCHANGE)]
-    for instance in both:
-        assert instance.set(values) == OK and instance.choose({"initialState": 2}) == OK
-        instance.initialize()
-    assert both[0].get("delta", "F_t") == both[1].get("delta", "F_t")
 
 
 def test_coupled_inputs_that_do_not_go_together_can_be_mended(new_instance: Callable[..., Instance]) -> None:

@@ -11,7 +11,6 @@ from copy import deepcopy
 from ctypes import c_double, c_void_p
 from dataclasses import dataclass, field
 
-import pytest
 from fmi_library import ERROR, LAST_SUCCESSFUL_TIME, OK, WARNING, Instance, Library
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
@@ -207,23 +206,14 @@ class Machine(RuleBasedStateMachine):
         assert all(message.status in (OK, WARNING, ERROR) for message in self.instance.messages)
 
 
-def run(library: Library, examples: int, length: int) -> None:
+def test_calls_in_any_order(library: Library) -> None:
     Machine.library = library
     how = settings(
-        max_examples=examples,
-        stateful_step_count=length,
+        max_examples=150,
+        stateful_step_count=50,
         deadline=None,
         derandomize=True,
         database=None,
         suppress_health_check=list(HealthCheck),
     )
     run_state_machine_as_test(Machine, settings=how)
-
-
-def test_calls_in_any_order(library: Library) -> None:
-    run(library, examples=100, length=40)
-
-
-@pytest.mark.slow
-def test_many_more_calls_in_any_order(library: Library) -> None:
-    run(library, examples=200, length=60)

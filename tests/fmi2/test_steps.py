@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import random
 import sys
 from collections.abc import Callable
@@ -77,17 +76,11 @@ def test_the_stop_time_is_the_last_end(instance: Instance) -> None:
     instance.initialize(start=0.0, stop=0.3)
     for step in range(3):
         assert instance.step(step * 0.1, 0.1) == OK, instance.messages  # 0.2 + 0.1 > 0.3 by rounding
+    before = instance.fingerprint()
     assert instance.step(reached(instance), 1e-6) == ERROR
     assert "after the stop time 0.3 s" in instance.last_message.text
-    assert instance.step(reached(instance), 0.0) == OK
-
-
-def test_a_step_beyond_the_stop_time_is_refused_as_a_whole(instance: Instance) -> None:
-    instance.initialize(stop=1.0)
-    before = instance.fingerprint()
-    assert instance.step(0.0, 1.1) == ERROR
-    assert "1.1 s" in instance.last_message.text
     assert instance.fingerprint() == before
+    assert instance.step(reached(instance), 0.0) == OK
 
 
 def test_a_step_without_a_finite_end_is_refused(instance: Instance) -> None:
@@ -146,52 +139,6 @@ def test_a_coarse_step_over_the_vibration_is_told_once(new_instance: Callable[..
     steady.initialize()
     assert steady.step(0.0, 1.0) == OK
     assert steady.messages == []
-
-
-def test_results_do_not_depend_on_when_the_run_starts_without_vibration(
-    new_instance: Callable[..., Instance],
-) -> None:
-    results = []
-    for start in (0.0, 1e6):
-        instance = new_instance()
-        assert instance.set({"contact.stiffnessScale": 1e-6}) == OK
-        instance.initialize(start=start)
-        t = start
-        for _ in range(4):
-            assert instance.step(t, 2.0**-10) == OK
-            t += 2.0**-10
-        results.append(instance.get(*OUTPUTS))
-    assert results[0] == results[1]
-    assert not math.isclose(results[0][0], 55.0, rel_tol=1e-6)
-
-
-@pytest.mark.parametrize("contact_model", [1, 2])
-@pytest.mark.parametrize(
-    ("rates", "told"),
-    [
-        (
-            {"d": -1.0},
-            "d moves from 1.4e-05 m to -8.6e-05 m in the step: it must stay finite and at least 1e-12 m",
-        ),
-        ({"d": 1.7e308}, "d moves from"),
-        ({"E": -1e15}, "E moves from 58556936170 Pa to -41443063830 Pa in the step"),
-        ({"V": 1.0, "E": 1.7e308}, "E moves from"),
-        ({"V": -1.7e308}, "V moves from"),
-    ],
-)
-def test_an_input_can_not_be_driven_out_of_its_bounds(
-    instance: Instance, rates: dict[str, float], told: str, contact_model: int
-) -> None:
-    h = 1e-4 if abs(min(rates.values(), key=lambda rate: -abs(rate))) < 1e300 else 1e4
-    assert instance.choose({"contact.model": contact_model}) == OK
-    instance.initialize()
-    assert instance.set_input_rates(rates) == OK
-    before = instance.fingerprint()
-    assert instance.step(0.0, h) == ERROR
-    assert told in instance.last_message.text
-    assert instance.fingerprint() == before
-    assert instance.set_input_rates(dict.fromkeys(rates, 0.0)) == OK
-    assert instance.step(0.0, h) == OK
 
 
 @pytest.mark.slow

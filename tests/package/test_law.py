@@ -78,7 +78,6 @@ class TestLaw:
     @pytest.mark.parametrize(
         ("call", "message"),
         [
-            (lambda law: law("fast"), "V: 'fast' is not a number"),
             (lambda law: law(0.5, f=3.0), "inputs: f is no variable of the FMU"),
             (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law([1.0, 2.0], E=[1e9, 2e9, 3e9]), "the shapes do not go together: V (2,), E (3,)"),
@@ -229,7 +228,6 @@ class TestSessions:
         ("call", "message"),
         [
             (lambda session: session.set("v", 1.0), "set v: v is no variable of the FMU; did you mean V?"),
-            (lambda session: session.set("V", "fast"), "set V: 'fast' is not a number"),
             (
                 lambda session: session.set("F_t", 1.0),
                 "fmi2SetReal: F_t is an output variable and can't",
@@ -239,7 +237,6 @@ class TestSessions:
                 "set friction.model: 'Dal' is not one of Dahl",
             ),
             (lambda session: session.get("Ft"), "read: Ft is no variable of the FMU; did you mean F_t?"),
-            (lambda session: session.step("1"), "h = '1' is not a number"),
             (lambda session: session.step(-1.0), "fmi2DoStep: "),
             (lambda session: session.slope("F_t", "vv"), "slope: vv is no variable of the FMU"),
             (
@@ -247,7 +244,6 @@ class TestSessions:
                 "restore: \"b'state'\" is not a state that save() gave",
             ),
             (lambda session: session.restore((0.0, b"state")), "fmi2DeSerializeFMUstate: "),
-            (lambda session: session.fmu.session({"V": None}), "set V: 'None' is not a number"),
             (lambda session: session.fmu.session(["V"]), "start_values = \"['V']\": must be a mapping"),
             (lambda session: fc.FrictionFmu("nowhere.fmu"), "nowhere.fmu: No such file or directory"),
         ],
@@ -294,7 +290,6 @@ def test_a_file_with_other_separators_is_told_so(tmp_path: Path, separator: str,
     ("call", "message"),
     [
         (lambda: run({"V": "5 mm/s"})(), "start: V: '5 mm/s' is not a number; write the number alone, in SI"),
-        (lambda: run({"V": "0,5"})(), "start: V: '0,5' is not a number; write 0.5"),
         (lambda: run({}, outputs=["F_t,W_f"])(), "outputs: 'F_t,W_f' is no variable of the FMU; give one"),
         (lambda: fc.friction_law(fc.contacts["steel-dry"]), "scene = 'steel-dry: 40Cr"),
         (lambda: fc.identify(fc.contacts["steel-dry"].data, "contact.sigma", uncertain={"F_t": 1},

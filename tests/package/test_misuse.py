@@ -27,7 +27,6 @@ def session(fmu_path: Path) -> Iterator[Session]:
     "call",
     [
         lambda session: session.step(1e-3),
-        lambda session: session.step_many(1e-3, 2),
         lambda session: session.get("F_t"),
         lambda session: session.set("V", 1.0),
         lambda session: session.set_rates(V=1.0),
@@ -64,9 +63,9 @@ def test_a_session_in_two_threads(fmu_path: Path) -> None:
         begun = Event()
         advance = session._advance
 
-        def told(h: float, count: int) -> None:
+        def told(h: float) -> None:
             begun.set()
-            advance(h, count)
+            advance(h)
 
         session._advance = told  # type: ignore[method-assign]
         thread = Thread(target=session.step, args=(0.1,))  # 1e7 steps of the solver
@@ -80,28 +79,10 @@ def test_a_session_in_two_threads(fmu_path: Path) -> None:
         assert session.time == 0.1 and session.get("F_t") != 0.0
 
 
-@pytest.mark.parametrize(
-    ("h", "count", "message"),
-    [
-        (1e-3, 2.5, "count = '2.5': must be a whole number from 0 on"),
-        (1e-3, -1, "count = '-1': must be a whole number from 0 on"),
-        (1e-3, None, "count = 'None': must be a whole number from 0 on"),
-        ("1e-3", 2, "h = '1e-3' is not a number"),
-    ],
-)
-def test_wrong_numbers_of_steps(session: Session, h: float, count: int, message: str) -> None:
-    with pytest.raises(fc.UserError, match=f"^{re.escape(message)}$"):
-        session.step_many(h, count)
+def test_a_step_whose_length_is_no_number(session: Session) -> None:
+    with pytest.raises(fc.UserError, match="^h = '1e-3' is not a number$"):
+        session.step("1e-3")
     assert session.time == 0.0
-
-
-def test_the_time_of_many_steps_of_which_one_fails(fmu_path: Path) -> None:
-    """3.5e9 s is the last time at 20 kHz (docs/using.md): the steps before it are made, and time says so."""
-    with fc.FrictionFmu(fmu_path) as fmu, fmu.session({"vibration.V_1": 1.0}, start=3.5e9) as session:
-        with pytest.raises(fc.FrictionError, match=r"is too large for vibration\.f"):
-            session.step_many(1e7, 10)
-        assert session.time == 3.51e9
-        session.step(1e-3)
 
 
 @pytest.mark.parametrize(

@@ -307,18 +307,6 @@ def test_18_eq_3_is_no_sum_over_contacts(fmu: FrictionFmu) -> None:
     eq_3, doubled = (stiffness_of("Asperities", A_n) for A_n in (1e-4, 2e-4))
     mindlin, mindlin_doubled = (stiffness_of("Mindlin", A_n) for A_n in (1e-4, 2e-4))
     assert mindlin_doubled / mindlin == pytest.approx(2.0, rel=1e-12)
-    # Mindlin's sum over the heights by quadrature: 2 E [2 (1 - nu) / (2 - nu)] times each contact's radius.
-    s, factor = SURFACES, 2 * E_FULL * 2 * (1 - SURFACES.nu) / (2 - SURFACES.nu)
-    h, critical = SEPARATION / s.R_q, yield_interference(s) / s.R_q
-    elastic = quad(lambda w: math.sqrt(w) * math.exp(-s.lambda_ * w), 0, critical)[0]
-    plastic = quad(lambda w: math.sqrt(2 * w - critical) * math.exp(-s.lambda_ * w), critical, 20.0)[0]
-    count = s.eta * s.A_n * s.c * math.exp(-s.lambda_ * h)
-    assert mindlin == pytest.approx(count * factor * math.sqrt(s.R * s.R_q) * (elastic + plastic), rel=1e-7)
+    s = SURFACES
     stated(18, f"factor of {doubled / eq_3:.2f}", f"{mindlin:.4e} N/m", f"gives {eq_3 / mindlin:.0f} times")
     stated(18, f"λ = {1e6 * s.R_q / s.lambda_:.1f} µm", f"β = {s.eta * s.R * s.R_q:.3f}")
-
-
-def yield_interference(s: Surfaces) -> float:
-    """omega_c [m], Eq. 13 with Eq. 14."""
-    p_m = (1.234 + 1.256 * s.nu) * (1 - s.nu**2) * s.Y
-    return (math.pi * p_m / (2 * E_FULL)) ** 2 * s.R

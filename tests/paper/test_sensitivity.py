@@ -1,4 +1,4 @@
-"""The regimes: the FMU's means and sensitivities against closed forms, and the classes of the regime map."""
+"""The regimes: means and sensitivities of the FMU against reference and formulas, and the regime map."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from physics.constant import periodic_mean
 
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
+from workshop.reference import solution as reference
+from workshop.reference.contact import Contact
+from workshop.reference.scene import Scene
 from workshop.regimes.mean import (
     PARAMETERS,
     REGIMES,
@@ -31,23 +33,26 @@ def probe(fmu_path: Path) -> Probe:
     return Probe(fmu_path, tolerance=1e-9)
 
 
-def closed_form(kappa: float, zeta: float) -> float:
+def expected(kappa: float, zeta: float) -> float:
+    """By the reference, at a constant stiffness."""
     sigma = kappa * 2.0 * math.pi * FREQUENCY * COULOMB_FORCE / V_1
-    return float(periodic_mean(sigma, COULOMB_FORCE, zeta * V_1, V_1, FREQUENCY)) / COULOMB_FORCE
+    contact = Contact(model="Constant", sigma=sigma)
+    scene = Scene(V=zeta * V_1, V_1=V_1, f=FREQUENCY, F_C=COULOMB_FORCE, contact=contact)
+    return float(reference.periodic_mean(scene)) / COULOMB_FORCE
 
 
 @pytest.mark.parametrize("kappa", [0.1, 1.0, 7.0, 300.0])
 @pytest.mark.parametrize("zeta", [0.003, 0.3, 0.97])
-def test_mean_is_the_closed_form(probe: Probe, kappa: float, zeta: float) -> None:
-    assert probe.mean(Regime(kappa, zeta)) == pytest.approx(closed_form(kappa, zeta), abs=1e-8)
+def test_mean_is_that_of_the_reference(probe: Probe, kappa: float, zeta: float) -> None:
+    assert probe.mean(Regime(kappa, zeta)) == pytest.approx(expected(kappa, zeta), abs=1e-8)
 
 
 @pytest.mark.parametrize("zeta", [0.003, 0.3, 0.97])
-def test_limits_are_those_of_the_closed_form(zeta: float) -> None:
-    assert coulomb_limit(zeta) == pytest.approx(closed_form(1e8, zeta), rel=2e-3)
+def test_limits_are_those_of_the_reference(zeta: float) -> None:
+    assert coulomb_limit(zeta) == pytest.approx(expected(1e8, zeta), rel=2e-3)
     mean_path = 2.0 / math.pi * (math.sqrt(1.0 - zeta**2) + zeta * math.asin(zeta))
     assert soft_limit(zeta) == pytest.approx(zeta / mean_path, rel=1e-5)
-    assert soft_limit(zeta) == pytest.approx(closed_form(1e-3, zeta), rel=1e-5)
+    assert soft_limit(zeta) == pytest.approx(expected(1e-3, zeta), rel=1e-5)
 
 
 @pytest.mark.parametrize("alpha", [0.0, 0.02, ALPHA, 0.5])
@@ -66,10 +71,10 @@ def test_sensitivities_reach_their_limits(probe: Probe, name: str) -> None:
     assert stiff == pytest.approx(coulomb_sensitivity(0.3, name), abs=2e-3)
 
 
-def test_sensitivity_to_the_stiffness_is_the_derivative_of_the_closed_form(probe: Probe) -> None:
+def test_sensitivity_to_the_stiffness_is_the_derivative_of_the_reference(probe: Probe) -> None:
     """E is proportional to sigma, but for the 0.01 % that A_r follows it."""
     h = 1e-3
-    slope = (closed_form(math.exp(h), 0.3) - closed_form(math.exp(-h), 0.3)) / (2.0 * h)
+    slope = (expected(math.exp(h), 0.3) - expected(math.exp(-h), 0.3)) / (2.0 * h)
     assert probe.sensitivity(Regime(1.0, 0.3), "E") == pytest.approx(slope, rel=2e-3)
 
 

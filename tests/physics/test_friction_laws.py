@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.special import iv
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
 from workshop.project import ROOT
@@ -17,44 +15,6 @@ from workshop.project import ROOT
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 
 SETTLED = {"initialState": "Settled"}
-
-# L. Luo et al., Scientific Reports 14:25847 (2024), Fig. 5b, dry: V [m/s], the friction without vibration
-# [N], and the mean that a spring of 7.76 N/um and a slider give, from an integration in another program.
-DRY = [
-    (0.05e-3, 3.27, 0.5613),
-    (0.1e-3, 3.23, 0.5285),
-    (0.2e-3, 3.06, 0.3725),
-    (0.5e-3, 2.93, 0.2835),
-    (1.0e-3, 2.86, 0.2787),
-]
-DRY_SCENE = {
-    "friction.model": "ElasticPlastic",
-    "contact.model": "Constant",
-    "contact.sigma": 7.76e6,
-    "vibration.f": 26e3,
-    "vibration.V_1": 2 * math.pi * 26e3 * 0.35e-6,
-}
-
-
-def mean_of_a_period(fmu: FrictionFmu, start_values: Mapping[str, Value]) -> float:
-    with fmu.session({**start_values, **SETTLED}) as session:
-        session.step(1 / session.get("vibration.f"))
-        return session.get("F_t_mean")
-
-
-@pytest.mark.parametrize(("V", "F_C", "expected"), DRY)
-def test_elastic_plastic_means_of_the_dry_measurements(
-    fmu: FrictionFmu, V: float, F_C: float, expected: float
-) -> None:
-    assert mean_of_a_period(fmu, DRY_SCENE | {"V": V, "F_C": F_C}) == pytest.approx(expected, abs=1e-4)
-
-
-def test_elastic_plastic_tends_to_the_limit_less_the_swing(fmu: FrictionFmu) -> None:
-    """F_C - k a as V -> 0; the mean lies below by less than what the path of a period moves, k V T."""
-    F_C, swing = 3.0, 7.76e6 * 0.35e-6
-    for V in (1e-6, 1e-9):
-        mean = mean_of_a_period(fmu, DRY_SCENE | {"V": V, "F_C": F_C})
-        assert mean == pytest.approx(F_C - swing, abs=1e-9 + 7.76e6 * V / 26e3)
 
 
 def test_work_can_fall_while_heat_rises(fmu: FrictionFmu) -> None:
@@ -107,105 +67,6 @@ def test_elastic_plastic_with_a_static_ratio_of_1_has_no_stribeck_velocity(
             session.step(6e-5)
             results.append(session.read(["F_t", "F_t_mean", "W_f", "Q_f", "delta"]).tolist())
     assert results[0] == results[1] == results[2]
-
-
-def test_lugre_breaks_away_above_its_sliding_friction(fmu: FrictionFmu) -> None:
-    """Slow sliding has nearly the static friction, fast sliding the Coulomb friction."""
-    for V in (1e-5, 5e-3, 0.02, 1.0):
-        scene = {"friction.model": "LuGre", "friction.staticRatio": 1.4, "V": V, **SETTLED}
-        with fmu.session(scene) as session:
-            expected = 55.0 * (1 + 0.4 * math.exp(-((V / 0.01) ** 2)))
-            assert session.get("F_t") == pytest.approx(expected, rel=1e-12)
-            session.step(1e-3)
-            assert session.get("F_t_mean") == pytest.approx(expected, rel=1e-9)
-
-
-def test_damping_does_nothing_in_steady_sliding_and_viscous_friction_adds(fmu: FrictionFmu) -> None:
-    for law in ("Dahl", "LuGre", "ElasticPlastic"):
-        scene = {
-            "friction.model": law,
-            "V": 0.2,
-            "friction.sigma_1": 50.0,
-            "friction.sigma_2": 7.0,
-            **SETTLED,
-        }
-        with fmu.session(scene) as session:
-            session.step(1e-3)
-            assert session.get("F_t") == pytest.approx(55.0 + 7.0 * 0.2, rel=1e-9)
-            assert session.get("Q_f") == pytest.approx(session.get("W_f"), rel=1e-9)
-
-
-def least_normal_force(start_values: Mapping[str, Value], fmu: FrictionFmu) -> float:
-    with fmu.session(start_values) as session:
-        forces = []
-        for _ in range(200):
-            session.step(5e-5 / 200)
-            forces.append(session.get("F_n"))
-        return min(forces)
-
-
-def test_static_friction_under_normal_vibration_is_that_of_the_least_load(fmu: FrictionFmu) -> None:
-    """Each period clamps a spring to the least bound, so a slow pull finds mu min F_n (Popov 2020)."""
-    scene = {
-        "friction.model": "ElasticPlastic",
-        "friction.limit": "Load",
-        "contact.model": "Constant",
-        "contact.sigma": 1e7,
-        "contact.input": "Load",
-        "load": 100.0,
-        "vibration.a_d": 0.8e-6,
-        "V": 1e-9,
-    }
-    with fmu.session({**scene, **SETTLED}) as session:
-        session.step(5e-5)
-        swing = 1e7 * 1e-9 * 5e-5
-        expected = 0.176 * 100.0 * math.exp(-0.4) / iv(0, 0.4)
-        assert session.get("F_t_mean") == pytest.approx(expected, abs=2 * swing)
-    assert least_normal_force(scene, fmu) == pytest.approx(expected / 0.176, rel=1e-3)
-
-
-def test_the_surfaces_float_so_that_the_mean_normal_force_is_the_load(fmu: FrictionFmu) -> None:
-    scene = {"contact.input": "Load", "load": 100.0, "vibration.a_d": 1.1e-6, "V": 0.1}
-    with fmu.session(scene) as session:
-        forces = []
-        for _ in range(64):
-            session.step(5e-5 / 64)
-            forces.append(session.get("F_n"))
-    # The trapezoidal rule of a periodic function: exact to rounding at 64 points.
-    assert np.mean(forces) == pytest.approx(100.0, rel=1e-12)
-    assert max(forces) / min(forces) == pytest.approx(math.exp(2 * 0.55), rel=1e-3)
-
-
-def test_settled_where_the_relaxation_takes_a_million_million_periods(fmu: FrictionFmu) -> None:
-    """kappa = 1e-12: the mean is F_C zeta / mean |zeta + cos|."""
-    zeta, V_1, f, F_C = 0.3, 1.0, 20e3, 55.0
-    turn = math.acos(-zeta)
-    mean_speed = (2 * (zeta * turn + math.sin(turn)) - zeta * math.pi) / math.pi
-    scene = {
-        "contact.model": "Constant",
-        "contact.sigma": 1e-12 * 2 * math.pi * f * F_C / V_1,
-        "V": zeta * V_1,
-        "vibration.V_1": V_1,
-    }
-    assert mean_of_a_period(fmu, scene) == pytest.approx(F_C * zeta / mean_speed, rel=1e-6)
-
-
-@pytest.mark.parametrize("law", ["Dahl", "LuGre", "ElasticPlastic"])
-def test_settled_is_what_many_periods_lead_to(fmu: FrictionFmu, law: str) -> None:
-    scene = VIBRATING | {"friction.model": law, "friction.staticRatio": 1.3, "friction.limit": "Load"}
-    with fmu.session({**scene, **SETTLED}) as settled, fmu.session(scene) as session:
-        first = settled.get("delta")
-        session.step(1000 * 5e-5)
-        assert session.get("delta") == pytest.approx(first, rel=1e-6)
-        settled.step(5e-5)
-        assert settled.get("delta") == pytest.approx(first, rel=1e-6)
-
-
-def test_settled_without_any_motion_is_delta_0(fmu: FrictionFmu) -> None:
-    for law in ("Dahl", "LuGre", "ElasticPlastic"):
-        scene = {"friction.model": law, "V": 0.0, "delta_0": 3e-12, **SETTLED}
-        with fmu.session(scene) as session:
-            assert session.get("delta") == 3e-12
 
 
 def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:

@@ -66,18 +66,6 @@ def test_force_is_that_of_a_short_step_to_the_same_phase(fmu: FrictionFmu, h: fl
     assert forces[0] == pytest.approx(forces[1], abs=55 * 3e-11)
 
 
-@pytest.mark.parametrize("t", [0.0, 123456.0])
-@pytest.mark.parametrize("h", HOURS_TO_DECADES)
-@pytest.mark.parametrize("part", [0.1, 0.24, 0.26, 0.6, 0.9])
-def test_coulomb_friction_has_the_sign_of_the_velocity_at_the_end(
-    fmu: FrictionFmu, h: float, t: float, part: float
-) -> None:
-    h += part / F
-    with fmu.session({"V": 0.0, "vibration.V_1": 0.01, "friction.model": "Coulomb"}, start=t) as session:
-        session.step(h)
-        assert session.get("F_t") == 55.0 * float(mp.sign(mp.cos(angle(t, h))))
-
-
 LAWS = [
     {"friction.model": "Coulomb"},
     {"friction.model": "Dahl"},
@@ -99,13 +87,6 @@ def test_a_time_that_tells_no_phase_is_refused(
             session.step(h)
         assert tuple(session.read(("F_t", "delta", "W_f"))) == tuple(before)
         session.step(1e-5)
-
-
-def test_the_largest_time_is_taken(fmu: FrictionFmu) -> None:
-    with fmu.session({"V": 0.1, "vibration.V_1": 0.4}) as session:
-        session.step(LARGEST)
-        with pytest.raises(FrictionError, match="too large"):
-            session.step(1.0)
 
 
 def test_a_start_that_tells_no_phase_is_refused(fmu: FrictionFmu) -> None:

@@ -120,13 +120,13 @@ def test_a_constant_limit_and_stiffness_do_not_know_the_load(fmu: FrictionFmu) -
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("rates", [False, True])
 def test_a_mass_that_bounces(fmu: FrictionFmu, law: str, rates: bool) -> None:
-    """1 kg falls on 1e6 N/m in steps of 10 us, sliding at 0.1 m/s: ten contacts without an error."""
+    """1 kg falls on 1e6 N/m in steps of 10 us, sliding at 0.1 m/s: four contacts without an error."""
     mass, k, h, x, v = 1.0, 1e6, 1e-5, -1e-3, 0.0
     start = pressed(law, "Constant", load=0.0, V=0.1, **{"contact.sigma": 1e9, "friction.staticRatio": 1.2})
     contacts, was_closed, momentum, heat = 0, False, 0.0, 0.0
     with fmu.session(start) as session:
         silent = list(session.messages)
-        while contacts < 10:
+        while contacts < 4:
             load = max(0.0, k * x)
             v += h * (9.81 - load / mass)
             following = max(0.0, k * (x + h * v))

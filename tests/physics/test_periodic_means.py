@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from physics import constant
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
@@ -15,10 +14,8 @@ from frictioncontact.gap.heights import stiffness
 from frictioncontact.parameters import (
     IDENTIFIED,
     IDENTIFIED_ABSOLUTE,
-    PRINTED,
     SEPARATION,
     TABLE_2,
-    Row,
     Surfaces,
     start_values,
 )
@@ -48,18 +45,7 @@ def constant_stiffness(kappa: float, zeta: float) -> dict[str, float | str]:
 )
 def test_mean_at_constant_stiffness(fmu: FrictionFmu, kappa: float, zeta: float, printed: float) -> None:
     start = constant_stiffness(kappa, zeta)
-    mean = periodic_mean(fmu, start) / 55.0
-    assert mean == pytest.approx(printed, abs=1e-8)
-    exact = constant.periodic_mean(start["contact.sigma"], 55.0, zeta, 1.0, 20e3) / 55
-    assert mean == pytest.approx(float(exact), abs=1e-10)
-
-
-@pytest.mark.parametrize("zeta", [-0.9, 0.05, 0.3, 0.999])
-def test_stiff_limit_is_coulomb(fmu: FrictionFmu, zeta: float) -> None:
-    expected = 2 / np.pi * np.arcsin(zeta)
-    assert periodic_mean(fmu, constant_stiffness(1e12, zeta)) / 55.0 == pytest.approx(expected, abs=1e-6)
-    coulomb = constant_stiffness(1.0, zeta) | {"friction.model": "Coulomb"}
-    assert periodic_mean(fmu, coulomb) / 55.0 == pytest.approx(expected, abs=1e-9)
+    assert periodic_mean(fmu, start) / 55.0 == pytest.approx(printed, abs=1e-9)
 
 
 def test_a_moving_separation_asks_for_a_stiffer_contact_than_a_constant_one(fmu: FrictionFmu) -> None:
@@ -93,34 +79,17 @@ def test_how_far_kappa_100_is_from_coulomb_is_what_the_page_says(fmu: FrictionFm
     assert said in text
 
 
+@pytest.mark.parametrize("kappa", [1e-5, 1e-12])  # the relaxation takes 1e5 and 1e12 periods
 @pytest.mark.parametrize("zeta", [-0.9, 0.05, 0.3, 0.999])
-def test_soft_limit(fmu: FrictionFmu, zeta: float) -> None:
+def test_soft_limit(fmu: FrictionFmu, zeta: float, kappa: float) -> None:
     turn = MP.acos(-MP.mpf(zeta))
     mean_speed = MP.quad(lambda x: abs(zeta + MP.cos(x)), [0, turn, 2 * MP.pi - turn, 2 * MP.pi])
     expected = float(zeta * 2 * MP.pi / mean_speed)
-    mean = periodic_mean(fmu, constant_stiffness(1e-5, zeta))
+    mean = periodic_mean(fmu, constant_stiffness(kappa, zeta))
     assert mean / 55.0 == pytest.approx(expected, abs=1e-8)
 
 
-PRINTED_MEANS = [55.0, 0.1216, 0.1216, 55.0, 55.0, 0.1523]
-IDENTIFIED_MEANS = {1: 55.00, 2: 21.56, 3: 26.44, 6: 27.44}
 IDENTIFIED_ABSOLUTE_MEANS = {1: 55.00, 2: 21.05, 3: 27.05, 6: 27.95}
-
-
-@pytest.mark.parametrize(("row", "printed"), list(zip(TABLE_2, PRINTED_MEANS, strict=True)))
-def test_table_2_at_the_printed_parameters(fmu: FrictionFmu, row: Row, printed: float) -> None:
-    start = start_values(row, PRINTED) | ACCURATE
-    mean = periodic_mean(fmu, start)
-    assert mean == pytest.approx(printed, abs=5e-5)
-    assert mean == pytest.approx(float(reference.periodic_mean(scene_of(start))), rel=1e-6)
-
-
-@pytest.mark.parametrize("number", IDENTIFIED_MEANS)
-def test_table_2_identified(fmu: FrictionFmu, number: int) -> None:
-    start = start_values(TABLE_2[number - 1], IDENTIFIED) | ACCURATE
-    mean = periodic_mean(fmu, start)
-    assert mean == pytest.approx(IDENTIFIED_MEANS[number], abs=0.005)
-    assert mean == pytest.approx(float(reference.periodic_mean(scene_of(start))), rel=1e-6)
 
 
 @pytest.mark.parametrize("number", IDENTIFIED_ABSOLUTE_MEANS)
@@ -135,13 +104,6 @@ def test_table_2_identified_by_the_mean_of_the_absolute_force(fmu: FrictionFmu, 
             session.step(period / points)
             force[k] = session.get("F_t")
     assert np.abs(force).mean() == pytest.approx(IDENTIFIED_ABSOLUTE_MEANS[number], abs=0.0055)
-
-
-@pytest.mark.parametrize("parameters", [PRINTED, IDENTIFIED])
-@pytest.mark.parametrize("number", [4, 5])
-def test_constant_velocity_means_the_coulomb_force(fmu: FrictionFmu, parameters: object, number: int) -> None:
-    mean = periodic_mean(fmu, start_values(TABLE_2[number - 1], parameters) | ACCURATE)
-    assert mean == pytest.approx(55.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("V", [0.5, 1.0, 1.5, -2.0])

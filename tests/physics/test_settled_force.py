@@ -10,7 +10,6 @@ import pytest
 from physics.course import scale
 from scipy.integrate import solve_ivp
 
-from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.reference.scene import Scene
 from workshop.reference.settled import settled
@@ -243,12 +242,3 @@ def test_a_mass_follows_it_but_for_ripple_and_transient(
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
     assert least * ripple < error < most * ripple
-
-
-def test_many_scenarios_on_all_processors_give_the_bits_of_one(fmu: FrictionFmu) -> None:
-    V = np.linspace(-2.0, 2.0, 41)
-    values = VIBRATING | SOFT | {"friction.model": "LuGre", "friction.staticRatio": 1.3}
-    many = simulate_many(values | {"V": V}, {"mean": "F_t_settled"}, fmu=fmu.path)["mean"]
-    for each, mean in zip(V, many, strict=True):
-        with fmu.session(values | {"V": float(each)}) as session:
-            assert session.get("F_t_settled") == mean

@@ -58,17 +58,6 @@ def test_break_away_is_at_the_static_limit_whatever_V_is(
         assert_energy(session)
 
 
-@pytest.mark.parametrize("V", [1e-3, 0.3])
-def test_one_step_through_break_away(fmu: FrictionFmu, V: float) -> None:
-    way, F_k = F_S / SIGMA, kinetic(V)
-    with fmu.session({**SPRING, "V": V, "solver.tolerance": 1e-8}) as session:
-        session.step(3 * way / V)
-        work = F_S * way / 2 + F_k * 2 * way
-        assert session.get("W_f") == pytest.approx(work, abs=1e-8 * SCALE * 3 * way)
-        assert session.get("F_t_mean") == pytest.approx(work / (3 * way), abs=1e-8 * SCALE)
-        assert_energy(session)
-
-
 @pytest.mark.parametrize("V_1", [0.02, 0.5, 4.0])
 @pytest.mark.parametrize("h", [1.7e-6, 1e-3, 1000.0])
 def test_a_vibration_below_break_away_makes_no_heat_and_no_drift(
@@ -88,28 +77,6 @@ def test_a_vibration_below_break_away_makes_no_heat_and_no_drift(
             assert session.get("F_t_settled") == pytest.approx(force, abs=1e-6 * SCALE)
 
 
-def test_a_loaded_contact_unloads_as_a_spring(fmu: FrictionFmu) -> None:
-    with fmu.session({**SPRING, "V": -1.0, "delta_0": 77.0 / SIGMA}) as session:
-        session.step(1e-10)
-        assert session.get("F_t") == pytest.approx(76.99975, rel=1e-12)
-        assert session.get("Q_f") == 0.0
-
-
-@pytest.mark.parametrize("V", [1e-3, 0.5])
-def test_it_sticks_again_where_V_turns_back(fmu: FrictionFmu, V: float) -> None:
-    """Slip, then V falls through zero: F_k rises to F_s while V falls, and a spring is left from there on."""
-    with fmu.session({**SPRING, "V": V, "solver.tolerance": 1e-8}) as session:
-        session.step(2 * F_S / SIGMA / V)
-        assert session.get("F_t") == pytest.approx(kinetic(V), rel=1e-7)
-        back = 1e-6
-        session.set("V", -back)
-        heat = session.get("Q_f")
-        before = session.get("F_t")
-        session.step(0.1)
-        assert session.get("F_t") == pytest.approx(before - SIGMA * back * 0.1, abs=1e-8 * SCALE)
-        assert session.get("Q_f") == pytest.approx(heat, abs=1e-15)
-
-
 @pytest.mark.parametrize("V", [1e-3, 0.5])
 def test_stop_and_go_shows_static_friction_again(fmu: FrictionFmu, V: float) -> None:
     with fmu.session({**SPRING, "V": V, "solver.tolerance": 1e-8}) as session:
@@ -122,24 +89,6 @@ def test_stop_and_go_shows_static_friction_again(fmu: FrictionFmu, V: float) -> 
         assert session.get("F_t") == pytest.approx(F_S, rel=1e-6)
         session.step(2e-8 * F_S / SIGMA / V)
         assert session.get("F_t") == pytest.approx(F_k, rel=1e-6)
-
-
-def test_whether_it_slips_is_saved(fmu: FrictionFmu) -> None:
-    """At the same deflection one that slips goes on, and one that starts there sticks."""
-    V = 0.5
-    with fmu.session({**SPRING, "V": V}) as slips:
-        slips.step(2 * F_S / SIGMA / V)
-        delta = slips.get("delta")
-        state = slips.slave.getFMUState()
-        with fmu.session({**SPRING, "V": V, "delta_0": delta}) as sticks:
-            sticks.step(1e-6)
-            assert sticks.get("F_t") == pytest.approx(SIGMA * (delta + V * 1e-6), rel=1e-9)
-        for _ in range(2):
-            slips.step(1e-6)
-            assert slips.get("F_t") == pytest.approx(F_C, rel=1e-6)
-            slips.slave.setFMUState(state)
-            slips.time = 2 * F_S / SIGMA / V
-        slips.slave.freeFMUState(state)
 
 
 CYCLES = [

@@ -7,56 +7,13 @@
 
 static const double E = 58.556936170e9; // Pa, of the materials of Table 1
 
-static const double TEN_DIGITS = 6e-10; // what is left of a number printed with ten digits
-
-// Eq. 20 and Eq. 3 at the parameters of Table 1.
-static void values_of_table_1(void) {
-    const struct {
-        double d, A_r;
-    } areas[] = {
-        {12.9e-6, 8.991595e-7}, {14e-6, 5.187698908e-7}, {15.1e-6, 2.993042e-7}, {17e-6, 1.157532088e-7}};
-    const FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
-    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
-    for (size_t i = 0; i < sizeof areas / sizeof *areas; i++) {
-        const double digits = i % 2 ? TEN_DIGITS : 6e-8; // printed with ten digits, or seven
-        CHECK_NEAR(fc_contact_response(&at_E, areas[i].d).A_r, areas[i].A_r, digits);
-    }
-    CHECK_NEAR(fc_contact_stiffness(&at_E, 14e-6), 5.743065402e12, TEN_DIGITS);
-    CHECK_NEAR(fc_contact_stiffness(&at_E, 17e-6), 1.596973315e11, TEN_DIGITS);
-    CHECK_NEAR(at_E.decay, 0.5e6, 1e-15);
-}
-
-static void stiffness_scales(void) {
-    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
-    p.stiffnessScale = 4.41686e-7;
-    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
-    CHECK_NEAR(fc_contact_stiffness(&at_E, 14e-6), 4.41686e-7 * 5.743065402e12, TEN_DIGITS);
-    CHECK_NEAR(fc_contact_response(&at_E, 14e-6).A_r, 5.187698908e-7, TEN_DIGITS);
-    CHECK(fc_contact_response(&at_E, 14e-6).sigma == fc_contact_stiffness(&at_E, 14e-6));
-}
-
 static void constant_stiffness_ignores_the_surfaces(void) {
     FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
     p.model = FC_CONTACT_CONSTANT;
     const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
     CHECK(fc_contact_stiffness(&at_E, 3e-6) == 2.5e6 && fc_contact_response(&at_E, 3e-6).sigma == 2.5e6);
-    CHECK_NEAR(fc_contact_response(&at_E, 14e-6).A_r, 5.187698908e-7, TEN_DIGITS);
+    CHECK_NEAR(fc_contact_response(&at_E, 14e-6).A_r, 5.187698908e-7, 6e-10); // printed with ten digits
     CHECK(fc_contact_slope_by_d(&at_E, 14e-6).sigma == 0.0 && fc_contact_slope_by_E(&p, E).sigma == 0.0);
-}
-
-// F_n and Mindlin's stiffness at the parameters of Table 1, from an independent quadrature over the heights.
-static void load_and_mindlin_of_table_1(void) {
-    const double d[] = {12.9e-6, 14e-6, 15.1e-6, 17e-6};
-    const double F_n[] = {541.5402078, 312.4415202, 180.2630758, 69.71512644};
-    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
-    p.model = FC_CONTACT_MINDLIN;
-    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
-    for (int i = 0; i < 4; i++) {
-        CHECK_NEAR(fc_contact_response(&at_E, d[i]).F_n, F_n[i], TEN_DIGITS);
-    }
-    CHECK_NEAR(fc_contact_stiffness(&at_E, 14e-6), 5.273663570e9, TEN_DIGITS);
-    CHECK_NEAR(fc_contact_stiffness(&at_E, 17e-6), 1.176713397e9, TEN_DIGITS);
-    CHECK_NEAR(exp(fc_contact_log_swell(&at_E, 1.1e-6)), 1.077066856, TEN_DIGITS); // I_0(0.55)
 }
 
 typedef double (*Quantity)(const FcContactParameters* p, double d, double modulus);
@@ -89,28 +46,6 @@ static void check_slope(Quantity q, double by_d, double by_E, const FcContactPar
                         (12.0 * k * modulus);
     CHECK_NEAR(by_d, of_d, 1e-9);
     CHECK_WITHIN(by_E, of_E, 1e-9 * fabs(of_E) + 1e-11 / modulus);
-}
-
-// Eq. 13 makes everything depend on E where asperities stay elastic: E of some GPa.
-static void slopes_are_derivatives(void) {
-    const int models[] = {FC_CONTACT_ASPERITIES, FC_CONTACT_MINDLIN};
-    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
-    for (int model = 0; model < 2; model++) {
-        p.model = models[model];
-        for (double d = 1e-6; d < 30e-6; d *= 1.7) {
-            for (double modulus = 3e8; modulus < 3e12; modulus *= 7.0) {
-                const FcContactAtModulus at = fc_contact_at_modulus(&p, modulus);
-                const FcContactLogSlope by_d = fc_contact_slope_by_d(&at, d);
-                const FcContactLogSlope by_E = fc_contact_slope_by_E(&p, modulus);
-                check_slope(stiffness, by_d.sigma, by_E.sigma, &p, d, modulus);
-                check_slope(area, by_d.A_r, by_E.A_r, &p, d, modulus);
-                check_slope(normal_force, by_d.F_n, by_E.F_n, &p, d, modulus);
-            }
-        }
-    }
-    p.model = FC_CONTACT_ASPERITIES;
-    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
-    CHECK_NEAR(fc_contact_slope_by_d(&at_E, 14e-6).sigma, -1.2142857142857142e6, 1e-14);
 }
 
 // e^(-decay d) underflows at a metre, e^-x at a soft modulus: nothing there may be undefined.
@@ -197,10 +132,11 @@ static void sums_over_the_asperities(void) {
         CHECK_NEAR(got.F_n, (double)(count * sum.force), 1e-9);
         CHECK_NEAR(got.sigma, p.stiffnessScale * sigma, 1e-8);
         CHECK_NEAR(fc_contact_stiffness(&at, d), got.sigma, 1e-15);
-        check_slope(stiffness, fc_contact_slope_by_d(&at, d).sigma, fc_contact_slope_by_E(&p, modulus).sigma,
-                    &p, d, modulus);
-        check_slope(normal_force, fc_contact_slope_by_d(&at, d).F_n, fc_contact_slope_by_E(&p, modulus).F_n,
-                    &p, d, modulus);
+        const FcContactLogSlope by_d = fc_contact_slope_by_d(&at, d);
+        const FcContactLogSlope by_E = fc_contact_slope_by_E(&p, modulus);
+        check_slope(stiffness, by_d.sigma, by_E.sigma, &p, d, modulus);
+        check_slope(area, by_d.A_r, by_E.A_r, &p, d, modulus);
+        check_slope(normal_force, by_d.F_n, by_E.F_n, &p, d, modulus);
     }
 }
 
@@ -220,11 +156,7 @@ static void slopes_at_the_ends(void) {
 int main(void) {
     sums_over_the_asperities();
     slopes_at_the_ends();
-    values_of_table_1();
-    stiffness_scales();
     constant_stiffness_ignores_the_surfaces();
-    load_and_mindlin_of_table_1();
-    slopes_are_derivatives();
     far_apart_nothing_touches();
     return check_result();
 }

@@ -4,10 +4,13 @@
 #include <stdint.h>
 
 #include "check.h"
+#include "random.h"
 
 static const double TWO_PI = 6.283185307179586;
 static const double F = 20e3; // Hz
 static const double PERIOD = 5e-5;
+
+static double uniform(double low, double high) { return low + (high - low) * random_01(); }
 
 typedef struct {
     double V, V_rate, V_1, d_rate, a_d, phase_d, start;
@@ -305,14 +308,6 @@ static void check_by_walking(const FcDrive* drive, double end, int walked) {
         k++;
     }
     CHECK(k == all.count);
-}
-
-static double uniform(double low, double high) {
-    static uint64_t x = 88172645463325252u; // xorshift64*
-    x ^= x >> 12;
-    x ^= x << 25;
-    x ^= x >> 27;
-    return low + (high - low) * (double)((x * 2685821657736338717u) >> 11) * 0x1p-53;
 }
 
 static void reversals_of_linear_inputs(void) {

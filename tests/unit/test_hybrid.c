@@ -142,18 +142,10 @@ static void it_sticks_where_the_kinetic_bound_outruns_it(void) {
     CHECK_NEAR(v->delta, MU * 100.0 / SIGMA * kinetic, 1e-12);
 }
 
-static void coulomb_is_refused(void) {
-    FcFrictionContact contact = pressed(100.0);
-    contact.state.variables.friction.model = FC_COULOMB;
-    FcMessage message = {""};
-    CHECK(!fc_hybrid_allows(&contact, &message) && strstr(message.text, "Coulomb"));
-}
-
 int main(void) {
     the_speed_of_inputs_is_that_between_two_steps();
     a_bound_that_falls_takes_the_bristle_along();
     a_bristle_that_slips_gives_its_heat_at_the_next_event();
     it_sticks_where_the_kinetic_bound_outruns_it();
-    coulomb_is_refused();
     return check_result();
 }

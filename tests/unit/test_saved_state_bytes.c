@@ -112,108 +112,46 @@ static void infinite_numbers_are_refused(fmi2Component c) {
     }
 }
 
-// The layout that the file's head describes, written apart from it.
-typedef struct {
-    unsigned char bytes[MOST_BYTES];
-    size_t size;
-} Layout;
+enum { AT_VERSION = 8, AT_SIZE = 12, AT_GUID = 16, AT_VALUES = 54 }; // bytes
 
-static void put(Layout* layout, unsigned long long value, int size) {
+static void put(Bytes* bytes, size_t at, unsigned long long value, int size) {
     for (int i = 0; i < size; i++) {
-        layout->bytes[layout->size++] = (unsigned char)(value >> (8 * i) & 0xffu);
+        bytes->bytes[at + (size_t)i] = (char)(value >> (8 * i) & 0xffu);
     }
 }
 
-static void put_real(Layout* layout, double value) {
-    unsigned long long bits;
-    memcpy(&bits, &value, sizeof bits);
-    put(layout, bits, 8);
-}
-
-static void put_hash(Layout* layout) {
-    unsigned long long hash = 0xcbf29ce484222325ull; // FNV-1a, 64 bits
-    for (size_t i = 0; i < layout->size; i++) {
-        hash ^= layout->bytes[i];
+// FNV-1a of 64 bits over all bytes before the last eight, which it becomes.
+static void put_hash(Bytes* bytes) {
+    unsigned long long hash = 0xcbf29ce484222325ull;
+    for (size_t i = 0; i < bytes->size - 8; i++) {
+        hash ^= (unsigned char)bytes->bytes[i];
         hash *= 0x100000001b3ull;
     }
-    put(layout, hash, 8);
+    put(bytes, bytes->size - 8, hash, 8);
 }
 
-static Layout layout_of(const FcSavedState* saved, unsigned version, size_t size) {
-    Layout layout = {.size = 0};
-    memcpy(layout.bytes, "FRICTION", 8);
-    layout.size = 8;
-    put(&layout, version, 4);
-    put(&layout, size, 4);
-    memcpy(layout.bytes + 16, fc_guid, 38);
-    layout.size = 54;
-    const FcFrictionState* friction = &saved->friction;
-    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
-        const FcVariableInfo* info = &fc_variables[vr];
-        const double value = fc_variable_value(&friction->variables, info);
-        if (info->type == FC_TYPE_REAL) {
-            put_real(&layout, value);
-        } else {
-            put(&layout, (unsigned)(int)value, 4);
-        }
-    }
-    put_real(&layout, friction->time);
-    put_real(&layout, friction->time_rest);
-    put_real(&layout, friction->W_f_rest);
-    put_real(&layout, friction->Q_f_rest);
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        put_real(&layout, friction->rate[input]);
-    }
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        put_real(&layout, friction->next_rate[input]);
-    }
-    put(&layout, (unsigned)friction->next_rate_set, 4);
-    put(&layout, (unsigned)friction->slips, 4);
-    const FcPast* of = &friction->past;
-    const double past[] = {of->d, of->V, of->V_y, of->E, of->limit, of->ratio, of->V_S, of->sigma};
-    for (int k = 0; k < 8; k++) {
-        put_real(&layout, past[k]);
-    }
-    const FcHybrid* hybrid = &friction->hybrid;
-    put(&layout, (unsigned)hybrid->regime, 4);
-    put(&layout, (unsigned)hybrid->changed, 4);
-    put_real(&layout, hybrid->seen_time);
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        put_real(&layout, hybrid->seen[input]);
-    }
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        put_real(&layout, hybrid->speed[input]);
-    }
-    put_real(&layout, hybrid->nominal_delta);
-    put_real(&layout, hybrid->nominal_energy);
-    put_real(&layout, hybrid->lag);
-    put_real(&layout, hybrid->lag_force);
-    put_real(&layout, hybrid->lag_heat);
-    put(&layout, (unsigned)saved->experiment.interface, 4);
-    put(&layout, (unsigned)saved->experiment.mode, 4);
-    put(&layout, (unsigned)saved->experiment.outputs_stale, 4);
-    put(&layout, (unsigned)saved->experiment.tolerance_is_set, 4);
-    put(&layout, (unsigned)saved->experiment.has_stop_time, 4);
-    put_real(&layout, saved->experiment.start_time);
-    put_real(&layout, saved->experiment.stop_time);
-    put_hash(&layout);
-    return layout;
-}
-
-static bool is_read(fmi2Component c, const Layout* layout, size_t size) {
+static bool is_read(fmi2Component c, const Bytes* bytes, size_t size) {
     fmi2FMUstate read = NULL;
-    const bool is_taken = fmi2DeSerializeFMUstate(c, (const fmi2Byte*)layout->bytes, size, &read) == fmi2OK;
+    const bool is_taken = fmi2DeSerializeFMUstate(c, bytes->bytes, size, &read) == fmi2OK;
     CHECK(is_taken == (read != NULL));
     fmi2FreeFMUstate(c, &read);
     return is_taken;
 }
 
+// The head, the order of the bytes of a number, and the hash, written apart from the code.
 static void bytes_are_as_documented(fmi2Component c) {
     FcSavedState saved = full_state();
     const Bytes written = bytes_of(c, &saved);
-    const Layout layout = layout_of(&saved, LAYOUT, written.size);
-    CHECK(layout.size == written.size && memcmp(layout.bytes, written.bytes, written.size) == 0);
-    CHECK(is_read(c, &layout, layout.size));
+    Bytes expected = written;
+    memcpy(expected.bytes, "FRICTION", 8);
+    put(&expected, AT_VERSION, LAYOUT, 4);
+    put(&expected, AT_SIZE, written.size, 4);
+    memcpy(expected.bytes + AT_GUID, fc_guid, AT_VALUES - AT_GUID);
+    unsigned long long bits;
+    memcpy(&bits, fc_variable_real(&saved.friction.variables, &fc_variables[0]), sizeof bits);
+    put(&expected, AT_VALUES, bits, 8);
+    put_hash(&expected);
+    CHECK(memcmp(expected.bytes, written.bytes, written.size) == 0);
     char too_few[MOST_BYTES];
     CHECK(fmi2SerializeFMUstate(c, &saved, too_few, written.size - 1) == fmi2Error);
     CHECK(fmi2SerializeFMUstate(c, &saved, too_few, written.size) == fmi2OK);
@@ -221,33 +159,36 @@ static void bytes_are_as_documented(fmi2Component c) {
 
 // Other versions, other sizes, bytes cut off or too many, and each byte damaged with the hash put right or not.
 static void other_bytes_are_refused(fmi2Component c) {
-    const FcSavedState saved = full_state();
-    const size_t size = layout_of(&saved, LAYOUT, 0).size;
+    FcSavedState saved = full_state();
+    const Bytes good = bytes_of(c, &saved);
+    const size_t size = good.size;
     for (unsigned version = 0; version < 7; version++) {
-        const Layout layout = layout_of(&saved, version, size);
-        CHECK(is_read(c, &layout, size) == (version == LAYOUT));
+        Bytes other = good;
+        put(&other, AT_VERSION, version, 4);
+        put_hash(&other);
+        CHECK(is_read(c, &other, size) == (version == LAYOUT));
     }
-    const Layout good = layout_of(&saved, LAYOUT, size);
     for (size_t given = 0; given < size + 20; given++) {
         CHECK(is_read(c, &good, given) == (given == size));
-        const Layout layout = layout_of(&saved, LAYOUT, given);
-        CHECK(is_read(c, &layout, size) == (given == size));
+        Bytes other = good;
+        put(&other, AT_SIZE, given, 4);
+        put_hash(&other);
+        CHECK(is_read(c, &other, size) == (given == size));
     }
     for (size_t i = 0; i < size; i++) {
-        Layout damaged = good;
-        damaged.bytes[i] ^= 1u;
+        Bytes damaged = good;
+        damaged.bytes[i] ^= 1;
         CHECK(!is_read(c, &damaged, size));
-        if (i < 54) {
-            damaged.size = size - 8;
+        if (i < AT_VALUES) {
             put_hash(&damaged);
             CHECK(!is_read(c, &damaged, size));
         }
     }
 }
 
-static bool is_read_with(fmi2Component c, const FcSavedState* saved) {
-    const Layout layout = layout_of(saved, LAYOUT, layout_of(saved, LAYOUT, 0).size);
-    return is_read(c, &layout, layout.size);
+static bool is_read_with(fmi2Component c, FcSavedState* saved) {
+    const Bytes bytes = bytes_of(c, saved);
+    return is_read(c, &bytes, bytes.size);
 }
 
 // A flag is 0 or 1, a mode one that the interface has; each alone.

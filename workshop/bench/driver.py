@@ -8,9 +8,7 @@ derivatives. Errors are those of the timed run's own outputs, so that no second 
 """
 
 import argparse
-import json
 import os
-import platform
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -25,7 +23,6 @@ from rich.progress import Progress
 
 from frictioncontact.command import add_output, command_line
 from frictioncontact.errors import UserError
-from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.build import build_targets
 from workshop.project import ROOT
@@ -55,7 +52,6 @@ class Outcome:
 
     F: np.ndarray
     F_mean: np.ndarray
-    wall: float  # s per step
     cpu: float  # s per step
     evaluations: float  # per step
     failure: str = ""
@@ -64,7 +60,7 @@ class Outcome:
 
 
 def failed(reason: str) -> Outcome:
-    return Outcome(np.empty(0), np.empty(0), np.nan, np.nan, np.nan, reason)
+    return Outcome(np.empty(0), np.empty(0), np.nan, np.nan, reason)
 
 
 class Bench:
@@ -161,7 +157,7 @@ def _parse(text: str, job: Job) -> Outcome:
         else:
             numbers[keyword] = float(rest)
     F, F_mean = np.array(rows).reshape(-1, 2).T
-    costs = (numbers[name] / job.count for name in ("wall", "cpu", "evaluations"))
+    costs = (numbers[name] / job.count for name in ("cpu", "evaluations"))
     counted = {
         name: int(numbers[name]) for name in ("allocations", "allocations_to_start") if name in numbers
     }
@@ -169,12 +165,11 @@ def _parse(text: str, job: Job) -> Outcome:
 
 
 @contextmanager
-def open_bench(build_dir: Path | None = None, progress: Progress | None = None) -> Iterator[Bench]:
-    """Builds the FMU and the programs in build/; takes them as they are from a folder given."""
-    if build_dir is None:
-        build_dir = build_targets("default", ["all", "bench"], progress)
-    with FrictionFmu(build_dir / "FrictionContact.fmu") as fmu:
-        yield Bench(fmu, build_dir / "bench")
+def open_bench(progress: Progress) -> Iterator[Bench]:
+    """Builds the FMU and the programs."""
+    folder = build_targets("default", ["all", "bench"], progress)
+    with FrictionFmu(folder / "FrictionContact.fmu") as fmu:
+        yield Bench(fmu, folder / "bench")
 
 
 def bench_options(name: str, description: str) -> argparse.ArgumentParser:
@@ -182,11 +177,6 @@ def bench_options(name: str, description: str) -> argparse.ArgumentParser:
     parser = command_line(f"scripts/{name}", description)
     parser.add_argument("--quick", action="store_true", help="fewer scenes, methods and repetitions")
     add_output(parser, REPORT)
-    parser.add_argument(
-        "--build-dir",
-        type=Path,
-        help="take the FMU and the programs from this build instead of building them",
-    )
     parser.add_argument("--docs", action="store_true", help="renew the pictures of docs/numerics.md too")
     return parser
 
@@ -199,40 +189,3 @@ def renew_docs(pictures: Sequence[Path]) -> list[Path]:
             copies.append(ROOT / "docs" / "pictures" / f"numerics-{picture.name}")
             Image.open(picture).convert("RGB").quantize(96).save(copies[-1], optimize=True)
     return copies
-
-
-def write_machine(path: Path) -> Path:
-    """What a measurement depends on besides the code."""
-    import scipy
-
-    cpu = platform.processor()
-    info = Path("/proc/cpuinfo")
-    if info.is_file():
-        models = [
-            line.partition(":")[2].strip() for line in info.read_text().splitlines() if "model name" in line
-        ]
-        cpu = f"{models[0]} x {len(models)}" if models else cpu
-    compiler = "unknown"
-    cache = ROOT / "build" / "CMakeCache.txt"
-    if cache.is_file():
-        for line in cache.read_text().splitlines():
-            if line.startswith("CMAKE_C_COMPILER:"):
-                done = subprocess.run(
-                    [line.partition("=")[2], "--version"], capture_output=True, text=True, check=False
-                )
-                compiler = done.stdout.splitlines()[0] if done.stdout else compiler
-    revision = subprocess.run(
-        ["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True, check=False
-    ).stdout.strip()
-    machine = {
-        "cpu": cpu,
-        "system": f"{platform.system()} {platform.release()}",
-        "compiler": compiler,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "scipy": scipy.__version__,
-        "fmpy": fmpy.__version__,
-        "revision": revision or "unknown",
-    }
-    write_whole(path, json.dumps(machine, indent=2) + "\n")
-    return path

@@ -23,7 +23,6 @@ class Point:
     error_F: float
     error_mean: float
     cpu: float
-    wall: float
     evaluations: float
     failure: str = ""
 
@@ -37,7 +36,7 @@ class Point:
 
 COLUMNS = (  # of a point in a CSV file
     *("case", "method", "setting", "error_F_t", "error_F_t_mean"),
-    *("cpu_s_per_period", "wall_s_per_period", "evaluations_per_period", "failure"),
+    *("cpu_s_per_period", "evaluations_per_period", "failure"),
 )
 
 
@@ -48,14 +47,14 @@ def grade_point(
     outcomes = {start: run(start) for start in references}
     for outcome in outcomes.values():
         if outcome.failure:
-            return Point(case.name, method, setting, *[math.nan] * 5, outcome.failure)
+            return Point(case.name, method, setting, *[math.nan] * 4, outcome.failure)
     error_F, error_mean = 0.0, 0.0
     for start, (F, F_mean) in references.items():
         error_F = max(error_F, float(np.abs(outcomes[start].F - F).max()) / case.F_C)
         error_mean = max(error_mean, float(np.abs(outcomes[start].F_mean - F_mean).max()) / case.F_C)
     scale = PERIOD / case.step
-    cpu, wall, evaluations = (
+    cpu, evaluations = (
         scale * float(np.median([getattr(outcome, name) for outcome in outcomes.values()]))
-        for name in ("cpu", "wall", "evaluations")
+        for name in ("cpu", "evaluations")
     )
-    return Point(case.name, method, setting, error_F, error_mean, cpu, wall, evaluations)
+    return Point(case.name, method, setting, error_F, error_mean, cpu, evaluations)

@@ -17,12 +17,7 @@ from workshop.bench.coupling import (
     monolithic,
     theoretical_edge,
 )
-from workshop.bench.driver import (
-    bench_options,
-    open_bench,
-    renew_docs,
-    write_machine,
-)
+from workshop.bench.driver import bench_options, open_bench, renew_docs
 from workshop.bench.exchange import against_cost
 from workshop.bench.stability_map import EDGES, METHODS, classify, measured_edge
 
@@ -66,7 +61,7 @@ def main(argv: Sequence[str] | None = None) -> None:
 def run(options: argparse.Namespace) -> None:
     output, quick = options.output, options.quick
     belt = Belt()
-    with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
+    with progress_bar() as progress, open_bench(progress) as bench:
         task = progress.add_task("Mapping z against method", total=4)
         behaviours = stability_map(bench.fmu, quick)
         progress.advance(task)
@@ -89,7 +84,6 @@ def run(options: argparse.Namespace) -> None:
         write_csv(found, output / "stability-edges.csv"),
         write_csv(coupled, output / "coupled-edges.csv"),
         write_csv(errors, output / "coupled-errors.csv"),
-        write_machine(output / "machine.json"),
     ]
     written += stability_figures.draw_map(behaviours, found, output)
     written += stability_figures.draw_coupled(errors, coupled, reference, belt, output)

@@ -16,8 +16,8 @@ from rich.table import Table
 from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
 from frictioncontact.doubts import FIXED_STEPS
 from frictioncontact.fmu import Value
-from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
-from workshop.bench import figures, releases
+from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
+from workshop.bench import figures
 from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
 from workshop.bench.driver import (
     Bench,
@@ -26,7 +26,6 @@ from workshop.bench.driver import (
     bench_options,
     open_bench,
     renew_docs,
-    write_machine,
 )
 from workshop.bench.grade import Point, grade_point
 from workshop.bench.peers import PLAIN_PROGRAMS, plain, scipy_radau
@@ -34,8 +33,8 @@ from workshop.project import ROOT
 
 DESCRIPTION = """\
 Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
-5, 9 and 13 that stops at reversals, CVODE with its defaults, scipy's Radau) over tolerances or steps: CPU and
-wall time, evaluations of the right-hand side, and the largest error of F_t and of its mean against an
+5, 9 and 13 that stops at reversals, CVODE with its defaults, scipy's Radau) over tolerances or steps: CPU
+time, evaluations of the right-hand side, and the largest error of F_t and of its mean against an
 independent reference. The peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is
 added to theirs. Then the error against the communication step for held and linear inputs, and the cost of
 one step against the number of vibration periods in it."""
@@ -120,7 +119,7 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
     calls = bench.run(empty)
     for turn in range(effort.rounds):
         again = bench.run(empty)
-        calls = replace(again, cpu=min(again.cpu, calls.cpu), wall=min(again.wall, calls.wall))
+        calls = replace(again, cpu=min(again.cpu, calls.cpu))
         for k, task in enumerate(planned):
             if turn and (task.slow or points[k].failure or points[k].cpu > SLOW):
                 continue
@@ -129,15 +128,12 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
             if turn == 0:
                 points.append(point)
             else:
-                points[k] = replace(
-                    point, cpu=min(point.cpu, points[k].cpu), wall=min(point.wall, points[k].wall)
-                )
-    scale = PERIOD / case.step
-    cpu, wall = scale * calls.cpu, scale * calls.wall
+                points[k] = replace(point, cpu=min(point.cpu, points[k].cpu))
+    cpu = PERIOD / case.step * calls.cpu
     peers = (*PLAIN_PROGRAMS, "scipy Radau")
     return [
-        Point(case.name, CALLS, 0.0, math.nan, math.nan, cpu, wall, 0.0),
-        *(replace(p, cpu=p.cpu + cpu, wall=p.wall + wall) if p.method in peers else p for p in points),
+        Point(case.name, CALLS, 0.0, math.nan, math.nan, cpu, 0.0),
+        *(replace(p, cpu=p.cpu + cpu) if p.method in peers else p for p in points),
     ]
 
 
@@ -223,17 +219,6 @@ def period_points(bench: Bench) -> list[dict[str, object]]:
                 }
             )
     return rows
-
-
-def held_step(bench: Bench, quick: bool) -> Outcome:
-    """Three inputs set, one step, two outputs read; no vibration."""
-    k = np.arange(64)
-    inputs = {
-        "V": 0.005 + 0.001 * np.cos(k),
-        "d": SEPARATION + 1e-8 * np.sin(k),
-        "E": 58e9 + 1e7 * np.sin(k),
-    }
-    return bench.run(Job({}, 1e-6, 200_000, inputs=inputs, budget=0.1 if quick else 1.0))
 
 
 def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
@@ -323,14 +308,7 @@ def cheapest(row: dict[str, object], names: Sequence[str]) -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    parser = bench_options("work-precision", DESCRIPTION)
-    parser.add_argument(
-        "--against",
-        type=Path,
-        metavar="FMU",
-        help="compare the default's work with that of this release of the FMU, both taking turns",
-    )
-    finish(run, parser.parse_args(argv))
+    finish(run, bench_options("work-precision", DESCRIPTION).parse_args(argv))
 
 
 def run(options: argparse.Namespace) -> None:
@@ -338,8 +316,8 @@ def run(options: argparse.Namespace) -> None:
     effort = QUICK if quick else FULL
     chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
     output.mkdir(parents=True, exist_ok=True)
-    with progress_bar() as progress, open_bench(options.build_dir, progress) as bench:
-        task = progress.add_task("Measuring", total=len(chosen) + 4)
+    with progress_bar() as progress, open_bench(progress) as bench:
+        task = progress.add_task("Measuring", total=len(chosen) + 2)
         points: list[Point] = []
         for case in chosen:
             progress.update(task, description=case.name)
@@ -349,23 +327,12 @@ def run(options: argparse.Namespace) -> None:
         progress.advance(task)
         periods = period_points(bench)
         progress.advance(task)
-        held = held_step(bench, quick)
-        progress.update(task, description="the default against the tolerance")
-        against_tolerance = releases.compare(
-            bench,
-            options.against,
-            [case for case in chosen if case.name.startswith("vibrating")],
-            effort.tolerances,
-            effort.budget,
-        )
     compared = ratios(points)
     written = [
         write_csv([p.row() for p in points], output / "work-precision.csv"),
         write_csv(compared, output / "work-precision-ratios.csv"),
-        write_csv([p.row() for p in against_tolerance], output / "work-tolerance.csv"),
         write_csv(step_sizes, output / "step-size.csv"),
         write_csv(periods, output / "periods.csv"),
-        write_machine(output / "machine.json"),
     ]
     titles = {case.name: case.title for case in chosen}
     written += figures.work_precision(points, titles, output)
@@ -375,14 +342,11 @@ def run(options: argparse.Namespace) -> None:
         written += [*renew_docs(written), renew_tables(compared, periods, titles)]
     for error in MATCHED_ERRORS:
         table_console().print(ratio_table(compared, error))
-    if options.against:
-        table_console().print(releases.table(against_tolerance))
     for law, limit, when_held, when_moving, time in period_cells(periods):
         print(
             f"{law}, limit {limit}: a step over 1e6 periods costs {when_held} times the evaluations of one, "
             f"{when_moving} times with moving inputs ({time} times the CPU time)."
         )
-    print(f"Held inputs, no vibration: {1e9 * held.cpu:.0f} ns to set 3 inputs, step and get 2 outputs.")
     say_written(written)
 
 

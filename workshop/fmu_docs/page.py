@@ -102,8 +102,6 @@ def _allowed(variable: ScalarVariable) -> str:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: python -m workshop.fmu_docs.page index.html")
     try:
         Path(sys.argv[1]).write_text(page(), encoding="utf-8")
     except (OSError, ValueError) as error:

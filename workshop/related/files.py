@@ -114,8 +114,6 @@ def write(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: python -m workshop.related.files FOLDER")
     try:
         write(Path(sys.argv[1]))
     except (OSError, ValueError) as error:

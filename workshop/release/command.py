@@ -12,7 +12,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -101,23 +100,6 @@ def pack(output: Path, libraries: dict[str, Path], parts: Path, files: dict[str,
             raise UserError(f"the validator finds: {' '.join(problems[0].split())}")
 
 
-def size_table(fmu: Path) -> str:
-    """Sizes of the parts of the file, unpacked and packed, in kB of 1000 bytes."""
-    groups: dict[str, list[int]] = {}
-    with zipfile.ZipFile(fmu) as archive:
-        for entry in archive.infolist():
-            top, _, rest = entry.filename.partition("/")
-            group = f"{top}/{rest.partition('/')[0]}" if top == "binaries" else f"{top}/" if rest else top
-            sizes = groups.setdefault(group, [0, 0])
-            sizes[0] += entry.file_size
-            sizes[1] += entry.compress_size
-    rows = [(group, whole, packed) for group, (whole, packed) in groups.items()]
-    rows.append((fmu.name, sum(whole for _, whole, _ in rows), fmu.stat().st_size))
-    lines = [f"{'part':26}{'unpacked kB':>12}{'packed kB':>12}"]
-    lines += [f"{name:26}{whole / 1e3:12.1f}{packed / 1e3:12.1f}" for name, whole, packed in rows]
-    return "\n".join(lines)
-
-
 def make_release(output: Path, platforms: Iterable[str], progress: Progress, anew: bool = False) -> None:
     """Writes output whole or not at all, the page and the checksums beside it; UserError says why not.
 
@@ -192,17 +174,12 @@ def _run(options: argparse.Namespace) -> None:
     if options.check:
         for line in verify(options.check):
             print(f"ok  {line}", flush=True)
-    else:
-        _release(options)
-
-
-def _release(options: argparse.Namespace) -> None:
+        return
     name = "release-quick" if options.quick else "release"
     output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
     platforms = options.platforms or (QUICK if options.quick else list(PLATFORMS))
     with progress_bar() as progress:
         make_release(output, platforms, progress, anew=not options.quick)
-    print(size_table(output))
     print(f"SUNDIALS {sundials_version()}")
     print(f"zig {importlib.metadata.version('ziglang')}")
     for line in output.with_name(SUMS).read_text().splitlines():
