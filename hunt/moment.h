@@ -29,9 +29,6 @@ typedef Real Function(const void* context, Real x);
 // Where a function passes zero between low and high, on the side of high.
 Real crossing(Function* function, const void* context, Real low, Real high);
 
-// Sine of x + shift pi / 2.
-Real sine(Real x, int shift);
-
 // Along the sliding, and across.
 typedef struct {
     Real x, y;
@@ -42,6 +39,7 @@ Vector scaled(Real factor, Vector a);
 Real dot(Vector a, Vector b);
 Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0
+Vector direction(Real angle);        // (cos, sin)
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The scene at a time
@@ -53,16 +51,12 @@ typedef struct {
     Real stiffness, by_stiffness; // N/m; N m2 for Asperities
 } AtModulus;
 
-// A component of the velocity: V + rate t + swing cos(omega t + theta).
-typedef struct {
-    Real V, rate, swing, theta;
-    Real start; // m/s, at t = 0
-} Drive;
-
 typedef struct {
     ReferenceScene scene;
-    Drive drive[2]; // along and across
-    Real d, d_rate; // m, m/s, of the separation without the vibration
+    // The velocity [m/s] is start + rate t + cosine (cos(omega t) - 1) - sine sin(omega t).
+    Vector start, rate, cosine, sine;
+    // The separation [m] is d + d_rate t + d_cosine cos(omega t) - d_sine sin(omega t).
+    Real d, d_rate, d_cosine, d_sine;
     Real h, omega, theta_0, decay, swell, excess;
     Real no_load;   // s, when a load that moves is 0
     AtModulus held; // at the modulus of the start
@@ -103,8 +97,8 @@ World ramp_between(const World* from, const World* to);
 bool is_held(const ReferenceScene* s);
 bool is_open(const World* w, Real t);
 
-// The velocity at a time, or its derivative of order 1, 2 or 3.
-Vector velocity(const World* w, Real t, int order);
+// The velocity at a time and its derivatives up to that order.
+void velocities(const World* w, Real t, int order, Vector* V);
 
 // Integral of the velocity that moves a bristle over [a, b].
 Vector travel(const World* w, Real a, Real b);

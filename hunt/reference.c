@@ -136,11 +136,8 @@ static void collocate(const World* w, const At* at, Real size, Vector delta, Vec
 
 // That direction, turned by an angle.
 static Vector turned(Vector n, Real angle) {
-    if (angle == 0.0L) {
-        return n;
-    }
-    const Real x = sine(angle, 1), y = sine(angle, 0);
-    return (Vector){x * n.x - y * n.y, x * n.y + y * n.x};
+    const Vector turn = angle == 0.0L ? (Vector){1.0L, 0.0L} : direction(angle);
+    return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
 }
 
 // How fast [rad/s] a deflection of direction n turns that slips.
@@ -193,8 +190,12 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
 
 // Coulomb's force. At the end of a panel V may be 0 but for rounding: it comes there against its rate.
 static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
-    const bool reverses = ends && length_of(at->V) <= 1e-17L * w->top;
-    return along(reverses ? scaled(-1.0L, velocity(w, t, 1)) : at->V, at->coulomb);
+    Vector V[2] = {at->V};
+    if (ends && length_of(at->V) <= 1e-17L * w->top) {
+        velocities(w, t, 1, V);
+        V[0] = scaled(-1.0L, V[1]);
+    }
+    return along(V[0], at->coulomb);
 }
 
 static Panel panel(const March* march, Real a, Real b, Vector delta) {
@@ -404,108 +405,79 @@ static Part closed_part(const World* w) {
     return at_start ? (Part){t, w->h} : (Part){0.0L, t};
 }
 
+// Times in rising order.
 typedef struct {
-    Real* time;
-    size_t count, room;
+    Real time[64]; // at most 4 extremes, and 9 multiples of V_S in each of the 5 parts between them
+    int count;
 } Cuts;
-
-static void* memory(void* old, size_t size) {
-    void* found = realloc(old, size);
-    if (found == NULL) {
-        abort();
-    }
-    return found;
-}
-
-static void cut(Cuts* cuts, Real t) {
-    if (cuts->count == cuts->room) {
-        cuts->room = cuts->room ? 2 * cuts->room : 256;
-        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
-    }
-    cuts->time[cuts->count++] = t;
-}
-
-static int by_time(const void* a, const void* b) {
-    const Real x = *(const Real*)a, y = *(const Real*)b;
-    return (x > y) - (x < y);
-}
-
-// Sorts them, without repetition, inside the part.
-static void tidy(Cuts* cuts, Part part) {
-    qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
-    size_t kept = 0;
-    for (size_t k = 0; k < cuts->count; k++) {
-        const Real t = cuts->time[k];
-        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
-            cuts->time[kept++] = t;
-        }
-    }
-    cuts->count = kept;
-}
 
 typedef struct {
     const World* w;
+    int order;  // of the derivative of half of V^2; 0: V^2 less the level
     Real level; // m2/s2
-    int order;
-} Zero;
+} Square;
 
-static Real square_less(const void* context, Real t) {
-    const Zero* zero = context;
-    const Vector V = velocity(zero->w, t, 0);
-    return dot(V, V) - zero->level;
-}
-
-// The derivative of half of V^2, of order 1, 2 or 3.
-static Real change_of_square(const void* context, Real t) {
-    const Zero* zero = context;
+static Real square(const void* context, Real t) {
+    const Square* of = context;
     Vector V[4];
-    for (int k = 0; k <= zero->order; k++) {
-        V[k] = velocity(zero->w, t, k);
-    }
-    return zero->order == 1   ? dot(V[0], V[1])
-           : zero->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
-                              : 3.0L * dot(V[1], V[2]) + dot(V[0], V[3]);
+    velocities(of->w, t, of->order, V);
+    return of->order == 0   ? dot(V[0], V[0]) - of->level
+           : of->order == 1 ? dot(V[0], V[1])
+           : of->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
+                            : 3.0L * dot(V[1], V[2]) + dot(V[0], V[3]);
 }
 
-static void cut_where(Cuts* cuts, Part part, Function* function, const Zero* zero) {
-    const size_t count = cuts->count;
-    for (size_t k = 0; k + 1 < count; k++) {
-        const Real a = cuts->time[k], b = cuts->time[k + 1];
-        if (function(zero, a) * function(zero, b) < 0.0L) {
-            cut(cuts, crossing(function, zero, a, b));
+// Between the cuts; these go, but for the ends, unless they are kept.
+static void cut_at_zeros(Cuts* cuts, const Square* of, bool keep) {
+    const Cuts old = *cuts;
+    Real before = square(of, old.time[0]);
+    cuts->count = 1;
+    for (int k = 1; k < old.count; k++) {
+        const Real after = square(of, old.time[k]);
+        if (before * after < 0.0L) {
+            cuts->time[cuts->count++] = crossing(square, of, old.time[k - 1], old.time[k]);
         }
+        if (keep || k == old.count - 1) {
+            cuts->time[cuts->count++] = old.time[k];
+        }
+        before = after;
     }
-    tidy(cuts, part);
 }
 
-// Equal pieces of a period, or of a ramp; where a load may fall or rise by decades; the extremes of |V|, and multiples of V_S.
-static Cuts all_cuts(const World* w, Part part) {
+// The extremes of |V| in a piece of the step, and multiples of V_S.
+static Cuts cuts_between(const World* w, Real a, Real b) {
     static const Real OF_V_S[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    Cuts cuts = {0};
+    Cuts cuts = {{a, b}, 2};
+    for (int order = 3; order >= 1; order--) { // between two zeros of one derivative lies at most one of the next
+        cut_at_zeros(&cuts, &(Square){w, order, 0.0L}, order > 1);
+    }
+    for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
+        const Real V = OF_V_S[m] * w->scene.V_S;
+        cut_at_zeros(&cuts, &(Square){w, 0, V * V}, true);
+    }
+    return cuts;
+}
+
+// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a part
+// in which a load may fall or rise by decades they become shorter.
+static Real end_of_piece(const World* w, Part part, Real t) {
     const ReferenceScene* s = &w->scene;
     const Real span = part.to - part.from, pieces = w->ramp ? 32.0L : 8.0L * s->f;
     const Real first = w->ramp ? 0.0L : w->theta_0 / w->omega; // s, since the start of the period
-    cut(&cuts, part.from);
-    cut(&cuts, part.to);
-    for (Real k = ceill(first * pieces); (w->ramp || vibrates(s)) && k < (first + w->h) * pieces; k += 1.0L) {
-        cut(&cuts, k / pieces - first);
+    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
+    Real end = part.to;
+    for (Real k = floorl((first + t) * pieces); w->ramp || vibrates(s); k += 1.0L) {
+        if (k / pieces - first > t) {
+            end = fminl(end, k / pieces - first);
+            break;
+        }
     }
-    for (int k = 1; k <= 60 && !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
-         k += 2) {
-        cut(&cuts, part.from + ldexpl(span, -k));
-        cut(&cuts, part.to - ldexpl(span, -k));
+    for (int k = 1; k <= 60 && moves; k += 2) {
+        const Real early = part.from + ldexpl(span, -k), late = part.to - ldexpl(span, -k);
+        end = early > t && early < end ? early : end;
+        end = late > t && late < end ? late : end;
     }
-    tidy(&cuts, part);
-    for (int order = 3; order >= 1; order--) { // between the zeros of one there is but one of the next
-        const Zero zero = {.w = w, .order = order};
-        cut_where(&cuts, part, change_of_square, &zero);
-    }
-    for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
-        const Real V = OF_V_S[m] * s->V_S;
-        const Zero zero = {.w = w, .level = V * V};
-        cut_where(&cuts, part, square_less, &zero);
-    }
-    return cuts;
+    return end;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -565,27 +537,35 @@ static void change_motion(March* march) {
     march->motion = slips ? SLIPS : march->broke ? CATCHES : STICKS;
 }
 
+static void march_between(March* march, Real a, Real b) {
+    while (a < b && march->w->panels <= MOST_PANELS) {
+        const Panel one = panel(march, a, b, march->delta);
+        march->met = false;
+        go_on(march, a, b, &one, 0);
+        a = march->met ? march->met_at : b;
+        if (march->met) {
+            change_motion(march);
+        }
+    }
+}
+
 static void march_part(March* march, Part part, bool open) {
     World* w = march->w;
     if (!(part.to > part.from)) {
         return;
     }
     w->open = open;
-    Cuts cuts = all_cuts(w, part);
-    begin(march, cuts.time[0], cuts.time[1]);
-    for (size_t k = 0; k + 1 < cuts.count; k++) {
-        Real a = cuts.time[k];
-        for (const Real b = cuts.time[k + 1]; a < b && w->panels <= MOST_PANELS;) {
-            const Panel one = panel(march, a, b, march->delta);
-            march->met = false;
-            go_on(march, a, b, &one, 0);
-            a = march->met ? march->met_at : b;
-            if (march->met) {
-                change_motion(march);
-            }
+    for (Real from = part.from; from < part.to;) {
+        const Real to = end_of_piece(w, part, from);
+        const Cuts cuts = cuts_between(w, from, to);
+        if (from == part.from) {
+            begin(march, from, cuts.time[1]);
         }
+        for (int k = 1; k < cuts.count; k++) {
+            march_between(march, cuts.time[k - 1], cuts.time[k]);
+        }
+        from = to;
     }
-    free(cuts.time);
 }
 
 // What a march hands on.
@@ -670,8 +650,8 @@ static Map find_map(World* w, Real unit) {
         of[k][4] = s->path;
     }
     w->open_ends = false;
-    shift.x = w->elastic && w->drive[0].V == 0.0L ? 0.0L : shift.x; // it does not drift
-    shift.y = w->elastic && w->drive[1].V == 0.0L ? 0.0L : shift.y;
+    shift.x = w->elastic && w->scene.V == 0.0 ? 0.0L : shift.x; // it does not drift
+    shift.y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : shift.y;
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
     map.m[1][0] = shift.x, map.m[1][1] = kept;
     map.m[2][0] = shift.y, map.m[2][2] = kept;
@@ -776,13 +756,21 @@ static Real unit_of(const World* w) {
     return bound(w, &at, true);
 }
 
+static void* memory(size_t size) {
+    void* found = malloc(size);
+    if (found == NULL) {
+        abort();
+    }
+    return found;
+}
+
 // Goes n periods on, INFINITY for ever: then *mean is the mean force of the periods that repeat at last, and the state that at
 // the end of one that slips, that of the smallest deflection. False if none of the first most that slip repeat.
 static bool go_periods(const World* of, State* state, Real n, int most, Sums* sums, Vector* mean) {
-    Period* p = memory(NULL, sizeof *p);
+    Period* p = memory(sizeof *p);
     *p = (Period){.world = *of, .unit = unit_of(of)};
     World* w = &p->world;
-    Mark* marks = memory(NULL, (size_t)most * sizeof *marks);
+    Mark* marks = memory((size_t)most * sizeof *marks);
     int count = 0;
     bool known = true;
     for (Real done = 0.0L; done < n && known;) {
@@ -842,10 +830,10 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
 
 // The periodic state where it does not depend on the start, by Newton: soon where slips are so small that each forgets little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->drive[0].V, w->drive[1].V});
+    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->scene.V, w->scene.V_y});
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
     bool found = false;
-    Period* p = memory(NULL, sizeof *p);
+    Period* p = memory(sizeof *p);
     w->panels = 0.0L;
     for (int k = 0; k < 60 && !found && w->panels <= MOST_OF_SETTLING; k++) {
         const March march = march_from(w, *state);
@@ -872,7 +860,7 @@ static bool settle(World* w, State* state, Vector* mean) {
     const ReferenceScene* s = &w->scene;
     if (vibrates(s) || is_open(w, 0.0L) || s->law == LAW_COULOMB) {
         Sums sums = {0};
-        const bool drifts = w->drive[0].V != 0.0L || w->drive[1].V != 0.0L;
+        const bool drifts = s->V != 0.0 || s->V_y != 0.0;
         const bool one_state = !w->elastic || (drifts && w->excess == 0.0L);
         return go_periods(w, state, INFINITY, one_state ? CYCLE_BEFORE_NEWTON : MOST_CYCLE, &sums, mean) ||
                (one_state && settle_by_newton(w, state, mean));
