@@ -53,9 +53,9 @@ static Rule make_rule(int n) {
     return rule;
 }
 
-// Made once; the first call is not safe to be made by two threads at once.
+// Each thread makes a rule once.
 const Rule* rule_of(int stages) {
-    static Rule rules[MOST_STAGES + 1];
+    static _Thread_local Rule rules[MOST_STAGES + 1];
     if (rules[stages].stages == 0) {
         rules[stages] = make_rule(stages);
     }
@@ -461,7 +461,8 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
 // The separation [m] at the start, with the vibration.
 static Real separation(const World* w) {
     const ReferenceScene* s = &w->scene;
-    return w->d_cosine + (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
+    return w->d_cosine +
+           (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
 }
 
 World ramp_between(const World* from, const World* to) {
@@ -486,32 +487,4 @@ World ramp_between(const World* from, const World* to) {
     w.ln_rate.ratio = logl((1.0L + to->excess) / (1.0L + from->excess));
     w.ln_rate.V_S = logl((Real)end->V_S / s->V_S);
     return w;
-}
-
-ReferenceScene reference_scene(void) {
-    return (ReferenceScene){.V = 0.005,
-                            .d = 14e-6,
-                            .E = 58.556936170e9,
-                            .load = 312.44,
-                            .f = 20e3,
-                            .F_C = 55.0,
-                            .mu = 0.176,
-                            .staticRatio = 1.0,
-                            .V_S = 0.01,
-                            .contact_sigma = 2.5e6,
-                            .stiffnessScale = 1.0,
-                            .R_q = 6e-6,
-                            .R = 1.7e-6,
-                            .eta = 47e9,
-                            .A_n = 1e-4,
-                            .nu = 0.33,
-                            .Y = 410e6,
-                            .c = 17.0,
-                            .lambda = 3.0,
-                            .h = 1e-4,
-                            .law = LAW_DAHL,
-                            .limit = LIMIT_CONSTANT,
-                            .contact = CONTACT_ASPERITIES,
-                            .input = INPUT_SEPARATION,
-                            .initial = START_GIVEN};
 }

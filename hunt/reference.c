@@ -448,7 +448,8 @@ static void cut_at_zeros(Cuts* cuts, const Square* of, bool keep) {
 static Cuts cuts_between(const World* w, Real a, Real b) {
     static const Real OF_V_S[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
     Cuts cuts = {{a, b}, 2};
-    for (int order = 3; order >= 1; order--) { // between two zeros of one derivative lies at most one of the next
+    for (int order = 3; order >= 1;
+         order--) { // between two zeros of one derivative lies at most one of the next
         cut_at_zeros(&cuts, &(Square){w, order, 0.0L}, order > 1);
     }
     for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
@@ -937,13 +938,13 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     const Vector start = force_at(&held, 0.0L, state);
     result->known = advance(&w, &state, &sums) && result->known;
     const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
+    const Real results[RESULTS] = {[F_T] = force.x,     [F_Y] = force.y,       [F_T_MEAN] = mean.x,
+                                   [F_Y_MEAN] = mean.y, [F_T_START] = start.x, [F_Y_START] = start.y,
+                                   [W_F] = sums.work,   [Q_F] = sums.heat,     [SLIPS_AT_END] = state.broke};
+    for (int k = 0; k < RESULTS; k++) {
+        result->result[k] = (double)results[k];
+    }
     result->delta = (double)state.delta.x, result->delta_y = (double)state.delta.y;
-    result->slips = state.broke;
-    result->F_t = (double)force.x, result->F_y = (double)force.y;
-    result->F_t_mean = (double)mean.x, result->F_y_mean = (double)mean.y;
-    result->F_t_start = (double)start.x, result->F_y_start = (double)start.y;
-    result->work = (double)sums.work;
-    result->heat = (double)sums.heat;
     result->path = (double)sums.path;
 }
 
@@ -960,9 +961,4 @@ bool reference_settled_force(const ReferenceScene* scene, double force[2], doubl
     *S = (double)w.S;
     force[0] = (double)mean.x, force[1] = (double)mean.y;
     return known;
-}
-
-bool reference_is_open(const ReferenceScene* scene) {
-    const World w = make_world(scene, 0.0L, 1);
-    return is_open(&w, 0.0L);
 }

@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 static const double TURN = 6.283185307179586;
+static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the sequences in turn
 // The domain of docs/numerics.md.
 static const double MOST_KAPPA = 1e8;
 static const double LEAST_PLANAR_KAPPA = 1e-2, MOST_PLANAR_KAPPA = 1e6;
@@ -188,7 +189,7 @@ static double length(Draw* draw, const ReferenceScene* s, double most_periods) {
 }
 
 static ReferenceScene contact_drawn(Draw* draw, bool plane) {
-    ReferenceScene s = reference_scene();
+    ReferenceScene s = start_values();
     s.f = log_between(draw, 1e2, 1e5);
     s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
     s.V = velocity(draw, s.V_1);
@@ -362,8 +363,8 @@ static bool is_in_domain(const ReferenceScene* s) {
            (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
 }
 
-static Sequence sequence_of(Draw draw, bool plane) {
-    Sequence sequence = {.method = 1};
+static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
+    Sequence sequence = {.tolerance = tolerance, .method = 1};
     const ReferenceScene full = contact_drawn(&draw, plane);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
@@ -414,5 +415,5 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
     Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
     next(&draw);
     draw.state ^= next(&draw);
-    return sequence_of(draw, plane);
+    return sequence_of(draw, TOLERANCES[number % 5], plane);
 }
