@@ -236,52 +236,39 @@ static double number_of(const char* text) {
 }
 
 static Options read_options(int argc, char** argv) {
-    static const struct option NAMES[] = {{"seed", 1, NULL, 's'},   {"scenes", 1, NULL, 'n'},
-                                          {"first", 1, NULL, 'i'},  {"minutes", 1, NULL, 'm'},
-                                          {"jobs", 1, NULL, 'j'},   {"minimize", 1, NULL, 'k'},
-                                          {"plane", 0, NULL, 'p'},  {"file", 1, NULL, 'f'},
-                                          {"replay", 1, NULL, 'r'}, {0}};
-    Options o = {.seed = 1, .seconds = INFINITY, .jobs = 1};
+    enum { SEED, SCENES, FIRST, MINUTES, JOBS, MINIMIZE, NUMBERS, FILE_NAME = NUMBERS, REPLAY, PLANE };
+    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},     {"scenes", 1, NULL, SCENES},
+                                          {"first", 1, NULL, FIRST},   {"minutes", 1, NULL, MINUTES},
+                                          {"jobs", 1, NULL, JOBS},     {"minimize", 1, NULL, MINIMIZE},
+                                          {"plane", 0, NULL, PLANE},   {"file", 1, NULL, FILE_NAME},
+                                          {"replay", 1, NULL, REPLAY}, {0}};
+    double number[NUMBERS] = {1.0, 0.0, 0.0, INFINITY, 1.0, 0.0};
+    const char* text[2] = {NULL, NULL};
+    bool plane = false;
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
-        const double number =
-            name == 'f' || name == 'r' || name == 'p' || name == '?' ? 0.0 : number_of(optarg);
-        switch (name) {
-        case 's':
-            o.seed = (uint64_t)number;
-            break;
-        case 'n':
-            o.scenes = (uint64_t)number;
-            break;
-        case 'i':
-            o.first = (uint64_t)number;
-            break;
-        case 'm':
-            o.seconds = 60.0 * number;
-            break;
-        case 'j':
-            o.jobs = (int)fmin(MOST_JOBS, fmax(1.0, number));
-            break;
-        case 'k':
-            o.minimize = (int)number;
-            break;
-        case 'p':
-            o.plane = true;
-            break;
-        case 'f':
-            o.file = optarg;
-            break;
-        case 'r':
-            o.replay = optarg;
-            break;
-        default:
+        if (name < NUMBERS) {
+            number[name] = number_of(optarg);
+        } else if (name == FILE_NAME || name == REPLAY) {
+            text[name - FILE_NAME] = optarg;
+        } else if (name == PLANE) {
+            plane = true;
+        } else {
             usage();
         }
     }
     if (optind < argc) {
         usage();
     }
-    o.scenes = o.scenes > 0 ? o.scenes : isinf(o.seconds) ? 1000 : UINT64_MAX;
-    return o;
+    const double scenes = number[SCENES] > 0.0 ? number[SCENES] : isinf(number[MINUTES]) ? 1000.0 : 1e18;
+    return (Options){.seed = (uint64_t)number[SEED],
+                     .scenes = (uint64_t)scenes,
+                     .first = (uint64_t)number[FIRST],
+                     .seconds = 60.0 * number[MINUTES],
+                     .jobs = (int)fmin(MOST_JOBS, fmax(1.0, number[JOBS])),
+                     .minimize = (int)number[MINIMIZE],
+                     .plane = plane,
+                     .file = text[0],
+                     .replay = text[1]};
 }
 
 int main(int argc, char** argv) {

@@ -267,7 +267,7 @@ static AtModulus modulus_at(const World* w, Real t) {
     return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
 }
 
-// sigma [N/m] where F_n and d are those.
+// sigma [N/m] at that F_n and d.
 static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
     const Real share = force / at->force;
     return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
@@ -275,7 +275,8 @@ static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real forc
                                            : at->stiffness * share * share / (d * d * d);
 }
 
-// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma), but for Stribeck's curve, without what cancels in it.
+// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left
+// out.
 static void contact_at(const World* w, Real t, Vector turn, bool with_rates, Real* force, Real* sigma,
                        Real* ratio_rate) {
     const ReferenceScene* s = &w->scene;
@@ -431,7 +432,7 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
     w.excess = scene->law == LAW_LUGRE || w.elastic ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
-    // f start, of which whole numbers are taken off, exactly: the product and what it loses in rounding
+    // The whole periods are taken off f start exactly: off the product and the remainder of its rounding.
     const double cycles = scene->f * scene->start;
     const double lost = fma(scene->f, scene->start, -cycles);
     w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);

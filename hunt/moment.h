@@ -26,7 +26,7 @@ void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STA
 
 typedef Real Function(const void* context, Real x);
 
-// Where a function passes zero between low and high, on the side of high.
+// The zero of a function between low and high, on the side of high.
 Real crossing(Function* function, const void* context, Real low, Real high);
 
 // Along the sliding, and across.
@@ -45,7 +45,7 @@ Vector direction(Real angle);        // (cos, sin)
 // The scene at a time
 // ---------------------------------------------------------------------------------------------------------------------
 
-// What F_n and sigma are over their power of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
+// The factors of F_n and sigma before their powers of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
 typedef struct {
     Real force, by_force;         // N
     Real stiffness, by_stiffness; // N/m; N m2 for Asperities
@@ -81,8 +81,8 @@ typedef struct {
     Vector V;                      // m/s
     Real sigma;                    // N/m
     Real coulomb;                  // N, F_C or mu F_n
-    Real g;                        // N, where the bristle's force tends
-    Real B;                        // N, the bound of what does not slip
+    Real g;                        // N, the force to which a bristle tends
+    Real B;                        // N, the bound of a bristle that sticks
     Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
 } At;
 
@@ -109,7 +109,7 @@ At scene_at(const World* w, Real t, bool with_rates);
 Real bound(const World* w, const At* at, bool sticks);
 Real bound_rate(const World* w, const At* at, bool sticks);
 
-// What the tolerance is relative to [N], from the deflection at the start.
+// The scale of the tolerance [N], for the deflection at the start.
 Real largest_force(const World* w, Vector delta);
 
 #endif

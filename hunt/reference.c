@@ -19,8 +19,8 @@ typedef struct {
         change; // m, delta at the end, and its change: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
-    Real length;           // m, what errors of the end are measured by
-    Real force, power;     // N s, J, what errors of impulse and energies are measured by
+    Real length;           // m, the scale of errors of the end
+    Real force, power;     // N s, J, the scales of errors of impulse and energies
     Real blur;             // m, of the end by the rounding of time
 } Sums;
 
@@ -41,7 +41,7 @@ static void add(Sums* sums, const Sums* part) {
     sums->power += part->power;
 }
 
-// Of a time [s] with that force of the bristle, rate of its deflection and velocity.
+// Adds a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
     const Vector rest = plus(scaled(w->scene.sigma_2, V), w->scene.sigma_1, rate);
     const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
@@ -59,22 +59,22 @@ static Real relaxation(const World* w, const At* at) {
     return w->elastic ? 0.0L : at->sigma * length_of(at->V) / at->g;
 }
 
-// How fast [m/s] the law alone would carry a bristle of that direction, on its kinetic bound, beyond it.
+// The speed [m/s] at which the law alone would carry a bristle of that direction beyond its kinetic bound.
 static Real outward(const World* w, const At* at, Vector delta) {
     const Real own = dot(along(delta, 1.0L), at->V) - relaxation(w, at) * bound(w, at, false);
     return own - bound_rate(w, at, false);
 }
 
-// What must stay above 0 for the motion to go on; both are large where nothing can end it.
+// The motion continues as long as both signs are positive. A sign is INFINITY if it cannot end the motion.
 typedef struct {
     Real room; // m, to the bound
     Real lead; // m/s, outward
 } Signs;
 
-static const Real ROUNDING = 1e-17L; // of what a sign is made from
+static const Real ROUNDING = 1e-17L; // of the terms of a sign
 static const Real ON_BOUND =
-    1e-10L; // of a bound: what the rounding of a phase leaves a bristle that slips inside it
-static const Real AS_DOUBLE = 1e-15L; // of a bound: what the rounding of a deflection does
+    1e-10L; // of a bound: the rounding of a phase may leave a bristle that slips so far inside
+static const Real AS_DOUBLE = 1e-15L; // of a bound: the rounding of a deflection that is a double
 
 // The state of a march through the step.
 typedef struct {
@@ -92,12 +92,12 @@ typedef struct {
 static bool has_bound(const World* w) { return w->bounded && !w->open && !w->open_ends; }
 static bool has_static(const World* w) { return w->elastic && w->excess + w->ln_rate.ratio != 0.0L; }
 
-// With a little more than the rounding of each.
+// Each sign has a slack of little more than its rounding.
 static Signs signs_at(const March* march, const At* at, Vector delta) {
     const World* w = march->w;
     Signs signs = {INFINITY, INFINITY};
     if (march->motion != SLIPS) {
-        // a ramp in which nothing moves finds the bristle where a double holds it
+        // on a ramp in which nothing moves the deflection is a double
         const Real slack = w->ramp && has_static(w) && !march->broke ? 1e-11L : ROUNDING;
         signs.room = bound(w, at, !march->broke) * (1.0L + slack) - length_of(delta);
     }
@@ -140,12 +140,12 @@ static Vector turned(Vector n, Real angle) {
     return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
 }
 
-// How fast [rad/s] a deflection of direction n turns that slips.
+// The rate [rad/s] at which a deflection of direction n turns if it slips.
 static Real turn(const World* w, const At* at, Vector n) {
     return (at->V.y * n.x - at->V.x * n.y) / bound(w, at, false);
 }
 
-// The angles from the direction n at the nodes of a bristle that slips, by Newton; false if it finds none.
+// The angles from the direction n at the nodes of a bristle that slips, by Newton; returns false if it does not converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
     const int stages = w->rule->stages;
     for (int i = 0; i < stages; i++) {
@@ -161,7 +161,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             const Vector now = turned(n, angle[j]);
             const Real rate = turn(w, &at[j], now), slope = -dot(at[j].V, now) / bound(w, &at[j], false);
             turns = turns || rate != 0.0L || angle[j] != 0.0L;
-            if (!(size * slope < 1.0L)) { // it turns away from where it is: a long panel would not see that
+            if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
             for (int i = 0; i < stages; i++) {
@@ -268,7 +268,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
 }
 
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
-static const Real LEAST = 1e-16L; // of the force of the step: what errors of a panel are left alone
+static const Real LEAST = 1e-16L; // of the force of the step: smaller errors of a panel are accepted
 static const int DEEPEST = 110;
 static const Real MOST_PANELS = 1e6L,
                   MOST_OF_SETTLING = 1e5L; // more are not taken, and the result is not known
@@ -294,14 +294,15 @@ static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
            least - low > rounding;
 }
 
-// Whether the motion is over at node k, the start for 0. Beyond its bound by a double's rounding, and on its way inside, it is not.
+// Whether the motion is over at node k; 0 is the start. It is not if the bristle is beyond its bound by a double's rounding
+// alone and returns.
 static bool is_over(const Panel* p, int k) {
     const Real start = p->sign[0].room, room = p->sign[k == 0 ? 1 : k].room;
     const bool rounded = start > -10.0L * AS_DOUBLE * p->sums.length;
     return p->sign[k].lead < 0.0L || (p->sign[k].room < 0.0L && !(rounded && room >= start));
 }
 
-// Whether a motion may end unseen in a panel; where it has just begun a sign is 0 and rises.
+// Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
     const int n = w->rule->stages;
     Real x[MOST_STAGES + 1] = {0.0L};
@@ -338,7 +339,7 @@ static Real beyond(const void* context, Real t) {
     return -(to->at_bound ? last->room : last->lead);
 }
 
-// Over a part that is accurate, up to the motion's end if that is in it.
+// Takes an accurate panel, up to the motion's end if that lies in it.
 static void commit(March* march, Real a, Real b, const Panel* p) {
     const int n = march->w->rule->stages;
     int k = has_bound(march->w) ? 0 : n + 1;
@@ -361,7 +362,7 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
     march->delta = part.sums.end;
 }
 
-// Over [a, b], of which one is a single panel, by halves until they agree with the whole; to the motion's end.
+// Takes [a, b], whose single panel is one: halves it until two halves agree with the whole. Stops at the motion's end.
 static void go_on(March* march, Real a, Real b, const Panel* one, int depth) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
@@ -395,7 +396,7 @@ typedef struct {
 
 static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
 
-// Where the contact is closed.
+// The part in which the contact is closed.
 static Part closed_part(const World* w) {
     const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
     if (at_start == at_end) {
@@ -485,8 +486,8 @@ static Real end_of_piece(const World* w, Part part, Real t) {
 // The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-// How the bristle begins a part. A push that is just 0 counts by what follows: the limit of a ramp of V, or of the bound, goes
-// on slipping. If nothing follows either, it sticks.
+// The motion at the begin of a part. If the push is 0, the later push decides: the bristle slips if V or its bound moves so
+// that it is pushed then, and sticks if not.
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
     march->motion = STICKS;
@@ -507,7 +508,7 @@ static void begin(March* march, Real a, Real b) {
     march->slipped = march->slipped || march->motion != STICKS;
 }
 
-// Break-away: it drops along its direction, and the damping feels it.
+// Break-away: the bristle drops along its direction, and its damping adds an impulse.
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
     const Vector from = march->delta, to = along(from, bound(w, at, false));
@@ -520,7 +521,7 @@ static void break_away(March* march, const At* at) {
     march->broke = true;
 }
 
-// The motion has come to its end: what follows. On a ramp what has broken away does not stick again.
+// The motion after the end of another. On a ramp a bristle that has broken away does not stick again.
 static void change_motion(March* march) {
     const World* w = march->w;
     const At at = scene_at(w, march->met_at, true);
@@ -569,7 +570,7 @@ static void march_part(March* march, Part part, bool open) {
     }
 }
 
-// What a march hands on.
+// The bristle between two marches.
 typedef struct {
     Vector delta;
     bool broke;
@@ -580,7 +581,7 @@ static State state_of(const March* march) { return (State){march->delta, march->
 static March march_from(World* w, State state) {
     March march = {.w = w, .delta = state.delta, .broke = state.broke};
     const Part part = closed_part(w);
-    const Real edge = ldexpl(part.to - part.from, -58); // what has no load has no rate
+    const Real edge = ldexpl(part.to - part.from, -58); // without load there is no rate
     march_part(&march, (Part){0.0L, part.from}, true);
     march_part(&march,
                (Part){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
@@ -596,7 +597,7 @@ static March march_from(World* w, State state) {
     return march;
 }
 
-// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
+// The effect of a jump of the inputs, or of a start beyond the bound, on the bristle; returns its heat.
 static Real jump(const ReferenceScene* before, const World* w, State* state) {
     const ReferenceScene* s = &w->scene;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
@@ -765,8 +766,8 @@ static void* memory(size_t size) {
     return found;
 }
 
-// Goes n periods on, INFINITY for ever: then *mean is the mean force of the periods that repeat at last, and the state that at
-// the end of one that slips, that of the smallest deflection. False if none of the first most that slip repeat.
+// Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
+// smallest deflection at the end of one that slips. Returns false if none of the first most that slip repeat.
 static bool go_periods(const World* of, State* state, Real n, int most, Sums* sums, Vector* mean) {
     Period* p = memory(sizeof *p);
     *p = (Period){.world = *of, .unit = unit_of(of)};
@@ -820,7 +821,7 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
     return known;
 }
 
-// Newton's step to the fixed point of a period's map, which from a state misses it so.
+// Newton's step to the fixed point of a period's map, from a state, its end and its miss after the period.
 static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
     const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
     const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
@@ -829,7 +830,8 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
     return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
 }
 
-// The periodic state where it does not depend on the start, by Newton: soon where slips are so small that each forgets little.
+// The periodic state by Newton, if it does not depend on the start. Small slips come to it in few steps, though each of
+// them changes the state by little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
     const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->scene.V, w->scene.V_y});
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
@@ -840,7 +842,7 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
         *mean = scaled(w->scene.f, march.sums.impulse);
-        if (w->elastic && !march.slipped) { // it drifts to where it slips
+        if (w->elastic && !march.slipped) { // it drifts until it slips
             Sums unused = {0};
             *p = (Period){.world = *w, .unit = unit};
             state->delta =
@@ -901,7 +903,7 @@ static State start_of(const ReferenceScene* s) {
     return s->law == LAW_COULOMB ? (State){0} : (State){{s->delta_0, s->delta_y_0}, s->slips != 0};
 }
 
-// Goes over the step; false if it needs more than the reference takes.
+// Takes the step; returns false if it needs more panels or cycles than the reference takes.
 static bool advance(World* w, State* state, Sums* sums) {
     const ReferenceScene* s = &w->scene;
     World rest = *w;

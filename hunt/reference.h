@@ -1,7 +1,7 @@
 // One communication step of a scene by brute force in extended precision: the reference that grades the FMU.
 //
 // Written from docs/physics.md alone; it shares no line with fmu_src. Velocity, deflection and force are vectors: a line is a
-// plane with nothing across. Time is cut at every reversal, dip and bend of the velocity. In between a bristle that sticks
+// plane with nothing across. Time is cut at every reversal and extreme of the velocity. In between a bristle that sticks
 // is a closed form; Dahl's and LuGre's is solved by Radau collocation, and so is the angle of one that slips along its bound.
 // Panels are halved until one panel and its two halves agree, and until no bound can be met unseen between two nodes. Many
 // equal periods that touch no bound are taken as one map.

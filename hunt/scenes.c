@@ -332,20 +332,20 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
                            ReferenceScene* s) {
     double load, d;
     press(draw, full, signal->load[k], &load, &d);
-    const double V = full->V * signal->V[k], V_y = full->V_y * signal->V[k];
+    const bool moves = linear && k > 0;
+    const double from =
+        signal->V[moves ? k - 1 : k]; // as the user samples it, not as the last step's rate left it
     s->V_1 = full->V_1 * signal->vibration[k];
     s->V_2 = full->V_2 * signal->vibration[k];
     s->a_d = full->a_d * signal->vibration[k];
-    if (linear && k > 0) {
-        s->V = full->V * signal->V[k - 1]; // as the user samples it, not as the last step's rate left it
-        s->V_y = full->V_y * signal->V[k - 1];
-        s->V_rate = (V - s->V) / s->h;
-        s->V_y_rate = (V_y - s->V_y) / s->h;
+    s->V = full->V * from;
+    s->V_y = full->V_y * from;
+    if (moves) {
+        s->V_rate = (full->V * signal->V[k] - s->V) / s->h;
+        s->V_y_rate = (full->V_y * signal->V[k] - s->V_y) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;
     } else {
-        s->V = V;
-        s->V_y = V_y;
         s->d = d;
         s->load = load;
     }
