@@ -7,16 +7,11 @@
 #include "reference.h"
 
 typedef struct {
-    double delta, delta_y;     // m
-    double F_t, F_y;           // N
-    double F_t_mean, F_y_mean; // N
-    double work;               // J, of this step
-    double heat;               // J, of this step; of the first step with that of the start
-    double slips;              // side along which a bristle with static friction slips at the end, or 0
+    double result[RESULTS]; // as of the reference; the heat of the first step includes that of the start
+    double delta, delta_y;  // m, at the end
     double delta_start, delta_y_start; // m, before the step and its inputs
     int slips_start;
-    double F_t_start, F_y_start; // N, before the step, with its inputs held
-    double evaluations;          // 1, since the start
+    double evaluations; // 1, since the start
 } FmuStep;
 
 typedef struct FmuRun FmuRun;

@@ -3,217 +3,49 @@
 //
 //     cmake --preset default && cmake --build --preset default --target hunt
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
-//     build/hunt/hunt --replay "V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2" --tolerance 1e-6
+//     build/hunt/hunt --replay "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2"
 //
-// With --plane the scenes slide and vibrate across as well. Each miss is one line: the tolerance, the error
-// over it, the result that missed, the number of the sequence, and the sequence as name=value for each value
-// that is not the start value. --replay takes such a line. The sequences take the tolerances in turn. The
-// last lines are tables by law and by kappa = sigma V / (2 pi f limit), and counts of the kinds of step. Ends
-// with 1 if a step missed.
-#include <errno.h>
+// With --plane the scenes slide and vibrate across as well. Each miss is one line: the error over the allowed error, the
+// result that missed, the number of the sequence, and the sequence: its tolerance, and name=value for each value that is
+// not the start value. --replay takes such a sequence, and --file a file of them. The last lines are a table by law and
+// the sums. Ends with 1 if a step missed.
 #include <getopt.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "scenes.h"
 #include "trial.h"
 
-enum { MOST_JOBS = 64, MOST_TOLERANCES = 12, LAWS = 4, KAPPAS = 7, ROWS = LAWS + KAPPAS };
+enum { MOST_JOBS = 64, LAWS = 4 };
 
 typedef struct {
     uint64_t seed, scenes, first;
     double seconds; // INFINITY: no end but the number of scenes
-    double tolerance[MOST_TOLERANCES];
-    int tolerances, jobs;
-    const char *replay, *file;
+    int jobs;
+    int minimize; // misses of each law and grade that are made plain, at most
     bool plane;
-    int minimize; // misses that a job makes plain, at the most, of each law and grade
+    const char *replay, *file;
 } Options;
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Counts
-// ---------------------------------------------------------------------------------------------------------------------
 
 typedef struct {
     long steps, misses;
-    double worst; // error over the tolerance
-} Cell;
+    double worst; // error over the allowed error
+} Row;
 
+// A hunt, by several threads.
 typedef struct {
-    Cell cell[ROWS][MOST_TOLERANCES]; // the laws, then the classes of kappa
-    long drawn, refused, unknown, is[KINDS];
+    Options options;
+    double begin; // s
+    pthread_mutex_t lock;
+    uint64_t next; // the sequence to be drawn next, from 0 on
+    Row law[LAWS];
+    long sequences, refused, unknown;
     int minimized[LAWS][GRADES];
-} Tally;
-
-static int kappa_class(const ReferenceScene* scene) {
-    const double kappa = scene_kappa(scene);
-    return !vibrates(scene) ? KAPPAS - 1
-           : kappa <= 1.0   ? 0
-           : kappa >= 1e8   ? 5
-                            : 1 + (int)(log10(kappa) / 2.0);
-}
-
-static void add_cell(Cell* sum, const Cell* part) {
-    sum->steps += part->steps;
-    sum->misses += part->misses;
-    sum->worst = fmax(sum->worst, part->worst);
-}
-
-static void count_step(Tally* tally, const TrialStep* taken, int column) {
-    const double ratio = taken->verdict.ratio;
-    const Cell cell = {1, !(ratio <= 1.0), ratio};
-    add_cell(&tally->cell[taken->scene.law - 1][column], &cell);
-    add_cell(&tally->cell[LAWS + kappa_class(&taken->scene)][column], &cell);
-    for (int k = 0; k < KINDS; k++) {
-        tally->is[k] += taken->is[k];
-    }
-}
-
-static void add_tally(Tally* sum, const Tally* part) {
-    for (int row = 0; row < ROWS; row++) {
-        for (int k = 0; k < MOST_TOLERANCES; k++) {
-            add_cell(&sum->cell[row][k], &part->cell[row][k]);
-        }
-    }
-    for (int k = 0; k < KINDS; k++) {
-        sum->is[k] += part->is[k];
-    }
-    sum->drawn += part->drawn;
-    sum->refused += part->refused;
-    sum->unknown += part->unknown;
-}
-
-// Tables with a column for each tolerance, "misses, worst error over the tolerance"; returns the misses.
-static long print_tally(const Tally* tally, const Options* options, double seconds) {
-    static const char* const KAPPA_NAMES[KAPPAS] = {"below 1",    "1 to 1e2",  "1e2 to 1e4",  "1e4 to 1e6",
-                                                    "1e6 to 1e8", "above 1e8", "no vibration"};
-    long misses = 0, steps = 0;
-    printf("\nMisses, and the worst error over the tolerance:\n");
-    for (int row = 0; row < ROWS; row++) {
-        if (row == 0 || row == LAWS) {
-            printf("\n| %s | steps |", row == 0 ? "law" : "kappa");
-            for (int k = 0; k < options->tolerances; k++) {
-                printf(" %g |", options->tolerance[k]);
-            }
-            printf("\n|---|---|");
-            for (int k = 0; k < options->tolerances; k++) {
-                printf("---|");
-            }
-            printf("\n");
-        }
-        Cell all = {0};
-        for (int k = 0; k < options->tolerances; k++) {
-            add_cell(&all, &tally->cell[row][k]);
-        }
-        misses += row < LAWS ? all.misses : 0;
-        steps += row < LAWS ? all.steps : 0;
-        printf("| %s | %ld |", row < LAWS ? LAW_NAMES[row] : KAPPA_NAMES[row - LAWS], all.steps);
-        for (int k = 0; k < options->tolerances; k++) {
-            printf(" %ld, %.2g |", tally->cell[row][k].misses, tally->cell[row][k].worst);
-        }
-        printf("\n");
-    }
-    printf("\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses\n", tally->drawn,
-           steps, tally->refused, tally->unknown, misses);
-    printf("%.0f steps a second; %ld with static friction, %ld open, %ld close, %ld after a jump, %ld move "
-           "through 10 "
-           "periods and more\n",
-           (double)steps / seconds, tally->is[IS_STATIC], tally->is[OPENS], tally->is[CLOSES],
-           tally->is[JUMPS], tally->is[LEAPS]);
-    return misses;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// One sequence
-// ---------------------------------------------------------------------------------------------------------------------
-
-// Whether the sequence misses by 1.5 tolerances or more, in any result.
-static bool still_misses(const Sequence* sequence, double tolerance) {
-    static Trial trial;
-    trial_run(&trial, sequence, tolerance);
-    bool misses = false;
-    for (int k = 0; k < trial.steps; k++) {
-        misses = misses || !(trial.taken[k].verdict.ratio <= 1.5);
-    }
-    return misses;
-}
-
-static void report_miss(const Options* options, const Sequence* sequence, const Trial* trial, int step,
-                        uint64_t number, double tolerance, Tally* tally) {
-    const TrialStep* taken = &trial->taken[step];
-    char text[SEQUENCE_TEXT];
-    sequence_text(sequence, text, sizeof text);
-    printf("miss law=%s tolerance=%g ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
-           LAW_NAMES[taken->scene.law - 1], tolerance, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of],
-           step + 1, scene_kappa(&taken->scene), (unsigned long long)number, text);
-    int* done = &tally->minimized[taken->scene.law - 1][taken->verdict.of];
-    if (*done < options->minimize && still_misses(sequence, tolerance)) {
-        (*done)++;
-        const Sequence plain = minimized(sequence, still_misses, tolerance);
-        sequence_text(&plain, text, sizeof text);
-        printf("plain: tolerance=%g %s\n", tolerance, text); // a line that --file takes
-    }
-    fflush(stdout);
-}
-
-static void print_step(const TrialStep* taken, int step, double tolerance) {
-    const FmuStep* s = &taken->step;
-    const ReferenceStep* t = &taken->truth;
-    printf("tolerance %g, step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g side %d, %g "
-           "evaluations\n",
-           tolerance, step + 1, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path,
-           taken->scene.delta_0, taken->scene.slips, s->evaluations);
-    printf("  FMU       F_t %.17g mean %.17g W %.17g Q %.17g delta %.17g side %g; start: F_t %.17g\n", s->F_t,
-           s->F_t_mean, s->work, s->heat, s->delta, s->slips, s->F_t_start);
-    printf("  reference F_t %.17g mean %.17g W %.17g Q %.17g delta %.17g side %g; start: F_t %.17g\n", t->F_t,
-           t->F_t_mean, t->work, t->heat, t->delta, t->slips, t->F_t_start);
-    if (s->F_y != 0.0 || t->F_y != 0.0) {
-        printf("  FMU       F_y %.17g mean %.17g delta_y %.17g; start: F_y %.17g\n", s->F_y, s->F_y_mean,
-               s->delta_y, s->F_y_start);
-        printf("  reference F_y %.17g mean %.17g delta_y %.17g; start: F_y %.17g\n", t->F_y, t->F_y_mean,
-               t->delta_y, t->F_y_start);
-    }
-    if (step == 0) {
-        const double (*both)[2] = taken->settled;
-        printf("  settled: FMU %.17g, %.17g, reference %.17g, %.17g\n", both[0][0], both[0][1], both[1][0],
-               both[1][1]);
-    }
-}
-
-static void try_at(const Options* options, const Sequence* sequence, uint64_t number, int column,
-                   Tally* tally) {
-    static Trial trial;
-    const double tolerance = options->tolerance[column];
-    trial_run(&trial, sequence, tolerance);
-    tally->unknown += trial.unknown;
-    tally->refused += trial.refused;
-    if (trial.refused) {
-        char text[SEQUENCE_TEXT];
-        sequence_text(sequence, text, sizeof text);
-        printf("refused number=%llu step=%d: %s; %s\n", (unsigned long long)number, trial.steps + 1,
-               trial.message, text);
-    }
-    for (int k = 0; k < trial.steps; k++) {
-        count_step(tally, &trial.taken[k], column);
-        if (!(trial.taken[k].verdict.ratio <= 1.0)) {
-            report_miss(options, sequence, &trial, k, number, tolerance, tally);
-        }
-        if (options->replay) {
-            print_step(&trial.taken[k], k, tolerance);
-        }
-    }
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Many sequences
-// ---------------------------------------------------------------------------------------------------------------------
+} Hunt;
 
 static double now(void) {
     struct timespec time;
@@ -221,86 +53,161 @@ static double now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-static void run_job(const Options* options, int job, Tally* tally) {
-    const double begin = now();
-    for (uint64_t n = (uint64_t)job; n < options->scenes && now() - begin < options->seconds;
-         n += (uint64_t)options->jobs) {
-        const uint64_t number = options->first + n;
-        const Sequence sequence = sequence_drawn(options->seed, number, options->plane);
-        tally->drawn++;
-        try_at(options, &sequence, number, (int)(number % (uint64_t)options->tolerances), tally);
+// ---------------------------------------------------------------------------------------------------------------------
+// One sequence
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Whether a step of the sequence misses by 1.5 allowed errors or more, in any result.
+static bool still_misses(const Sequence* sequence) {
+    Trial trial;
+    trial_run(&trial, sequence);
+    bool misses = false;
+    for (int k = 0; k < trial.steps; k++) {
+        misses = misses || !(trial.taken[k].verdict.ratio <= 1.5);
+    }
+    return misses;
+}
+
+static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, const TrialStep* taken,
+                       int step) {
+    const int law = taken->scene.law - 1, of = taken->verdict.of;
+    char text[SEQUENCE_TEXT];
+    sequence_text(sequence, text, sizeof text);
+    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n", LAW_NAMES[law],
+           taken->verdict.ratio, GRADE_NAMES[of], step + 1, scene_kappa(&taken->scene),
+           (unsigned long long)number, text);
+    if (hunt->minimized[law][of] < hunt->options.minimize && still_misses(sequence)) {
+        hunt->minimized[law][of]++;
+        const Sequence plain = minimized(sequence, still_misses);
+        sequence_text(&plain, text, sizeof text);
+        printf("plain: %s\n", text);
+    }
+    fflush(stdout);
+}
+
+static void print_step(const TrialStep* taken, int step) {
+    const FmuStep* s = &taken->step;
+    const ReferenceStep* t = &taken->truth;
+    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %d, %g evaluations\n",
+           step + 1, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path,
+           taken->scene.delta_0, taken->scene.delta_y_0, taken->scene.slips, s->evaluations);
+    for (int k = 0; k < RESULTS; k++) {
+        printf("  %-9s  FMU %24.17g  reference %24.17g\n", GRADE_NAMES[k], s->result[k], t->result[k]);
+    }
+    printf("  delta      FMU %.17g, %.17g  reference %.17g, %.17g\n", s->delta, s->delta_y, t->delta,
+           t->delta_y);
+    if (step == 0) {
+        const double (*both)[2] = taken->settled;
+        printf("  settled    FMU %.17g, %.17g  reference %.17g, %.17g\n", both[0][0], both[0][1], both[1][0],
+               both[1][1]);
     }
 }
 
-static void* or_end(void* found, const char* what) {
-    if (found == NULL || found == MAP_FAILED) {
-        perror(what);
-        exit(2);
+static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) {
+    Trial trial;
+    trial_run(&trial, sequence);
+    pthread_mutex_lock(&hunt->lock);
+    hunt->sequences++;
+    hunt->unknown += trial.unknown;
+    hunt->refused += trial.refused;
+    if (trial.refused) {
+        char text[SEQUENCE_TEXT];
+        sequence_text(sequence, text, sizeof text);
+        printf("refused number=%llu step=%d: %s; %s\n", (unsigned long long)number, trial.steps + 1,
+               trial.message, text);
     }
-    return found;
-}
-
-static void run_all(const Options* options, Tally* total) {
-    Tally* tallies = or_end(
-        mmap(NULL, MOST_JOBS * sizeof *tallies, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0),
-        "mmap");
-    for (int job = 1; job < options->jobs; job++) {
-        const pid_t child = fork();
-        or_end(child < 0 ? NULL : tallies, "fork");
-        if (child == 0) {
-            run_job(options, job, &tallies[job]);
-            _exit(0);
+    for (int k = 0; k < trial.steps; k++) {
+        const TrialStep* taken = &trial.taken[k];
+        const double ratio = taken->verdict.ratio;
+        Row* row = &hunt->law[taken->scene.law - 1];
+        row->steps++;
+        row->worst = fmax(row->worst, ratio);
+        if (!(ratio <= 1.0)) {
+            row->misses++;
+            print_miss(hunt, sequence, number, taken, k);
+        }
+        if (hunt->options.replay) {
+            print_step(taken, k);
         }
     }
-    run_job(options, 0, &tallies[0]);
-    for (int job = 1, status; job < options->jobs; job++) {
-        or_end(wait(&status) < 0 || status != 0 ? NULL : tallies, "hunt: a job");
-    }
-    for (int job = 0; job < options->jobs; job++) {
-        add_tally(total, &tallies[job]);
-    }
-    printf("\nseed %llu\n", (unsigned long long)options->seed);
+    pthread_mutex_unlock(&hunt->lock);
 }
 
-static Sequence sequence_of_text(const char* text) {
+// ---------------------------------------------------------------------------------------------------------------------
+// Many sequences
+// ---------------------------------------------------------------------------------------------------------------------
+
+static void* run_job(void* of) {
+    Hunt* hunt = of;
+    const Options* o = &hunt->options;
+    while (now() - hunt->begin < o->seconds) {
+        pthread_mutex_lock(&hunt->lock);
+        const uint64_t drawn = hunt->next++;
+        pthread_mutex_unlock(&hunt->lock);
+        if (drawn >= o->scenes) {
+            break;
+        }
+        const Sequence sequence = sequence_drawn(o->seed, o->first + drawn, o->plane);
+        try_sequence(hunt, &sequence, o->first + drawn);
+    }
+    return NULL;
+}
+
+static void run_all(Hunt* hunt) {
+    pthread_t jobs[MOST_JOBS];
+    for (int k = 0; k < hunt->options.jobs; k++) {
+        if (pthread_create(&jobs[k], NULL, run_job, hunt) != 0) {
+            perror("hunt: a job");
+            exit(2);
+        }
+    }
+    for (int k = 0; k < hunt->options.jobs; k++) {
+        pthread_join(jobs[k], NULL);
+    }
+    printf("\nseed %llu\n", (unsigned long long)hunt->options.seed);
+}
+
+static void try_text(Hunt* hunt, const char* text, uint64_t number) {
     Sequence sequence;
     char wrong[100];
     if (!sequence_read(text, &sequence, wrong, sizeof wrong)) {
-        fprintf(stderr, "hunt: %s is no name=value of a scene\n", wrong);
+        fprintf(stderr, "hunt: %s is not a name=value of a scene\n", wrong);
         exit(2);
     }
-    return sequence;
+    try_sequence(hunt, &sequence, number);
 }
 
-// Each line is a sequence, with its tolerance first, for which the tables get a column; # begins a comment.
-static void replay_file(Options* options, Tally* tally) {
-    FILE* file = or_end(fopen(options->file, "r"), options->file);
+// Each line is a sequence; # begins a comment.
+static void replay_file(Hunt* hunt) {
+    FILE* file = fopen(hunt->options.file, "r");
     char line[SEQUENCE_TEXT];
-    options->tolerances = 0;
+    if (file == NULL) {
+        perror(hunt->options.file);
+        exit(2);
+    }
     for (uint64_t number = 1; fgets(line, sizeof line, file) != NULL; number++) {
-        int read = 0, column = 0;
-        double tolerance;
-        if (line[0] == '#' || line[0] == '\n') {
-            continue;
+        if (line[0] != '#' && line[0] != '\n') {
+            try_text(hunt, line, number);
         }
-        if (sscanf(line, "tolerance=%lf%n", &tolerance, &read) != 1) {
-            fprintf(stderr, "hunt: line %llu does not begin with a tolerance\n", (unsigned long long)number);
-            exit(2);
-        }
-        while (column < options->tolerances && options->tolerance[column] != tolerance) {
-            column++;
-        }
-        if (column == MOST_TOLERANCES) {
-            fprintf(stderr, "hunt: line %llu: too many tolerances\n", (unsigned long long)number);
-            exit(2);
-        }
-        options->tolerance[column] = tolerance;
-        options->tolerances += column == options->tolerances;
-        const Sequence sequence = sequence_of_text(line + read);
-        tally->drawn++;
-        try_at(options, &sequence, number, column, tally);
     }
     fclose(file);
+}
+
+// Returns the misses.
+static long print_sums(const Hunt* hunt) {
+    const double seconds = now() - hunt->begin;
+    long misses = 0, steps = 0;
+    printf("\n| law | steps | misses | worst error over the allowed error |\n|---|---|---|---|\n");
+    for (int k = 0; k < LAWS; k++) {
+        const Row* row = &hunt->law[k];
+        misses += row->misses;
+        steps += row->steps;
+        printf("| %s | %ld | %ld | %.2g |\n", LAW_NAMES[k], row->steps, row->misses, row->worst);
+    }
+    printf("\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses\n",
+           hunt->sequences, steps, hunt->refused, hunt->unknown, misses);
+    printf("%.0f steps a second\n", (double)steps / seconds);
+    return misses;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -309,12 +216,13 @@ static void replay_file(Options* options, Tally* tally) {
 
 static void usage(void) {
     fprintf(stderr,
-            "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--tolerance T,T,..] [--jobs J]\n"
-            "     [--minimize K] [--plane] [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
-            "--first: number of the first sequence; with --scenes 1 a single one. --minimize: makes K misses "
-            "of each\n"
-            "law and grade plain. --file: the sequences of a file, one a line.\n"
-            "--plane: scenes that slide, or vibrate, across.\n");
+            "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--jobs J] [--minimize K] [--plane]\n"
+            "     [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
+            "--first: number of the first sequence; with --scenes 1 a single one.\n"
+            "--minimize: makes K misses of each law and grade plain.\n"
+            "--plane: scenes that slide, or vibrate, across.\n"
+            "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
+            "line.\n");
     exit(2);
 }
 
@@ -328,77 +236,54 @@ static double number_of(const char* text) {
 }
 
 static Options read_options(int argc, char** argv) {
-    enum {
-        SEED,
-        SCENES,
-        FIRST,
-        MINUTES,
-        JOBS,
-        MINIMIZE,
-        NUMBERS,
-        PLANE = NUMBERS,
-        TOLERANCE,
-        FILE_NAME,
-        REPLAY
-    };
-    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},
-                                          {"scenes", 1, NULL, SCENES},
-                                          {"first", 1, NULL, FIRST},
-                                          {"minutes", 1, NULL, MINUTES},
-                                          {"jobs", 1, NULL, JOBS},
-                                          {"minimize", 1, NULL, MINIMIZE},
-                                          {"plane", 0, NULL, PLANE},
-                                          {"tolerance", 1, NULL, TOLERANCE},
-                                          {"file", 1, NULL, FILE_NAME},
-                                          {"replay", 1, NULL, REPLAY},
-                                          {0}};
-    Options o = {.tolerance = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, .tolerances = 5};
-    double number[NUMBERS] = {1.0, NAN, 0.0, INFINITY, 1.0, 0.0};
+    enum { SEED, SCENES, FIRST, MINUTES, JOBS, MINIMIZE, NUMBERS, FILE_NAME = NUMBERS, REPLAY, PLANE };
+    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},     {"scenes", 1, NULL, SCENES},
+                                          {"first", 1, NULL, FIRST},   {"minutes", 1, NULL, MINUTES},
+                                          {"jobs", 1, NULL, JOBS},     {"minimize", 1, NULL, MINIMIZE},
+                                          {"plane", 0, NULL, PLANE},   {"file", 1, NULL, FILE_NAME},
+                                          {"replay", 1, NULL, REPLAY}, {0}};
+    double number[NUMBERS] = {1.0, 0.0, 0.0, INFINITY, 1.0, 0.0};
+    const char* text[2] = {NULL, NULL};
+    bool plane = false;
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
         if (name < NUMBERS) {
             number[name] = number_of(optarg);
-        } else if (name == PLANE) {
-            o.plane = true;
         } else if (name == FILE_NAME || name == REPLAY) {
-            *(name == REPLAY ? &o.replay : &o.file) = optarg;
-        } else if (name == TOLERANCE) {
-            o.tolerances = 0;
-            for (char* part = strtok(optarg, ","); part && o.tolerances < MOST_TOLERANCES;
-                 part = strtok(NULL, ",")) {
-                o.tolerance[o.tolerances++] = number_of(part);
-            }
+            text[name - FILE_NAME] = optarg;
+        } else if (name == PLANE) {
+            plane = true;
         } else {
             usage();
         }
     }
-    if (optind < argc || o.tolerances == 0) {
+    if (optind < argc) {
         usage();
     }
-    o.seed = (uint64_t)number[SEED];
-    o.first = (uint64_t)number[FIRST];
-    o.seconds = 60.0 * number[MINUTES];
-    o.scenes = !isnan(number[SCENES]) ? (uint64_t)number[SCENES] : isinf(o.seconds) ? 1000 : UINT64_MAX / 2;
-    o.jobs = (int)fmin(MOST_JOBS, fmax(1.0, number[JOBS]));
-    o.minimize = (int)number[MINIMIZE];
-    return o;
+    const double scenes = number[SCENES] > 0.0 ? number[SCENES] : isinf(number[MINUTES]) ? 1000.0 : 1e18;
+    return (Options){.seed = (uint64_t)number[SEED],
+                     .scenes = (uint64_t)scenes,
+                     .first = (uint64_t)number[FIRST],
+                     .seconds = 60.0 * number[MINUTES],
+                     .jobs = (int)fmin(MOST_JOBS, fmax(1.0, number[JOBS])),
+                     .minimize = (int)number[MINIMIZE],
+                     .plane = plane,
+                     .file = text[0],
+                     .replay = text[1]};
 }
 
 int main(int argc, char** argv) {
-    static Tally total;
-    Options options = read_options(argc, argv);
-    const double begin = now();
-    if (options.replay) {
-        const Sequence sequence = sequence_of_text(options.replay);
-        for (int k = 0; k < options.tolerances; k++) {
-            try_at(&options, &sequence, 0, k, &total);
-        }
+    static Hunt hunt = {.lock = PTHREAD_MUTEX_INITIALIZER};
+    hunt.options = read_options(argc, argv);
+    hunt.begin = now();
+    if (hunt.options.replay) {
+        try_text(&hunt, hunt.options.replay, 0);
         return 0;
     }
-    if (options.file) {
-        replay_file(&options, &total);
+    if (hunt.options.file) {
+        replay_file(&hunt);
     } else {
-        run_all(&options, &total);
+        run_all(&hunt);
     }
-    const long misses = print_tally(&total, &options, now() - begin);
-    return misses > 0 || (options.file && total.refused > 0);
+    const long misses = print_sums(&hunt);
+    return misses > 0 || (hunt.options.file && hunt.refused > 0);
 }

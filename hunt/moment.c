@@ -53,9 +53,9 @@ static Rule make_rule(int n) {
     return rule;
 }
 
-// Made once; the first call is not safe to be made by two threads at once.
+// Each thread makes a rule once.
 const Rule* rule_of(int stages) {
-    static Rule rules[MOST_STAGES + 1];
+    static _Thread_local Rule rules[MOST_STAGES + 1];
     if (rules[stages].stages == 0) {
         rules[stages] = make_rule(stages);
     }
@@ -84,28 +84,31 @@ void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STA
     }
 }
 
-// Regula falsi, by halves every third time.
+// Regula falsi by the rule of Anderson and Bjorck, which lowers the value of an end that stays for a second time. The
+// nearest that a step may come to an end doubles then, so that rounding does not slow it down. Every eighth step is a
+// bisection.
 Real crossing(Function* function, const void* context, Real low, Real high) {
     Real at_low = function(context, low), at_high = function(context, high);
     const bool rises = at_high > 0.0L;
-    for (int k = 0; k < 200; k++) {
+    Real nearest = 0.0L;
+    bool was_high = false;
+    for (int k = 0; k < 600; k++) {
         const Real middle = 0.5L * (low + high), least = 2.0L * LDBL_EPSILON * fabsl(high);
+        nearest = fmaxl(nearest, least);
         Real x = high - at_high * (high - low) / (at_high - at_low);
-        x = k % 3 == 2 ? middle : fmaxl(low + least, fminl(high - least, x));
-        x = x > low && x < high ? x : middle;
+        x = fmaxl(low + nearest, fminl(high - nearest, x));
+        x = k % 8 != 7 && x > low && x < high ? x : middle;
         if (!(x > low && x < high)) {
             break;
         }
         const Real at = function(context, x);
-        if ((at > 0.0L) == rises) {
-            high = x;
-            at_high = at;
-            at_low *= 0.5L;
-        } else {
-            low = x;
-            at_low = at;
-            at_high *= 0.5L;
-        }
+        const bool is_high = (at > 0.0L) == rises, again = k > 0 && is_high == was_high;
+        const Real left = 1.0L - at / (is_high ? at_high : at_low);
+        *(is_high ? &high : &low) = x;
+        *(is_high ? &at_high : &at_low) = at;
+        *(is_high ? &at_low : &at_high) *= !again ? 1.0L : left > 0.0L ? left : 0.5L;
+        nearest = again ? 2.0L * nearest : least;
+        was_high = is_high;
     }
     return high;
 }
@@ -114,18 +117,20 @@ Real crossing(Function* function, const void* context, Real low, Real high) {
 // The contact
 // ---------------------------------------------------------------------------------------------------------------------
 
+static Real power_3_2(Real x) { return x * sqrtl(x); }
+
 // Lower incomplete gamma function of s = 3/2 and 5/2: x^s e^-x sum of x^k / (s (s + 1) .. (s + k)), for large x by erf.
 static Real lower_gamma(Real s, Real x) {
     if (x > 4.0L) {
         const Real of_3_2 = 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x);
-        return s < 2.0L ? of_3_2 : 1.5L * of_3_2 - x * sqrtl(x) * expl(-x);
+        return s < 2.0L ? of_3_2 : 1.5L * of_3_2 - power_3_2(x) * expl(-x);
     }
     Real term = 1.0L / s, sum = term;
     for (int k = 1; term > 1e-22L * sum; k++) {
         term *= x / (s + (Real)k);
         sum += term;
     }
-    return powl(x, s) * expl(-x) * sum;
+    return (s < 2.0L ? 1.0L : x) * power_3_2(x) * expl(-x) * sum;
 }
 
 // Gamma(3/2, y) = sqrt(y) e^-y + sqrt(pi) / 2 erfc(sqrt(y)).
@@ -151,12 +156,12 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
     const Real decay = expl(-x);
     AtModulus at;
     {
-        const Real front = 4.0L / 3.0L * sqrtl(R) * powl(R_q, 1.5L) / powl(lambda, 2.5L);
+        const Real front = 4.0L / 3.0L * sqrtl(R) * power_3_2(R_q / lambda) / lambda;
         const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
         const Real gamma = lower_gamma(2.5L, x);
         const Real sum = front * E * gamma + plastic * (2.0L + x) * decay;
         const Real slope =
-            front * (gamma + E * powl(x, 1.5L) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
+            front * (gamma + E * power_3_2(x) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
         at.force = density * sum;
         at.by_force = slope / sum;
     }
@@ -166,11 +171,11 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
         at.stiffness = scene->stiffnessScale * E * area * area * bracket * bracket;
         at.by_stiffness = 1.0L / E - 2.0L * decay * x_E / bracket;
     } else if (scene->contact == CONTACT_MINDLIN) {
-        const Real half = expl(-0.5L * x), plastic = 0.5L * powl(2.0L / lambda, 1.5L);
+        const Real half = expl(-0.5L * x), plastic = 0.5L * power_3_2(2.0L / lambda);
         const Real upper = upper_gamma_3_2(0.5L * x);
-        const Real sum = lower_gamma(1.5L, x) / powl(lambda, 1.5L) + plastic * half * upper;
+        const Real sum = lower_gamma(1.5L, x) / power_3_2(lambda) + plastic * half * upper;
         const Real slope =
-            sqrtl(x) * decay / powl(lambda, 1.5L) - 0.5L * plastic * half * (upper + sqrtl(0.5L * x) * half);
+            sqrtl(x) * decay / power_3_2(lambda) - 0.5L * plastic * half * (upper + sqrtl(0.5L * x) * half);
         const Real tangential = 2.0L * (1.0L - nu) / (2.0L - nu);
         at.stiffness = scene->stiffnessScale * density * 2.0L * E * tangential * sqrtl(R * R_q) * sum;
         at.by_stiffness = 1.0L / E + slope * x_E / sum;
@@ -185,21 +190,22 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
 // The scene at a time
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Sine of x + shift pi / 2. The library's own reduction to a quarter turn would take half of all time; pi / 2 in two parts,
-// the first of 41 bits, is as good for some thousand turns.
-Real sine(Real x, int shift) {
+// The library's own reduction to a quarter turn would take half of all time. pi / 2 in two parts, the first of 41
+// bits, is as good for some thousand turns.
+Vector direction(Real angle) {
     static const Real FIRST = 0x1.921fb54442p0L, SECOND = 0x0.d18469898cc51701b8p-40L;
-    const Real quarters = rintl(x * (2.0L / PI));
-    const Real rest = (x - quarters * FIRST) - quarters * SECOND;
-    switch (((long)quarters + shift) & 3) {
+    const Real quarters = rintl(angle * (2.0L / PI));
+    const Real rest = (angle - quarters * FIRST) - quarters * SECOND;
+    const Real x = cosl(rest), y = sinl(rest);
+    switch ((long)quarters & 3) {
     case 0:
-        return sinl(rest);
+        return (Vector){x, y};
     case 1:
-        return cosl(rest);
+        return (Vector){-y, x};
     case 2:
-        return -sinl(rest);
+        return (Vector){-x, -y};
     default:
-        return -cosl(rest);
+        return (Vector){y, -x};
     }
 }
 
@@ -219,37 +225,37 @@ bool is_held(const ReferenceScene* s) {
            s->load_rate == 0.0;
 }
 
-static Real component(const World* w, const Drive* drive, Real t, int order) {
-    const Real smooth = order == 0 ? drive->V + drive->rate * t : order == 1 ? drive->rate : 0.0L;
-    if (drive->swing == 0.0L) {
-        return smooth;
-    }
-    const Real half = 0.5L * w->omega * t;
-    if (order == 0 && fabsl(half) < 0.25L) { // a step of 1e-14 s may lie next to a reversal as a whole
-        const Real change = -2.0L * drive->swing * sine(drive->theta + half, 0) * sinl(half);
-        return drive->start + drive->rate * t + change;
-    }
-    Real swing = drive->swing;
-    for (int k = 0; k < order; k++) {
-        swing *= w->omega;
-    }
-    return smooth + swing * sine(drive->theta + w->omega * t, 1 + order);
+// (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
+static Vector turn_at(const World* w, Real t) {
+    const Vector half = vibrates(&w->scene) ? direction(0.5L * w->omega * t) : (Vector){1.0L, 0.0L};
+    return (Vector){-2.0L * half.y * half.y, 2.0L * half.x * half.y};
 }
 
-Vector velocity(const World* w, Real t, int order) {
-    return (Vector){component(w, &w->drive[0], t, order), component(w, &w->drive[1], t, order)};
+static Vector velocity(const World* w, Real t, Vector turn) {
+    return plus(plus(plus(w->start, t, w->rate), turn.x, w->cosine), -turn.y, w->sine);
 }
 
-static Real way_of(const World* w, const Drive* drive, Real a, Real b) {
-    const Real span = b - a, half = 0.5L * w->omega * span;
-    const Real smooth = (drive->V + drive->rate * 0.5L * (a + b)) * span;
-    return drive->swing == 0.0L ? smooth
-                                : smooth + 2.0L * drive->swing / w->omega *
-                                               sine(drive->theta + w->omega * a + half, 1) * sinl(half);
+void velocities(const World* w, Real t, int order, Vector* V) {
+    Vector turn = turn_at(w, t);
+    V[0] = velocity(w, t, turn);
+    turn.x += 1.0L;
+    for (int k = 1; k <= order; k++) {
+        turn = (Vector){-w->omega * turn.y, w->omega * turn.x};
+        V[k] = plus(scaled(turn.x, w->cosine), -turn.y, w->sine);
+    }
+    V[1] = order > 0 ? plus(V[1], 1.0L, w->rate) : V[1];
 }
 
 Vector travel(const World* w, Real a, Real b) {
-    return w->ramp ? (Vector){0} : (Vector){way_of(w, &w->drive[0], a, b), way_of(w, &w->drive[1], a, b)};
+    const ReferenceScene* s = &w->scene;
+    const Real span = b - a, middle = 0.5L * (a + b);
+    const Vector way = scaled(span, plus((Vector){s->V, s->V_y}, middle, w->rate));
+    if (w->ramp || !vibrates(s)) {
+        return w->ramp ? (Vector){0} : way;
+    }
+    const Vector turn = direction(w->omega * middle);
+    const Real chord = 2.0L * sinl(0.5L * w->omega * span) / w->omega;
+    return plus(plus(way, chord * turn.x, w->cosine), -chord * turn.y, w->sine);
 }
 
 static Real load_at(const World* w, Real t) {
@@ -261,7 +267,7 @@ static AtModulus modulus_at(const World* w, Real t) {
     return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
 }
 
-// sigma [N/m] where F_n and d are those.
+// sigma [N/m] at that F_n and d.
 static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
     const Real share = force / at->force;
     return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
@@ -269,8 +275,10 @@ static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real forc
                                            : at->stiffness * share * share / (d * d * d);
 }
 
-// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma), but for Stribeck's curve, without what cancels in it.
-static void contact_at(const World* w, Real t, bool with_rates, Real* force, Real* sigma, Real* ratio_rate) {
+// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left
+// out.
+static void contact_at(const World* w, Real t, Vector turn, bool with_rates, Real* force, Real* sigma,
+                       Real* ratio_rate) {
     const ReferenceScene* s = &w->scene;
     *sigma = s->contact_sigma;
     *ratio_rate = *force = 0.0L;
@@ -278,8 +286,7 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
         return;
     }
     const AtModulus at = modulus_at(w, t);
-    const Real theta = w->theta_0 + w->omega * t + s->phase_d;
-    const Real swing = s->a_d == 0.0 ? 0.0L : s->a_d * sine(theta, 1);
+    const Real swing = w->d_cosine * (1.0L + turn.x) - w->d_sine * turn.y;
     Real d, rest_rate;
     if (s->input == INPUT_LOAD) {
         const Real load = load_at(w, t);
@@ -293,7 +300,7 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
     }
     *sigma = stiffness_at(s, &at, *force, d);
     if (with_rates) {
-        const Real d_rate = rest_rate - (s->a_d == 0.0 ? 0.0L : s->a_d * w->omega * sine(theta, 0));
+        const Real d_rate = rest_rate - w->omega * (w->d_cosine * turn.y + w->d_sine * (1.0L + turn.x));
         Real of_E = s->limit == LIMIT_LOAD ? at.by_force : 0.0L;
         Real of_d = s->limit == LIMIT_LOAD ? -w->decay : 0.0L;
         if (s->contact == CONTACT_ASPERITIES) {
@@ -309,9 +316,10 @@ static void contact_at(const World* w, Real t, bool with_rates, Real* force, Rea
 
 At scene_at(const World* w, Real t, bool with_rates) {
     const ReferenceScene* s = &w->scene;
-    At at = {.V = velocity(w, t, 0)};
+    const Vector turn = turn_at(w, t);
+    At at = {.V = velocity(w, t, turn)};
     Real force, excess = w->excess, V_S = s->V_S;
-    contact_at(w, t, with_rates, &force, &at.sigma, &at.bound_rate);
+    contact_at(w, t, turn, with_rates, &force, &at.sigma, &at.bound_rate);
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
     if (w->ramp) {
         at.sigma *= expl(w->ln_rate.scale * t);
@@ -329,8 +337,9 @@ At scene_at(const World* w, Real t, bool with_rates) {
         const Real curve = 1.0L + excess * fall;
         at.g *= curve;
         if (with_rates) {
-            const Real squares =
-                2.0L * (square * w->ln_rate.V_S - dot(at.V, velocity(w, t, 1)) / (V_S * V_S));
+            Vector V[2];
+            velocities(w, t, 1, V);
+            const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V[0], V[1]) / (V_S * V_S));
             at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
         }
     }
@@ -406,19 +415,16 @@ World held_world(const World* w, Real h) {
     World held = *w;
     ReferenceScene* s = &held.scene;
     s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
-    held.drive[0].rate = held.drive[1].rate = held.d_rate = 0.0L;
+    held.rate = (Vector){0};
+    held.d_rate = 0.0L;
     held.no_load = -INFINITY;
     held.h = h;
     return held;
 }
 
 // The largest speed [m/s] of a component, with its vibration.
-static Real fastest(const Drive* drive, Real h) {
-    return fmaxl(fabsl(drive->V), fabsl(drive->V + drive->rate * h)) + fabsl(drive->swing);
-}
-
-static Drive drive_of(Real V, Real rate, Real swing, Real theta) {
-    return (Drive){V, rate, swing, theta, V + swing * sine(theta, 1)};
+static Real fastest(Real V, Real rate, Real swing, Real h) {
+    return fmaxl(fabsl(V), fabsl(V + rate * h)) + fabsl(swing);
 }
 
 World make_world(const ReferenceScene* scene, Real h, int fineness) {
@@ -426,13 +432,20 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.bounded = w.elastic || (scene->law != LAW_COULOMB && scene->limit == LIMIT_LOAD);
     w.excess = scene->law == LAW_LUGRE || w.elastic ? (Real)scene->staticRatio - 1.0L : 0.0L;
     w.omega = 2.0L * PI * scene->f;
-    // f start, of which whole numbers are taken off, exactly: the product and what it loses in rounding
+    // The whole periods are taken off f start exactly: off the product and the remainder of its rounding.
     const double cycles = scene->f * scene->start;
     const double lost = fma(scene->f, scene->start, -cycles);
     w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);
-    w.drive[0] = drive_of(scene->V, scene->V_rate, scene->V_1, w.theta_0);
-    w.drive[1] = drive_of(scene->V_y, scene->V_y_rate, scene->V_2, w.theta_0 + scene->phase_2);
-    w.top = hypotl(fastest(&w.drive[0], h), fastest(&w.drive[1], h));
+    const Vector x = direction(w.theta_0), y = direction(w.theta_0 + scene->phase_2);
+    const Vector separation = direction(w.theta_0 + scene->phase_d);
+    w.cosine = (Vector){scene->V_1 * x.x, scene->V_2 * y.x};
+    w.sine = (Vector){scene->V_1 * x.y, scene->V_2 * y.y};
+    w.d_cosine = scene->a_d * separation.x;
+    w.d_sine = scene->a_d * separation.y;
+    w.start = plus((Vector){scene->V, scene->V_y}, 1.0L, w.cosine);
+    w.rate = (Vector){scene->V_rate, scene->V_y_rate};
+    w.top = hypotl(fastest(scene->V, scene->V_rate, scene->V_1, h),
+                   fastest(scene->V_y, scene->V_y_rate, scene->V_2, h));
     w.decay = (Real)scene->lambda / scene->R_q;
     w.swell = bessel_I0(w.decay * scene->a_d);
     w.held = at_modulus(scene, scene->E);
@@ -449,8 +462,8 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
 // The separation [m] at the start, with the vibration.
 static Real separation(const World* w) {
     const ReferenceScene* s = &w->scene;
-    const Real swing = s->a_d * sine(w->theta_0 + s->phase_d, 1);
-    return swing + (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
+    return w->d_cosine +
+           (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
 }
 
 World ramp_between(const World* from, const World* to) {
@@ -466,41 +479,13 @@ World ramp_between(const World* from, const World* to) {
     s->E_rate = end->E - s->E;
     w.d = separation(from);
     w.d_rate = separation(to) - w.d;
-    for (int k = 0; k < 2; k++) {
-        w.drive[k] = drive_of(from->drive[k].start, to->drive[k].start - from->drive[k].start, 0.0L, 0.0L);
-    }
+    w.rate = plus(to->start, -1.0L, from->start);
+    w.cosine = w.sine = (Vector){0};
+    w.d_cosine = w.d_sine = 0.0L;
     w.ln_rate.limit = s->limit == LIMIT_LOAD ? logl((Real)end->mu / s->mu) : logl((Real)end->F_C / s->F_C);
     w.ln_rate.scale = s->contact == CONTACT_CONSTANT ? logl((Real)end->contact_sigma / s->contact_sigma)
                                                      : logl((Real)end->stiffnessScale / s->stiffnessScale);
     w.ln_rate.ratio = logl((1.0L + to->excess) / (1.0L + from->excess));
     w.ln_rate.V_S = logl((Real)end->V_S / s->V_S);
     return w;
-}
-
-ReferenceScene reference_scene(void) {
-    return (ReferenceScene){.V = 0.005,
-                            .d = 14e-6,
-                            .E = 58.556936170e9,
-                            .load = 312.44,
-                            .f = 20e3,
-                            .F_C = 55.0,
-                            .mu = 0.176,
-                            .staticRatio = 1.0,
-                            .V_S = 0.01,
-                            .contact_sigma = 2.5e6,
-                            .stiffnessScale = 1.0,
-                            .R_q = 6e-6,
-                            .R = 1.7e-6,
-                            .eta = 47e9,
-                            .A_n = 1e-4,
-                            .nu = 0.33,
-                            .Y = 410e6,
-                            .c = 17.0,
-                            .lambda = 3.0,
-                            .h = 1e-4,
-                            .law = LAW_DAHL,
-                            .limit = LIMIT_CONSTANT,
-                            .contact = CONTACT_ASPERITIES,
-                            .input = INPUT_SEPARATION,
-                            .initial = START_GIVEN};
 }

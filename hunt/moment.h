@@ -26,11 +26,8 @@ void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STA
 
 typedef Real Function(const void* context, Real x);
 
-// Where a function passes zero between low and high, on the side of high.
+// The zero of a function between low and high, on the side of high.
 Real crossing(Function* function, const void* context, Real low, Real high);
-
-// Sine of x + shift pi / 2.
-Real sine(Real x, int shift);
 
 // Along the sliding, and across.
 typedef struct {
@@ -42,27 +39,24 @@ Vector scaled(Real factor, Vector a);
 Real dot(Vector a, Vector b);
 Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0
+Vector direction(Real angle);        // (cos, sin)
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The scene at a time
 // ---------------------------------------------------------------------------------------------------------------------
 
-// What F_n and sigma are over their power of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
+// The factors of F_n and sigma before their powers of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
 typedef struct {
     Real force, by_force;         // N
     Real stiffness, by_stiffness; // N/m; N m2 for Asperities
 } AtModulus;
 
-// A component of the velocity: V + rate t + swing cos(omega t + theta).
-typedef struct {
-    Real V, rate, swing, theta;
-    Real start; // m/s, at t = 0
-} Drive;
-
 typedef struct {
     ReferenceScene scene;
-    Drive drive[2]; // along and across
-    Real d, d_rate; // m, m/s, of the separation without the vibration
+    // The velocity [m/s] is start + rate t + cosine (cos(omega t) - 1) - sine sin(omega t).
+    Vector start, rate, cosine, sine;
+    // The separation [m] is d + d_rate t + d_cosine cos(omega t) - d_sine sin(omega t).
+    Real d, d_rate, d_cosine, d_sine;
     Real h, omega, theta_0, decay, swell, excess;
     Real no_load;   // s, when a load that moves is 0
     AtModulus held; // at the modulus of the start
@@ -87,8 +81,8 @@ typedef struct {
     Vector V;                      // m/s
     Real sigma;                    // N/m
     Real coulomb;                  // N, F_C or mu F_n
-    Real g;                        // N, where the bristle's force tends
-    Real B;                        // N, the bound of what does not slip
+    Real g;                        // N, the force to which a bristle tends
+    Real B;                        // N, the bound of a bristle that sticks
     Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
 } At;
 
@@ -103,8 +97,8 @@ World ramp_between(const World* from, const World* to);
 bool is_held(const ReferenceScene* s);
 bool is_open(const World* w, Real t);
 
-// The velocity at a time, or its derivative of order 1, 2 or 3.
-Vector velocity(const World* w, Real t, int order);
+// The velocity at a time and its derivatives up to that order.
+void velocities(const World* w, Real t, int order, Vector* V);
 
 // Integral of the velocity that moves a bristle over [a, b].
 Vector travel(const World* w, Real a, Real b);
@@ -115,7 +109,7 @@ At scene_at(const World* w, Real t, bool with_rates);
 Real bound(const World* w, const At* at, bool sticks);
 Real bound_rate(const World* w, const At* at, bool sticks);
 
-// What the tolerance is relative to [N], from the deflection at the start.
+// The scale of the tolerance [N], for the deflection at the start.
 Real largest_force(const World* w, Vector delta);
 
 #endif

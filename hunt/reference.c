@@ -19,8 +19,8 @@ typedef struct {
         change; // m, delta at the end, and its change: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
-    Real length;           // m, what errors of the end are measured by
-    Real force, power;     // N s, J, what errors of impulse and energies are measured by
+    Real length;           // m, the scale of errors of the end
+    Real force, power;     // N s, J, the scales of errors of impulse and energies
     Real blur;             // m, of the end by the rounding of time
 } Sums;
 
@@ -41,7 +41,7 @@ static void add(Sums* sums, const Sums* part) {
     sums->power += part->power;
 }
 
-// Of a time [s] with that force of the bristle, rate of its deflection and velocity.
+// Adds a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
     const Vector rest = plus(scaled(w->scene.sigma_2, V), w->scene.sigma_1, rate);
     const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
@@ -59,22 +59,22 @@ static Real relaxation(const World* w, const At* at) {
     return w->elastic ? 0.0L : at->sigma * length_of(at->V) / at->g;
 }
 
-// How fast [m/s] the law alone would carry a bristle of that direction, on its kinetic bound, beyond it.
+// The speed [m/s] at which the law alone would carry a bristle of that direction beyond its kinetic bound.
 static Real outward(const World* w, const At* at, Vector delta) {
     const Real own = dot(along(delta, 1.0L), at->V) - relaxation(w, at) * bound(w, at, false);
     return own - bound_rate(w, at, false);
 }
 
-// What must stay above 0 for the motion to go on; both are large where nothing can end it.
+// The motion continues as long as both signs are positive. A sign is INFINITY if it cannot end the motion.
 typedef struct {
     Real room; // m, to the bound
     Real lead; // m/s, outward
 } Signs;
 
-static const Real ROUNDING = 1e-17L; // of what a sign is made from
+static const Real ROUNDING = 1e-17L; // of the terms of a sign
 static const Real ON_BOUND =
-    1e-10L; // of a bound: what the rounding of a phase leaves a bristle that slips inside it
-static const Real AS_DOUBLE = 1e-15L; // of a bound: what the rounding of a deflection does
+    1e-10L; // of a bound: the rounding of a phase may leave a bristle that slips so far inside
+static const Real AS_DOUBLE = 1e-15L; // of a bound: the rounding of a deflection that is a double
 
 // The state of a march through the step.
 typedef struct {
@@ -92,12 +92,12 @@ typedef struct {
 static bool has_bound(const World* w) { return w->bounded && !w->open && !w->open_ends; }
 static bool has_static(const World* w) { return w->elastic && w->excess + w->ln_rate.ratio != 0.0L; }
 
-// With a little more than the rounding of each.
+// Each sign has a slack of little more than its rounding.
 static Signs signs_at(const March* march, const At* at, Vector delta) {
     const World* w = march->w;
     Signs signs = {INFINITY, INFINITY};
     if (march->motion != SLIPS) {
-        // a ramp in which nothing moves finds the bristle where a double holds it
+        // on a ramp in which nothing moves the deflection is a double
         const Real slack = w->ramp && has_static(w) && !march->broke ? 1e-11L : ROUNDING;
         signs.room = bound(w, at, !march->broke) * (1.0L + slack) - length_of(delta);
     }
@@ -136,19 +136,16 @@ static void collocate(const World* w, const At* at, Real size, Vector delta, Vec
 
 // That direction, turned by an angle.
 static Vector turned(Vector n, Real angle) {
-    if (angle == 0.0L) {
-        return n;
-    }
-    const Real x = sine(angle, 1), y = sine(angle, 0);
-    return (Vector){x * n.x - y * n.y, x * n.y + y * n.x};
+    const Vector turn = angle == 0.0L ? (Vector){1.0L, 0.0L} : direction(angle);
+    return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
 }
 
-// How fast [rad/s] a deflection of direction n turns that slips.
+// The rate [rad/s] at which a deflection of direction n turns if it slips.
 static Real turn(const World* w, const At* at, Vector n) {
     return (at->V.y * n.x - at->V.x * n.y) / bound(w, at, false);
 }
 
-// The angles from the direction n at the nodes of a bristle that slips, by Newton; false if it finds none.
+// The angles from the direction n at the nodes of a bristle that slips, by Newton; returns false if it does not converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
     const int stages = w->rule->stages;
     for (int i = 0; i < stages; i++) {
@@ -164,7 +161,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             const Vector now = turned(n, angle[j]);
             const Real rate = turn(w, &at[j], now), slope = -dot(at[j].V, now) / bound(w, &at[j], false);
             turns = turns || rate != 0.0L || angle[j] != 0.0L;
-            if (!(size * slope < 1.0L)) { // it turns away from where it is: a long panel would not see that
+            if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
             for (int i = 0; i < stages; i++) {
@@ -193,8 +190,12 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
 
 // Coulomb's force. At the end of a panel V may be 0 but for rounding: it comes there against its rate.
 static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
-    const bool reverses = ends && length_of(at->V) <= 1e-17L * w->top;
-    return along(reverses ? scaled(-1.0L, velocity(w, t, 1)) : at->V, at->coulomb);
+    Vector V[2] = {at->V};
+    if (ends && length_of(at->V) <= 1e-17L * w->top) {
+        velocities(w, t, 1, V);
+        V[0] = scaled(-1.0L, V[1]);
+    }
+    return along(V[0], at->coulomb);
 }
 
 static Panel panel(const March* march, Real a, Real b, Vector delta) {
@@ -267,7 +268,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
 }
 
 static const Real AGREE = 1e-13L; // the halves are then right to some 1e-17
-static const Real LEAST = 1e-16L; // of the force of the step: what errors of a panel are left alone
+static const Real LEAST = 1e-16L; // of the force of the step: smaller errors of a panel are accepted
 static const int DEEPEST = 110;
 static const Real MOST_PANELS = 1e6L,
                   MOST_OF_SETTLING = 1e5L; // more are not taken, and the result is not known
@@ -293,14 +294,15 @@ static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
            least - low > rounding;
 }
 
-// Whether the motion is over at node k, the start for 0. Beyond its bound by a double's rounding, and on its way inside, it is not.
+// Whether the motion is over at node k; 0 is the start. It is not if the bristle is beyond its bound by a double's rounding
+// alone and returns.
 static bool is_over(const Panel* p, int k) {
     const Real start = p->sign[0].room, room = p->sign[k == 0 ? 1 : k].room;
     const bool rounded = start > -10.0L * AS_DOUBLE * p->sums.length;
     return p->sign[k].lead < 0.0L || (p->sign[k].room < 0.0L && !(rounded && room >= start));
 }
 
-// Whether a motion may end unseen in a panel; where it has just begun a sign is 0 and rises.
+// Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
     const int n = w->rule->stages;
     Real x[MOST_STAGES + 1] = {0.0L};
@@ -337,7 +339,7 @@ static Real beyond(const void* context, Real t) {
     return -(to->at_bound ? last->room : last->lead);
 }
 
-// Over a part that is accurate, up to the motion's end if that is in it.
+// Takes an accurate panel, up to the motion's end if that lies in it.
 static void commit(March* march, Real a, Real b, const Panel* p) {
     const int n = march->w->rule->stages;
     int k = has_bound(march->w) ? 0 : n + 1;
@@ -360,7 +362,7 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
     march->delta = part.sums.end;
 }
 
-// Over [a, b], of which one is a single panel, by halves until they agree with the whole; to the motion's end.
+// Takes [a, b], whose single panel is one: halves it until two halves agree with the whole. Stops at the motion's end.
 static void go_on(March* march, Real a, Real b, const Panel* one, int depth) {
     World* w = march->w;
     const Real middle = 0.5L * (a + b);
@@ -394,7 +396,7 @@ typedef struct {
 
 static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
 
-// Where the contact is closed.
+// The part in which the contact is closed.
 static Part closed_part(const World* w) {
     const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
     if (at_start == at_end) {
@@ -404,116 +406,88 @@ static Part closed_part(const World* w) {
     return at_start ? (Part){t, w->h} : (Part){0.0L, t};
 }
 
+// Times in rising order.
 typedef struct {
-    Real* time;
-    size_t count, room;
+    Real time[64]; // at most 4 extremes, and 9 multiples of V_S in each of the 5 parts between them
+    int count;
 } Cuts;
-
-static void* memory(void* old, size_t size) {
-    void* found = realloc(old, size);
-    if (found == NULL) {
-        abort();
-    }
-    return found;
-}
-
-static void cut(Cuts* cuts, Real t) {
-    if (cuts->count == cuts->room) {
-        cuts->room = cuts->room ? 2 * cuts->room : 256;
-        cuts->time = memory(cuts->time, cuts->room * sizeof *cuts->time);
-    }
-    cuts->time[cuts->count++] = t;
-}
-
-static int by_time(const void* a, const void* b) {
-    const Real x = *(const Real*)a, y = *(const Real*)b;
-    return (x > y) - (x < y);
-}
-
-// Sorts them, without repetition, inside the part.
-static void tidy(Cuts* cuts, Part part) {
-    qsort(cuts->time, cuts->count, sizeof *cuts->time, by_time);
-    size_t kept = 0;
-    for (size_t k = 0; k < cuts->count; k++) {
-        const Real t = cuts->time[k];
-        if (t >= part.from && t <= part.to && (kept == 0 || t > cuts->time[kept - 1])) {
-            cuts->time[kept++] = t;
-        }
-    }
-    cuts->count = kept;
-}
 
 typedef struct {
     const World* w;
+    int order;  // of the derivative of half of V^2; 0: V^2 less the level
     Real level; // m2/s2
-    int order;
-} Zero;
+} Square;
 
-static Real square_less(const void* context, Real t) {
-    const Zero* zero = context;
-    const Vector V = velocity(zero->w, t, 0);
-    return dot(V, V) - zero->level;
-}
-
-// The derivative of half of V^2, of order 1, 2 or 3.
-static Real change_of_square(const void* context, Real t) {
-    const Zero* zero = context;
+static Real square(const void* context, Real t) {
+    const Square* of = context;
     Vector V[4];
-    for (int k = 0; k <= zero->order; k++) {
-        V[k] = velocity(zero->w, t, k);
-    }
-    return zero->order == 1   ? dot(V[0], V[1])
-           : zero->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
-                              : 3.0L * dot(V[1], V[2]) + dot(V[0], V[3]);
+    velocities(of->w, t, of->order, V);
+    return of->order == 0   ? dot(V[0], V[0]) - of->level
+           : of->order == 1 ? dot(V[0], V[1])
+           : of->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
+                            : 3.0L * dot(V[1], V[2]) + dot(V[0], V[3]);
 }
 
-static void cut_where(Cuts* cuts, Part part, Function* function, const Zero* zero) {
-    const size_t count = cuts->count;
-    for (size_t k = 0; k + 1 < count; k++) {
-        const Real a = cuts->time[k], b = cuts->time[k + 1];
-        if (function(zero, a) * function(zero, b) < 0.0L) {
-            cut(cuts, crossing(function, zero, a, b));
+// Between the cuts; these go, but for the ends, unless they are kept.
+static void cut_at_zeros(Cuts* cuts, const Square* of, bool keep) {
+    const Cuts old = *cuts;
+    Real before = square(of, old.time[0]);
+    cuts->count = 1;
+    for (int k = 1; k < old.count; k++) {
+        const Real after = square(of, old.time[k]);
+        if (before * after < 0.0L) {
+            cuts->time[cuts->count++] = crossing(square, of, old.time[k - 1], old.time[k]);
         }
+        if (keep || k == old.count - 1) {
+            cuts->time[cuts->count++] = old.time[k];
+        }
+        before = after;
     }
-    tidy(cuts, part);
 }
 
-// Equal pieces of a period, or of a ramp; where a load may fall or rise by decades; the extremes of |V|, and multiples of V_S.
-static Cuts all_cuts(const World* w, Part part) {
+// The extremes of |V| in a piece of the step, and multiples of V_S.
+static Cuts cuts_between(const World* w, Real a, Real b) {
     static const Real OF_V_S[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
-    Cuts cuts = {0};
+    Cuts cuts = {{a, b}, 2};
+    for (int order = 3; order >= 1;
+         order--) { // between two zeros of one derivative lies at most one of the next
+        cut_at_zeros(&cuts, &(Square){w, order, 0.0L}, order > 1);
+    }
+    for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
+        const Real V = OF_V_S[m] * w->scene.V_S;
+        cut_at_zeros(&cuts, &(Square){w, 0, V * V}, true);
+    }
+    return cuts;
+}
+
+// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a part
+// in which a load may fall or rise by decades they become shorter.
+static Real end_of_piece(const World* w, Part part, Real t) {
     const ReferenceScene* s = &w->scene;
     const Real span = part.to - part.from, pieces = w->ramp ? 32.0L : 8.0L * s->f;
     const Real first = w->ramp ? 0.0L : w->theta_0 / w->omega; // s, since the start of the period
-    cut(&cuts, part.from);
-    cut(&cuts, part.to);
-    for (Real k = ceill(first * pieces); (w->ramp || vibrates(s)) && k < (first + w->h) * pieces; k += 1.0L) {
-        cut(&cuts, k / pieces - first);
+    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
+    Real end = part.to;
+    for (Real k = floorl((first + t) * pieces); w->ramp || vibrates(s); k += 1.0L) {
+        if (k / pieces - first > t) {
+            end = fminl(end, k / pieces - first);
+            break;
+        }
     }
-    for (int k = 1; k <= 60 && !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
-         k += 2) {
-        cut(&cuts, part.from + ldexpl(span, -k));
-        cut(&cuts, part.to - ldexpl(span, -k));
+    for (int k = 1; k <= 60 && moves; k += 2) {
+        const Real early = part.from + ldexpl(span, -k), late = part.to - ldexpl(span, -k);
+        end = early > t && early < end ? early : end;
+        end = late > t && late < end ? late : end;
     }
-    tidy(&cuts, part);
-    for (int order = 3; order >= 1; order--) { // between the zeros of one there is but one of the next
-        const Zero zero = {.w = w, .order = order};
-        cut_where(&cuts, part, change_of_square, &zero);
-    }
-    for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
-        const Real V = OF_V_S[m] * s->V_S;
-        const Zero zero = {.w = w, .level = V * V};
-        cut_where(&cuts, part, square_less, &zero);
-    }
-    return cuts;
+    return end;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-// How the bristle begins a part. A push that is just 0 counts by what follows: the limit of a ramp of V, or of the bound, goes
-// on slipping. If nothing follows either, it sticks.
+// The motion at the begin of a part. If the push is 0, the later push decides: the bristle slips if V or its bound moves so
+// that it is pushed then, and sticks if not.
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
     march->motion = STICKS;
@@ -534,7 +508,7 @@ static void begin(March* march, Real a, Real b) {
     march->slipped = march->slipped || march->motion != STICKS;
 }
 
-// Break-away: it drops along its direction, and the damping feels it.
+// Break-away: the bristle drops along its direction, and its damping adds an impulse.
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
     const Vector from = march->delta, to = along(from, bound(w, at, false));
@@ -547,7 +521,7 @@ static void break_away(March* march, const At* at) {
     march->broke = true;
 }
 
-// The motion has come to its end: what follows. On a ramp what has broken away does not stick again.
+// The motion after the end of another. On a ramp a bristle that has broken away does not stick again.
 static void change_motion(March* march) {
     const World* w = march->w;
     const At at = scene_at(w, march->met_at, true);
@@ -565,30 +539,38 @@ static void change_motion(March* march) {
     march->motion = slips ? SLIPS : march->broke ? CATCHES : STICKS;
 }
 
+static void march_between(March* march, Real a, Real b) {
+    while (a < b && march->w->panels <= MOST_PANELS) {
+        const Panel one = panel(march, a, b, march->delta);
+        march->met = false;
+        go_on(march, a, b, &one, 0);
+        a = march->met ? march->met_at : b;
+        if (march->met) {
+            change_motion(march);
+        }
+    }
+}
+
 static void march_part(March* march, Part part, bool open) {
     World* w = march->w;
     if (!(part.to > part.from)) {
         return;
     }
     w->open = open;
-    Cuts cuts = all_cuts(w, part);
-    begin(march, cuts.time[0], cuts.time[1]);
-    for (size_t k = 0; k + 1 < cuts.count; k++) {
-        Real a = cuts.time[k];
-        for (const Real b = cuts.time[k + 1]; a < b && w->panels <= MOST_PANELS;) {
-            const Panel one = panel(march, a, b, march->delta);
-            march->met = false;
-            go_on(march, a, b, &one, 0);
-            a = march->met ? march->met_at : b;
-            if (march->met) {
-                change_motion(march);
-            }
+    for (Real from = part.from; from < part.to;) {
+        const Real to = end_of_piece(w, part, from);
+        const Cuts cuts = cuts_between(w, from, to);
+        if (from == part.from) {
+            begin(march, from, cuts.time[1]);
         }
+        for (int k = 1; k < cuts.count; k++) {
+            march_between(march, cuts.time[k - 1], cuts.time[k]);
+        }
+        from = to;
     }
-    free(cuts.time);
 }
 
-// What a march hands on.
+// The bristle between two marches.
 typedef struct {
     Vector delta;
     bool broke;
@@ -599,7 +581,7 @@ static State state_of(const March* march) { return (State){march->delta, march->
 static March march_from(World* w, State state) {
     March march = {.w = w, .delta = state.delta, .broke = state.broke};
     const Part part = closed_part(w);
-    const Real edge = ldexpl(part.to - part.from, -58); // what has no load has no rate
+    const Real edge = ldexpl(part.to - part.from, -58); // without load there is no rate
     march_part(&march, (Part){0.0L, part.from}, true);
     march_part(&march,
                (Part){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
@@ -615,7 +597,7 @@ static March march_from(World* w, State state) {
     return march;
 }
 
-// What the jump of the inputs, or a start beyond the bound, does to the bristle; returns its heat.
+// The effect of a jump of the inputs, or of a start beyond the bound, on the bristle; returns its heat.
 static Real jump(const ReferenceScene* before, const World* w, State* state) {
     const ReferenceScene* s = &w->scene;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
@@ -670,8 +652,8 @@ static Map find_map(World* w, Real unit) {
         of[k][4] = s->path;
     }
     w->open_ends = false;
-    shift.x = w->elastic && w->drive[0].V == 0.0L ? 0.0L : shift.x; // it does not drift
-    shift.y = w->elastic && w->drive[1].V == 0.0L ? 0.0L : shift.y;
+    shift.x = w->elastic && w->scene.V == 0.0 ? 0.0L : shift.x; // it does not drift
+    shift.y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : shift.y;
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
     map.m[1][0] = shift.x, map.m[1][1] = kept;
     map.m[2][0] = shift.y, map.m[2][2] = kept;
@@ -776,13 +758,21 @@ static Real unit_of(const World* w) {
     return bound(w, &at, true);
 }
 
-// Goes n periods on, INFINITY for ever: then *mean is the mean force of the periods that repeat at last, and the state that at
-// the end of one that slips, that of the smallest deflection. False if none of the first most that slip repeat.
+static void* memory(size_t size) {
+    void* found = malloc(size);
+    if (found == NULL) {
+        abort();
+    }
+    return found;
+}
+
+// Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
+// smallest deflection at the end of one that slips. Returns false if none of the first most that slip repeat.
 static bool go_periods(const World* of, State* state, Real n, int most, Sums* sums, Vector* mean) {
-    Period* p = memory(NULL, sizeof *p);
+    Period* p = memory(sizeof *p);
     *p = (Period){.world = *of, .unit = unit_of(of)};
     World* w = &p->world;
-    Mark* marks = memory(NULL, (size_t)most * sizeof *marks);
+    Mark* marks = memory((size_t)most * sizeof *marks);
     int count = 0;
     bool known = true;
     for (Real done = 0.0L; done < n && known;) {
@@ -831,7 +821,7 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
     return known;
 }
 
-// Newton's step to the fixed point of a period's map, which from a state misses it so.
+// Newton's step to the fixed point of a period's map, from a state, its end and its miss after the period.
 static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
     const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
     const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
@@ -840,18 +830,19 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
     return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
 }
 
-// The periodic state where it does not depend on the start, by Newton: soon where slips are so small that each forgets little.
+// The periodic state by Newton, if it does not depend on the start. Small slips come to it in few steps, though each of
+// them changes the state by little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->drive[0].V, w->drive[1].V});
+    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->scene.V, w->scene.V_y});
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
     bool found = false;
-    Period* p = memory(NULL, sizeof *p);
+    Period* p = memory(sizeof *p);
     w->panels = 0.0L;
     for (int k = 0; k < 60 && !found && w->panels <= MOST_OF_SETTLING; k++) {
         const March march = march_from(w, *state);
         const Vector miss = plus(march.delta, -1.0L, state->delta);
         *mean = scaled(w->scene.f, march.sums.impulse);
-        if (w->elastic && !march.slipped) { // it drifts to where it slips
+        if (w->elastic && !march.slipped) { // it drifts until it slips
             Sums unused = {0};
             *p = (Period){.world = *w, .unit = unit};
             state->delta =
@@ -872,7 +863,7 @@ static bool settle(World* w, State* state, Vector* mean) {
     const ReferenceScene* s = &w->scene;
     if (vibrates(s) || is_open(w, 0.0L) || s->law == LAW_COULOMB) {
         Sums sums = {0};
-        const bool drifts = w->drive[0].V != 0.0L || w->drive[1].V != 0.0L;
+        const bool drifts = s->V != 0.0 || s->V_y != 0.0;
         const bool one_state = !w->elastic || (drifts && w->excess == 0.0L);
         return go_periods(w, state, INFINITY, one_state ? CYCLE_BEFORE_NEWTON : MOST_CYCLE, &sums, mean) ||
                (one_state && settle_by_newton(w, state, mean));
@@ -912,7 +903,7 @@ static State start_of(const ReferenceScene* s) {
     return s->law == LAW_COULOMB ? (State){0} : (State){{s->delta_0, s->delta_y_0}, s->slips != 0};
 }
 
-// Goes over the step; false if it needs more than the reference takes.
+// Takes the step; returns false if it needs more panels or cycles than the reference takes.
 static bool advance(World* w, State* state, Sums* sums) {
     const ReferenceScene* s = &w->scene;
     World rest = *w;
@@ -949,13 +940,13 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     const Vector start = force_at(&held, 0.0L, state);
     result->known = advance(&w, &state, &sums) && result->known;
     const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
+    const Real results[RESULTS] = {[F_T] = force.x,     [F_Y] = force.y,       [F_T_MEAN] = mean.x,
+                                   [F_Y_MEAN] = mean.y, [F_T_START] = start.x, [F_Y_START] = start.y,
+                                   [W_F] = sums.work,   [Q_F] = sums.heat,     [SLIPS_AT_END] = state.broke};
+    for (int k = 0; k < RESULTS; k++) {
+        result->result[k] = (double)results[k];
+    }
     result->delta = (double)state.delta.x, result->delta_y = (double)state.delta.y;
-    result->slips = state.broke;
-    result->F_t = (double)force.x, result->F_y = (double)force.y;
-    result->F_t_mean = (double)mean.x, result->F_y_mean = (double)mean.y;
-    result->F_t_start = (double)start.x, result->F_y_start = (double)start.y;
-    result->work = (double)sums.work;
-    result->heat = (double)sums.heat;
     result->path = (double)sums.path;
 }
 
@@ -972,9 +963,4 @@ bool reference_settled_force(const ReferenceScene* scene, double force[2], doubl
     *S = (double)w.S;
     force[0] = (double)mean.x, force[1] = (double)mean.y;
     return known;
-}
-
-bool reference_is_open(const ReferenceScene* scene) {
-    const World w = make_world(scene, 0.0L, 1);
-    return is_open(&w, 0.0L);
 }

@@ -1,7 +1,7 @@
 // One communication step of a scene by brute force in extended precision: the reference that grades the FMU.
 //
 // Written from docs/physics.md alone; it shares no line with fmu_src. Velocity, deflection and force are vectors: a line is a
-// plane with nothing across. Time is cut at every reversal, dip and bend of the velocity. In between a bristle that sticks
+// plane with nothing across. Time is cut at every reversal and extreme of the velocity. In between a bristle that sticks
 // is a closed form; Dahl's and LuGre's is solved by Radau collocation, and so is the angle of one that slips along its bound.
 // Panels are halved until one panel and its two halves agree, and until no bound can be met unseen between two nodes. Many
 // equal periods that touch no bound are taken as one map.
@@ -37,22 +37,18 @@ typedef struct {
 
 enum { REFERENCE_DOUBLES = 36 };
 
+// The results of a step that are graded: the force at the end, its mean, and at the start with the inputs held after a
+// jump [N]; work and heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at
+// the end.
+enum { F_T, F_Y, F_T_MEAN, F_Y_MEAN, F_T_START, F_Y_START, W_F, Q_F, SLIPS_AT_END, RESULTS };
+
 typedef struct {
-    double delta;                             // m, at the end
-    double slips;                             // whether a bristle with static friction slips at the end
-    double F_t;                               // N, at the end
-    double F_t_mean;                          // N
-    double work;                              // J, of F_t in the step
-    double heat;                              // J, with that of a jump before the step
-    double F_t_start;                         // N, after that jump, the inputs held
-    double S;                                 // N, what the errors of forces are relative to
-    double path;                              // m, time integral of |V|
-    double delta_y, F_y, F_y_mean, F_y_start; // the same, transverse
+    double result[RESULTS];
+    double delta, delta_y; // m, at the end
+    double S;              // N, the scale of errors of forces
+    double path;           // m, time integral of |V|
     bool known; // false: it takes more panels or cycles than the reference goes through, and only S is known
 } ReferenceStep;
-
-// Scenes with Table 1's surfaces and the start values of modelDescription.xml.
-ReferenceScene reference_scene(void);
 
 // before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for
 // smaller panels with more stages: for checks of the result itself.
@@ -60,9 +56,6 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
                     ReferenceStep* result);
 
 bool vibrates(const ReferenceScene* scene);
-
-// Whether the contact is open at the start of a scene.
-bool reference_is_open(const ReferenceScene* scene);
 
 // F_t_settled and F_y_settled [N] of the scene's inputs, held, from its start; false if no periods were found that repeat. S is
 // that of a step of length 0.

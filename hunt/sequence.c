@@ -18,21 +18,25 @@ static const char* const STARTS[] = {"Given", "Settled", NULL};
 typedef struct {
     const char* name;
     size_t offset;
+    double start_value;
     const char* const* choices; // of the numbers 1, 2, ..; NULL for a double
 } Field;
 
-#define NUMBER(name) {#name, offsetof(ReferenceScene, name), NULL}
+#define NUMBER(name, start_value) {#name, offsetof(ReferenceScene, name), start_value, NULL}
 // clang-format off
 static const Field TABLE[FIELDS] = {
-    NUMBER(start), NUMBER(h), NUMBER(V), NUMBER(d), NUMBER(E), NUMBER(load), NUMBER(V_rate), NUMBER(d_rate),
-    NUMBER(E_rate), NUMBER(load_rate), NUMBER(f), NUMBER(V_1), NUMBER(a_d), NUMBER(phase_d), NUMBER(V_y), NUMBER(V_y_rate), NUMBER(V_2),
-    NUMBER(phase_2), NUMBER(delta_y_0), NUMBER(F_C), NUMBER(mu),
-    NUMBER(staticRatio), NUMBER(V_S), NUMBER(sigma_1), NUMBER(sigma_2), NUMBER(delta_0), NUMBER(contact_sigma),
-    NUMBER(stiffnessScale), NUMBER(R_q), NUMBER(R), NUMBER(eta), NUMBER(A_n), NUMBER(nu), NUMBER(Y), NUMBER(c),
-    NUMBER(lambda),
-    {"law", offsetof(ReferenceScene, law), LAW_NAMES}, {"limit", offsetof(ReferenceScene, limit), LIMITS},
-    {"contact", offsetof(ReferenceScene, contact), CONTACTS}, {"input", offsetof(ReferenceScene, input), INPUTS},
-    {"initial", offsetof(ReferenceScene, initial), STARTS},
+    NUMBER(start, 0.0), NUMBER(h, 1e-4), NUMBER(V, 0.005), NUMBER(d, 14e-6), NUMBER(E, 58.556936170e9),
+    NUMBER(load, 312.44), NUMBER(V_rate, 0.0), NUMBER(d_rate, 0.0), NUMBER(E_rate, 0.0), NUMBER(load_rate, 0.0),
+    NUMBER(f, 20e3), NUMBER(V_1, 0.0), NUMBER(a_d, 0.0), NUMBER(phase_d, 0.0), NUMBER(V_y, 0.0), NUMBER(V_y_rate, 0.0),
+    NUMBER(V_2, 0.0), NUMBER(phase_2, 0.0), NUMBER(delta_y_0, 0.0), NUMBER(F_C, 55.0), NUMBER(mu, 0.176),
+    NUMBER(staticRatio, 1.0), NUMBER(V_S, 0.01), NUMBER(sigma_1, 0.0), NUMBER(sigma_2, 0.0), NUMBER(delta_0, 0.0),
+    NUMBER(contact_sigma, 2.5e6), NUMBER(stiffnessScale, 1.0), NUMBER(R_q, 6e-6), NUMBER(R, 1.7e-6), NUMBER(eta, 47e9),
+    NUMBER(A_n, 1e-4), NUMBER(nu, 0.33), NUMBER(Y, 410e6), NUMBER(c, 17.0), NUMBER(lambda, 3.0),
+    {"law", offsetof(ReferenceScene, law), LAW_DAHL, LAW_NAMES},
+    {"limit", offsetof(ReferenceScene, limit), LIMIT_CONSTANT, LIMITS},
+    {"contact", offsetof(ReferenceScene, contact), CONTACT_ASPERITIES, CONTACTS},
+    {"input", offsetof(ReferenceScene, input), INPUT_SEPARATION, INPUTS},
+    {"initial", offsetof(ReferenceScene, initial), START_GIVEN, STARTS},
 };
 // clang-format on
 #undef NUMBER
@@ -49,6 +53,14 @@ void scene_set(ReferenceScene* scene, int field, double value) {
     } else {
         *(double*)place = value;
     }
+}
+
+ReferenceScene start_values(void) {
+    ReferenceScene scene = {0};
+    for (int k = 0; k < FIELDS; k++) {
+        scene_set(&scene, k, TABLE[k].start_value);
+    }
+    return scene;
 }
 
 // The same number, or both none.
@@ -97,14 +109,17 @@ ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceSc
     return scene;
 }
 
-static ReferenceScene usual_step(int step) { return step == 0 ? reference_scene() : no_change(); }
+static ReferenceScene usual_step(int step) { return step == 0 ? start_values() : no_change(); }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Text
 // ---------------------------------------------------------------------------------------------------------------------
 
 void sequence_text(const Sequence* sequence, char* text, size_t size) {
-    size_t length = (size_t)snprintf(text, size, sequence->method == 1 ? "" : "method=%d ", sequence->method);
+    size_t length = (size_t)snprintf(text, size, "tolerance=%g ", sequence->tolerance);
+    if (sequence->method != 1) {
+        length += (size_t)snprintf(text + length, size - length, "method=%d ", sequence->method);
+    }
     for (int step = 0; step < sequence->steps; step++) {
         const ReferenceScene usual = usual_step(step);
         length += (size_t)snprintf(text + length, size - length, step == 0 ? "" : "then ");
@@ -157,12 +172,13 @@ static bool read_field(ReferenceScene* scene, const char* word) {
 bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t size) {
     char copy[SEQUENCE_TEXT];
     snprintf(copy, sizeof copy, "%s", text);
-    *sequence = (Sequence){.method = 1, .steps = 1, .step = {reference_scene()}};
+    *sequence = (Sequence){.tolerance = 1e-4, .method = 1, .steps = 1, .step = {start_values()}};
     for (char* word = strtok(copy, " \n"); word != NULL; word = strtok(NULL, " \n")) {
         snprintf(wrong, size, "%s", word);
         if (strcmp(word, "then") == 0 && sequence->steps < MOST_STEPS) {
             sequence->step[sequence->steps++] = no_change();
         } else if (sscanf(word, "method=%d", &sequence->method) != 1 &&
+                   sscanf(word, "tolerance=%lf", &sequence->tolerance) != 1 &&
                    !read_field(&sequence->step[sequence->steps - 1], word)) {
             return false;
         }
@@ -175,14 +191,14 @@ bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t siz
 // ---------------------------------------------------------------------------------------------------------------------
 
 // Takes the plainer sequence if it still shows the miss.
-static bool keep(Sequence* plain, const Sequence* plainer, StillShows* shows, double tolerance) {
-    const bool kept = shows(plainer, tolerance);
+static bool keep(Sequence* plain, const Sequence* plainer, StillShows* shows) {
+    const bool kept = shows(plainer);
     *plain = kept ? *plainer : *plain;
     return kept;
 }
 
 // Tries the start value, then ever more digits.
-static bool simplify_field(Sequence* plain, int step, int field, StillShows* shows, double tolerance) {
+static bool simplify_field(Sequence* plain, int step, int field, StillShows* shows) {
     static const int DIGITS[] = {0, 1, 2, 3, 5, 8, 12};
     const ReferenceScene base = usual_step(step);
     const double value = scene_get(&plain->step[step], field), usual = scene_get(&base, field);
@@ -196,22 +212,22 @@ static bool simplify_field(Sequence* plain, int step, int field, StillShows* sho
         if (plainer == value) { // it has so few digits already
             return false;
         }
-        if (keep(plain, &changed, shows, tolerance)) {
+        if (keep(plain, &changed, shows)) {
             return true;
         }
     }
     return false;
 }
 
-Sequence minimized(const Sequence* sequence, StillShows* shows, double tolerance) {
+Sequence minimized(const Sequence* sequence, StillShows* shows) {
     Sequence plain = *sequence;
     for (bool changed = true; changed;) {
         Sequence fewer = plain;
         fewer.steps--;
-        changed = fewer.steps > 0 && keep(&plain, &fewer, shows, tolerance);
+        changed = fewer.steps > 0 && keep(&plain, &fewer, shows);
         for (int step = 0; step < plain.steps; step++) {
             for (int k = 0; k < (step == 0 ? FIELDS : LAW_FIELD); k++) {
-                changed = (k != LAW_FIELD && simplify_field(&plain, step, k, shows, tolerance)) || changed;
+                changed = (k != LAW_FIELD && simplify_field(&plain, step, k, shows)) || changed;
             }
         }
     }

@@ -11,12 +11,16 @@
 enum { MOST_STEPS = 10, SEQUENCE_TEXT = 8000 };
 
 typedef struct {
-    int method; // number of solver.method
+    double tolerance; // solver.tolerance
+    int method;       // number of solver.method
     int steps;
     // The first scene is complete. In the others a NaN is a number that keeps its value from the step before;
     // their enumerations, start and delta_0 are not used.
     ReferenceScene step[MOST_STEPS];
 } Sequence;
+
+// Table 1's surfaces and the start values of modelDescription.xml.
+ReferenceScene start_values(void);
 
 // The numbers of a scene by their index, its enumerations after them, the law first.
 enum { LAW_FIELD = REFERENCE_DOUBLES, FIELDS = LAW_FIELD + 5 };
@@ -36,10 +40,10 @@ ReferenceScene changes_between(const ReferenceScene* left, const ReferenceScene*
 
 // A sequence that still shows the miss, with the fewest steps, the most start values and the fewest digits:
 // greedily, one after the other, until nothing changes.
-typedef bool StillShows(const Sequence* sequence, double tolerance);
-Sequence minimized(const Sequence* sequence, StillShows* shows, double tolerance);
+typedef bool StillShows(const Sequence* sequence);
+Sequence minimized(const Sequence* sequence, StillShows* shows);
 
-// As name=value for each value that is not the start value. "then" precedes each later step, which has its
+// The tolerance, and name=value for each value that is not the start value. "then" precedes each later step, which has its
 // changes alone.
 void sequence_text(const Sequence* sequence, char* text, size_t size);
 

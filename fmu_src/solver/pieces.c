@@ -34,13 +34,9 @@ bool fc_next_piece(FcPieces* pieces) {
     return true;
 }
 
-void fc_loose_step(const FcScene* scene, FcStepResult* result) {
-    const double square = result->delta * result->delta + result->delta_y * result->delta_y;
-    if (square != 0.0) {
-        result->heat += 0.5 * fc_scene_contact(scene, 0.0).sigma * square;
-        result->lost += result->delta;
-        result->lost_y += result->delta_y;
-        result->delta = result->delta_y = 0.0;
-    }
+void fc_loose_step(FcStepResult* result) {
+    result->lost += result->delta;
+    result->lost_y += result->delta_y;
+    result->delta = result->delta_y = 0.0;
     result->slips = 0;
 }

@@ -22,8 +22,8 @@ void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole);
 // Takes the next piece; false if there is none. Even an interval of no length has one.
 bool fc_next_piece(FcPieces* pieces);
 
-// A step of any length without contact: the bristle is lost, and the energy that a constant stiffness stored
-// in it is heat.
-void fc_loose_step(const FcScene* scene, FcStepResult* result);
+// A step of any length without contact: the bristle is lost. It has no energy: with a constant stiffness its
+// bound has fallen to 0 before, else the stiffness has.
+void fc_loose_step(FcStepResult* result);
 
 #endif

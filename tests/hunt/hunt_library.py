@@ -18,7 +18,8 @@ CHOICES = {
     "input": ("Separation", "Load"),
     "initial": ("Given", "Settled"),
 }
-RESULTS = "delta slips F_t F_t_mean work heat F_t_start S path delta_y F_y F_y_mean F_y_start".split()
+RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start work heat slips
+    delta delta_y S path""".split()
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 
 
@@ -36,13 +37,13 @@ class Step(ctypes.Structure):
 @cache
 def library() -> Any:
     found = ctypes.CDLL(str(build_targets("default", ["hunt_reference"]) / "hunt/libhunt_reference.so"))
-    found.reference_scene.restype = Scene
+    found.start_values.restype = Scene
     found.reference_settled_force.restype = ctypes.c_bool
     return found
 
 
 def scene(**values: Any) -> Scene:
-    made = library().reference_scene()
+    made = library().start_values()
     for name, value in values.items():
         setattr(made, name, 1 + CHOICES[name].index(value) if name in CHOICES else value)
     return made

@@ -30,8 +30,8 @@ def test_scenes_that_were_found() -> None:
 
 def test_a_miss_is_told_and_made_plain() -> None:
     """Explicit Euler is far from a tolerance of 1e-8, also in a second step."""
-    scene = "law=Dahl V_1=0.3 stiffnessScale=1e-6 h=3e-5 then F_C=30"
-    replay = ("--tolerance", "1e-8", "--minimize", "1", "--replay")
+    scene = "tolerance=1e-8 law=Dahl V_1=0.3 stiffnessScale=1e-6 h=3e-5 then F_C=30"
+    replay = ("--minimize", "1", "--replay")
     done = hunt(*replay, "method=6 " + scene)
     assert "miss law=Dahl" in done.stdout and "step=2" in done.stdout, done.stdout
     assert "plain: tolerance=1e-08 method=6" in done.stdout, done.stdout

@@ -57,7 +57,7 @@ static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, co
     fc_pieces_start(&pieces, scene, h);
     while (fc_next_piece(&pieces)) {
         if (fc_scene_is_loose(pieces.scene)) {
-            fc_loose_step(pieces.scene, result);
+            fc_loose_step(result);
         } else if (method == FC_METHOD_CVODE
                        ? !fc_cvode_step(cvode, pieces.scene, options, pieces.h, result, message)
                        : !fc_fixed_step(pieces.scene, method, options, pieces.h, result, message)) {

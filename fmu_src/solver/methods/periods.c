@@ -51,7 +51,7 @@ void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOpti
     fc_pieces_start(&pieces, scene, duration);
     while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
         if (fc_scene_is_loose(pieces.scene)) {
-            fc_loose_step(pieces.scene, total);
+            fc_loose_step(total);
         } else {
             const FcSolverOptions own = options_of_piece(options, &pieces);
             law.step(pieces.scene, &own, pieces.h, total);
@@ -432,7 +432,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
         const FcScene rest = fc_scene_later(scene, periods.count / scene->drive.vibration.f);
         fc_periods_take(law, &rest, options, periods.rest, result);
     } else if (fc_scene_is_loose(scene)) {
-        fc_loose_step(scene, result);
+        fc_loose_step(result);
     } else {
         step_over_equal_periods(law, scene, options, periods.count, result);
         fc_periods_take(law, scene, options, periods.rest, result);
@@ -444,7 +444,7 @@ FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSol
                             FcStepResult* end) {
     const double f = scene->drive.vibration.f;
     if (fc_scene_is_loose(scene)) {
-        fc_loose_step(scene, end);
+        fc_loose_step(end);
         return (FcVector){0.0, 0.0};
     }
     Walk walk = walk_from(law, scene, options, end);
