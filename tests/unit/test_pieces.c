@@ -152,19 +152,12 @@ static void a_separation_that_grows(void) {
     }
 }
 
-// Its deflection goes; what a constant stiffness stored is heat, and what it lost is no motion.
+// The deflection goes without motion, force and heat.
 static void a_step_without_contact(void) {
-    for (int constant = 0; constant <= 1; constant++) {
-        Case one;
-        make_load(&one, 0.0, 0.0);
-        one.contact.model = constant ? FC_CONTACT_CONSTANT : FC_CONTACT_ASPERITIES;
-        const FcContactAtModulus at_E = fc_contact_at_modulus(&one.contact, 58e9);
-        one.scene = fc_scene_make(&one.contact, &at_E, &one.friction, 55.0, &one.scene.drive);
-        FcStepResult result = {.delta = -3e-6, .slips = -1, .heat = 1.0, .impulse = 2.0};
-        fc_loose_step(&one.scene, &result);
-        CHECK(result.delta == 0.0 && result.slips == 0 && result.lost == -3e-6 && result.impulse == 2.0);
-        CHECK_NEAR(result.heat, 1.0 + (constant ? 0.5 * 2.5e6 * 9e-12 : 0.0), 1e-15);
-    }
+    FcStepResult result = {.delta = -3e-6, .slips = -1, .heat = 1.0, .impulse = 2.0};
+    fc_loose_step(&result);
+    CHECK(result.delta == 0.0 && result.slips == 0 && result.lost == -3e-6 && result.impulse == 2.0);
+    CHECK(result.heat == 1.0);
 }
 
 int main(void) {
