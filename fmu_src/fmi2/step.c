@@ -41,11 +41,8 @@ static bool check_step(const FcInstance* instance, double t, double h) {
 // The end of a moving input must be a value that could also be set.
 static bool check_moving_inputs(const FcInstance* instance, double h) {
     const FcFrictionState* state = &instance->contact.state;
-    for (unsigned vr = 0; state->next_rate_set && vr < fc_variables_count; vr++) {
-        const FcVariableInfo* info = &fc_variables[vr];
-        if (info->causality != FC_CAUSALITY_INPUT) {
-            continue;
-        }
+    for (unsigned i = 0; state->next_rate_set && i < fc_inputs_count; i++) {
+        const FcVariableInfo* info = &fc_variables[fc_inputs[i]];
         const double value = fc_variable_value(&state->variables, info);
         const double end = value + state->next_rate[fc_variable_input(info)] * h;
         if (!fc_variable_allows(info, end)) {

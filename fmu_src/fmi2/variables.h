@@ -41,6 +41,8 @@ typedef struct {
 
 extern const FcVariableInfo fc_variables[];
 extern const unsigned fc_variables_count;
+extern const unsigned fc_inputs[]; // value references of the inputs
+extern const unsigned fc_inputs_count;
 
 extern const unsigned fc_event_indicators_count; // numberOfEventIndicators of the XML
 
