@@ -68,12 +68,12 @@ static FcBristle on_bound(const FcScene* scene, int side) {
                        .slips = fc_has_static_friction(scene->friction) ? side : 0};
 }
 
-// Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k, within
-// the tolerance.
+// Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k. A distance
+// that is not rounding would grow from period to period.
 static bool lies_on_bound(const Block* block, double k, double delta) {
     const FcScene scene = scene_at(block, k);
-    const double allowed = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
-    return fabs(on_bound(&scene, block->side).delta - delta) * fc_scene_stiffness(&scene, 0.0) <= allowed;
+    const double bound = on_bound(&scene, block->side).delta;
+    return fabs(bound - delta) <= FC_ROUNDING_OF_BOUND * fabs(bound);
 }
 
 // A period of a scene from a bristle.
