@@ -8,7 +8,9 @@
 FcScene fc_scene_of_bound(const FcScene* scene, int slips, FcFriction* friction) {
     FcScene bound = *scene;
     *friction = *scene->friction;
-    friction->model = FC_ELASTIC_PLASTIC;
+    if (friction->model != FC_COULOMB) { // whose contact may be open
+        friction->model = FC_ELASTIC_PLASTIC;
+    }
     if (slips == 0 || scene->friction->model != FC_ELASTIC_PLASTIC) {
         const double ratio = fc_static_ratio(scene->friction);
         friction->mu *= ratio;

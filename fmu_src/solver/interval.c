@@ -53,7 +53,8 @@ FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, d
         .has_peaks = beyond_peaks != scene,
         .moving_limit = fc_limit_follows_load(scene->friction) || beyond_peaks != scene,
     };
-    assert(!(interval.limit > (1.0 + 1e-9) * interval.stiffness * interval.saturation));
+    assert(!fc_scene_depends_on_d(scene) ||
+           !(interval.limit > (1.0 + 1e-9) * interval.stiffness * interval.saturation));
     interval.forgotten = 2.0 * 2.302585 * fc_digits(options->tolerance) * interval.saturation;
     return interval;
 }
