@@ -33,7 +33,9 @@ def table(description: ModelDescription) -> str:
         names = ", ".join(_string(item.name) for item in enumeration.items)
         lines.append(f"static const char* const literals_of_{enumeration.name}[] = {{{names}}};")
     lines += ["", *(_type_check(variable) for variable in description.modelVariables), ""]
-    inputs = [str(k) for k, variable in enumerate(description.modelVariables) if variable.causality == "input"]
+    inputs = [
+        str(k) for k, variable in enumerate(description.modelVariables) if variable.causality == "input"
+    ]
     lines += [
         "const FcVariableInfo fc_variables[] = {",
         *(_row(variable) for variable in description.modelVariables),
