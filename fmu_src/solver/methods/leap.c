@@ -165,16 +165,18 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     return (Numbers){.map = of_map, .across = of_map};
 }
 
-// The angle of point j, over pi: Chebyshev's points, in the order that halves the angles between them (van
-// der Corput).
+// The angle of point j, over pi: Chebyshev's points, in an order that halves the angles between them. The
+// outermost points come first, those of the end and of the start in turn: errors are largest there.
 static double angle_of(int j) {
-    double angle = j == 1 ? 1.0 : 0.0;
-    double part = 0.5;
-    for (int bits = j - 1; bits > 0; bits /= 2) {
-        angle += bits % 2 == 1 ? part : 0.0;
-        part *= 0.5;
+    if (j < 2) {
+        return j;
     }
-    return angle;
+    int parts = 2; // 2, 4, 8, 16
+    while (parts < j) {
+        parts *= 2;
+    }
+    const int i = j - 1 - parts / 2;
+    return (double)(i % 2 == 0 ? parts - 1 - i : i) / parts;
 }
 
 // The place of period k in [-2, 2], a length that keeps products of distances near 1.
