@@ -274,6 +274,9 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
 // stiffness, nearest.
 double fc_scene_largest_saturation(const FcScene* scene, double h) {
     const FcFriction* friction = scene->friction;
+    if (!fc_scene_depends_on_d(scene)) {
+        return scene->F_C / scene->at_E.stiffness_0 * fc_static_ratio(friction);
+    }
     const bool follows = fc_limit_follows_load(friction);
     const bool moves = scene->floats || scene->drive.E.rate != 0.0;
     const bool is_nearest = scene->at_E.model == FC_CONTACT_CONSTANT && follows;
