@@ -339,6 +339,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
             }
             // Each is kept twice as long as the last, so that a cycle of any length returns to it.
             if ((meetings & (meetings - 1)) == 0) {
+                if (isinf(periods)) { // the sums of free periods before would take digits from their difference
+                    *total = fc_result_from(fc_bristle_of(total), total->evaluations);
+                }
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
