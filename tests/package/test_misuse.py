@@ -80,7 +80,7 @@ def test_a_session_in_two_threads(fmu_path: Path) -> None:
 
 
 def test_a_step_whose_length_is_no_number(session: Session) -> None:
-    with pytest.raises(fc.UserError, match="^h = '1e-3' is not a number$"):
+    with pytest.raises(fc.UserError, match=r"^h = '1e-3' is not a number$"):
         session.step("1e-3")
     assert session.time == 0.0
 
