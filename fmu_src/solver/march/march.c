@@ -692,7 +692,7 @@ static void march_between_reversals(March* m, double D) {
         }
         const double x = fc_drive_displacement(drive, sticks_to, end);
         m->result->evaluations += 1.0;
-        const double way = D - side * delta;
+        const double way = fmax(0.0, D - side * delta); // below 0 by rounding
         bool goes_on = !(side * x > way);
         if (!goes_on && way <= ROUNDING_OF_BOUND * D && side * x <= ROUNDING_AT_REVERSAL * D &&
             fc_has_static_friction(scene->friction)) {
