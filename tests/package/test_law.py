@@ -236,7 +236,7 @@ class TestSessions:
                 lambda session: session.set("friction.model", "Dal"),
                 "set friction.model: 'Dal' is not one of Dahl",
             ),
-            (lambda session: session.get("Ft"), "read: Ft is no variable of the FMU; did you mean F_t?"),
+            (lambda session: session.get("Ft"), "get: Ft is no variable of the FMU; did you mean F_t?"),
             (lambda session: session.step(-1.0), "fmi2DoStep: "),
             (lambda session: session.slope("F_t", "vv"), "slope: vv is no variable of the FMU"),
             (
