@@ -339,7 +339,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
             }
             // Each is kept twice as long as the last, so that a cycle of any length returns to it.
             if ((meetings & (meetings - 1)) == 0) {
-                if (isinf(periods)) { // the sums of free periods before would take digits from their difference
+                if (isinf(periods)) { // the sums of free periods would take digits from the cycle's
                     *total = fc_result_from(fc_bristle_of(total), total->evaluations);
                 }
                 walk->met = *total;
