@@ -293,7 +293,7 @@ static double force_of_bristle(const FcScene* scene, double h, FcBristle from) {
     if (fc_scene_has_pieces(scene)) {
         limit = fmax(limit, fc_scene_mean_limit(scene, h));
     }
-    const double delta = from.delta_y == 0.0 ? fabs(from.delta) : hypot(from.delta, from.delta_y);
+    const double delta = fc_size(from);
     const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);

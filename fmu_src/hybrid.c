@@ -122,7 +122,7 @@ static void find_indicators_of_bound(const View* view, FcRegime regime, FcBristl
     const FcBound bound = fc_bound_in_plane(&view->bound, 0.0);
     const bool has_side = view->side != 0 && !fc_is_planar(&view->scene, bristle);
     if (regime == FC_FREE) {
-        const double size = has_side ? view->side * bristle.delta : hypot(bristle.delta, bristle.delta_y);
+        const double size = has_side ? view->side * bristle.delta : fc_size(bristle);
         z[1] = (1.0 - size / bound.D) + HYSTERESIS;
     }
     if (view->side != 0) {
@@ -205,7 +205,7 @@ static bool slips_along(FcFrictionContact* contact, Slip* slip) {
     const double sigma = fc_scene_contact(&now.scene, 0.0).sigma;
     const double D = fc_scene_is_loose(&now.scene) ? 0.0 : fc_bound_in_plane(&now.bound, 0.0).D;
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    const double size = hypot(bristle.delta, bristle.delta_y);
+    const double size = fc_size(bristle);
     const double onto = size > 0.0 ? D / size : 0.0;
     *slip = (Slip){D - size, {onto * bristle.delta, onto * bristle.delta_y}, sigma * D};
     return sigma != 0.0;

@@ -42,6 +42,11 @@ typedef struct {
     double delta_y; // m, across; in the plane slips says only whether it slips
 } FcBristle;
 
+// The size of the deflection [m].
+static inline double fc_size(FcBristle bristle) {
+    return bristle.delta_y == 0.0 ? fabs(bristle.delta) : hypot(bristle.delta, bristle.delta_y);
+}
+
 // The side along: 1 or -1.
 static inline int fc_side(FcBristle bristle) { return bristle.delta < 0.0 ? -1 : 1; }
 

@@ -98,9 +98,9 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     }
     AtBound of;
     find_bound(&of, scene, bristle);
-    const double size = hypot(bristle.delta, bristle.delta_y);
+    const double size = fc_size(bristle);
     if (size > of.bound.D) {
-        const FcVector n = {bristle.delta / size, bristle.delta_y / size};
+        const FcVector n = direction(bristle.delta, bristle.delta_y);
         if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
             size > (1.0 + FC_ROUNDING_OF_BOUND) * of.bound.D) {
             bristle.slips = fc_is_planar(scene, bristle) ? 1 : fc_side(bristle);
@@ -189,7 +189,7 @@ static Parts slipping_parts(const FcScene* scene, const Moment* at, FcRegime reg
     if (fc_is_planar(scene, bristle)) {
         const FcVector turning = perpendicular(at->V, n);
         parts.delta_rate = plus(parts.delta_rate, 1.0, turning);
-        parts.state_rate = plus(parts.state_rate, hypot(bristle.delta, bristle.delta_y) / bound.D, turning);
+        parts.state_rate = plus(parts.state_rate, fc_size(bristle) / bound.D, turning);
     }
     return parts;
 }
@@ -311,7 +311,7 @@ static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcReg
     const FcVector V_along = {along->V, along->V_y};
     const FcVector delta_along = {along->delta, along->delta_y};
     const FcVector n = direction_of_slip(scene, regime, bristle);
-    const double size = hypot(bristle.delta, bristle.delta_y);
+    const double size = fc_size(bristle);
     const FcVector n_along =
         size > 0.0 ? times(1.0 / size, perpendicular(delta_along, n)) : (FcVector){0.0, 0.0};
     const FcVector turning = perpendicular(V, n);

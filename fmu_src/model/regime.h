@@ -59,7 +59,8 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle);
 // The regime of a bristle that is within its bound.
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 
-// fc_push in the plane, at the start, in the direction of the deflection, at any distance from the bound.
+// fc_push at the start, on a line or in the plane, at any distance from the bound: in the direction of the
+// deflection, or along a line in that in which the bristle slips.
 double fc_push_in_plane(const FcScene* scene, FcBristle bristle);
 
 // The bound at a local time of a scene of fc_scene_of_bound, in the plane too.

@@ -225,7 +225,7 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
 }
 
 FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat) {
-    const double delta = bristle.delta_y == 0.0 ? fabs(bristle.delta) : hypot(bristle.delta, bristle.delta_y);
+    const double delta = fc_size(bristle);
     *heat = 0.0;
     if (!fc_is_bounded(scene->friction) && !fc_scene_is_loose(scene)) {
         return bristle;
@@ -234,8 +234,7 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
         const FcBristle reached = fc_reach(scene, bristle);
         const double sigma = fc_scene_contact(scene, 0.0).sigma;
-        const double end =
-            reached.delta_y == 0.0 ? fabs(reached.delta) : hypot(reached.delta, reached.delta_y);
+        const double end = fc_size(reached);
         *heat = 0.5 * sigma * (delta - end) * (delta + end);
         return reached;
     }

@@ -13,10 +13,13 @@ from workshop import description
 HEAVY = ("numpy", "pandas", "scipy", "fmpy", "matplotlib", "rich", "dask", "pyarrow")
 
 
+def printed(code: str) -> str:
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+
+
 def test_nothing_heavy_is_imported_with_it() -> None:
     code = f"import sys, frictioncontact; print([name for name in {HEAVY} if name in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "[]\n"
+    assert printed(code) == "[]\n"
 
 
 def test_a_contact_is_printed_without_the_fmu() -> None:
@@ -24,8 +27,7 @@ def test_a_contact_is_printed_without_the_fmu() -> None:
         "import sys, frictioncontact as fc; str(fc.contacts); text = str(fc.contacts['steel-dry']);"
         "print('interval, SI   contact.sigma 7.56e+06 to 7.96e+06' in text, 'fmpy' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "True False\n"
+    assert printed(code) == "True False\n"
 
 
 def test_simulating_loads_nothing_that_draws_or_fits() -> None:
@@ -33,8 +35,7 @@ def test_simulating_loads_nothing_that_draws_or_fits() -> None:
         "import sys, frictioncontact as fc; fc.simulate(stop=1e-4, step=5e-5); fc.simulate_many({'V': 0.5});"
         "print([name for name in ('matplotlib', 'dask', 'scipy') if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "[]\n"
+    assert printed(code) == "[]\n"
 
 
 WITHOUT_POSIX = """
@@ -95,5 +96,4 @@ def test_plots_without_matplotlib_say_how_to_get_it() -> None:
         "    try: plot()\n"
         "    except fc.UserError as error: print(error)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == 2 * "pictures need matplotlib: pip install 'frictioncontact[plot]'\n"
+    assert printed(code) == 2 * "pictures need matplotlib: pip install 'frictioncontact[plot]'\n"

@@ -588,13 +588,12 @@ static void stick(March* m, double end) {
     const FcCourse course = course_of(m, bound, &at, x);
     FcMeeting met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0],
                                      unseen(m, at.sigma[0], course.D[0]), &m->result->evaluations);
+    if (slips != 0 && met.side != slips) {
+        met.side = 0;
+    }
     double until = met.side != 0 ? met.t : fc_panel_end(m->t, h, m->cut);
     bool sticks = false; // at that time
     if (slips != 0) {
-        if (met.side != slips) {
-            met.side = 0;
-            until = fc_panel_end(m->t, h, m->cut);
-        }
         Slip panel;
         slip_points(m, h, rule, slips, &panel);
         const double end_of_slip = end_of_push(m, slips, &panel);

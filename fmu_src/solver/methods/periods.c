@@ -77,9 +77,7 @@ typedef struct {
         least; // the one with the smallest deflection at the end of a period that met its bound since then
 } Walk;
 
-static double size_of(const FcStepResult* result) {
-    return result->delta_y == 0.0 ? fabs(result->delta) : hypot(result->delta, result->delta_y);
-}
+static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of(result)); }
 
 static FcMap free_map_of(Walk* walk) {
     if (!walk->has_free_map) {
