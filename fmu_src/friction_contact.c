@@ -176,8 +176,8 @@ FcFastest fc_fastest(const FcDrive* drive) {
 }
 
 // For a bristle within its bound; false if an output is beyond the largest number.
-static bool find_outputs(const FcScene* scene, FcBristle bristle, Outputs* outputs, FcMessage* message) {
-    const FcContactResponse contact = fc_scene_contact(scene, 0.0);
+static bool find_outputs(const FcScene* scene, FcContactResponse contact, FcBristle bristle, Outputs* outputs,
+                         FcMessage* message) {
     *outputs = (Outputs){fc_force(scene, &contact, bristle), contact};
     if (!isfinite(bristle.delta) || !isfinite(bristle.delta_y)) {
         const FcFastest of = fc_fastest(&scene->drive);
@@ -247,7 +247,8 @@ static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
     FcVariables* v = &contact->state.variables;
     const FcScene scene = fc_friction_contact_scene(contact);
     Outputs now;
-    if (!find_outputs(&scene, fc_friction_contact_reached(contact, &scene), &now, message)) {
+    const FcBristle bristle = fc_friction_contact_reached(contact, &scene);
+    if (!find_outputs(&scene, fc_scene_contact(&scene, 0.0), bristle, &now, message)) {
         return false;
     }
     set_outputs(v, &now);
@@ -312,12 +313,13 @@ static double least_limit(const FcScene* scene, double h) {
 // delta', where it is multiplied by sigma |V| / g. So the damping divides the allowed error of the bristle's
 // force.
 static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene, double h, FcBristle from) {
-    const bool is_coulomb = v->friction.model == FC_COULOMB;
-    const double speed = fc_drive_largest_speed(&scene->drive, h);
-    const double damping = is_coulomb ? 0.0 : v->friction.sigma_1 * speed;
+    const double sigma_1 = v->friction.model == FC_COULOMB ? 0.0 : v->friction.sigma_1;
+    const double sigma_2 = v->friction.sigma_2;
+    const double speed = sigma_1 != 0.0 || sigma_2 != 0.0 ? fc_drive_largest_speed(&scene->drive, h) : 0.0;
+    const double damping = sigma_1 * speed;
     const double bristle = force_of_bristle(scene, h, from);
     const double limit = damping != 0.0 ? least_limit(scene, h) : 0.0;
-    const double largest = fmax(bristle, damping + v->friction.sigma_2 * speed);
+    const double largest = fmax(bristle, damping + sigma_2 * speed);
     double force = largest;
     if (limit > 0.0) {
         force = fmax(fc_force_beside_damping(largest, damping, limit),
@@ -471,7 +473,12 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     const FcBristle start = fc_jump(&scene, &before->past, fc_friction_contact_bristle(contact), &heat);
     FcStepResult result;
     const FcMethod method = (FcMethod)v->solver.method;
-    if (!fc_method_formula(&scene, method, h, start, &result)) {
+    const bool moves = !fc_drive_is_constant(&scene.drive);
+    FcContactResponse response;
+    if (!moves) {
+        response = fc_scene_contact(&scene, 0.0);
+    }
+    if (moves || !fc_method_formula(&scene, &response, method, h, start, &result)) {
         const FcSolverOptions options = solver_options(v, &scene, h, fc_friction_contact_bristle(contact));
         if (!fc_method_step(&scene, method, contact->cvode, &options, h, start, &result, message)) {
             return false;
@@ -483,15 +490,15 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     // Evaluated at the phase of t + h, which is also that of the next step. A phase carried on from the
     // step's start would lose digits with every period.
     const double time_rest = rounding_of_sum(t, h);
-    const bool moves = !fc_drive_is_constant(&scene.drive);
     FcScene moved;
     if (moves) {
         moved = scene_from(contact, t + h, time_rest, before->next_rate, h);
+        response = fc_scene_contact(&moved, 0.0);
     }
     const FcScene* end = moves ? &moved : &scene;
     Outputs now;
     const FcBristle reached = fc_bristle_of(&result);
-    if (!find_outputs(end, reached, &now, message)) {
+    if (!find_outputs(end, response, reached, &now, message)) {
         return false;
     }
     const FcVector mean = h > 0.0 ? (FcVector){result.impulse / h, result.impulse_y / h} : now.force;

@@ -131,6 +131,10 @@ double scene_kappa(const ReferenceScene* s) {
     return stiffness_now(s) * top_speed(s) / (TURN * s->f * fmax(limit_now(s), 1e-250));
 }
 
+double scene_start_over_limit(const ReferenceScene* s) {
+    return stiffness_now(s) * hypot(s->delta_0, s->delta_y_0) / fmax(limit_now(s), 1e-250);
+}
+
 double scene_gain(const ReferenceScene* s) {
     const double turns = TURN * s->f, V_rate = turns * hypot(s->V_1, s->V_2) + hypot(s->V_rate, s->V_y_rate);
     if (s->law != LAW_ELASTIC_PLASTIC || V_rate == 0.0) {

@@ -16,7 +16,11 @@ double scene_kappa(const ReferenceScene* scene);
 // (docs/reliability.md).
 double scene_gain(const ReferenceScene* scene);
 
-// The smallest kappa of a vibration in the domain of the promise.
+// |delta| at the scene's start over g / sigma there.
+double scene_start_over_limit(const ReferenceScene* scene);
+
+// The domain of the promise: the smallest kappa of a vibration, and the largest start over the limit.
 #define LEAST_KAPPA 1e-3
+#define LARGEST_START 100.0
 
 #endif

@@ -10,9 +10,9 @@
 const char* const GRADE_NAMES[GRADES] = {"F_t",       "F_y", "F_t_mean", "F_y_mean", "F_t_start",
                                          "F_y_start", "W_f", "Q_f",      "side",     "settled"};
 
-static const double ROUNDING = 1e-11;            // of S, beside the tolerance
-static const double DIGITS = 32.0 * DBL_EPSILON; // of a deflection, as the state holds it
-static const double LEAST_S = 1e-20;             // N, and J: S and the path are 0 if nothing acts
+static const double ROUNDING = 1e-11; // of S, beside the tolerance
+static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
+static const double LEAST_S = 1e-20;  // N, and J: S and the path are 0 if nothing acts
 
 // The results that the reference allows.
 typedef struct {
@@ -147,8 +147,9 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
     if (!(verdict.ratio <= 1.0)) {
         verdict = verdict_by_rounding(before, taken, sequence->tolerance);
     }
-    if (!(verdict.ratio <= 1.0) &&
-        (may_forget(scene) || (scene->initial == START_SETTLED && !settles(scene)))) {
+    const ReferenceScene* first = &sequence->step[0];
+    if (!(verdict.ratio <= 1.0) && (may_forget(scene) || scene_start_over_limit(scene) > LARGEST_START ||
+                                    (first->initial == START_SETTLED && !settles(first)))) {
         return false;
     }
     const double settled = before == NULL ? settled_ratio(taken, sequence) : -1.0;

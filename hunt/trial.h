@@ -8,7 +8,7 @@
 // - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
 // The allowances are for rounding alone:
 // - 1e-11 S, or S path.
-// - 32 eps S |delta| of both ends for W_f and Q_f, since the state has no more digits of delta.
+// - 1e-13 S |delta| of both ends for W_f and Q_f, since a bristle so near to its bound lies on it.
 // - The change of the reference if the step's own start and length move by two units in their last place.
 // - The same if the deflection before the step moves by 2e-10 of itself: at its static bound a bristle may have broken
 //   away or not. If the motion may be chaotic (scene_gain above 2), the deflection moves by the tolerance.
@@ -16,7 +16,7 @@
 //   and the allowed error of an energy at least 1e-20 J.
 // A settled start is judged by F_t_start. A step is counted and not judged if it takes more panels or cycles than the
 // reference goes through. The same holds for a step that misses if its motion may be chaotic and it has more than 10
-// periods, or a start that does not settle.
+// periods, if it starts beyond 100 limits, or if the sequence starts from a settled state that is not promised.
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 

@@ -232,9 +232,13 @@ static Parts parts(const FcScene* scene, FcRegime regime, FcBristle bristle) {
 }
 
 FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBristle bristle) {
-    const bool asks_for_rate = scene->friction->sigma_1 != 0.0;
+    const FcFriction* friction = scene->friction;
+    if (friction->model != FC_COULOMB && friction->sigma_1 == 0.0 && friction->sigma_2 == 0.0) {
+        return times(contact->sigma, (FcVector){bristle.delta, bristle.delta_y});
+    }
+    const bool asks_for_rate = friction->sigma_1 != 0.0;
     const Parts at = parts_of(scene, contact, asks_for_rate ? fc_regime(scene, bristle) : FC_FREE, bristle);
-    return whole_force(scene->friction, &at);
+    return whole_force(friction, &at);
 }
 
 FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle) {

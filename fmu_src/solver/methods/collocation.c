@@ -123,8 +123,9 @@ FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* option
     return cross_interval(scene, options, duration, delta_0, FC_MAP_THIS_START, watch, evaluations);
 }
 
-void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result) {
-    const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
+void fc_collocation_constant(const FcScene* scene, const FcContactResponse* contact, double h, double delta_0,
+                             FcStepResult* result) {
+    const FcCoefficients at = fc_scene_coefficients_of(scene, contact);
     const FcMap map = fc_map_of_constant_scene(&at, h);
     *result = (FcStepResult){.delta = delta_0, .evaluations = 1.0};
     fc_map_apply(&map, result);

@@ -77,8 +77,8 @@ static bool takes_default(const FcScene* scene, FcMethod method) {
            (method == FC_METHOD_CVODE && may_touch_bound(scene));
 }
 
-bool fc_method_formula(const FcScene* scene, FcMethod method, double h, FcBristle from,
-                       FcStepResult* result) {
+bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
+                       FcBristle from, FcStepResult* result) {
     if (!is_affine(scene) || !fc_drive_is_constant(&scene->drive) || fc_scene_is_loose(scene) ||
         !takes_default(scene, method)) {
         return false;
@@ -87,7 +87,7 @@ bool fc_method_formula(const FcScene* scene, FcMethod method, double h, FcBristl
     if (fc_is_planar(scene, from)) {
         fc_plane_constant(scene, h, result);
     } else {
-        fc_collocation_constant(scene, h, from.delta, result);
+        fc_collocation_constant(scene, contact, h, from.delta, result);
     }
     return true;
 }

@@ -6,8 +6,10 @@
 #include "solver/methods/methods.h"
 #include "solver/solver.h"
 
-// The step [0, h], h [s] >= 0, by a closed form; false if there is none for this scene and this method.
-bool fc_method_formula(const FcScene* scene, FcMethod method, double h, FcBristle from, FcStepResult* result);
+// The step [0, h], h [s] >= 0, by a closed form; false if there is none for this scene and this method. contact
+// is the scene's at its start.
+bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
+                       FcBristle from, FcStepResult* result);
 
 // The step [0, h], h [s] >= 0, from a bristle that is within its bound (fc_reach). Any method solves Coulomb
 // and ElasticPlastic as the default does: exactly, or to the tolerance if sigma or g moves. cvode also leaves

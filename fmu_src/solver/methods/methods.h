@@ -5,14 +5,15 @@
 #include "solver/methods/periods.h"
 
 // The default: the map of an interval in which something moves, and the closed form for held inputs without
-// vibration, exact for any h [s] >= 0.
+// vibration, exact for any h [s] >= 0, with the contact of its start.
 FcMap fc_collocation_interval(const FcScene* scene, const FcSolverOptions* options, double duration,
                               double delta_0, FcMapScope scope, double* evaluations);
 // The same of a bounded bristle, up to its first meeting with the bound.
 struct FcWatch;
 FcMap fc_collocation_watched(const FcScene* scene, const FcSolverOptions* options, double duration,
                              double delta_0, struct FcWatch* watch, double* evaluations);
-void fc_collocation_constant(const FcScene* scene, double h, double delta_0, FcStepResult* result);
+void fc_collocation_constant(const FcScene* scene, const FcContactResponse* contact, double h, double delta_0,
+                             FcStepResult* result);
 
 // Coulomb's law, an FcStep.
 void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, double duration,

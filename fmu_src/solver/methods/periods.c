@@ -391,26 +391,33 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
     *total = walk.total;
 }
 
-FcPeriods fc_periods_in(const FcScene* scene, double h) {
-    assert(h >= 0.0);
+bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
+                     FcStepResult* result, FcMessage* message) {
     const double f = scene->drive.vibration.f;
-    const double count = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
-    const double rest = count > 0.0 ? fmax(0.0, fma(h, f, -count) / f) : h;
-    assert(rest <= h);
-    return (FcPeriods){.count = count, .rest = rest};
-}
-
-bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMessage* message) {
-    const double f = scene->drive.vibration.f;
-    const double periods = fc_periods_in(scene, h).count;
-    if (periods > MOST_CHANGING_PERIODS && fc_drive_is_linear(&scene->drive)) {
+    const bool is_linear = fc_drive_is_linear(&scene->drive);
+    const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
+    const double rest = periods > 0.0 ? fmax(0.0, fma(h, f, -periods) / f) : h;
+    assert(h >= 0.0 && rest <= h);
+    if (periods > MOST_CHANGING_PERIODS && is_linear) {
         return fc_message_set(
             message,
             "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
             "at most %.9g of them are computed: the largest step is %.9g s",
             h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
     }
-    if (evaluations > FC_MOST_EVALUATIONS) {
+    if (periods < 2.0) {
+        fc_periods_take(law, scene, options, h, result);
+    } else if (is_linear) {
+        fc_leap(law, scene, options, periods, result);
+        const FcScene later = fc_scene_later(scene, periods / f);
+        fc_periods_take(law, &later, options, rest, result);
+    } else if (fc_scene_is_loose(scene)) {
+        fc_loose_step(result);
+    } else {
+        step_over_equal_periods(law, scene, options, periods, result);
+        fc_periods_take(law, scene, options, rest, result);
+    }
+    if (result->evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(
             message,
             "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves over "
@@ -418,27 +425,6 @@ bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMess
             h, FC_MOST_EVALUATIONS);
     }
     return true;
-}
-
-bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
-                     FcStepResult* result, FcMessage* message) {
-    if (!fc_periods_check(scene, h, 0.0, message)) {
-        return false;
-    }
-    const FcPeriods periods = fc_periods_in(scene, h);
-    if (periods.count < 2.0) {
-        fc_periods_take(law, scene, options, h, result);
-    } else if (fc_drive_is_linear(&scene->drive)) {
-        fc_leap(law, scene, options, periods.count, result);
-        const FcScene rest = fc_scene_later(scene, periods.count / scene->drive.vibration.f);
-        fc_periods_take(law, &rest, options, periods.rest, result);
-    } else if (fc_scene_is_loose(scene)) {
-        fc_loose_step(result);
-    } else {
-        step_over_equal_periods(law, scene, options, periods.count, result);
-        fc_periods_take(law, scene, options, periods.rest, result);
-    }
-    return fc_periods_check(scene, h, result->evaluations, message);
 }
 
 FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,

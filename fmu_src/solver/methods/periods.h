@@ -44,18 +44,6 @@ typedef struct {
 void fc_periods_take(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
                      FcStepResult* total);
 
-// The parts of a step of h [s] >= 0: whole periods of the vibration, none without vibration, and the rest
-// [s].
-typedef struct {
-    double count;
-    double rest;
-} FcPeriods;
-FcPeriods fc_periods_in(const FcScene* scene, double h);
-
-// False, with *message filled, if a step of h [s] has too many periods that differ, or has taken more than
-// FC_MOST_EVALUATIONS.
-bool fc_periods_check(const FcScene* scene, double h, double evaluations, FcMessage* message);
-
 // The step [0, h], h [s] >= 0, from the bristle in *result. Adds its integrals to *result. Returns false,
 // with *message filled, if the periods or the evaluations are too many.
 bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
