@@ -67,7 +67,27 @@ static void warn_unused(const FcInstance* instance, const FcVariableInfo* settin
            decider->literals[item - 1]);
 }
 
+// The largest likely deflection [m] of a settled start. Chosen empirically, as the largest delta_0 of
+// frictioncontact/doubts.py. Half or twice of it moves the separation from which on a contact of the start
+// values counts as nearly open, 32 um, by 0.6 um.
+static const double LONGEST_BRISTLE = 1e-2;
+
+// With a constant limit the settled bristle of a contact that opens grows without bound: it is F_C / sigma.
+static void warn_nearly_open(const FcInstance* instance) {
+    const FcVariables* v = &instance->contact.state.variables;
+    const double delta = hypot(v->delta, v->delta_y);
+    if (v->initialState == FC_STATE_SETTLED && delta > LONGEST_BRISTLE &&
+        v->friction.limit == FC_LIMIT_CONSTANT && v->contact.model != FC_CONTACT_CONSTANT) {
+        fc_log(instance, FC_CALL_EXIT_INITIALIZATION_MODE, fmi2Warning, FC_LOG_STATUS_WARNING,
+               "initialState = Settled deflects the bristle by %s: the contact is nearly open (sigma = %s), "
+               "but with friction.limit = Constant F_t still tends to F_C = %s",
+               fc_quantity_text(delta, "m").text, fc_quantity_text(v->sigma, "N/m").text,
+               fc_quantity_text(v->F_C, "N").text);
+    }
+}
+
 void fc_log_doubts(const FcInstance* instance) {
+    warn_nearly_open(instance);
     for (size_t i = 0; i < sizeof USED / sizeof *USED; i++) {
         warn_unused(instance, variable_at(USED[i].setting), variable_at(USED[i].decider), USED[i].items);
     }

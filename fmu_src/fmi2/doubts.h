@@ -1,5 +1,6 @@
-// Start values that are probably mistakes: settings that the scene does not use, and magnitudes that look
-// like another unit. The log has one warning for each when initialization ends.
+// Start values that are probably mistakes: settings that the scene does not use, magnitudes that look like
+// another unit, and a settled start of a contact that is nearly open. The log has one warning for each when
+// initialization ends.
 #ifndef FC_FMI2_DOUBTS_H
 #define FC_FMI2_DOUBTS_H
 

@@ -61,7 +61,7 @@ static void tell_undersampling(FcInstance* instance, double h) {
     const double f = instance->contact.state.variables.vibration.f;
     fc_log(instance, FC_CALL_DO_STEP, fmi2Warning, FC_LOG_STATUS_WARNING,
            "the step of %s exceeds half a period of the vibration (vibration.f = %s): F_t is then one sample "
-           "of it; F_t_mean is the output to couple. Told once.",
+           "in a period; connect F_t_mean instead. This warning appears once.",
            fc_quantity_text(h, "s").text, fc_quantity_text(f, "Hz").text);
     instance->undersampling_told = true;
 }

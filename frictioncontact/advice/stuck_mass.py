@@ -67,14 +67,16 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
     ]
     span, damping = damping_range(m, sigma, master, H), least_damping(m, sigma, master, H)
     if span is None or damping is None:
-        lines.append(f"At a step of {H:g} s no friction.sigma_1 does. Take a shorter step, or Gauss-Seidel.")
+        lines.append(f"No friction.sigma_1 makes a step of {H:g} s stable.")
+        lines.append("Take a shorter step, or Gauss-Seidel.")
         return "\n".join(lines), {}
     lines.append(f"At a step of {H:g} s it is stable from {span[0]:.6g} to {span[1]:.6g} N s/m.")
     if damping == 0.0:
-        lines.append("It needs none. A smaller value errs less.")
+        lines.append("No damping is needed. friction.sigma_1 = 0 has the smallest error.")
     else:
         lines += [
-            f"Set {damping:.6g} N s/m, the smallest stable value plus 10 %. A larger value errs more.",
+            f"Set {damping:.6g} N s/m, the smallest stable value plus 10 %.",
+            "A larger value increases the error.",
             "It adds sigma_1 der(delta) to F_t. Under a vibration F_t may then swing by many times F_C,",
             "though its mean stays. Set it only if the mass sticks.",
             f"At break-away F_t exceeds the static friction by sigma_1 V, {damping:.6g} N for each m/s.",

@@ -21,6 +21,7 @@ from frictioncontact.command import main
 from frictioncontact.doubts import LIKELY, USED
 from frictioncontact.fmu import FrictionFmu, Session
 from frictioncontact.law import command
+from frictioncontact.parameters import STIFFNESS_PRINTED
 from workshop.project import ROOT
 
 COULOMB = {"friction.model": "Coulomb", "vibration.V_1": 1.44}
@@ -156,6 +157,23 @@ class TestWarnings:
         (text,) = warned(lambda: fc.simulate(SOFT, stop=1e-4, step=5e-5))
         assert "exceeds half a period" in text
         assert warned(lambda: fc.simulate(SOFT, stop=1e-4, step=5e-5, outputs=["F_t_mean"])) == []
+
+    @pytest.mark.parametrize("law", ["Dahl", "LuGre", "ElasticPlastic"])
+    def test_of_a_settled_start_of_a_contact_that_is_nearly_open(self, law: str) -> None:
+        """The bristle is F_C / sigma, and by Eq. 3 and 20 sigma falls as e^(-2 lambda d / R_q) / d^3."""
+        lifted = {"initialState": "Settled", "friction.model": law, "V": 0.1, "d": 50e-6}
+        (text,) = warned(run(lifted, outputs=["F_t_mean"]))
+        delta, sigma = map(float, re.findall(r"bristle by (\S+) m: .*sigma = (\S+) N/m.*F_C = 55 N", text)[0])
+        assert sigma == pytest.approx(STIFFNESS_PRINTED * np.exp(-36.0) * (14 / 50) ** 3, rel=1e-9)
+        assert delta == pytest.approx(55.0 / sigma, rel=1e-9)
+        for other in (
+            {"d": 25e-6},
+            {"d": 1e-3},  # open: the bristle is 0
+            {"initialState": "Given"},
+            {"friction.limit": "Load"},
+            {"contact.model": "Constant", "contact.sigma": 100.0},
+        ):
+            assert warned(run({**lifted, **other}, outputs=["F_t_mean"])) == []
 
     def test_from_every_call(self, tmp_path: Path) -> None:
         scene = {"contact.sigma": 1e6}

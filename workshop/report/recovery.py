@@ -104,7 +104,7 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
             x += [seed, seed, np.nan]
             y += [*(factor * np.array(found.fits[seed].profiles[k])), np.nan]
         items = [
-            Line(*good, f"holds the truth: {sum(held)} of {seeds}", BLUE),
+            Line(*good, f"contains the truth: {sum(held)} of {seeds}", BLUE),
             Level(factor * TRUTH[name], "truth", BLACK, "dashed"),
         ]
         if missed[0]:
@@ -112,6 +112,6 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
         panels.append(Panel(name, "seed", f"95 % interval [{unit}]", items, x_range=(-1.0, seeds)))
     caption = (
         f"Twelve synthetic mean forces with normal noise of {NOISE:g} N, fitted for three parameters, with "
-        f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should hold the truth."
+        f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should contain the truth."
     )
     return Figure("recovery", "Known parameters, recovered from noisy data", caption, panels, 3, (15.0, 4.6))

@@ -52,9 +52,10 @@ FC_INLINE void fc_exponentials_less_1(int n, const double* x, double largest, do
 }
 
 // The estimated error of the quadrature of f over [0, 1]. The rule is exact up to the degree 2 n - 1, n
-// degrees beyond the tail. Coefficients that fell evenly would have fallen by tail.fall^n there. The estimate
-// takes three quarters of that exponent, or half of it with 6 nodes, because they do not fall evenly. It
-// takes the slower of two falls: that of the tail, and the mean fall from the largest value to the tail.
+// degrees beyond the tail. Coefficients that fell evenly would have fallen by tail.fall^n there. They do not
+// fall evenly, so the exponent is 3 (n / 4) in whole numbers: 3, 3, 6 and 9, three quarters of 4, 8 and 12
+// nodes and half of 6. The estimate takes the slower of two falls: that of the tail, and the mean fall from
+// the largest value to the tail, over n degrees too, to the power of three quarters.
 FC_INLINE double fc_gauss_error(const FcGaussRule* rule, int n, const double* f) {
     const FcTail tail = fc_tail_of(n, rule->tail, f);
     const double largest = fc_largest(n, f);
