@@ -57,6 +57,11 @@ static const double FC_SHARE_OF_EVENT = 0.02;
 static const double FC_SHARE_OF_CUT = 0.1;
 static const double FC_SHARE_OF_GRAZE = 0.1;
 
+// The largest tolerance of a settled state in the plane. Chosen empirically: a bristle that turns little in
+// each period adds up the errors of many. At ten times of it a settled force missed by twice; a tenth of it
+// costs panels.
+static const double FC_MOST_TOLERANCE_OF_SETTLED_PLANE = 1e-3;
+
 // The largest error of the interpolated maps of moving periods.
 static const double FC_SHARE_OF_LEAP = 0.2;
 

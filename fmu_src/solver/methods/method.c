@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/regime.h"
+#include "solver/budget.h"
 #include "solver/march/march.h"
 #include "solver/methods/methods.h"
 #include "solver/pieces.h"
@@ -127,7 +128,11 @@ FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options
     const bool is_planar = fc_is_planar(scene, from);
     if (fc_drive_vibrates(&scene->drive)) {
         FcStepResult end = fc_result_from(from, *evaluations);
-        *force = fc_periods_settled(integration(scene, is_planar), scene, options, &end);
+        FcSolverOptions own = *options;
+        if (is_planar) {
+            own.tolerance = fmin(own.tolerance, FC_MOST_TOLERANCE_OF_SETTLED_PLANE);
+        }
+        *force = fc_periods_settled(integration(scene, is_planar), scene, &own, &end);
         *evaluations = end.evaluations;
         // An excess over a bound by rounding would become heat of the first step.
         const FcBristle bristle = fc_bristle_of(&end);
