@@ -27,12 +27,18 @@ double fc_bound(const FcScene* bound, double t) {
 }
 
 double fc_bound_rate(const FcScene* bound, double t) {
-    return fc_bound(bound, t) * fc_scene_log_rates(bound, t).ratio;
+    const FcPhase phase = fc_drive_phase(&bound->drive, t);
+    const FcCoefficients at = fc_scene_coefficients_at_phase(bound, t, phase);
+    return at.limit / at.sigma * fc_scene_log_rates_at_phase(bound, t, phase).ratio;
 }
 
 double fc_push(const FcScene* scene, const FcScene* bound, double t, int side) {
-    const FcCoefficients at = fc_scene_coefficients(scene, t);
-    return side * fc_free_rate(scene, &at, side * fc_bound(bound, t)) - fc_bound_rate(bound, t);
+    const FcPhase phase = fc_drive_phase(&scene->drive, t);
+    const FcCoefficients at = fc_scene_coefficients_at_phase(scene, t, phase);
+    const FcCoefficients of = bound == scene ? at : fc_scene_coefficients_at_phase(bound, t, phase);
+    const double D = of.limit / of.sigma;
+    const double rate = D * fc_scene_log_rates_at_phase(bound, t, phase).ratio;
+    return side * fc_free_rate(scene, &at, side * D) - rate;
 }
 
 double fc_push_at(void* context, double t) {
