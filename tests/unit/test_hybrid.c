@@ -122,6 +122,7 @@ static void it_sticks_where_the_kinetic_bound_outruns_it(void) {
     v->friction.V_S = 0.1;
     v->V = 0.2;
     v->delta = 1.5 * MU * 100.0 / SIGMA * (1.0 + 1e-9);
+    contact.state.past = (FcPast){.sigma = 0.0}; // as at a start beyond the bound
     update(&contact);
     CHECK(contact.state.slips == 1 && contact.state.hybrid.regime == FC_SLIPS_FORWARD);
     // The push V + D s'(V) |V'| / s, with D = mu load s / sigma: it is V (1 - |V'| 2 (R - 1) mu load e^-(V / V_S)^2 / (sigma V_S^2)).
