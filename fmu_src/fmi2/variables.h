@@ -44,6 +44,22 @@ extern const unsigned fc_variables_count;
 extern const unsigned fc_inputs[]; // value references of the inputs
 extern const unsigned fc_inputs_count;
 
+// A setting, the enumeration that decides whether it is used, and its items with which it is, as bits from
+// the lowest on. Variables are value references here and below.
+typedef struct {
+    unsigned setting, decider, items;
+} FcUse;
+extern const FcUse fc_uses[];
+extern const unsigned fc_uses_count;
+
+// The range of likely magnitudes of a value other than 0.
+typedef struct {
+    unsigned variable;
+    double low, high;
+} FcLikely;
+extern const FcLikely fc_likely[];
+extern const unsigned fc_likely_count;
+
 extern const unsigned fc_event_indicators_count; // numberOfEventIndicators of the XML
 
 extern const char fc_guid[];             // guid of the packaged modelDescription.xml

@@ -1,4 +1,4 @@
-"""Writes the C variable table of fmu_src/fmi2/variables.h from modelDescription.xml.
+"""Writes the C tables of fmu_src/fmi2/variables.h from modelDescription.xml and frictioncontact/doubts.py.
 
 usage: python -m workshop.packing.variable_table modelDescription.xml variables.c
 """
@@ -8,12 +8,13 @@ from pathlib import Path
 
 from fmpy.model_description import ModelDescription, ScalarVariable
 
+from frictioncontact.doubts import LIKELY, USED
 from workshop.packing import model_description
 
 
 def table(description: ModelDescription) -> str:
     lines = [
-        "// Generated from modelDescription.xml; edit that.",
+        "// Generated from modelDescription.xml and frictioncontact/doubts.py; edit those.",
         '#include "fmi2/variables.h"',
         '#include "friction_contact.h"',
         "",
@@ -43,8 +44,28 @@ def table(description: ModelDescription) -> str:
         f"const unsigned fc_variables_count = {len(description.modelVariables)};",
         f"const unsigned fc_inputs[] = {{{', '.join(inputs)}}};",
         f"const unsigned fc_inputs_count = {len(inputs)};",
+        *_doubts(description),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _doubts(description: ModelDescription) -> list[str]:
+    """Which settings are used, if one enumeration decides it, and which magnitudes are likely."""
+    reference = {variable.name: k for k, variable in enumerate(description.modelVariables)}
+    uses = []
+    for setting, decider, items in USED:
+        if items is not None:
+            literals = description.modelVariables[reference[decider]].declaredType.items
+            bits = sum(1 << k for k, literal in enumerate(literals) if literal.name in items)
+            uses.append(f"    {{{reference[setting]}, {reference[decider]}, {bits}}}, // {setting}")
+    likely = [
+        f"    {{{reference[name]}, {low!r}, {high!r}}}, // {name}" for name, (low, high) in LIKELY.items()
+    ]
+    lines = []
+    for declaration, rows in (("FcUse fc_uses", uses), ("FcLikely fc_likely", likely)):
+        count = f"const unsigned {declaration.split()[1]}_count = {len(rows)};"
+        lines += ["", f"const {declaration}[] = {{", *rows, "};", count]
+    return lines
 
 
 def _type_check(variable: ScalarVariable) -> str:
