@@ -274,6 +274,11 @@ static void keep_side(Ends* ends, End now) {
     ends->replaced = which;
 }
 
+// The largest change of a shift beside its ratio to the last one, over the shift, with static friction. Then
+// periods may repeat in cycles, and their shifts differ by as much as they are long. Chosen empirically: half
+// or twice of it decides when the extrapolation begins.
+static const double SAME_WAY = 0.01;
+
 static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
     const int place = ends->count++ % 4 - 1; // the first after an extrapolation is left out
     if (place < 0) {
@@ -286,6 +291,10 @@ static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
     const FcVector before = way(ends->end[0], ends->end[1]);
     const FcVector last = way(ends->end[1], ends->end[2]);
     const double ratio = fc_product(before, last) / fc_product(before, before);
+    if (fc_has_static_friction(scene->friction) &&
+        !(hypot(last.x - ratio * before.x, last.y - ratio * before.y) < SAME_WAY * hypot(last.x, last.y))) {
+        return;
+    }
     if (ratio > 0.0 && ratio < 1.0 && hypot(last.x, last.y) > LEAST_CHANGE * size_of(total)) {
         ends->ratio = ratio;
     }
@@ -343,8 +352,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
-            } else if (walk->law.is_planar && isinf(periods) &&
-                       !fc_has_static_friction(walk->scene->friction)) {
+            } else if (walk->law.is_planar && isinf(periods)) {
                 extrapolate(walk->scene, &ends, total);
             }
             continue;
@@ -356,6 +364,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
         }
         take_free(walk, n, total);
         walk->done += n;
+        ends.count = 0;
     }
 }
 
