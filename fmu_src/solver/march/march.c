@@ -35,6 +35,9 @@ static const double SOON = 3.0;
 // The number of regimes of no duration in a row, after which the next panel slips whatever its push. Chosen
 // empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
 enum { MOST_IDLE = 4 };
+// The length of the first such panel, over the interval. The next ones are four times as long each, since a
+// push of rounding soon becomes another. Rounding: 4500 eps. Twice of it slips twice as long without a push.
+static const double FIRST_NUDGE = 1e-12;
 
 // The largest bend of the push between two points, over the largest bend from point to point there. Chosen
 // empirically: half of it misses dips, twice of it costs evaluations.
@@ -755,11 +758,19 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
         return;
     }
     double before = -1.0;
+    double nudge = FIRST_NUDGE * duration;
     for (int idle = 0; m.t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
         idle = m.t > before ? 0 : idle + 1;
         before = m.t;
         if (m.side != 0) {
-            idle > MOST_IDLE ? slip_panel(&m, duration) : slip(&m, duration);
+            if (idle > MOST_IDLE) {
+                slip_panel(&m, fmin(duration, m.t + nudge));
+                nudge *= 4.0;
+                before = m.t;
+                idle = MOST_IDLE - 2; // one more try of either regime
+            } else {
+                slip(&m, duration);
+            }
         } else if (relaxes(scene)) {
             relax(&m);
         } else {
