@@ -247,6 +247,7 @@ static Integrals integrands(FcCvode* solver, double tau, double y) {
 
 // Adds the integrals over [tau, tau_end], within CVODE's last step, given the integrands at both ends. False
 // if CVODE has no dense output there.
+// NOLINTNEXTLINE(misc-no-recursion): MOST_STEP_HALVINGS deep
 static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals first, Integrals last,
                           int halvings) {
     const double half = 0.5 * (tau_end - tau);
@@ -261,7 +262,8 @@ static bool add_integrals(FcCvode* solver, double tau, double tau_end, Integrals
     Integrals sum = {{0.0}};
     bool agree = true;
     for (int k = 0; k < INTEGRALS; ++k) {
-        double difference = 0.0, size = 0.0;
+        double difference = 0.0;
+        double size = 0.0;
         for (int i = 0; i < KRONROD_NODES; ++i) {
             sum.of[k] += half * kronrod[i] * at[i].of[k];
             difference += half * (kronrod[i] - lobatto[i]) * at[i].of[k];
