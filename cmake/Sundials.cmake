@@ -50,4 +50,6 @@ target_include_directories(sundials_cvode_static SYSTEM
     PUBLIC "${FC_SUNDIALS_SOURCE}/include" "${CMAKE_BINARY_DIR}/generated"
     PRIVATE "${FC_SUNDIALS_SOURCE}/src/sundials")
 target_compile_options(sundials_cvode_static PRIVATE -w)
+# It calls by pointers, which no linker inlines; each of the programs that link it would optimize it anew.
+set_target_properties(sundials_cvode_static PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
 target_link_libraries(sundials_cvode_static PRIVATE fc_numbers PUBLIC m)

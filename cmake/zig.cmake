@@ -28,6 +28,8 @@ set(system_of_macos Darwin)
 set(CMAKE_SYSTEM_NAME "${system_of_${CMAKE_MATCH_2}}")
 
 set(CMAKE_C_COMPILER "${ZIG}" cc -target ${triple})
+# CMake tries the compiler without optimization, for which zig would first make its library of sanitizers.
+set(CMAKE_C_FLAGS_INIT -fno-sanitize=undefined)
 set(CMAKE_SHARED_LINKER_FLAGS_INIT -s)
 # zig's linkers for the other formats take no code that is yet to be optimized.
 set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)

@@ -22,7 +22,7 @@ from workshop.release.universal import universal
 def compiled(folder: Path, target: str, name: str, source: str = "int fmi2One(void) { return 1; }") -> Path:
     """A small library for a target of zig's."""
     (folder / "source.c").write_text(source)
-    command = [str(zig()), "cc", "-target", target, "-shared", "-s", str(folder / "source.c"), "-o"]
+    command = [str(zig()), "cc", "-target", target, "-O1", "-shared", "-s", str(folder / "source.c"), "-o"]
     subprocess.run([*command, str(folder / name)], env=environment(), check=True)
     return folder / name
 

@@ -198,6 +198,11 @@ def check_coverage(extent: Extent) -> None:
     _run([*gcovr, "--print-summary", "--fail-under-line", str(LEAST_LINES)])
 
 
+def check_analysis(extent: Extent) -> None:
+    """clang's analyzer on many more paths than scripts/lint follows."""
+    _run(["scripts/lint", "--deep"])
+
+
 CHECKS: dict[str, Callable[[Extent], None]] = {
     "sanitize": check_sanitize,
     "threads": check_threads,
@@ -207,6 +212,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "hunt": check_hunt,
     "leaks": check_leaks,
     "coverage": check_coverage,
+    "analysis": check_analysis,
 }
 IN_CI = ("sanitize", "leaks", "fuzz")
 
