@@ -1,4 +1,4 @@
-"""solver.method = cvode: in these scenes errors are at most tolerance times F_C, of W_f also times the path."""
+"""solver.method = cvode: here errors are at most tolerance times F_C, those of W_f also times the path."""
 
 from __future__ import annotations
 
