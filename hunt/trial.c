@@ -43,7 +43,9 @@ static Verdict verdict_outside(const TrialStep* taken, const Range* range, doubl
     const double path =
         truth->path + hypot(truth->delta - step->delta_start, truth->delta_y - step->delta_y_start);
     const double lengths = hypot(step->delta_start, step->delta_y_start) + hypot(step->delta, step->delta_y);
-    const double force = (tolerance + ROUNDING) * S, energy = force * path + LEAST_S + DIGITS * S * lengths;
+    const ReferenceScene* scene = &taken->scene;
+    const double digits = DIGITS + (vibrates(scene) ? 4.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
+    const double force = (tolerance + ROUNDING) * S, energy = force * path + LEAST_S + digits * S * lengths;
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < RESULTS; k++) {
         const double found = step->result[k];

@@ -696,8 +696,8 @@ static void march_between_reversals(March* m, double D) {
         m->result->evaluations += 1.0;
         const double way = fmax(0.0, D - side * delta); // below 0 by rounding
         bool goes_on = !(side * x > way);
-        if (!goes_on && way <= ROUNDING_OF_BOUND * D && side * x <= ROUNDING_AT_REVERSAL * D &&
-            fc_has_static_friction(scene->friction)) {
+        if (!goes_on && end < m->duration && way <= ROUNDING_OF_BOUND * D &&
+            side * x <= ROUNDING_AT_REVERSAL * D && fc_has_static_friction(scene->friction)) {
             // It sticks at the static bound if V reverses before the bristle could slip. The remaining
             // distance is rounding.
             goes_on = !(fc_push(scene, scene, sticks_to, side) > 0.0);
