@@ -300,7 +300,7 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
     }
     const double* y = NV_DATA_S(solver->y);
     for (int k = 0; k < STATES; k++) {
-        if (!isfinite(solver->L * y[k])) {
+        if (!isfinite(y[k])) {
             return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
                           message);
         }

@@ -313,7 +313,7 @@ static bool take_block(Block* block, FcStepResult* total) {
             const Place at = {k, room_at(block, k, start), start};
             if (at.room <= 0.0) {
                 without_room[places] = at;
-                nearest = at.room < without_room[nearest].room ? places : nearest;
+                nearest = places == 0 || at.room < without_room[nearest].room ? places : nearest;
                 places++;
             }
         }
