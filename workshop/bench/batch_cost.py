@@ -7,18 +7,13 @@ count.
 
 import argparse
 import os
-import re
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
@@ -30,12 +25,9 @@ from frictioncontact.sweeps.group import OUTPUTS
 from workshop.build import build_fmu
 from workshop.project import ROOT
 
-Result = TypeVar("Result")
-
 SAMPLED = ("F_t_mean", "F_t", "sigma", "A_r")
 AROUND = ("W_f", "solver.evaluations")
 RANGES = {"V": (0.005, 0.5), "vibration.V_1": (0.1, 1.5), "d": (12e-6, 17e-6)}
-MEMORY_SCENARIOS = 1_000_000
 SHORT = 10  # times as many scenarios where only the mean is asked: starts vary by tenths of a second
 TURNS = 3
 
@@ -71,19 +63,6 @@ def bare_loop(fmu: FrictionFmu, program: Path, text: str, count: int, samples: i
     return seconds / count, force
 
 
-def elapsed(run: Callable[[], Result]) -> tuple[float, Result]:
-    """Wall time [s], and what was returned."""
-    began = time.perf_counter()
-    result = run()
-    return time.perf_counter() - began, result
-
-
-def two_at_once(loop: Callable[[], object]) -> None:
-    with ThreadPoolExecutor(2) as pool:
-        for running in [pool.submit(loop) for _ in range(2)]:
-            running.result()
-
-
 def one_batch(fmu: Path, count: int, samples: int) -> tuple[float, float]:
     """The same of one call of simulate_many on one thread."""
     began = time.process_time()
@@ -107,77 +86,51 @@ def sessions(fmu: FrictionFmu, count: int, samples: int) -> float:
     return (time.process_time() - began) / count
 
 
-@dataclass(frozen=True)
-class Sweep:
-    processor: float  # s, of all its processes
-    elapsed: float  # s, from the first scenario to the last
-    memory: float  # bytes, of its largest process
-
-
-def sweep(fmu: Path, count: int, samples: int, workers: int) -> Sweep:
-    """scripts/sweep, in processes of its own."""
+def sweep(fmu: Path, count: int, samples: int) -> float:
+    """Processor time [s] of scripts/sweep with one worker, of all its processes."""
     with tempfile.TemporaryDirectory() as folder:
-        arguments = ["--random", count, "--samples", samples, "--workers", workers]
+        arguments = ["--random", count, "--samples", samples, "--workers", 1]
         for name, (low, high) in RANGES.items():
             arguments += ["--vary", f"{name}={low}:{high}"]
         command = [sys.executable, "-m", "frictioncontact", "sweep", "--fmu", fmu, "--output", folder]
         process = subprocess.Popen(
             [*map(str, command), *map(str, arguments)], stdout=subprocess.PIPE, text=True
         )
-        printed = process.stdout.read()
+        process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
         if status:
             raise UserError("the sweep failed: see above")
-    elapsed = re.search(r"scenarios in ([\d.]+) s", printed)
-    return Sweep(usage.ru_utime + usage.ru_stime, float(elapsed[1]), 1024.0 * usage.ru_maxrss)
+    return usage.ru_utime + usage.ru_stime
 
 
 BARE = "bare C loop"
 
 
-@dataclass(frozen=True)
-class Turn:
-    costs: dict[str, float]  # s of processor time per scenario, each way
-    machine: float  # throughput of two bare loops at once over that of one
-    workers: float  # throughput of two workers of a sweep over that of one
-
-
-def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> Turn:
-    text = bare_input(fmu, count)
-    loop = partial(bare_loop, fmu, program, text, count, samples)
-    one, (bare, force) = elapsed(loop)
-    two, _ = elapsed(partial(two_at_once, loop))
+def turn(fmu: FrictionFmu, program: Path, count: int, samples: int) -> dict[str, float]:
+    """Processor time [s] per scenario, each way."""
+    bare, force = bare_loop(fmu, program, bare_input(fmu, count), count, samples)
     batch, batch_force = one_batch(fmu.path, count, samples)
     if not np.isclose(force, batch_force, rtol=1e-12):
         raise UserError(f"the bare loop gives {force!r} N, the batch {batch_force!r} N")
-    few, many = (sweep(fmu.path, n, samples, 1) for n in (count, 4 * count))
-    two_few, two_many = (sweep(fmu.path, n, samples, 2) for n in (count, 4 * count))
-    costs = {
+    few, many = (sweep(fmu.path, n, samples) for n in (count, 4 * count))
+    return {
         BARE: bare,
         "simulate_many": batch,
-        "scripts/sweep, all processes": (many.processor - few.processor) / (3 * count),
+        "scripts/sweep, all processes": (many - few) / (3 * count),
         "one session each in Python": sessions(fmu, max(1, count // 100), samples),
     }
-    workers = (many.elapsed - few.elapsed) / (two_many.elapsed - two_few.elapsed)
-    return Turn(costs, 2.0 * one / two, workers)
 
 
-def measure(fmu_path: Path, program: Path, count: int, turns: int, memory: bool) -> None:
+def measure(fmu_path: Path, program: Path, count: int, turns: int) -> None:
     print(f"{'processor time per scenario':40}{'us':>9}{'ratio':>8}")
     with FrictionFmu(fmu_path) as fmu:
         for samples in (64, 1):
             words, n = (f"{samples} samples", count) if samples > 1 else ("mean only", SHORT * count)
             taken = [turn(fmu, program, n, samples) for _ in range(turns)]
-            for name in taken[0].costs:
-                cost = statistics.median(one.costs[name] for one in taken)
-                ratio = statistics.median(one.costs[name] / one.costs[BARE] for one in taken)
+            for name in taken[0]:
+                cost = statistics.median(costs[name] for costs in taken)
+                ratio = statistics.median(costs[name] / costs[BARE] for costs in taken)
                 print(f"{words + ', ' + name:40}{1e6 * cost:9.1f}{ratio:8.2f}")
-            workers = statistics.median(one.workers for one in taken)
-            machine = statistics.median(one.machine for one in taken)
-            print(f"{words}, throughput of two over one: {workers:.2f} workers, {machine:.2f} bare loops")
-        if memory:
-            largest = sweep(fmu_path, MEMORY_SCENARIOS, 1, 2).memory
-            print(f"largest process of a sweep of {MEMORY_SCENARIOS} scenarios: {largest / 2**20:.0f} MiB")
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -188,7 +141,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         default=30_000,
         help=f"of each measurement (30000); {SHORT} times that for the mean only",
     )
-    parser.add_argument("--quick", action="store_true", help="one turn of 10000, without the memory")
+    parser.add_argument("--quick", action="store_true", help="one turn of 10000")
     finish(run, parser.parse_args(argv))
 
 
@@ -202,6 +155,4 @@ def run(options: argparse.Namespace) -> None:
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     except subprocess.CalledProcessError as error:
         raise UserError(str(error)) from None
-    measure(
-        fmu, ROOT / "build" / "bench" / "bare_loop", count, 1 if options.quick else TURNS, not options.quick
-    )
+    measure(fmu, ROOT / "build" / "bench" / "bare_loop", count, 1 if options.quick else TURNS)
