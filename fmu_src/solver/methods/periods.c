@@ -323,6 +323,8 @@ static void walk_to_repetition(Walk* walk, double periods) {
     walk->met_at = -1.0;
     walk->least.delta = INFINITY;
     int meetings = 0;
+    // With static friction an extrapolation may lead to another cycle, so a cycle must be near.
+    const int alone = fc_has_static_friction(walk->scene->friction) ? MOST_MEETINGS / 4 : 0;
     Ends ends = {.count = 0};
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
         const FcStepResult before = *total;
@@ -352,7 +354,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
-            } else if (walk->law.is_planar && isinf(periods)) {
+            } else if (walk->law.is_planar && isinf(periods) && meetings > alone) {
                 extrapolate(walk->scene, &ends, total);
             }
             continue;
