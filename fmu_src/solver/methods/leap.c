@@ -171,19 +171,10 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     return (Numbers){.map = of_map, .across = of_map};
 }
 
-// The angle of point j, over pi: Chebyshev's points, in an order that halves the angles between them. The
-// outermost points come first, those of the end and of the start in turn: errors are largest there.
-static double angle_of(int j) {
-    if (j < 2) {
-        return j;
-    }
-    int parts = 2; // 2, 4, 8, 16
-    while (parts < j) {
-        parts *= 2;
-    }
-    const int i = j - 1 - parts / 2;
-    return (double)(i % 2 == 0 ? parts - 1 - i : i) / parts;
-}
+// The angles of the points, over pi / 16: Chebyshev's, in an order that halves the angles between them. Of
+// those in between, one at the end of the block comes first, since errors are largest there, and then one
+// inside, where a kink would be.
+static const int ANGLE[MOST_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
 
 // The place of period k in [-2, 2], a length that keeps products of distances near 1.
 static double place_in(const Block* block, double k) {
@@ -224,7 +215,7 @@ static bool interpolate(Block* block) {
     double largest = 0.0;
     for (block->points = 0; block->points < most;) {
         const int j = block->points;
-        const double k = (block->count - 1.0) * 0.5 * (1.0 - cos(FC_PI * angle_of(j)));
+        const double k = (block->count - 1.0) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
         Numbers sampled;
         if (!sample(block, k, &sampled)) {
             return false;
