@@ -136,6 +136,13 @@ static bool settles(const ReferenceScene* s) {
     return s->law == LAW_COULOMB || !vibrates(s) || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
 }
 
+// Whether the step is outside the domain of the promise.
+static bool is_outside(const ReferenceScene* s, const ReferenceScene* first) {
+    const bool is_too_soft = s->law != LAW_COULOMB && vibrates(s) && scene_kappa(s) < LEAST_KAPPA;
+    return is_too_soft || scene_start_over_limit(s) > LARGEST_START ||
+           (first->initial == START_SETTLED && !settles(first));
+}
+
 // Returns false if the step is not judged.
 static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence* sequence) {
     const ReferenceScene* scene = &taken->scene;
@@ -149,9 +156,7 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
     if (!(verdict.ratio <= 1.0)) {
         verdict = verdict_by_rounding(before, taken, sequence->tolerance);
     }
-    const ReferenceScene* first = &sequence->step[0];
-    if (!(verdict.ratio <= 1.0) && (may_forget(scene) || scene_start_over_limit(scene) > LARGEST_START ||
-                                    (first->initial == START_SETTLED && !settles(first)))) {
+    if (!(verdict.ratio <= 1.0) && (may_forget(scene) || is_outside(scene, &sequence->step[0]))) {
         return false;
     }
     const double settled = before == NULL ? settled_ratio(taken, sequence) : -1.0;
