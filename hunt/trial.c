@@ -138,8 +138,8 @@ static bool settles(const ReferenceScene* s) {
 
 // Whether the step is outside the domain of the promise.
 static bool is_outside(const ReferenceScene* s, const ReferenceScene* first) {
-    const bool is_too_soft = s->law != LAW_COULOMB && vibrates(s) && scene_kappa(s) < LEAST_KAPPA;
-    return is_too_soft || scene_start_over_limit(s) > LARGEST_START ||
+    const bool swings = s->law != LAW_COULOMB && (s->V_1 != 0.0 || s->V_2 != 0.0);
+    return (swings && scene_kappa(s) < LEAST_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
            (first->initial == START_SETTLED && !settles(first));
 }
 
