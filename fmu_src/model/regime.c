@@ -123,9 +123,9 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
 }
 
 // The part of its bound by which a slipping bristle may lie inside it. Chosen empirically: rounding of the
-// phase, or of a load that falls by decades, may take the bristle off its bound at the end of a step. A larger
-// value would move a bristle that catches up onto its bound.
-static const double INSIDE_BOUND = 1e-9;
+// phase may take the bristle off its bound at the end of a step. A larger value would move a bristle that
+// catches up onto its bound.
+static const double INSIDE_BOUND = 1e-10;
 
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
     if (!fc_is_bounded(scene->friction) || fc_scene_is_loose(scene) ||

@@ -269,7 +269,7 @@ static void it_slips_where_V_outruns_the_bound(void) {
             CHECK_NEAR(reached.delta, side * D, 1e-15);
             CHECK(reached.slips == expected);
             CHECK(fc_regime(&one.scene, reached) == (FcRegime)expected);
-            CHECK(fc_regime(&one.scene, (FcBristle){.delta = side * (1.0 - 1e-8) * D, .slips = side}) ==
+            CHECK(fc_regime(&one.scene, (FcBristle){.delta = side * (1.0 - 1e-9) * D, .slips = side}) ==
                   FC_FREE);
             const FcMotion motion = motion_of(&one.scene, reached);
             CHECK_WITHIN(motion.rates.delta, expected != 0 ? side * D_rate : at.V,
