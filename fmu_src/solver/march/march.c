@@ -32,11 +32,12 @@ static const double ROUNDING_AT_REVERSAL = 1e-9;
 // from one bound to the other it is 2. Half of it costs panels; twice of it makes panels that are cut early.
 static const double SOON = 3.0;
 
-// The number of regimes of no duration in a row, after which the next panel slips whatever its push. Chosen
-// empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
+// The number of regimes of next to no duration in a row, after which the next panel slips whatever its push.
+// Chosen empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
 enum { MOST_IDLE = 4 };
-// The length of the first such panel, over the interval. The next ones are four times as long each, since a
-// push of rounding soon becomes another. Rounding: 4500 eps. Twice of it slips twice as long without a push.
+// The length of the first such panel, and the longest of such regimes, over the interval. The next panels are
+// four times as long each, since a push of rounding soon becomes another. Rounding: 4500 eps. Twice of it
+// slips twice as long without a push.
 static const double FIRST_NUDGE = 1e-12;
 
 // The largest bend of the push between two points, over the largest bend from point to point there. Chosen
@@ -760,7 +761,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     double before = -1.0;
     double nudge = FIRST_NUDGE * duration;
     for (int idle = 0; m.t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
-        idle = m.t > before ? 0 : idle + 1;
+        idle = m.t - before > FIRST_NUDGE * duration ? 0 : idle + 1;
         before = m.t;
         if (m.side != 0) {
             if (idle > MOST_IDLE) {
