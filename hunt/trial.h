@@ -17,7 +17,8 @@
 //   and the allowed error of an energy at least 1e-20 J.
 // A settled start is judged by F_t_start. A step is counted and not judged if it takes more panels or cycles than the
 // reference goes through. The same holds for a step that misses if its motion may be chaotic and it has more than 10
-// periods, if its kappa is below 1e-3 as over a lifted tool, if it starts beyond 100 limits, or if the sequence starts from a settled state that is not promised.
+// periods, if its kappa is below 1e-3 as over a lifted tool, if it starts beyond 100 limits, or if the sequence starts from a
+// settled state that is not promised.
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 

@@ -26,7 +26,7 @@ static const double LONGEST_BRISTLE = 1e-2;
 // With a constant limit the settled bristle of a contact that opens grows without bound: it is F_C / sigma.
 static void warn_nearly_open(const FcInstance* instance) {
     const FcVariables* v = &instance->contact.state.variables;
-    const double delta = hypot(v->delta, v->delta_y);
+    const double delta = fc_size(fc_friction_contact_bristle(&instance->contact));
     if (v->initialState == FC_STATE_SETTLED && delta > LONGEST_BRISTLE &&
         v->friction.limit == FC_LIMIT_CONSTANT && v->contact.model != FC_CONTACT_CONSTANT) {
         fc_log(instance, FC_CALL_EXIT_INITIALIZATION_MODE, fmi2Warning, FC_LOG_STATUS_WARNING,

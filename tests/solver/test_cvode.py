@@ -10,6 +10,7 @@ from data.laws import law_scenes
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import solution as reference
 from workshop.reference.arithmetic import MP, multiprecision
+from workshop.reference.coulomb import path
 from workshop.reference.start_values import scene_of
 
 PERIOD = 1.0 / 20e3
@@ -37,7 +38,7 @@ def test_error_follows_the_tolerance(fmu: FrictionFmu, scale: float, tolerance: 
     bound = max(tolerance, FLOOR)
     assert F_t == pytest.approx(float(reference.force(scene, h, delta)), abs=bound * 55)
     assert F_t_mean == pytest.approx(float(multiprecision(impulse) / MP.mpf(h)), abs=bound * 55)
-    assert W_f == pytest.approx(float(work), abs=bound * 55 * (0.5 + 1.44) * h)
+    assert W_f == pytest.approx(float(work), abs=bound * 55 * float(path(scene, 0, h)))
 
 
 def test_short_scenes(fmu: FrictionFmu) -> None:
@@ -58,8 +59,8 @@ def test_short_scenes(fmu: FrictionFmu) -> None:
 def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
     """A settled bristle hardly feels a small one, which counts in the work all the same.
 
-    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. There
-    are at least eight steps a period.
+    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. Eight
+    steps a period take one evaluation each, or two.
     """
     V, V_1, sigma, F_C, f = 1.0, 1e-3, 1e8, 55.0, 20e3
     start = {
@@ -77,7 +78,7 @@ def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
     x = V * periods / f + V_1 / (2.0 * math.pi * f)  # the sine is 1
     D = F_C / sigma
     assert W_f == pytest.approx(F_C * (x + D * math.expm1(-x / D)), rel=1e-6)
-    assert 8 <= evaluations / periods
+    assert 8 <= evaluations / periods <= 8 * 2
     assert evaluations == round(evaluations)
 
 

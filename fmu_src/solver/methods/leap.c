@@ -53,7 +53,6 @@ typedef struct {
     int side;            // of the bound at which they begin, 0 for any start
     int warm_up;     // in the plane: periods after which a bristle that slips has forgotten, 0 for any start
     FcBristle start; // at the block
-    double delta;    // m, size of the start
     double* evaluations;
     int numbers;                // of a map, or of two in the plane
     double place[MOST_POINTS];  // of the points, in [-2, 2]
@@ -130,7 +129,7 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
         return sample_of_slips(block, &scene, k, numbers);
     }
     if (block->side == 0) {
-        numbers->map = block->law->free_map(&scene, block->options, block->period, block->delta,
+        numbers->map = block->law->free_map(&scene, block->options, block->period, fc_size(block->start),
                                             &numbers->across, block->evaluations);
         return true;
     }
@@ -150,7 +149,7 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
     const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
     const double sigma = fmax(at.sigma, at_end.sigma);
-    const double delta = fmax(block->delta, fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
+    const double delta = fmax(fc_size(block->start), fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->scene->friction->sigma_1;
     // Errors of the deflection add up until they have relaxed.
@@ -381,7 +380,6 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                        .side = on_line ? total->slip_side : 0,
                        .warm_up = slipped && law.is_planar ? WARM_UP : 0,
                        .start = fc_bristle_of(total),
-                       .delta = hypot(total->delta, total->delta_y),
                        .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};
         bool taken = false;

@@ -80,8 +80,8 @@ static bool takes_default(const FcScene* scene, FcMethod method) {
 
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result) {
-    if (!is_affine(scene) || !fc_drive_is_constant(&scene->drive) || fc_scene_is_loose(scene) ||
-        !takes_default(scene, method)) {
+    assert(fc_drive_is_constant(&scene->drive));
+    if (!is_affine(scene) || fc_scene_is_loose(scene) || !takes_default(scene, method)) {
         return false;
     }
     *result = fc_result_from(from, 0.0);

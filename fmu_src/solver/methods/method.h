@@ -6,8 +6,8 @@
 #include "solver/methods/methods.h"
 #include "solver/solver.h"
 
-// The step [0, h], h [s] >= 0, by a closed form; false if there is none for this scene and this method. contact
-// is the scene's at its start.
+// The step [0, h], h [s] >= 0, of a scene in which nothing moves, by a closed form; false if there is none for
+// this scene and this method. contact is the scene's at its start.
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result);
 
