@@ -20,18 +20,21 @@ static const double MOST_BEFORE = 30.0;
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
 // one by one.
-static const double FEWEST = 9.0;
-// The number of periods in which a bristle that slips in the plane forgets its angle. Chosen empirically:
-// fewer are refused more often, more cost more. Each sample costs two times as many, so fewer periods than
-// FEWEST_OF_SLIPS are computed one by one.
+static const double FEWEST = 12.0;
+// The number of periods in which a bristle that meets its bound forgets its start: in the plane its angle; on
+// a line, if it slips for no time, all of it. Chosen empirically: fewer are refused more often, more cost
+// more. Each sample costs two times as many, so fewer periods than FEWEST_OF_SLIPS are computed one by one.
 enum { WARM_UP = 3 };
 static const double FEWEST_OF_SLIPS = 60.0;
 
-// MOST_ROOMS: the number of periods of a block at which the room of a free bristle is estimated, or up to
-// twice as many. MOST_CHECKS: the number of those without room through which the bristle is followed, or up
-// to two more. Chosen empirically: a bristle often comes near its bound in a few periods. Half of them may
-// miss a meeting, twice as many cost evaluations.
-enum { MOST_ROOMS = 64, MOST_CHECKS = 8 };
+// MOST_PARTS: the number of parts of a block, or up to twice as many, between whose ends the bound is taken as
+// linear. MOST_CHECKS: the number of parts without room in which a free bristle is followed through a period,
+// or up to two more. Chosen empirically: a bristle often comes near its bound in a few periods. Half of them
+// may miss a meeting, twice as many cost evaluations.
+enum { MOST_PARTS = 64, MOST_CHECKS = 8 };
+// The room over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
+// it changes by a factor of up to 10 in the block.
+static const double NO_ROOM = 1e-3;
 
 // The numbers of the two maps, along and transverse.
 enum { OF_MAP = sizeof(FcMap) / sizeof(double), NUMBERS = 2 * OF_MAP };
@@ -51,14 +54,19 @@ typedef struct {
     double first, count; // the block
     double phase;        // s
     int side;            // of the bound at which they begin, 0 for any start
-    int warm_up;     // in the plane: periods after which a bristle that slips has forgotten, 0 for any start
-    FcBristle start; // at the block
+    int warm_up;         // periods after which a bristle that meets its bound has forgotten, 0 for any start
+    FcBristle start;     // at the block
     double* evaluations;
     int numbers;                // of a map, or of two in the plane
     double place[MOST_POINTS];  // of the points, in [-2, 2]
     Numbers point[MOST_POINTS]; // Newton's coefficients: divided differences
     int points;
 } Block;
+
+// The largest error of the block's maps, as a force [N].
+static double allowed(const Block* block) {
+    return FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
+}
 
 static FcScene scene_at(const Block* block, double k) {
     const FcScene later = fc_scene_later(block->scene, (block->first + k) * block->period);
@@ -100,14 +108,13 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     return bristle;
 }
 
-// The result of period k in the plane, if its start does not depend on the earlier start.
+// The result of period k, if its start does not depend on the earlier start.
 static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
     const FcBristle start = warmed_up(block, k, block->warm_up);
     const FcBristle other = warmed_up(block, k, block->warm_up - 1);
-    const double allowed = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
     if (start.slips != block->start.slips || other.slips != start.slips ||
         !(hypot(start.delta - other.delta, start.delta_y - other.delta_y) * fc_scene_stiffness(scene, 0.0) <=
-          allowed)) {
+          allowed(block))) {
         return false;
     }
     const FcStepResult result = take_period(block, scene, start);
@@ -205,34 +212,40 @@ static Numbers map_at(const Block* block, double k) {
     return map;
 }
 
+// Subtracts from the map of period k the map that the block foretells; the effect of the rest on a force [N].
+static double less_foretold(const Block* block, double k, Numbers* map) {
+    const Numbers weight = weights(block, map);
+    const Numbers foretold = map_at(block, k);
+    for (int i = 0; i < block->numbers; i++) {
+        map->of[i] -= foretold.of[i];
+    }
+    return largest_error(block->numbers, &weight, map->of);
+}
+
 // Interpolates the block, point by point, up to a point that the points before it predict. False if there is
 // none, or if a period has no map.
 static bool interpolate(Block* block) {
-    const double may = FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
+    const double may = allowed(block);
     const double most = fmin(MOST_POINTS, floor(MOST_PART * block->count));
     double before_last = HUGE_VAL;
     double largest = 0.0;
     for (block->points = 0; block->points < most;) {
         const int j = block->points;
         const double k = (block->count - 1.0) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
-        Numbers sampled;
-        if (!sample(block, k, &sampled)) {
+        Numbers error;
+        if (!sample(block, k, &error)) {
             return false;
         }
-        const Numbers foretold = map_at(block, k);
-        Numbers error;
+        const double last = less_foretold(block, k, &error);
         double product = 1.0;
         block->place[j] = place_in(block, k);
         for (int before = 0; before < j; before++) {
             product *= block->place[j] - block->place[before];
         }
         for (int i = 0; i < block->numbers; i++) {
-            error.of[i] = sampled.of[i] - foretold.of[i];
             block->point[j].of[i] = error.of[i] / product;
         }
         block->points++;
-        const Numbers weight = weights(block, &sampled);
-        const double last = largest_error(block->numbers, &weight, error.of);
         if (j >= FEWEST_POINTS && last <= may && before_last <= MOST_BEFORE * may) {
             return true;
         }
@@ -248,30 +261,95 @@ static bool interpolate(Block* block) {
     return false;
 }
 
+// Whether the periods are those of a bristle that slips in ElasticPlastic while V reverses.
+static bool slips_between_reversals(const Block* block) {
+    const FcScene scene = scene_at(block, 0.0);
+    return scene.friction->model == FC_ELASTIC_PLASTIC && block->side != 0 &&
+           fabs(scene.drive.V.value) < scene.drive.vibration.V_1;
+}
+
+// The distance of both bounds less the way of the bristle between two reversals of V [m], in period k of an
+// ElasticPlastic bristle: below 0 it slips along both. Exact if the bound does not move in the period.
+static double distance_less_way(const Block* block, double k) {
+    const FcScene scene = scene_at(block, k);
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
+    const FcDriveEvent first = fc_drive_next_event(&scene.drive, 0.0, 2.0 * block->period);
+    const FcDriveEvent second = fc_drive_event_after(&scene.drive, &first, 2.0 * block->period);
+    return fc_bound(&bound, first.time) + fc_bound(&bound, second.time) -
+           fabs(fc_drive_displacement(&scene.drive, first.time, second.time));
+}
+
+// Whether the block also foretells the period in which a slip along the other bound is most likely to begin and
+// end, or to cease and return, between its points: that with an extreme distance less way.
+static bool foretells_slips(const Block* block) {
+    const double stride = fmax(1.0, floor(block->count / MOST_PARTS));
+    double before[2] = {distance_less_way(block, 0.0), distance_less_way(block, stride)};
+    double at = 0.0;
+    double least = HUGE_VAL;
+    for (double k = 2.0 * stride; k < block->count; k += stride) {
+        const double now = distance_less_way(block, k);
+        const double falls = before[0] - before[1];
+        const double rises = now - before[1];
+        if (falls * rises > 0.0 && fabs(before[1]) < least) { // the vertex of a parabola
+            least = fabs(before[1]);
+            at = rint(k - stride + 0.5 * stride * (falls - rises) / (falls + rises));
+        }
+        before[0] = before[1];
+        before[1] = now;
+    }
+    Numbers error;
+    return at == 0.0 || (sample(block, at, &error) && less_foretold(block, at, &error) <= allowed(block));
+}
+
 // A free bounded bristle at the start of period k, and a lower bound of its room in this period [m].
 typedef struct {
     double k, room;
     FcBristle start;
 } Place;
 
-static double room_at(const Block* block, double k, FcBristle start) {
-    const FcScene scene = scene_at(block, k);
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
-    const FcDrive* drive = &scene.drive;
+// The bounds of the motion of a free bounded bristle in the periods of a block.
+typedef struct {
+    double stride;                // periods of a part
+    FcVector middle;              // m, of the swing, from the deflection at a period's start
+    double swing;                 // m, about the middle
+    FcVector V, rate;             // m/s and m/s a period, without the vibration
+    double D[2 * MOST_PARTS + 2]; // m, the least bound of the periods at the ends of parts
+} Rooms;
+
+static Rooms rooms_of(const Block* block) {
+    const FcScene first = scene_at(block, 0.0);
+    const FcDrive* drive = &first.drive;
     const double swing = hypot(drive->vibration.V_1, drive->vibration.V_2) / drive->omega;
-    FcDrive still = *drive;
-    still.vibration = (FcVibration){0};
-    const double way = fc_drive_largest_speed(&still, block->period) * block->period;
-    double reach = fc_size(start) + 2.0 * swing + way;
-    if (scene.friction->model == FC_ELASTIC_PLASTIC) { // it swings about a middle
+    Rooms rooms = {.stride = fmax(1.0, floor(block->count / MOST_PARTS)),
+                   .swing = 2.0 * swing,
+                   .V = {drive->V.value, drive->V_y.value},
+                   .rate = {drive->V.rate * block->period, drive->V_y.rate * block->period}};
+    if (first.friction->model == FC_ELASTIC_PLASTIC) { // else it may swing about any middle
         const FcPhase phase = fc_drive_phase(drive, 0.0);
         const double square = drive->omega * drive->omega;
-        const double x = drive->V.rate - fc_drive_velocity_at_phase(drive, 0.0, phase).rate;
-        const double y = drive->V_y.rate - fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate;
-        reach = hypot(start.delta - x / square, start.delta_y - y / square) + swing + way;
+        rooms.middle.x = (drive->V.rate - fc_drive_velocity_at_phase(drive, 0.0, phase).rate) / square;
+        rooms.middle.y = (drive->V_y.rate - fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate) / square;
+        rooms.swing = swing;
     }
-    return fc_scene_smallest_saturation(&bound, block->period) - reach;
+    for (int i = 0; i * rooms.stride < block->count + rooms.stride; i++) {
+        const FcScene scene = scene_at(block, fmin(i * rooms.stride, block->count - 1.0));
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
+        rooms.D[i] = fc_scene_smallest_saturation(&bound, block->period);
+    }
+    return rooms;
+}
+
+static double room_at(const Block* block, const Rooms* rooms, double k, FcBristle start) {
+    const int i = (int)(k / rooms->stride);
+    const double length = fmin(rooms->stride, block->count - 1.0 - i * rooms->stride);
+    const double part = length > 0.0 ? (k - i * rooms->stride) / length : 0.0;
+    const double D = rooms->D[i] + part * (rooms->D[i + 1] - rooms->D[i]);
+    const double V = hypot(rooms->V.x + k * rooms->rate.x, rooms->V.y + k * rooms->rate.y) +
+                     hypot(rooms->rate.x, rooms->rate.y); // at the most
+    return (1.0 - NO_ROOM) * D - hypot(start.delta - rooms->middle.x, start.delta_y - rooms->middle.y) -
+           rooms->swing - V * block->period;
 }
 
 // Whether the bristle would meet its bound in that period.
@@ -288,23 +366,28 @@ static bool meets(const Block* block, const Place* place) {
 // Takes *total through the block. False, with *total unchanged, if the block is not smooth or a free bristle
 // meets its bound.
 static bool take_block(Block* block, FcStepResult* total) {
-    if (!interpolate(block)) {
+    if (!interpolate(block) || (slips_between_reversals(block) && !foretells_slips(block))) {
         return false;
     }
     FcStepResult result = *total;
     const bool is_watched = block->side == 0 && block->warm_up == 0 && block->law->is_bounded;
-    const double stride = fmax(1.0, floor(block->count / MOST_ROOMS));
-    Place without_room[2 * MOST_ROOMS + 1];
+    const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = block->count};
+    Place without_room[2 * MOST_PARTS + 1]; // the period with the least room of each part
     int places = 0;
     int nearest = 0;
+    Place least = {.room = HUGE_VAL};
     for (double k = 0.0; k < block->count; k += 1.0) {
-        if (is_watched && (fmod(k, stride) == 0.0 || k == block->count - 1.0)) {
+        if (is_watched) {
             const FcBristle start = {.delta = result.delta, .delta_y = result.delta_y};
-            const Place at = {k, room_at(block, k, start), start};
-            if (at.room <= 0.0) {
-                without_room[places] = at;
-                nearest = places == 0 || at.room < without_room[nearest].room ? places : nearest;
-                places++;
+            const Place at = {k, room_at(block, &rooms, k, start), start};
+            least = at.room <= least.room ? at : least;
+            if (fmod(k + 1.0, rooms.stride) == 0.0 || k == block->count - 1.0) {
+                if (least.room <= 0.0) {
+                    without_room[places] = least;
+                    nearest = places == 0 || least.room < without_room[nearest].room ? places : nearest;
+                    places++;
+                }
+                least.room = HUGE_VAL;
             }
         }
         const Numbers at = map_at(block, k);
@@ -361,15 +444,17 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
     for (double k = 0.0; k < periods && total->evaluations <= FC_MOST_EVALUATIONS;) {
         bool slipped = false;
         if (law.is_bounded) { // the first period says whether it slips
-            total->meetings = 0;
+            total->meetings = total->slip_side = 0;
             take_part(law, scene, options, k, 0.0, period, total);
             slipped = total->meetings > 0;
             k += 1.0;
         }
         const double room = fmin(longest, fmin(periods - k, to_kink(scene, k)));
-        const bool on_line = slipped && !law.is_planar; // there it begins at its bound
+        // On a line periods begin at the bound, if the bristle slips along it for any time.
+        const bool on_line = slipped && !law.is_planar && total->slip_side != 0;
+        const bool forgets = slipped && !on_line;
         const double count = on_line ? room - 1.0 : room;
-        const double fewest = slipped && law.is_planar ? FEWEST_OF_SLIPS : FEWEST;
+        const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
         Block block = {.law = &law,
                        .scene = scene,
                        .options = options,
@@ -378,7 +463,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                        .count = floor(count),
                        .phase = on_line ? total->slip_time : 0.0,
                        .side = on_line ? total->slip_side : 0,
-                       .warm_up = slipped && law.is_planar ? WARM_UP : 0,
+                       .warm_up = forgets ? WARM_UP : 0,
                        .start = fc_bristle_of(total),
                        .numbers = law.is_planar ? NUMBERS : OF_MAP,
                        .evaluations = &total->evaluations};
@@ -396,8 +481,8 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                 *total = before;
             }
             longest = taken ? 2.0 * room : floor(0.5 * room);
-            if (longest < fewest) {
-                longest = 2.0 * fewest;
+            if (longest < fewest + 1.0) { // of one more a block on a line would have too few
+                longest = 2.0 * fewest + 2.0;
                 tries_at = k + alone;
                 alone *= 2.0;
             }

@@ -145,5 +145,6 @@ bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t
     *evaluations += BOUND[rule].n;
     // The displacement is known. A bristle that forgets little would sum up the errors of its quadrature.
     panel->map.offset += (1.0 - panel->map.relaxation) * (X - panel->displacement);
-    return panel->z <= z || bound(&interval->pace, rule, h, panel->z) <= allowed_bound(interval, X, z, from);
+    return panel->z <= z || (panel->z <= FC_MOST_BOUNDED && bound(&interval->pace, rule, h, panel->z) <=
+                                                                allowed_bound(interval, X, z, from));
 }

@@ -165,8 +165,9 @@ void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
 // The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
 // long. Half of it refuses good panels, twice of it costs time.
 enum { MOST_ITERATIONS = 12 };
-// The step of the angle [rad] below which Newton's method leaves only rounding: its square is 1e-16.
-static const double LAST_STEP = 1e-8;
+// The step of the angle [rad] below which Newton's method ends. Derived: its square is rounding, and so is, to the
+// finest tolerance, its multiple if a diagonal is cut and the method is of first order.
+static const double LAST_STEP = 1e-10;
 
 // The angles a at the stages, beginning at a_0, with the slope tau / D (V_y cos a - V sin a).
 static bool find_angles(const FcPlaneNodes* nodes, const FcPlaneBound* bound, double a_0, double* a) {
