@@ -9,7 +9,7 @@
 #include "solver/methods/method.h"
 
 // The number of vibration periods since time 0 beyond which the phase is refused. Chosen empirically:
-// neighbouring numbers of time are then 1/128 to 1/64 of a period apart. Twice the number would leave twice that.
+// neighbouring numbers of time are then 1/128 to 1/64 of a period apart. Twice the number would double this.
 static const double MOST_CYCLES = 0x1p46;
 
 // The largest factor by which E may change in a step. Chosen empirically: the tests cover it; a larger one is
