@@ -9,7 +9,7 @@
 #include "solver/methods/method.h"
 
 // The number of vibration periods since time 0 beyond which the phase is refused. Chosen empirically:
-// neighbouring numbers of time are then 1/64 of a period apart. Twice the number would leave 1/32.
+// neighbouring numbers of time are then 1/128 to 1/64 of a period apart. Twice the number would double this.
 static const double MOST_CYCLES = 0x1p46;
 
 // The largest factor by which E may change in a step. Chosen empirically: the tests cover it; a larger one is
@@ -228,7 +228,7 @@ static bool check_time(const FcDrive* drive, double t, FcMessage* message) {
     return fc_message_set(
         message,
         "time = %.9g s is too large for vibration.f = %.9g Hz: beyond %.9g s its neighbouring "
-        "numbers are more than 1/64 of a period apart",
+        "numbers are more than 1/128 of a period apart",
         t, f, MOST_CYCLES / f);
 }
 

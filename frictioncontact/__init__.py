@@ -7,7 +7,7 @@
     print(law([0.1, 0.5, 1.0]), law.derivative(0.5))
     # one scene over time, as a table
     fc.simulate(scene, stop=1e-3, step=5e-5, outputs=["F_t_mean"])
-    # thousands of scenes
+    # thousands of scenarios
     fc.simulate_many({**scene, "V": [0.1, 0.5, 1.0]}, ["F_t_mean"])
     # a measured contact, and a fit to its measurements
     steel = fc.contacts["steel-dry"]
@@ -18,9 +18,9 @@
     # every variable, and the .fmu file for other tools
     print(fc.variables(), fc.FMU)
 
-`fc.sweep` runs millions of scenes into Parquet. Variables have their names in the FMU, all values are in SI
-units. A name or a value that is wrong is a UserError of one line, a ValueError; a scene that was hardly meant
-gives a FrictionWarning. Modules are imported when they are first used.
+`fc.sweep` runs millions of scenarios into Parquet. Variables have their names in the FMU, all values are in
+SI units. A name or a value that is wrong is a UserError of one line, a ValueError; a scene that was hardly
+meant gives a FrictionWarning. Modules are imported when they are first used.
 """
 
 from __future__ import annotations

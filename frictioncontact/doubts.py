@@ -105,8 +105,8 @@ def warn_of(
 ) -> None:
     """Warns of scenes with these values, and of what the FMU logged, at the line of the user.
 
-    scene: names and values, which are valid; arrays stand for many scenes. is_over_period: vibration.f says
-    how long they are.
+    scene: names and values, which are valid; arrays stand for many scenarios. is_over_period: vibration.f
+    says how long they are.
     """
     if is_quiet():
         return

@@ -151,7 +151,8 @@ def draw(path: Path) -> None:
 def table() -> str:
     """Stall force, no-load speed, largest output and its efficiency, over the stiffness."""
     rows = [
-        "| κ | stiffness [N/µm] | stall force [N] | no-load [mm/s] | most output [W] | efficiency [%] |",
+        "| κ | stiffness [N/µm] | stall force [N] | no-load speed [mm/s] | maximum output [W] "
+        "| efficiency [%] |",
         "|---|---|---|---|---|---|",
     ]
     contacts = [(f"{kappa:g} | {1e-6 * stiffness(kappa):.0f}", scene(kappa)) for kappa in KAPPA]

@@ -6,7 +6,7 @@ Every master below takes steps of H with values held over a step (but for "Jacob
 affine map, and the exchange is stable where the eigenvalues of its matrix are at most 1.
 
     Jacobi          both sides start from the values at the start of the step; F_t is what the last step of
-                    the FMU left, with the velocity that it was given then: libcosim, fmpy's SSP, most tools
+                    the FMU left, with the velocity that it was given then: libcosim, fmpy's SSP
     Jacobi, reread  the same, but F_t is read again after the new V has been set
     Jacobi, linear  the same with the derivatives: V, F_t and then F_t' are exchanged before the step
     Gauss-Seidel    the mass goes first, then the contact with the new velocity

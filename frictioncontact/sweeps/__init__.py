@@ -1,1 +1,1 @@
-"""Many scenes on all cores or a Dask cluster."""
+"""Many scenarios on all cores or a Dask cluster."""

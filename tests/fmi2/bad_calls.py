@@ -96,7 +96,7 @@ CALLS = [
         ("order = 2", "V"),
     ),
     BadCall(
-        "directional derivative to a parameter",
+        "directional derivative in a parameter",
         BETWEEN_STEPS,
         lambda i: i.directional(["F_t"], {"F_C": 1.0})[0],
         ("F_C", "input"),

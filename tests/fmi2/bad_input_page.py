@@ -63,7 +63,7 @@ def _instantiation(library: Library) -> list[str]:
         "an empty instance name": {"name": ""},
         "no instance name": {"name": None},
     }
-    rows = ["| for | message |", "|---|---|"]
+    rows = ["| cause | message |", "|---|---|"]
     for title, arguments in cases.items():
         refused = Instance(library, **arguments)
         if refused.component is not None:
@@ -89,7 +89,7 @@ def page(folder: Path) -> str:
     with Instance(library) as instance:
         instance.bring_to("step complete")
         instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
-        lines.append(ORDER.strip("\n").format(example=instance.last_message.text))
+        lines.append(ORDER.rstrip("\n").format(example=instance.last_message.text))
     lines += [
         "",
         *_indented(TABLE),

@@ -154,7 +154,7 @@ def table(fmu: FrictionFmu) -> Iterator[tuple[str, str, int, float, float, int]]
 
 
 def main() -> None:
-    print(f"{'law':15}{'way':43}{'calls':>8}{'F_t / F_C':>12}{'x k / F_C':>12}{'events':>8}")
+    print(f"{'law':15}{'way':43}{'calls':>8}{'F_t / F_C':>12}{'k x / F_C':>12}{'events':>8}")
     with FrictionFmu(build_fmu()) as fmu:
         for law, way, calls, of_F_t, of_x, events in table(fmu):
             print(f"{law:15}{way:43}{calls:8}{of_F_t:12.1e}{of_x:12.1e}{events or '':>8}")
