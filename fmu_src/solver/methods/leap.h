@@ -1,15 +1,12 @@
 // Many vibration periods with moving inputs, at the cost of some.
 //
-// Period k of a step begins with the inputs V + V' k T, d + d' k T, ... at the same phase. Its map is a
-// smooth function of k, which need not be whole: it is sampled at Chebyshev points of a block of n periods and
-// interpolated, and the n maps are applied one after the other.
-//
-//     block of n periods      k = (n - 1) (1 - cos(angle)) / 2,    angle = 0, pi, pi / 2, pi / 4, 3 pi / 4, ...
+// Period k of a step begins with the inputs V + V' k T, d + d' k T, ... at the same phase. Its map is a smooth
+// function of k, which need not be whole. A block of periods is taken by interpolated maps (leap_block.h).
 //
 // A bristle that slips in each period forgets its past. Then periods begin while it slips, at the bound, and
-// their results are smooth functions of k. A block is smooth if the points so far predict the map at the next
-// one. A block is halved if it is not smooth, for example if the bristle meets its bound for the first time,
-// a slip disappears or the contact opens. The remaining periods are computed one by one.
+// their results are smooth functions of k. A block is halved if it is not smooth, for example if the bristle
+// meets its bound for the first time, a slip disappears or the contact opens. The remaining periods are computed
+// one by one.
 #ifndef FC_SOLVER_LEAP_H
 #define FC_SOLVER_LEAP_H
 

@@ -1,0 +1,463 @@
+#include "solver/methods/leap_block.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "model/constants.h"
+#include "model/regime.h"
+#include "solver/budget.h"
+
+// FEWEST_POINTS, MOST_POINTS: the numbers of points of the interpolation. MOST_PART: the largest part of a
+// block's periods that may be points. Chosen empirically: a block that needs more gains nothing. Half of them
+// refuses more blocks.
+enum { FEWEST_POINTS = 4, MOST_POINTS = 17 };
+static const double MOST_PART = 0.7;
+// The largest accepted error at the last point but one, over that at the last. Chosen empirically: both are
+// seldom small by chance. Half of it costs points.
+static const double MOST_BEFORE = 30.0;
+
+// MOST_PARTS: the number of parts of a block, or up to twice as many, between whose ends the bound is taken as
+// linear. MOST_CHECKS: the number of parts without room in which a free bristle is followed through a period,
+// or up to two more. Chosen empirically: a bristle often comes near its bound in a few periods. Half of them
+// may miss a meeting, twice as many cost evaluations.
+enum { MOST_PARTS = 64, MOST_CHECKS = 8 };
+// The room over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
+// it changes by a factor of up to 10 in the block.
+static const double NO_ROOM = 1e-3;
+
+// The numbers of the two maps, along and transverse.
+enum { OF_MAP = sizeof(FcMap) / sizeof(double), NUMBERS = 2 * OF_MAP };
+typedef union {
+    struct {
+        FcMap map, across;
+    };
+    double of[NUMBERS];
+} Numbers;
+
+// The variable in which the maps of a block are smooth: the phase [rad] at which V reverses, else the period.
+// Near |V| = V_1 the phase goes with the root of the distance.
+typedef struct {
+    bool is_phase;
+    double V, rate;  // of V over V_1 in period 0, and a period: when V reverses, or nearly, at |V| = V_1
+    double from, to; // in the first and the last period
+} Variable;
+
+// Periods that begin `phase` [s] after those of the scene.
+typedef struct {
+    const FcIntegration* law;
+    const FcScene* scene;
+    const FcSolverOptions* options;
+    double period;       // s
+    double first, count; // the block
+    double phase;        // s
+    int side;            // of the bound at which they begin, 0 for any start
+    int warm_up;         // periods after which a bristle that meets its bound has forgotten, 0 for any start
+    FcBristle start;     // at the block
+    double* evaluations;
+    int numbers; // of a map, or of two in the plane
+    Variable variable;
+    double place[MOST_POINTS];  // of the variable at the points, in [-2, 2]
+    Numbers point[MOST_POINTS]; // Newton's coefficients: divided differences
+    int points;
+} Block;
+
+// The largest error of the block's maps, as a force [N].
+static double allowed(const Block* block) {
+    return FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
+}
+
+static FcScene scene_at(const Block* block, double k) {
+    const FcScene later = fc_scene_later(block->scene, (block->first + k) * block->period);
+    return block->phase > 0.0 ? fc_scene_from(&later, block->phase) : later;
+}
+
+// The bristle on the bound of that side at the start of a scene.
+static FcBristle on_bound(const FcScene* scene, int side) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, side, &friction);
+    return (FcBristle){.delta = side * fc_bound(&bound, 0.0),
+                       .slips = fc_has_static_friction(scene->friction) ? side : 0};
+}
+
+// Whether a bristle deflected by delta [m] lies on the bound of the block at the start of period k. A distance
+// that is not rounding would grow from period to period.
+static bool lies_on_bound(const Block* block, double k, double delta) {
+    const FcScene scene = scene_at(block, k);
+    const double bound = on_bound(&scene, block->side).delta;
+    return fabs(bound - delta) <= FC_ROUNDING_OF_BOUND * fabs(bound);
+}
+
+// A period of a scene from a bristle.
+static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
+    FcStepResult result = fc_result_from(start, *block->evaluations);
+    block->law->step(scene, block->options, block->period, &result);
+    *block->evaluations = result.evaluations;
+    return result;
+}
+
+// The bristle `periods` after period k - periods of the block.
+static FcBristle warmed_up(const Block* block, double k, int periods) {
+    FcBristle bristle = block->start;
+    for (int before = periods; before > 0; before--) {
+        const FcScene scene = scene_at(block, k - before);
+        const FcStepResult result = take_period(block, &scene, bristle);
+        bristle = fc_bristle_of(&result);
+    }
+    return bristle;
+}
+
+// The result of period k, if its start does not depend on the earlier start.
+static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
+    const FcBristle start = warmed_up(block, k, block->warm_up);
+    const FcBristle other = warmed_up(block, k, block->warm_up - 1);
+    if (start.slips != block->start.slips || other.slips != start.slips ||
+        !(hypot(start.delta - other.delta, start.delta_y - other.delta_y) * fc_scene_stiffness(scene, 0.0) <=
+          allowed(block))) {
+        return false;
+    }
+    const FcStepResult result = take_period(block, scene, start);
+    numbers->map = fc_map_of_one_start(&result);
+    numbers->across =
+        (FcMap){.relaxation = 1.0, .offset = result.delta_y, .impulse_offset = result.impulse_y};
+    return result.slips == start.slips;
+}
+
+// The map of period k of the block; false if it has pieces, or does not lead from the bound to the bound as
+// it should.
+static bool sample(const Block* block, double k, Numbers* numbers) {
+    FcScene scene = scene_at(block, k);
+    if (scene.is_open || fc_scene_piece(&scene, block->period, block->period) < block->period ||
+        scene.is_open) {
+        return false;
+    }
+    if (block->warm_up > 0) {
+        return sample_of_slips(block, &scene, k, numbers);
+    }
+    if (block->side == 0) {
+        numbers->map = block->law->free_map(&scene, block->options, block->period, fc_size(block->start),
+                                            &numbers->across, block->evaluations);
+        return true;
+    }
+    const FcBristle start = on_bound(&scene, block->side);
+    if (fc_regime(&scene, start) != (FcRegime)block->side) {
+        return false;
+    }
+    const FcStepResult result = take_period(block, &scene, start);
+    numbers->map = fc_map_of_one_start(&result);
+    return lies_on_bound(block, k + 1.0, result.delta);
+}
+
+// The effect of an error of each number of a map on a force of 1 N.
+static Numbers weights(const Block* block, const Numbers* typical) {
+    const FcScene begin = scene_at(block, 0.0);
+    const FcScene end = scene_at(block, block->count - 1.0);
+    const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
+    const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
+    const double sigma = fmax(at.sigma, at_end.sigma);
+    const double delta = fmax(fc_size(block->start), fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
+    const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
+    const double damping = block->scene->friction->sigma_1;
+    // Errors of the deflection add up until they have relaxed.
+    const double lives = fmin(block->count, 1.0 / fmax(typical->map.relaxation, 1.0 / block->count));
+    const FcMap of_map = {
+        .relaxation = sigma * delta * lives,
+        .offset = sigma * lives,
+        .impulse_slope = delta / block->period,
+        .impulse_offset = 1.0 / block->period,
+        .work_slope = delta / path,
+        .work_offset = 1.0 / path,
+        .drag_slope = damping * delta / path,
+        .drag_offset = damping / path,
+        .heat_square = delta * delta / path,
+        .heat_slope = delta / path,
+        .heat_offset = 1.0 / path,
+    };
+    return (Numbers){.map = of_map, .across = of_map};
+}
+
+// The angles of the points, over pi / 16: Chebyshev's, in an order that halves the angles between them. Of
+// those in between, one at the end of the block comes first, since errors are largest there, and then one
+// inside, where a kink would be.
+static const int ANGLE[MOST_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
+
+// The least range of the phase [rad]. Rounding: 1e-12 of it. A smaller one has no root within the block.
+static const double LEAST_RANGE = 1e-4;
+
+double fc_part_until_opposed(const FcDrive* drive, double V) {
+    const FcPhase phase = fc_drive_phase(drive, 0.0);
+    const double turns = (V > 0.0 ? 0.5 : 0.0) - atan2(phase.sine, phase.cosine) / (2.0 * FC_PI);
+    return turns - floor(turns);
+}
+
+static Variable variable_of(const Block* block) {
+    const FcScene first = scene_at(block, 0.0);
+    const FcDrive* drive = &first.drive;
+    const double V_1 = drive->vibration.V_1;
+    const double last = block->count - 1.0;
+    if (!block->law->is_planar && V_1 > 0.0 && drive->V.rate != 0.0) {
+        const double middle = drive->V.value + 0.5 * last * block->period * drive->V.rate;
+        const double rate = drive->V.rate * block->period / V_1;
+        const double V = drive->V.value / V_1 + fc_part_until_opposed(drive, middle) * rate;
+        const Variable found = {true, V, rate, acos(V), acos(V + last * rate)};
+        if (fabs(found.to - found.from) > LEAST_RANGE) { // not if V does not reverse: then it is no number
+            return found;
+        }
+    }
+    return (Variable){.to = last};
+}
+
+// The place of the variable in period k, in [-2, 2]: a length that keeps products of distances near 1.
+static double place_in(const Block* block, double k) {
+    const Variable* of = &block->variable;
+    const double now = of->is_phase ? acos(of->V + k * of->rate) : k;
+    return of->to != of->from ? 4.0 * (now - of->from) / (of->to - of->from) - 2.0 : 0.0;
+}
+
+// The period of point j.
+static double period_of_point(const Block* block, int j) {
+    const Variable* of = &block->variable;
+    const double now = of->from + (of->to - of->from) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
+    const double k = of->is_phase ? (cos(now) - of->V) / of->rate : now;
+    return fmax(0.0, fmin(k, block->count - 1.0));
+}
+
+// Infinite if an error is no number. Without a path work and heat have infinite weights and no errors.
+static double largest_error(int count, const Numbers* weight, const double* error) {
+    double largest = 0.0;
+    for (int i = 0; i < count; i++) {
+        const double seen = error[i] != 0.0 && weight->of[i] != 0.0 ? weight->of[i] * fabs(error[i]) : 0.0;
+        if (isnan(seen)) {
+            return HUGE_VAL;
+        }
+        largest = fmax(largest, seen);
+    }
+    return largest;
+}
+
+// The interpolated map of period k: Newton's polynomial.
+static Numbers map_at(const Block* block, double k) {
+    Numbers map = {.of = {0.0}};
+    const double place = place_in(block, k);
+    for (int j = block->points - 1; j >= 0; j--) {
+        for (int i = 0; i < block->numbers; i++) {
+            map.of[i] = map.of[i] * (place - block->place[j]) + block->point[j].of[i];
+        }
+    }
+    return map;
+}
+
+// Subtracts from the map of period k the map that the block foretells; the effect of the rest on a force [N].
+static double less_foretold(const Block* block, double k, Numbers* map) {
+    const Numbers weight = weights(block, map);
+    const Numbers foretold = map_at(block, k);
+    for (int i = 0; i < block->numbers; i++) {
+        map->of[i] -= foretold.of[i];
+    }
+    return largest_error(block->numbers, &weight, map->of);
+}
+
+// Interpolates the block, point by point, up to a point that the points before it predict. False if there is
+// none, or if a period has no map.
+static bool interpolate(Block* block) {
+    const double may = allowed(block);
+    const double most = fmin(MOST_POINTS, floor(MOST_PART * block->count));
+    double before_last = HUGE_VAL;
+    double largest = 0.0;
+    block->variable = variable_of(block);
+    for (block->points = 0; block->points < most;) {
+        const int j = block->points;
+        const double k = period_of_point(block, j);
+        Numbers error;
+        if (!sample(block, k, &error)) {
+            return false;
+        }
+        const double last = less_foretold(block, k, &error);
+        double product = 1.0;
+        block->place[j] = place_in(block, k);
+        for (int before = 0; before < j; before++) {
+            product *= block->place[j] - block->place[before];
+        }
+        for (int i = 0; i < block->numbers; i++) {
+            block->point[j].of[i] = error.of[i] / product;
+        }
+        block->points++;
+        if (j >= FEWEST_POINTS && last <= may && before_last <= MOST_BEFORE * may) {
+            return true;
+        }
+        before_last = last;
+        largest = j > 0 ? fmax(largest, last) : 0.0;
+        // The errors fall by a ratio from point to point. If the remaining points are too few for this ratio,
+        // the block is refused.
+        const double left = j > 1 ? (j - 1) * log(last / may) / log(largest / last) : 0.0;
+        if (j >= FEWEST_POINTS && !(j + left <= most)) {
+            return false;
+        }
+    }
+    return false;
+}
+
+// Whether the periods are those of a bristle that slips in ElasticPlastic while V reverses.
+static bool slips_between_reversals(const Block* block) {
+    const FcScene scene = scene_at(block, 0.0);
+    return scene.friction->model == FC_ELASTIC_PLASTIC && block->side != 0 &&
+           fabs(scene.drive.V.value) < scene.drive.vibration.V_1;
+}
+
+// The distance of both bounds less the way of the bristle between two reversals of V [m], in period k of an
+// ElasticPlastic bristle: below 0 it slips along both. Exact if the bound does not move in the period.
+static double distance_less_way(const Block* block, double k) {
+    const FcScene scene = scene_at(block, k);
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
+    const FcDriveEvent first = fc_drive_next_event(&scene.drive, 0.0, 2.0 * block->period);
+    const FcDriveEvent second = fc_drive_event_after(&scene.drive, &first, 2.0 * block->period);
+    return fc_bound(&bound, first.time) + fc_bound(&bound, second.time) -
+           fabs(fc_drive_displacement(&scene.drive, first.time, second.time));
+}
+
+// Whether the block also foretells the period in which a slip along the other bound is most likely to begin and
+// end, or to cease and return, between its points: that with an extreme distance less way.
+static bool foretells_slips(const Block* block) {
+    const double stride = fmax(1.0, floor(block->count / MOST_PARTS));
+    double before[2] = {distance_less_way(block, 0.0), distance_less_way(block, stride)};
+    double at = 0.0;
+    double least = HUGE_VAL;
+    for (double k = 2.0 * stride; k < block->count; k += stride) {
+        const double now = distance_less_way(block, k);
+        const double falls = before[0] - before[1];
+        const double rises = now - before[1];
+        if (falls * rises > 0.0 && fabs(before[1]) < least) { // the vertex of a parabola
+            least = fabs(before[1]);
+            at = rint(k - stride + 0.5 * stride * (falls - rises) / (falls + rises));
+        }
+        before[0] = before[1];
+        before[1] = now;
+    }
+    Numbers error;
+    return at == 0.0 || (sample(block, at, &error) && less_foretold(block, at, &error) <= allowed(block));
+}
+
+// A free bounded bristle at the start of period k, and a lower bound of its room in this period [m].
+typedef struct {
+    double k, room;
+    FcBristle start;
+} Place;
+
+// The bounds of the motion of a free bounded bristle in the periods of a block.
+typedef struct {
+    double stride;                // periods of a part
+    FcVector middle;              // m, of the swing, from the deflection at a period's start
+    double swing;                 // m, about the middle
+    FcVector V, rate;             // m/s and m/s a period, without the vibration
+    double D[2 * MOST_PARTS + 2]; // m, the least bound of the periods at the ends of parts
+} Rooms;
+
+static Rooms rooms_of(const Block* block) {
+    const FcScene first = scene_at(block, 0.0);
+    const FcDrive* drive = &first.drive;
+    const double swing = hypot(drive->vibration.V_1, drive->vibration.V_2) / drive->omega;
+    Rooms rooms = {.stride = fmax(1.0, floor(block->count / MOST_PARTS)),
+                   .swing = 2.0 * swing,
+                   .V = {drive->V.value, drive->V_y.value},
+                   .rate = {drive->V.rate * block->period, drive->V_y.rate * block->period}};
+    if (first.friction->model == FC_ELASTIC_PLASTIC) { // else it may swing about any middle
+        const FcPhase phase = fc_drive_phase(drive, 0.0);
+        const double square = drive->omega * drive->omega;
+        rooms.middle.x = (drive->V.rate - fc_drive_velocity_at_phase(drive, 0.0, phase).rate) / square;
+        rooms.middle.y = (drive->V_y.rate - fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate) / square;
+        rooms.swing = swing;
+    }
+    for (int i = 0; i * rooms.stride < block->count + rooms.stride; i++) {
+        const FcScene scene = scene_at(block, fmin(i * rooms.stride, block->count - 1.0));
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
+        rooms.D[i] = fc_scene_smallest_saturation(&bound, block->period);
+    }
+    return rooms;
+}
+
+static double room_at(const Block* block, const Rooms* rooms, double k, FcBristle start) {
+    const int i = (int)(k / rooms->stride);
+    const double length = fmin(rooms->stride, block->count - 1.0 - i * rooms->stride);
+    const double part = length > 0.0 ? (k - i * rooms->stride) / length : 0.0;
+    const double D = rooms->D[i] + part * (rooms->D[i + 1] - rooms->D[i]);
+    const double V = hypot(rooms->V.x + k * rooms->rate.x, rooms->V.y + k * rooms->rate.y) +
+                     hypot(rooms->rate.x, rooms->rate.y); // at the most
+    return (1.0 - NO_ROOM) * D - hypot(start.delta - rooms->middle.x, start.delta_y - rooms->middle.y) -
+           rooms->swing - V * block->period;
+}
+
+// Whether the bristle would meet its bound in that period.
+static bool meets(const Block* block, const Place* place) {
+    const FcScene scene = scene_at(block, place->k);
+    const FcBristle start = place->start;
+    const FcBristle reached = fc_reach(&scene, start);
+    if (reached.delta != start.delta || reached.delta_y != start.delta_y) {
+        return true;
+    }
+    return take_period(block, &scene, start).meetings > 0;
+}
+
+bool fc_block_take(const FcBlock* of, FcStepResult* total) {
+    Block found = {.law = of->law,
+                   .scene = of->scene,
+                   .options = of->options,
+                   .period = 1.0 / of->scene->drive.vibration.f,
+                   .first = of->first,
+                   .count = of->count,
+                   .phase = of->phase,
+                   .side = of->side,
+                   .warm_up = of->warm_up,
+                   .start = fc_bristle_of(total),
+                   .numbers = of->law->is_planar ? NUMBERS : OF_MAP,
+                   .evaluations = &total->evaluations};
+    Block* block = &found;
+    if (block->side != 0 && !lies_on_bound(block, 0.0, total->delta)) {
+        return false;
+    }
+    if (!interpolate(block) || (slips_between_reversals(block) && !foretells_slips(block))) {
+        return false;
+    }
+    FcStepResult result = *total;
+    const bool is_watched = block->side == 0 && block->warm_up == 0 && block->law->is_bounded;
+    const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = block->count};
+    Place without_room[2 * MOST_PARTS + 1]; // the period with the least room of each part
+    int places = 0;
+    int nearest = 0;
+    Place least = {.room = HUGE_VAL};
+    for (double k = 0.0; k < block->count; k += 1.0) {
+        if (is_watched) {
+            const FcBristle start = {.delta = result.delta, .delta_y = result.delta_y};
+            const Place at = {k, room_at(block, &rooms, k, start), start};
+            least = at.room <= least.room ? at : least;
+            if (fmod(k + 1.0, rooms.stride) == 0.0 || k == block->count - 1.0) {
+                if (least.room <= 0.0) {
+                    without_room[places] = least;
+                    nearest = places == 0 || least.room < without_room[nearest].room ? places : nearest;
+                    places++;
+                }
+                least.room = HUGE_VAL;
+            }
+        }
+        const Numbers at = map_at(block, k);
+        fc_map_apply(&at.map, &result);
+        if (block->law->is_planar) {
+            fc_map_apply_across(&at.across, &result);
+        }
+    }
+    const int each = 1 + places / MOST_CHECKS;
+    for (int i = 0; i < places; i++) {
+        const bool is_checked = i % each == 0 || i == nearest || i == places - 1;
+        if (is_checked && meets(block, &without_room[i])) {
+            return false;
+        }
+    }
+    result.evaluations = *block->evaluations;
+    if (block->side != 0) {
+        result.slips = fc_has_static_friction(block->scene->friction) ? block->side : 0;
+    }
+    *total = result;
+    return true;
+}
