@@ -500,7 +500,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcScene* end = moves ? &moved : &scene;
     Outputs now;
-    const FcBristle reached = fc_bristle_of(&result);
+    const bool slips = result.on_bound && !fc_scene_is_loose(end);
+    const FcBristle reached = slips ? fc_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);
     if (!find_outputs(end, response, reached, &now, message)) {
         return false;
     }

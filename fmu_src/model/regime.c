@@ -122,6 +122,15 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     return bristle;
 }
 
+FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle) {
+    AtBound of;
+    find_bound(&of, scene, bristle);
+    const FcVector n = direction(bristle.delta, bristle.delta_y);
+    bristle.delta = of.bound.D * n.x;
+    bristle.delta_y = of.bound.D * n.y;
+    return bristle;
+}
+
 // The part of its bound by which a slipping bristle may lie inside it. Chosen empirically: rounding of the
 // phase may take the bristle off its bound at the end of a step. A larger value would move a bristle that
 // catches up onto its bound.

@@ -56,6 +56,10 @@ double fc_push_at(void* context, double t);
 // becomes 0, and a slipping bristle that is not pushed sticks.
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle);
 
+// A slipping bristle, moved onto its bound at the start of the scene. If the load falls by decades in a step,
+// the bound at its end is known to fewer digits from its start.
+FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle);
+
 // The regime of a bristle that is within its bound.
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 

@@ -39,4 +39,5 @@ void fc_loose_step(FcStepResult* result) {
     result->lost_y += result->delta_y;
     result->delta = result->delta_y = 0.0;
     result->slips = 0;
+    result->on_bound = false;
 }

@@ -34,6 +34,7 @@ static inline double fc_force_beside_damping(double largest, double damping, dou
 typedef struct {
     double delta;       // m     deflection at the end of the step
     int slips;          //       the other part of the bristle's state (FcBristle)
+    bool on_bound;      //       the march has ended in a slip along the bound
     int meetings;       //       how often the bristle met its bound, slipping along it at the start included
     double slip_time;   // s     into the interval, a time at which the bristle slipped along a bound, and
     int slip_side;      //       the side of that bound; both without meaning if it has not slipped

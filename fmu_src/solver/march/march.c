@@ -39,6 +39,9 @@ enum { MOST_IDLE = 4 };
 // four times as long each, since a push of rounding soon becomes another. Rounding: 4500 eps. Twice of it
 // slips twice as long without a push.
 static const double FIRST_NUDGE = 1e-12;
+// The longest regime that is idle over the length of the next such panel. Chosen empirically: without it a regime
+// of some 1e-12 of the interval again and again costs millions of evaluations; ten times of it would end slips.
+static const double IDLE_BESIDE_NUDGE = 1e-3;
 
 // The largest bend of the push between two points, over the largest bend from point to point there. Chosen
 // empirically: half of it misses dips, twice of it costs evaluations.
@@ -742,6 +745,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     assert(duration >= 0.0 && fc_is_bounded(scene->friction));
     March m;
     begin(&m, scene, options, duration, result);
+    result->on_bound = false;
     const bool has_memory = fc_has_static_friction(scene->friction);
     const double D = fc_bound(has_memory && result->slips != 0 ? scene : &m.bound, 0.0);
     result->evaluations += 1.0;
@@ -761,7 +765,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     double before = -1.0;
     double nudge = FIRST_NUDGE * duration;
     for (int idle = 0; m.t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
-        idle = m.t - before > FIRST_NUDGE * duration ? 0 : idle + 1;
+        idle = m.t - before > fmax(FIRST_NUDGE * duration, IDLE_BESIDE_NUDGE * nudge) ? 0 : idle + 1;
         before = m.t;
         if (m.side != 0) {
             if (idle > MOST_IDLE) {
@@ -778,6 +782,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
             stick(&m, duration);
         }
     }
+    result->on_bound = m.side != 0;
 }
 
 FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, double duration,

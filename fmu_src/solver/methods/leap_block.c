@@ -454,6 +454,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
             return false;
         }
     }
+    result.on_bound = false;
     result.evaluations = *block->evaluations;
     if (block->side != 0) {
         result.slips = fc_has_static_friction(block->scene->friction) ? block->side : 0;

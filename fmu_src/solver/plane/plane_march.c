@@ -499,6 +499,7 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     result->drag += march.drag;
     result->meetings += march.meetings;
     result->slips = fc_has_static_friction(scene->friction) ? march.slips : 0;
+    result->on_bound = march.motion == SLIPS;
     result->evaluations = march.evaluations;
 }
 
