@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 ROOT = Path(__file__).resolve().parent.parent
-LONGEST = {"release", "unit", "site", "test_identify.py", "test_wheel.py"}
+LONGEST = {
+    "release", "site", "unit", "test_belt_page.py", "test_building.py", "test_identify.py",
+    "test_random_fits.py", "test_report.py", "test_scenes.py", "test_sweep_cluster.py", "test_wheel.py",
+}  # fmt: skip
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
