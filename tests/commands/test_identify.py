@@ -90,7 +90,7 @@ def from_law(fmu: FrictionFmu) -> Callable[[str], Recovered]:
 
 
 def least(fits: list[Fit]) -> float:
-    """So many of 20 hold the truth with a probability of 99 % if they are 95 % intervals; with 24 % if 70 %."""
+    """So many 95 % intervals hold the truth with a probability of 99 %; 70 % intervals of 20 with 24 %."""
     return stats.binom.ppf(0.01, len(fits), 0.95)
 
 
