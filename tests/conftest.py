@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from fmpy.fmi1 import printLogMessage
+from fmpy.fmi2 import defaultCallbacks, fmi2CallbackLoggerTYPE
 
 from frictioncontact.fmu import FrictionFmu
 
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 # Started in the background, a runner ignores Control-C, and so would the commands that tests interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+# fmpy's own callbacks call the logger of the last simulate_fmu of the process, which is freed: a crash.
+defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
 
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST = {

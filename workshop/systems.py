@@ -10,8 +10,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-from fmpy.fmi1 import printLogMessage
-from fmpy.fmi2 import defaultCallbacks, fmi2CallbackLoggerTYPE
 from fmpy.ssp.simulation import simulate_ssp
 from libcosimpy.CosimEnums import CosimVariableType
 from libcosimpy.CosimExecution import CosimExecution
@@ -92,8 +90,6 @@ def run_fmpy(ssp: Path, step: float, count: int, signals: Sequence[Signal]) -> d
     with zipfile.ZipFile(ssp) as archive:
         given = parameters(archive.read("SystemStructure.ssd").decode())
     values = [SimpleNamespace(name=".".join(signal), value=value) for signal, value in given.items()]
-    # Else messages reach the logger of the last simulate_fmu, which fmpy has freed.
-    defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
     result = simulate_ssp(
         str(ssp),
         stop_time=(count - 0.5) * step,
