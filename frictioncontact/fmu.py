@@ -327,7 +327,7 @@ def run(
         rows[0] = session.read(outputs)
         for k, step in enumerate(steps):
             for name, values in inputs.items():
-                session.set(name, values[k])
+                session.set(name, float(values[k]))
             if rates:
                 session.set_rates(**{name: values[k] for name, values in rates.items()})
             session.step(float(step))

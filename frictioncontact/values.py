@@ -189,13 +189,13 @@ class Variables:
     def find(self, name: object, where: str, causalities: Sequence[str] = SETTABLE) -> ScalarVariable:
         """The variable of this name that can be set."""
         found = self.all.get(name) if isinstance(name, str) else None
+        if found is not None and found.causality in causalities:
+            return found
         names = [each for each, other in self.all.items() if other.causality in causalities]
         if found is None:
             raise UserError(f"{where}: {unknown_variable(str(name), names)}")
-        if found.causality not in causalities:
-            those = " and can't be set" if causalities == SETTABLE else f", not one of {', '.join(names)}"
-            raise UserError(f"{where}: {name} is {indefinite(found.causality)} of the FMU{those}")
-        return found
+        those = " and can't be set" if causalities == SETTABLE else f", not one of {', '.join(names)}"
+        raise UserError(f"{where}: {name} is {indefinite(found.causality)} of the FMU{those}")
 
     def readable(self, name: object, where: str) -> ScalarVariable:
         """The Real of this name."""

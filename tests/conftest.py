@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from fmpy.fmi1 import printLogMessage
+from fmpy.fmi2 import defaultCallbacks, fmi2CallbackLoggerTYPE
 
 from frictioncontact.fmu import FrictionFmu
 
@@ -18,9 +20,14 @@ if TYPE_CHECKING:
 
 # Started in the background, a runner ignores Control-C, and so would the commands that tests interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+# fmpy's own callbacks call the logger of the last simulate_fmu of the process, which is freed: a crash.
+defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
 
 ROOT = Path(__file__).resolve().parent.parent
-LONGEST = {"release", "unit", "site", "test_identify.py", "test_wheel.py"}
+LONGEST = {
+    "release", "site", "unit", "test_belt_page.py", "test_building.py", "test_identify.py",
+    "test_random_fits.py", "test_report.py", "test_scenes.py", "test_sweep_cluster.py", "test_wheel.py",
+}  # fmt: skip
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -18,6 +18,7 @@ import pytest
 
 from frictioncontact.errors import UserError
 from workshop import build
+from workshop.packing.archive import write_fmu
 from workshop.project import ROOT
 
 FMU = "build/debug/FrictionContact.fmu"
@@ -149,38 +150,25 @@ def test_interrupted_while_importing(tmp_path: Path, command: list[str]) -> None
     assert interrupted(process, reached) == "stopped\n"
 
 
-def refusal(library: Path) -> str:
-    """What the packer says of a library that it does not pack."""
-    output = library.with_suffix(".fmu")
-    arguments = ["--xml", "modelDescription.xml", "--sources", "fmu_src", "--table", "LICENSE"]
-    packer = [
-        sys.executable,
-        "-B",
-        "-m",
-        "workshop.packing.archive",
-        str(output),
-        *arguments,
-        "--fmi-headers",
-        "fmu_src",
-    ]
-    done = subprocess.run(
-        [*packer, "--binary", f"linux64={library}"], cwd=ROOT, capture_output=True, text=True
-    )
-    assert done.returncode == 1
-    assert list(library.parent.iterdir()) == [library]
-    return done.stderr
-
-
 def test_what_is_no_library_is_not_packed(fmu_path: Path, tmp_path: Path) -> None:
     """Empty, cut anywhere, or something else."""
     with zipfile.ZipFile(fmu_path) as archive:
         content = archive.read(BINARY)
-    library = tmp_path / "FrictionContact.so"
-    for part in (content[:length] for length in (0, 3, 6, 50, 63, 64, len(content) // 2, len(content) - 1)):
+    library, xml = tmp_path / "FrictionContact.so", ROOT / "modelDescription.xml"
+    parts = [content[:length] for length in (0, 3, 6, 50, 63, 64, len(content) // 2, len(content) - 1)]
+    output = library.with_suffix(".fmu")
+    for part in (*parts, b"#!/bin/sh\n"):
         library.write_bytes(part)
-        assert refusal(library).startswith(f"error: {library} is ")
-    library.write_bytes(b"#!/bin/sh\n")
-    assert refusal(library) == f"error: {library} is no shared library: remove it and build again\n"
+        with pytest.raises(ValueError, match=f"^{library} is .*: remove it and build again$"):
+            write_fmu(output, xml, {"linux64": library}, {}, {})
+    folders = f"--sources fmu_src --table LICENSE --fmi-headers fmu_src --xml {xml}"
+    packer = [sys.executable, "-B", "-m", "workshop.packing.archive", str(output), *folders.split()]
+    done = subprocess.run(
+        [*packer, "--binary", f"linux64={library}"], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    assert done.stderr == f"error: {library} is no shared library: remove it and build again\n"
+    assert list(tmp_path.iterdir()) == [library]
 
 
 def test_a_folder_that_can_not_be_written(monkeypatch: pytest.MonkeyPatch) -> None:

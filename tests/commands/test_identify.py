@@ -45,7 +45,7 @@ from workshop.validate.measurements import sliding
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 
-SEEDS = 40
+SEEDS = 20
 ROWS = {  # uncertainty that is stated, relative error of V_1
     "scatter estimated": (None, 0.0),
     "V_1 uncertain": ([NOISE] * 12, 0.1),
@@ -90,8 +90,8 @@ def from_law(fmu: FrictionFmu) -> Callable[[str], Recovered]:
 
 
 def least(fits: list[Fit]) -> float:
-    """So many of 95 % intervals hold the truth with a probability of 99.9 %."""
-    return stats.binom.ppf(0.001, len(fits), 0.95)
+    """So many 95 % intervals hold the truth with a probability of 99 %; 70 % intervals of 20 with 24 %."""
+    return stats.binom.ppf(0.01, len(fits), 0.95)
 
 
 @pytest.mark.parametrize("kind", ["scatter estimated", pytest.param("V_1 uncertain", marks=pytest.mark.slow)])
@@ -118,8 +118,8 @@ def test_recovery_is_what_the_documents_say(
     """Within a seed: another C library may round it to the other side of an interval's end."""
     noisy = from_kind("V_1 uncertain")
     said = re.search(
-        r"for (\d+), (\d+) and (\d+) of 40 seeds\. .* for (\d+), (\d+) and (\d+) of 40 seeds.*"
-        r"for (\d+) and (\d+) of 40 seeds.*contain the phase for (\d+) of the 40",
+        r"for (\d+), (\d+) and (\d+) of 20 seeds\. .* for (\d+), (\d+) and (\d+) of 20 seeds.*"
+        r"for (\d+) and (\d+) of 20 seeds.*contain the phase for (\d+) of the 20",
         " ".join(PHYSICS.split()),
     )
     recovered = (from_kind("scatter estimated"), noisy, from_law("Dahl"))

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -18,11 +19,14 @@ import pytest
 from batch.one_by_one import sampled_period
 from scipy.integrate import quad
 
+from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.sweeps import command as sweep_command
 from frictioncontact.sweeps.group import RESULTS
 from frictioncontact.sweeps.run import sweep
 
+Ran = Callable[..., SimpleNamespace]
 ROOT = Path(__file__).resolve().parents[2]
 GRID = ["--vary", "V=0.005:0.5:40:log", "--vary", "vibration.V_1=0:1.44:25"]  # 1000 scenarios
 MANY = [
@@ -46,6 +50,22 @@ def run(fmu: Path, output: Path, *arguments: str, **options: object) -> subproce
         command(fmu, output, *arguments),
         capture_output=True, text=True, timeout=600, env=environment(), **options,
     )  # fmt: skip
+
+
+@pytest.fixture
+def ran(fmu_path: Path, capsys: pytest.CaptureFixture[str]) -> Ran:
+    """The command in this process: its exit status, and what it printed."""
+
+    def run_here(output: Path, *arguments: str) -> SimpleNamespace:
+        code, error = 0, ""
+        try:
+            main(sweep_command, ["--fmu", str(fmu_path), "--output", str(output), *arguments])
+        except SystemExit as ended:
+            code, error = 1, f"{ended.code}\n"
+        printed = capsys.readouterr()
+        return SimpleNamespace(returncode=code, stdout=printed.out, stderr=printed.err + error)
+
+    return run_here
 
 
 def wait_for(condition: Callable[[], object], seconds: float = 600.0) -> None:
@@ -130,37 +150,37 @@ class TestScenario:
 
 
 class TestRuns:
-    def test_refused_scenarios_are_kept_apart(self, fmu_path: Path, tmp_path: Path) -> None:
+    def test_refused_scenarios_are_kept_apart(self, ran: Ran, tmp_path: Path) -> None:
         output = tmp_path / "sweep"
-        done = run(fmu_path, output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--workers", "1")
+        done = ran(output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--workers", "1")
         assert done.returncode == 0, done.stderr
         assert "2 failed scenarios" in done.stdout
         good, bad = pd.read_parquet(output / "results.parquet"), pd.read_parquet(output / "failed.parquet")
         assert list(good["scenario"]) == [2, 3]
         assert list(bad["scenario"]) == [0, 1]
         assert all("d = -1e-06 m" in reason for reason in bad["reason"])
-        again = run(fmu_path, output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2")
+        again = ran(output, "--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2")
         assert again.returncode == 0
         assert again.stdout.splitlines() == [
             f"2 results in {output / 'results.parquet'}",
             f"2 failed scenarios, with reasons, in {output / 'failed.parquet'}",
             "4 scenarios were there from an earlier run",
         ]
-        other = run(fmu_path, output, "--vary", "V=0.1,0.3")
+        other = ran(output, "--vary", "V=0.1,0.3")
         assert other.returncode == 1
         assert other.stderr.startswith("error: ") and "holds another sweep" in other.stderr
         assert len(other.stderr.splitlines()) == 1
-        fresh = run(fmu_path, output, "--vary", "V=0.1,0.3", "--fresh")
+        fresh = ran(output, "--vary", "V=0.1,0.3", "--fresh")
         assert fresh.returncode == 0, fresh.stderr
         assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
         assert list(pd.read_parquet(output / "results.parquet")["V"]) == [0.1, 0.3]
 
-    def test_groups_and_workers_leave_the_numbers(self, fmu_path: Path, tmp_path: Path) -> None:
+    def test_groups_and_workers_leave_the_numbers(self, ran: Ran, tmp_path: Path) -> None:
         """Each scenario has its own, whoever runs it with which others."""
         tables = []
         for group, workers in (("250", "1"), ("33", "2"), ("1000", "3")):
             output = tmp_path / group
-            done = run(fmu_path, output, *GRID, "--samples", "2", "--group", group, "--workers", workers)
+            done = ran(output, *GRID, "--samples", "2", "--group", group, "--workers", workers)
             assert done.returncode == 0, done.stderr
             assert f"on {workers} workers" in done.stdout
             tables.append(pd.read_parquet(output / "results.parquet"))
@@ -205,20 +225,20 @@ class TestRuns:
         expected = 55.0 * 2 / np.pi * np.arcsin(coulomb["V"] / 1.44)
         assert np.allclose(coulomb["F_mean"], expected, rtol=1e-9, atol=0.0)
 
-    def test_missing_part_is_run_again(self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path) -> None:
+    def test_missing_part_is_run_again(self, ran: Ran, fmu: FrictionFmu, tmp_path: Path) -> None:
         """Cut short, in a whole sweep; and refused scenarios that are gone."""
         output, arguments = tmp_path / "sweep", (*GRID, "--group", "100", "--samples", "16")
-        assert run(fmu_path, output, *arguments).returncode == 0
+        assert ran(output, *arguments).returncode == 0
         damaged = max((output / "results.parquet").iterdir())
         damaged.write_bytes(damaged.read_bytes()[:-20])
-        again = run(fmu_path, output, *arguments)
+        again = ran(output, *arguments)
         assert "900 scenarios were there from an earlier run\n100 scenarios in" in again.stdout, again.stderr
         check_grid(output, fmu)
         arguments = ("--vary", "d=-1e-6,14e-6", "--vary", "V=0.1,0.2", "--samples", "1", "--group", "2")
-        assert run(fmu_path, tmp_path / "failed", *arguments).returncode == 0
+        assert ran(tmp_path / "failed", *arguments).returncode == 0
         for part in (tmp_path / "failed" / "failed.parquet").iterdir():
             part.unlink()
-        again = run(fmu_path, tmp_path / "failed", *arguments)
+        again = ran(tmp_path / "failed", *arguments)
         assert "2 scenarios were there from an earlier run\n2 scenarios in" in again.stdout, again.stderr
         assert list(pd.read_parquet(tmp_path / "failed" / "failed.parquet")["scenario"]) == [0, 1]
 
@@ -288,10 +308,10 @@ class TestNothingHalfWritten:
             assert len(pd.read_parquet(tmp_path / "results.parquet")) == 2
             assert sweep(**wanted, fresh=True).new == 2
 
-    def test_fresh_leaves_what_no_sweep_wrote(self, fmu_path: Path, tmp_path: Path) -> None:
+    def test_fresh_leaves_what_no_sweep_wrote(self, ran: Ran, tmp_path: Path) -> None:
         (tmp_path / "parts").mkdir()
         (tmp_path / "parts" / "mine.txt").write_text("mine")
-        done = run(fmu_path, tmp_path, "--vary", "V=0.1,0.2", "--fresh")
+        done = ran(tmp_path, "--vary", "V=0.1,0.2", "--fresh")
         assert done.returncode == 1
         assert done.stderr == f"error: {tmp_path}: can't be written: Directory not empty\n"
         assert (tmp_path / "parts" / "mine.txt").read_text() == "mine"

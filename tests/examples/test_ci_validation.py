@@ -4,38 +4,44 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import validate
 
-ROOT = Path(__file__).resolve().parents[2]
-FOLDER = ROOT / "examples" / "ci-validation"
 HEADER = "scenario,start values,quantity,low,high,reason\n"
+Ended = Callable[..., object]
 
 
-def validate(fmu: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [
-        sys.executable,
-        str(FOLDER / "validate.py"),
-        "--fmu",
-        str(fmu),
-        "--picture",
-        str(folder / "bands.png"),
-    ]
-    return subprocess.run([*command, *arguments], capture_output=True, text=True, timeout=600)
+@pytest.fixture
+def ended(fmu_path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ended:
+    """What the script ends with in this process: its exit status, or its error."""
+
+    def run(*arguments: str) -> object:
+        words = ["validate.py", "--fmu", str(fmu_path), "--picture", str(tmp_path / "bands.png"), *arguments]
+        monkeypatch.setattr(sys, "argv", words)
+        with pytest.raises(SystemExit) as ended:
+            validate.main()
+        return ended.value.code
+
+    return run
 
 
 def test_passes(fmu_path: Path, tmp_path: Path) -> None:
-    done = validate(fmu_path, tmp_path)
+    """As its user starts it."""
+    picture = tmp_path / "bands.png"
+    command = [sys.executable, validate.__file__, "--fmu", str(fmu_path), "--picture", str(picture)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "9 of 9 results in their bands" in done.stdout
-    assert (tmp_path / "bands.png").stat().st_size > 10_000
+    assert picture.stat().st_size > 10_000
 
 
-def test_fails_when_a_result_leaves_its_band(fmu_path: Path, tmp_path: Path) -> None:
-    done = validate(fmu_path, tmp_path, "--start", "contact.R_q=6.1e-6")
-    assert done.returncode == 1
-    assert [line.split(" = ")[0] for line in done.stdout.splitlines() if line.startswith("LEFT")] == [
+def test_fails_when_a_result_leaves_its_band(ended: Ended, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ended("--start", "contact.R_q=6.1e-6") == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert [line.split(" = ")[0] for line in printed if line.startswith("LEFT")] == [
         "LEFT contact at rest: sigma",
         "LEFT contact at rest: A_r",
     ]
@@ -51,10 +57,8 @@ def test_fails_when_a_result_leaves_its_band(fmu_path: Path, tmp_path: Path) -> 
         ("one,d=-1,F_t_mean,54,56,why", "the FMU refused a call: fmi2SetReal: d = -1 m is below its minimum"),
     ],
 )
-def test_wrong_input_is_one_line(fmu_path: Path, tmp_path: Path, line: str, message: str) -> None:
+def test_wrong_input_is_one_line(ended: Ended, tmp_path: Path, line: str, message: str) -> None:
     bands = tmp_path / "bands.csv"
     bands.write_text(HEADER + line + "\n")
-    done = validate(fmu_path, tmp_path, "--bands", str(bands))
-    assert done.returncode == 1
-    assert len(done.stderr.strip().splitlines()) == 1, done.stderr
-    assert done.stderr.startswith("error: ") and message in done.stderr
+    error = str(ended("--bands", str(bands)))
+    assert error.startswith("error: ") and message in error and "\n" not in error

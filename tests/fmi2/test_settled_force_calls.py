@@ -44,25 +44,22 @@ def test_asking_leaves_no_trace(
     for each in (asked, other):
         assert each.call("fmi2ExitInitializationMode") == OK
     assert ask(asked) == first
-    inputs = (
-        INPUTS if across else INPUTS[:-1]
-    )  # by V_y along the sliding takes a second where static friction is
     for k in range(2):
         for each in (asked, other):
             assert each.set({"V": 0.5 - 0.2 * k}) == OK
             assert each.set_input_rates({"V": 30.0, "d": 1e-3}) == OK
-        now = ask(asked, inputs)
+        now = ask(asked, ["V"])
         assert asked.fingerprint() == other.fingerprint()
         for each in (asked, other):
             assert each.step(k * 1.3e-5, 1.3e-5) == OK
         assert asked.fingerprint() == other.fingerprint()
     assert asked.get("F_t", "F_t_mean", "W_f", "Q_f") == other.get("F_t", "F_t_mean", "W_f", "Q_f")
-    assert now != first
+    assert now[:2] != first[:2]
     state = asked.save()
-    last = ask(asked, inputs)
+    last = ask(asked, ["V"])
     assert asked.step(2 * 1.3e-5, 1e-3) == OK
     assert asked.restore(state) == OK and asked.drop(state) == OK
-    assert ask(asked, inputs) == last
+    assert ask(asked, ["V"]) == last
     assert asked.call("fmi2Terminate") == OK
     assert asked.get(*BOTH) == last[:2] and (last[1] != 0.0) == bool(across)
 

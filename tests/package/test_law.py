@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import pickle
 import re
 import subprocess
@@ -17,6 +18,7 @@ import pandas as pd
 import pytest
 
 import frictioncontact as fc
+from frictioncontact.__main__ import COMMANDS
 from frictioncontact.command import main
 from frictioncontact.doubts import LIKELY, USED
 from frictioncontact.fmu import FrictionFmu, Session
@@ -325,11 +327,14 @@ def test_an_error_says_what_to_do(call: Callable[[], object], message: str) -> N
     [(["simulate", "--stop", "1", "--step", "1"], "--output"), (["law"], "--output"), (["law"], "--picture"),
      (["playground"], "--output")],
 )  # fmt: skip
-def test_a_file_is_written_into_a_folder_that_is_there(tmp_path: Path, words: list[str], option: str) -> None:
-    command = [sys.executable, "-m", "frictioncontact", *words, option, "nowhere/file.png"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 2 and f"argument {option}: there is no folder nowhere" in done.stderr
-    assert list(tmp_path.iterdir()) == []
+def test_a_file_is_written_into_a_folder_that_is_there(
+    capsys: pytest.CaptureFixture[str], words: list[str], option: str
+) -> None:
+    room = importlib.import_module(f"frictioncontact.{COMMANDS[words[0]][0]}.command")
+    with pytest.raises(SystemExit) as ended:
+        room.arguments([*words[1:], option, "nowhere/file.png"])
+    assert ended.value.code == 2
+    assert f"argument {option}: there is no folder nowhere" in capsys.readouterr().err
 
 
 def test_an_output_that_can_t_be_written_is_the_user_s(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ typedef struct {
     double drag; // m2/s, integral of V delta'
 } Exact;
 
-// From the limit itself at the time t on, in steps of a fiftieth of the time to relax.
+// From the limit itself at the time t on, in steps of a thirtieth of the time to relax.
 static Exact exact(const Slider* slider, double t, double end) {
     const FcScene* scene = &slider->scene;
     const FcCoefficients start = fc_scene_coefficients(scene, t);
@@ -61,7 +61,7 @@ static Exact exact(const Slider* slider, double t, double end) {
     while (t < end) {
         const FcCoefficients here = fc_scene_coefficients(scene, t);
         const double relaxes = 1.0 / fmax(fc_relaxation_rate(&here), 1.0 / slider->stretch.w_b);
-        const double h = fmin(0.02 * relaxes, end - t);
+        const double h = fmin(0.03 * relaxes, end - t);
         const FcCoefficients at = fc_scene_coefficients(scene, t + 0.5 * h);
         const double D = side * LIMIT / at.sigma;
         const double gone = -expm1(-fc_relaxation_rate(&at) * h);

@@ -9,6 +9,7 @@ FMU. Errors are the largest at 250 points: of F_t over F_C, of x over F_C / k.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -36,6 +37,7 @@ class LawBelt(Belt):
         return {**super().start_values, "friction.model": self.law}
 
 
+@cache
 def reference(belt: LawBelt) -> np.ndarray:
     """Rows of x, v, F_t at the points: mass and bristle as one system, by DOP853 from event to event.
 

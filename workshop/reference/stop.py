@@ -12,6 +12,7 @@ sticks breaks away at the static bound D_s and drops to the kinetic one, D. It s
 """
 
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -53,11 +54,10 @@ def project(scene: Scene, t0: Any, delta_0: Any) -> tuple[Any, int, Any]:
 
 def advance(scene: Scene, t0: Any, h: Any, delta_0: Any, slips: int = 0) -> Reached:
     """From t0 [s] over h [s], from a deflection within its bound."""
-    drive, delta = Drive(scene, t0, EXTENDED), REAL(delta_0)
     march = _Drops if scene.drops else _Clamps
-    mesh = _mesh(scene, t0, REAL(h))
-    walk = march(scene, t0, mesh, delta, slips)
-    for k, (piece, free) in enumerate(zip(pairwise(mesh), piece_maps(drive, mesh), strict=True)):
+    mesh, maps = _mesh_and_maps(scene, t0, REAL(h))
+    walk = march(scene, t0, mesh, REAL(delta_0), slips)
+    for k, (piece, free) in enumerate(zip(pairwise(mesh), maps, strict=True)):
         walk.take(k, *piece, free)
     integrals = walk.sums + _integrals_of_slip(scene, t0, walk.slid)
     return Reached(walk.delta, *integrals, walk.slips if scene.drops else 0, walk.has_slipped)
@@ -207,10 +207,12 @@ def _crossing(function: Callable[[Any], Any], low: Any, high: Any) -> Any:
     return high
 
 
-def _mesh(scene: Scene, t0: Any, h: Any) -> np.ndarray:
-    """Pieces in which no bound turns round, fine behind the times where one does."""
+@lru_cache(maxsize=1)  # the search for a settled state goes through one period from many deflections
+def _mesh_and_maps(scene: Scene, t0: Any, h: Any) -> tuple[np.ndarray, list[AffineMap]]:
+    """Pieces in which no bound turns round, fine behind the times where one does; and their maps."""
     turns = [multiprecision(time) for time in _turning_times(scene, t0, h)]
-    return np.unique(EXTENDED.array(graded_mesh(scene, t0, multiprecision(h), layers=turns)))
+    mesh = np.unique(EXTENDED.array(graded_mesh(scene, t0, multiprecision(h), layers=turns)))
+    return mesh, list(piece_maps(Drive(scene, t0, EXTENDED), mesh))
 
 
 def _turning_times(scene: Scene, t0: Any, h: Any) -> Iterable[Any]:

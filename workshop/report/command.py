@@ -71,7 +71,7 @@ def _jobs(fmu: FrictionFmu, quick: bool) -> list[Callable[[], Figure]]:
         *(partial(draw, fmu) for draw in paper_figures.FIGURES),
         contact_figures.areas,
         *(partial(draw, Probe(fmu.path), quick) for draw in of_regimes),
-        partial(recovery.figure, fmu, 8 if quick else 40),
+        partial(recovery.figure, fmu, 4 if quick else 20),
     ]
 
 

@@ -155,7 +155,7 @@ def fit(fmu: FrictionFmu, record: Record, law: str) -> RecordFit:
 def without_bound(record: Record, fit: RecordFit) -> np.ndarray:
     """Dahl's force [N] over the unloading with mu F_n(t) in Eq. 2 and nothing that holds it below mu F_n(t).
 
-    dF/dt = k V - k |V| F / (mu F_n), by scipy's Radau from the force that the law has when the load begins to
+    dF/dt = k V - k |V| F / (mu F_n), by scipy's LSODA from the force that the law has when the load begins to
     fall.
     """
     assert fit.stiffness is not None
@@ -171,7 +171,7 @@ def without_bound(record: Record, fit: RecordFit) -> np.ndarray:
             limit = fit.mu * np.interp(t, part.time[k : k + 2], load[k : k + 2])
             return stiffness * (V - abs(V) * F / limit)
 
-        solution = solve_ivp(rate, (begin, end), forces[-1:], "Radau", rtol=1e-8, atol=1e-10)
+        solution = solve_ivp(rate, (begin, end), forces[-1:], "LSODA", rtol=1e-8, atol=1e-10)
         forces.append(float(solution.y[0, -1]))
     return np.array(forces)
 
