@@ -129,12 +129,15 @@ class Panel:
     y_log: bool = False
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
+    x_whole: bool = False  # ticks at whole numbers alone
 
     def draw(self, axes: Axes) -> None:
         axes.set(title=text(self.title), xlabel=text(self.x_label), ylabel=text(self.y_label))
         if self.x_log:
             axes.set_xscale("log")
             axes.xaxis.set_minor_formatter(NullFormatter())
+        if self.x_whole:
+            axes.xaxis.get_major_locator().set_params(integer=True)
         if self.y_log:
             axes.set_yscale("log")
             axes.yaxis.set_minor_formatter(NullFormatter())

@@ -109,7 +109,8 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
         ]
         if missed[0]:
             items.insert(1, Line(*missed, "misses it", ORANGE, width=2.4))
-        panels.append(Panel(name, "seed", f"95 % interval [{unit}]", items, x_range=(-1.0, seeds)))
+        y_label = f"95 % interval [{unit}]"
+        panels.append(Panel(name, "seed", y_label, items, x_whole=True, x_range=(-1.0, seeds)))
     caption = (
         f"Twelve synthetic mean forces with normal noise of {NOISE:g} N, fitted for three parameters, with "
         f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should contain the truth."
