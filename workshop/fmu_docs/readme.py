@@ -96,7 +96,7 @@ def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
     axes.set_yticks([0, 20, 40, 60, 80])
     axes.set_xlabel("time [ms]")
     axes.set_ylabel("friction force [N]")
-    axes.set_title("The same contact in steps of 1 ms")
+    axes.set_title("The same contact in steps of 1.01 ms")
     axes.legend(loc="upper center", ncols=2)
 
 
