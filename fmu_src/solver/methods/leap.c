@@ -78,7 +78,8 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
         const double phase = on_line                    ? total->slip_time
                              : forgets || law.is_planar ? 0.0
                                                         : begin_of_periods(scene, k, room);
-        const double count = phase > 0.0 ? room - 1.0 : room;
+        const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
+        const double count = closes ? room - 1.0 : room;
         const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
         const FcBlock block = {.law = &law,
                                .scene = scene,
@@ -96,7 +97,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
                 take_part(law, scene, options, k, 0.0, phase, total);
             }
             taken = (on_line || total->meetings == 0) && fc_block_take(&block, total);
-            if (taken && phase > 0.0) {
+            if (taken && closes) {
                 take_part(law, scene, options, k + block.count, phase, period, total);
             } else if (!taken) {
                 before.evaluations = total->evaluations;
@@ -111,7 +112,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
         }
         if (taken) {
             alone = FEWEST;
-            k += block.count + (phase > 0.0 ? 1.0 : 0.0);
+            k += block.count + (closes ? 1.0 : 0.0);
         } else if (!law.is_bounded) {
             take_part(law, scene, options, k, 0.0, period, total);
             k += 1.0;

@@ -102,7 +102,9 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     FcBristle bristle = block->start;
     for (int before = periods; before > 0; before--) {
         const FcScene scene = scene_at(block, k - before);
-        const FcStepResult result = take_period(block, &scene, bristle);
+        FcStepResult result = fc_result_from(bristle, *block->evaluations);
+        fc_periods_take(*block->law, &scene, block->options, block->period, &result);
+        *block->evaluations = result.evaluations;
         bristle = fc_bristle_of(&result);
     }
     return bristle;
@@ -121,7 +123,7 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     numbers->map = fc_map_of_one_start(&result);
     numbers->across =
         (FcMap){.relaxation = 1.0, .offset = result.delta_y, .impulse_offset = result.impulse_y};
-    return result.slips == start.slips;
+    return result.slips == start.slips && result.meetings > 0; // a free bristle forgets nothing
 }
 
 // The map of period k of the block; false if it has pieces, or does not lead from the bound to the bound as

@@ -1,6 +1,7 @@
 #include "solver/methods/periods.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 #include "model/regime.h"
@@ -422,8 +423,11 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
         fc_periods_take(law, scene, options, h, result);
     } else if (is_linear) {
         fc_leap(law, scene, options, periods, result);
-        const FcScene later = fc_scene_later(scene, periods / f);
-        fc_periods_take(law, &later, options, rest, result);
+        if (rest >
+            4.0 * DBL_EPSILON * h) { // more than the rounding of h, which could take a slip off its bound
+            const FcScene later = fc_scene_later(scene, periods / f);
+            fc_periods_take(law, &later, options, rest, result);
+        }
     } else if (fc_scene_is_loose(scene)) {
         fc_loose_step(result);
     } else {
