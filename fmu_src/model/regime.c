@@ -95,6 +95,13 @@ double fc_push_in_plane(const FcScene* scene, FcBristle bristle) {
     return push(&of);
 }
 
+static FcBristle moved_onto(const AtBound* of, FcBristle bristle) {
+    const FcVector n = direction(bristle.delta, bristle.delta_y);
+    bristle.delta = of->bound.D * n.x;
+    bristle.delta_y = of->bound.D * n.y;
+    return bristle;
+}
+
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     if (fc_scene_is_loose(scene)) {
         return (FcBristle){0};
@@ -106,14 +113,12 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
     find_bound(&of, scene, bristle);
     const double size = fc_size(bristle);
     if (size > of.bound.D) {
-        const FcVector n = direction(bristle.delta, bristle.delta_y);
         if (fc_has_static_friction(scene->friction) && bristle.slips == 0 &&
             size > (1.0 + FC_ROUNDING_OF_BOUND) * of.bound.D) {
             bristle.slips = fc_is_planar(scene, bristle) ? 1 : fc_side(bristle);
             set_bound(&of, bristle.slips);
         }
-        bristle.delta = of.bound.D * n.x;
-        bristle.delta_y = of.bound.D * n.y;
+        bristle = moved_onto(&of, bristle);
     }
     // A bristle with a push of 0 remains slipping. Its motion decides whether it sticks.
     if (bristle.slips != 0 && push(&of) < 0.0) {
@@ -125,10 +130,7 @@ FcBristle fc_reach(const FcScene* scene, FcBristle bristle) {
 FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle) {
     AtBound of;
     find_bound(&of, scene, bristle);
-    const FcVector n = direction(bristle.delta, bristle.delta_y);
-    bristle.delta = of.bound.D * n.x;
-    bristle.delta_y = of.bound.D * n.y;
-    return bristle;
+    return moved_onto(&of, bristle);
 }
 
 // The part of its bound by which a slipping bristle may lie inside it. Chosen empirically: rounding of the

@@ -40,7 +40,7 @@ enum { MOST_IDLE = 4 };
 // slips twice as long without a push.
 static const double FIRST_NUDGE = 1e-12;
 // The longest regime that is idle over the length of the next such panel. Chosen empirically: without it a regime
-// of some 1e-12 of the interval again and again costs millions of evaluations; ten times of it would end slips.
+// of some 1e-12 of the interval again and again costs millions of evaluations; a larger one counts more regimes.
 static const double IDLE_BESIDE_NUDGE = 1e-3;
 
 // The largest bend of the push between two points, over the largest bend from point to point there. Chosen

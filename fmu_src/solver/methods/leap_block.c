@@ -44,17 +44,10 @@ typedef struct {
     double from, to; // in the first and the last period
 } Variable;
 
-// Periods that begin `phase` [s] after those of the scene.
 typedef struct {
-    const FcIntegration* law;
-    const FcScene* scene;
-    const FcSolverOptions* options;
-    double period;       // s
-    double first, count; // the block
-    double phase;        // s
-    int side;            // of the bound at which they begin, 0 for any start
-    int warm_up;         // periods after which a bristle that meets its bound has forgotten, 0 for any start
-    FcBristle start;     // at the block
+    const FcBlock* of;
+    double period;   // s
+    FcBristle start; // at the block
     double* evaluations;
     int numbers; // of a map, or of two in the plane
     Variable variable;
@@ -65,12 +58,12 @@ typedef struct {
 
 // The largest error of the block's maps, as a force [N].
 static double allowed(const Block* block) {
-    return FC_SHARE_OF_LEAP * block->options->tolerance * block->options->force;
+    return FC_SHARE_OF_LEAP * block->of->options->tolerance * block->of->options->force;
 }
 
 static FcScene scene_at(const Block* block, double k) {
-    const FcScene later = fc_scene_later(block->scene, (block->first + k) * block->period);
-    return block->phase > 0.0 ? fc_scene_from(&later, block->phase) : later;
+    const FcScene later = fc_scene_later(block->of->scene, (block->of->first + k) * block->period);
+    return block->of->phase > 0.0 ? fc_scene_from(&later, block->of->phase) : later;
 }
 
 // The bristle on the bound of that side at the start of a scene.
@@ -85,14 +78,14 @@ static FcBristle on_bound(const FcScene* scene, int side) {
 // that is not rounding would grow from period to period.
 static bool lies_on_bound(const Block* block, double k, double delta) {
     const FcScene scene = scene_at(block, k);
-    const double bound = on_bound(&scene, block->side).delta;
+    const double bound = on_bound(&scene, block->of->side).delta;
     return fabs(bound - delta) <= FC_ROUNDING_OF_BOUND * fabs(bound);
 }
 
 // A period of a scene from a bristle.
 static FcStepResult take_period(const Block* block, const FcScene* scene, FcBristle start) {
     FcStepResult result = fc_result_from(start, *block->evaluations);
-    block->law->step(scene, block->options, block->period, &result);
+    block->of->law->step(scene, block->of->options, block->period, &result);
     *block->evaluations = result.evaluations;
     return result;
 }
@@ -103,7 +96,7 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     for (int before = periods; before > 0; before--) {
         const FcScene scene = scene_at(block, k - before);
         FcStepResult result = fc_result_from(bristle, *block->evaluations);
-        fc_periods_take(*block->law, &scene, block->options, block->period, &result);
+        fc_periods_take(*block->of->law, &scene, block->of->options, block->period, &result);
         *block->evaluations = result.evaluations;
         bristle = fc_bristle_of(&result);
     }
@@ -112,8 +105,8 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
 
 // The result of period k, if its start does not depend on the earlier start.
 static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
-    const FcBristle start = warmed_up(block, k, block->warm_up);
-    const FcBristle other = warmed_up(block, k, block->warm_up - 1);
+    const FcBristle start = warmed_up(block, k, block->of->warm_up);
+    const FcBristle other = warmed_up(block, k, block->of->warm_up - 1);
     if (start.slips != block->start.slips || other.slips != start.slips ||
         !(hypot(start.delta - other.delta, start.delta_y - other.delta_y) * fc_scene_stiffness(scene, 0.0) <=
           allowed(block))) {
@@ -134,16 +127,16 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
         scene.is_open) {
         return false;
     }
-    if (block->warm_up > 0) {
+    if (block->of->warm_up > 0) {
         return sample_of_slips(block, &scene, k, numbers);
     }
-    if (block->side == 0) {
-        numbers->map = block->law->free_map(&scene, block->options, block->period, fc_size(block->start),
-                                            &numbers->across, block->evaluations);
+    if (block->of->side == 0) {
+        numbers->map = block->of->law->free_map(&scene, block->of->options, block->period,
+                                                fc_size(block->start), &numbers->across, block->evaluations);
         return true;
     }
-    const FcBristle start = on_bound(&scene, block->side);
-    if (fc_regime(&scene, start) != (FcRegime)block->side) {
+    const FcBristle start = on_bound(&scene, block->of->side);
+    if (fc_regime(&scene, start) != (FcRegime)block->of->side) {
         return false;
     }
     const FcStepResult result = take_period(block, &scene, start);
@@ -154,15 +147,15 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
 // The effect of an error of each number of a map on a force of 1 N.
 static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene begin = scene_at(block, 0.0);
-    const FcScene end = scene_at(block, block->count - 1.0);
+    const FcScene end = scene_at(block, block->of->count - 1.0);
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
     const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
     const double sigma = fmax(at.sigma, at_end.sigma);
     const double delta = fmax(fc_size(block->start), fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
-    const double damping = block->scene->friction->sigma_1;
+    const double damping = block->of->scene->friction->sigma_1;
     // Errors of the deflection add up until they have relaxed.
-    const double lives = fmin(block->count, 1.0 / fmax(typical->map.relaxation, 1.0 / block->count));
+    const double lives = fmin(block->of->count, 1.0 / fmax(typical->map.relaxation, 1.0 / block->of->count));
     const FcMap of_map = {
         .relaxation = sigma * delta * lives,
         .offset = sigma * lives,
@@ -197,8 +190,8 @@ static Variable variable_of(const Block* block) {
     const FcScene first = scene_at(block, 0.0);
     const FcDrive* drive = &first.drive;
     const double V_1 = drive->vibration.V_1;
-    const double last = block->count - 1.0;
-    if (!block->law->is_planar && V_1 > 0.0 && drive->V.rate != 0.0) {
+    const double last = block->of->count - 1.0;
+    if (!block->of->law->is_planar && V_1 > 0.0 && drive->V.rate != 0.0) {
         const double middle = drive->V.value + 0.5 * last * block->period * drive->V.rate;
         const double rate = drive->V.rate * block->period / V_1;
         const double V = drive->V.value / V_1 + fc_part_until_opposed(drive, middle) * rate;
@@ -222,7 +215,7 @@ static double period_of_point(const Block* block, int j) {
     const Variable* of = &block->variable;
     const double now = of->from + (of->to - of->from) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
     const double k = of->is_phase ? (cos(now) - of->V) / of->rate : now;
-    return fmax(0.0, fmin(k, block->count - 1.0));
+    return fmax(0.0, fmin(k, block->of->count - 1.0));
 }
 
 // Infinite if an error is no number. Without a path work and heat have infinite weights and no errors.
@@ -264,7 +257,7 @@ static double less_foretold(const Block* block, double k, Numbers* map) {
 // none, or if a period has no map.
 static bool interpolate(Block* block) {
     const double may = allowed(block);
-    const double most = fmin(MOST_POINTS, floor(MOST_PART * block->count));
+    const double most = fmin(MOST_POINTS, floor(MOST_PART * block->of->count));
     double before_last = HUGE_VAL;
     double largest = 0.0;
     block->variable = variable_of(block);
@@ -300,10 +293,12 @@ static bool interpolate(Block* block) {
     return false;
 }
 
+static double periods_of_part(const Block* block) { return fmax(1.0, floor(block->of->count / MOST_PARTS)); }
+
 // Whether the periods are those of a bristle that slips in ElasticPlastic while V reverses.
 static bool slips_between_reversals(const Block* block) {
     const FcScene scene = scene_at(block, 0.0);
-    return scene.friction->model == FC_ELASTIC_PLASTIC && block->side != 0 &&
+    return scene.friction->model == FC_ELASTIC_PLASTIC && block->of->side != 0 &&
            fabs(scene.drive.V.value) < scene.drive.vibration.V_1;
 }
 
@@ -322,11 +317,11 @@ static double distance_less_way(const Block* block, double k) {
 // Whether the block also foretells the period in which a slip along the other bound is most likely to begin and
 // end, or to cease and return, between its points: that with an extreme distance less way.
 static bool foretells_slips(const Block* block) {
-    const double stride = fmax(1.0, floor(block->count / MOST_PARTS));
+    const double stride = periods_of_part(block);
     double before[2] = {distance_less_way(block, 0.0), distance_less_way(block, stride)};
     double at = 0.0;
     double least = HUGE_VAL;
-    for (double k = 2.0 * stride; k < block->count; k += stride) {
+    for (double k = 2.0 * stride; k < block->of->count; k += stride) {
         const double now = distance_less_way(block, k);
         const double falls = before[0] - before[1];
         const double rises = now - before[1];
@@ -360,7 +355,7 @@ static Rooms rooms_of(const Block* block) {
     const FcScene first = scene_at(block, 0.0);
     const FcDrive* drive = &first.drive;
     const double swing = hypot(drive->vibration.V_1, drive->vibration.V_2) / drive->omega;
-    Rooms rooms = {.stride = fmax(1.0, floor(block->count / MOST_PARTS)),
+    Rooms rooms = {.stride = periods_of_part(block),
                    .swing = 2.0 * swing,
                    .V = {drive->V.value, drive->V_y.value},
                    .rate = {drive->V.rate * block->period, drive->V_y.rate * block->period}};
@@ -371,8 +366,8 @@ static Rooms rooms_of(const Block* block) {
         rooms.middle.y = (drive->V_y.rate - fc_drive_velocity_y_at_phase(drive, 0.0, phase).rate) / square;
         rooms.swing = swing;
     }
-    for (int i = 0; i * rooms.stride < block->count + rooms.stride; i++) {
-        const FcScene scene = scene_at(block, fmin(i * rooms.stride, block->count - 1.0));
+    for (int i = 0; i * rooms.stride < block->of->count + rooms.stride; i++) {
+        const FcScene scene = scene_at(block, fmin(i * rooms.stride, block->of->count - 1.0));
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
         rooms.D[i] = fc_scene_smallest_saturation(&bound, block->period);
@@ -382,7 +377,7 @@ static Rooms rooms_of(const Block* block) {
 
 static double room_at(const Block* block, const Rooms* rooms, double k, FcBristle start) {
     const int i = (int)(k / rooms->stride);
-    const double length = fmin(rooms->stride, block->count - 1.0 - i * rooms->stride);
+    const double length = fmin(rooms->stride, block->of->count - 1.0 - i * rooms->stride);
     const double part = length > 0.0 ? (k - i * rooms->stride) / length : 0.0;
     const double D = rooms->D[i] + part * (rooms->D[i + 1] - rooms->D[i]);
     const double V = hypot(rooms->V.x + k * rooms->rate.x, rooms->V.y + k * rooms->rate.y) +
@@ -403,38 +398,31 @@ static bool meets(const Block* block, const Place* place) {
 }
 
 bool fc_block_take(const FcBlock* of, FcStepResult* total) {
-    Block found = {.law = of->law,
-                   .scene = of->scene,
-                   .options = of->options,
+    Block found = {.of = of,
                    .period = 1.0 / of->scene->drive.vibration.f,
-                   .first = of->first,
-                   .count = of->count,
-                   .phase = of->phase,
-                   .side = of->side,
-                   .warm_up = of->warm_up,
                    .start = fc_bristle_of(total),
                    .numbers = of->law->is_planar ? NUMBERS : OF_MAP,
                    .evaluations = &total->evaluations};
     Block* block = &found;
-    if (block->side != 0 && !lies_on_bound(block, 0.0, total->delta)) {
+    if (of->side != 0 && !lies_on_bound(block, 0.0, total->delta)) {
         return false;
     }
     if (!interpolate(block) || (slips_between_reversals(block) && !foretells_slips(block))) {
         return false;
     }
     FcStepResult result = *total;
-    const bool is_watched = block->side == 0 && block->warm_up == 0 && block->law->is_bounded;
-    const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = block->count};
+    const bool is_watched = of->side == 0 && of->warm_up == 0 && of->law->is_bounded;
+    const Rooms rooms = is_watched ? rooms_of(block) : (Rooms){.stride = of->count};
     Place without_room[2 * MOST_PARTS + 1]; // the period with the least room of each part
     int places = 0;
     int nearest = 0;
     Place least = {.room = HUGE_VAL};
-    for (double k = 0.0; k < block->count; k += 1.0) {
+    for (double k = 0.0; k < of->count; k += 1.0) {
         if (is_watched) {
             const FcBristle start = {.delta = result.delta, .delta_y = result.delta_y};
             const Place at = {k, room_at(block, &rooms, k, start), start};
             least = at.room <= least.room ? at : least;
-            if (fmod(k + 1.0, rooms.stride) == 0.0 || k == block->count - 1.0) {
+            if (fmod(k + 1.0, rooms.stride) == 0.0 || k == of->count - 1.0) {
                 if (least.room <= 0.0) {
                     without_room[places] = least;
                     nearest = places == 0 || least.room < without_room[nearest].room ? places : nearest;
@@ -445,7 +433,7 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
         }
         const Numbers at = map_at(block, k);
         fc_map_apply(&at.map, &result);
-        if (block->law->is_planar) {
+        if (of->law->is_planar) {
             fc_map_apply_across(&at.across, &result);
         }
     }
@@ -458,8 +446,8 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
     }
     result.on_bound = false;
     result.evaluations = *block->evaluations;
-    if (block->side != 0) {
-        result.slips = fc_has_static_friction(block->scene->friction) ? block->side : 0;
+    if (of->side != 0) {
+        result.slips = fc_has_static_friction(of->scene->friction) ? of->side : 0;
     }
     *total = result;
     return true;

@@ -423,8 +423,8 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
         fc_periods_take(law, scene, options, h, result);
     } else if (is_linear) {
         fc_leap(law, scene, options, periods, result);
-        if (rest >
-            4.0 * DBL_EPSILON * h) { // more than the rounding of h, which could take a slip off its bound
+        // A rest of no more than the rounding of h could take a slip off its bound.
+        if (rest > 4.0 * DBL_EPSILON * h) {
             const FcScene later = fc_scene_later(scene, periods / f);
             fc_periods_take(law, &later, options, rest, result);
         }
