@@ -35,8 +35,8 @@ x: allowed. -: `fmi2Error`, with a message such as
 
 and nothing changes. A function of one interface is refused everywhere by an instance for the other;
 fmi2GetStatus, fmi2GetIntegerStatus and fmi2GetStringStatus are refused even in the states with an x, since no
-step is ever pending. Without an instance (NULL) every function returns `fmi2Error` and `fmi2FreeInstance` does nothing. An
-instance for co-simulation:
+step is ever pending. Without an instance (NULL) every function returns `fmi2Error` and `fmi2FreeInstance`
+does nothing. An instance for co-simulation:
 
 """
 

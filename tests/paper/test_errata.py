@@ -281,7 +281,9 @@ def test_17_exponential_against_gaussian() -> None:
     assert min(ratio(h) for h in np.linspace(low, high, 60)) > 0.5
     at = ratio(14 / 6)
     inside = math.ceil(100 * low) / 100, math.floor(100 * high) / 100
-    stated(17, f"{at:.3f} of the Gaussian's", f"the stiffness {at**2:.3f}.", "{:.2f} and {:.2f}".format(*inside))
+    stated(
+        17, f"{at:.3f} of the Gaussian's", f"the stiffness {at**2:.3f}.", "{:.2f} and {:.2f}".format(*inside)
+    )
 
 
 def test_17_at_a_given_load_the_areas_are_equal_and_eq_3_is_not() -> None:
