@@ -32,7 +32,7 @@ static const double ROUNDING_AT_REVERSAL = 1e-9;
 // from one bound to the other it is 2. Half of it costs panels; twice of it makes panels that are cut early.
 static const double SOON = 3.0;
 
-// The number of regimes of next to no duration in a row, after which the next panel slips whatever its push.
+// The number of regimes of next to no duration in a row, beyond which a panel slips whatever its push.
 // Chosen empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
 enum { MOST_IDLE = 4 };
 // The length of the first such panel, and the longest of such regimes, over the interval. The next panels are
