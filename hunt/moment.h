@@ -6,23 +6,22 @@
 
 typedef long double Real;
 
+static const Real PI = 3.141592653589793238462643383279502884L;
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots; vectors
 // ---------------------------------------------------------------------------------------------------------------------
 
-enum { MOST_STAGES = 12 };
+enum { STAGES = 10 };
 
 typedef struct {
-    int stages;
-    Real node[MOST_STAGES];            // the last one is 1
-    Real weight[MOST_STAGES];          // sum 1
-    Real to[MOST_STAGES][MOST_STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i]
+    Real node[STAGES];       // the last one is 1
+    Real weight[STAGES];     // sum 1
+    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i]
 } Rule;
 
-const Rule* rule_of(int stages);
-
 // Solves A x = b in place for each b, without pivoting.
-void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STAGES]);
+void solve(Real A[STAGES][STAGES], int count, Real b[][STAGES]);
 
 typedef Real Function(const void* context, Real x);
 
@@ -39,7 +38,7 @@ Vector scaled(Real factor, Vector a);
 Real dot(Vector a, Vector b);
 Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0
-Vector direction(Real angle);        // (cos, sin)
+Vector direction(Real turns);        // (cos, sin) of 2 pi turns
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The scene at a time
@@ -57,8 +56,8 @@ typedef struct {
     Vector start, rate, cosine, sine;
     // The separation [m] is d + d_rate t + d_cosine cos(omega t) - d_sine sin(omega t).
     Real d, d_rate, d_cosine, d_sine;
-    Real h, omega, theta_0, decay, swell, excess;
-    Real no_load;   // s, when a load that moves is 0
+    Real h, omega, decay, swell, excess;
+    Real cycle;     // 1, the part of a period before the start
     AtModulus held; // at the modulus of the start
     bool elastic;   // the law is ElasticPlastic
     bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
@@ -76,7 +75,7 @@ typedef struct {
     Real panels; // taken so far
 } World;
 
-// At a local time; rates are time derivatives of logarithms, found only when they are asked for.
+// At a local time; rates are time derivatives of logarithms.
 typedef struct {
     Vector V;                      // m/s
     Real sigma;                    // N/m
@@ -103,7 +102,7 @@ void velocities(const World* w, Real t, int order, Vector* V);
 // Integral of the velocity that moves a bristle over [a, b].
 Vector travel(const World* w, Real a, Real b);
 
-At scene_at(const World* w, Real t, bool with_rates);
+At scene_at(const World* w, Real t);
 
 // The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
 Real bound(const World* w, const At* at, bool sticks);
