@@ -26,7 +26,7 @@ typedef struct {
     uint64_t seed, scenes, first;
     double seconds; // INFINITY: no end but the number of scenes
     int jobs;
-    int minimize; // misses of each law and grade that are made plain, at most
+    int minimize; // misses that are made plain, at most
     bool plane;
     const char *replay, *file;
 } Options;
@@ -44,7 +44,6 @@ typedef struct {
     uint64_t next; // the sequence to be drawn next, from 0 on
     Row law[LAWS];
     long sequences, refused, unknown;
-    int minimized[LAWS][GRADES];
 } Hunt;
 
 static double now(void) {
@@ -61,11 +60,7 @@ static double now(void) {
 static bool still_misses(const Sequence* sequence) {
     Trial trial;
     trial_run(&trial, sequence);
-    bool misses = false;
-    for (int k = 0; k < trial.steps; k++) {
-        misses = misses || !(trial.taken[k].verdict.ratio <= 1.5);
-    }
-    return misses;
+    return trial.worst > 1.5;
 }
 
 static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, const TrialStep* taken,
@@ -76,10 +71,9 @@ static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, co
     printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n", LAW_NAMES[law],
            taken->verdict.ratio, GRADE_NAMES[of], step + 1, scene_kappa(&taken->scene),
            (unsigned long long)number, text);
-    if (hunt->minimized[law][of] < hunt->options.minimize && still_misses(sequence)) {
-        hunt->minimized[law][of]++;
-        const Sequence plain = minimized(sequence, still_misses);
-        sequence_text(&plain, text, sizeof text);
+    if (hunt->options.minimize > 0 && still_misses(sequence)) {
+        hunt->options.minimize--;
+        make_plain(text, still_misses);
         printf("plain: %s\n", text);
     }
     fflush(stdout);
@@ -219,7 +213,7 @@ static void usage(void) {
             "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--jobs J] [--minimize K] [--plane]\n"
             "     [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--first: number of the first sequence; with --scenes 1 a single one.\n"
-            "--minimize: makes K misses of each law and grade plain.\n"
+            "--minimize: makes K misses plain.\n"
             "--plane: scenes that slide, or vibrate, across.\n"
             "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
             "line.\n");

@@ -17,8 +17,7 @@ enum { CONTACT_ASPERITIES = 1, CONTACT_CONSTANT = 2, CONTACT_MINDLIN = 3 };
 enum { INPUT_SEPARATION = 1, INPUT_LOAD = 2 };
 enum { START_GIVEN = 1, START_SETTLED = 2 };
 
-// A scene and its step [start, start + h]. Doubles first, so that a table of names finds them all by their
-// index.
+// A scene and its step [start, start + h].
 typedef struct {
     double start;                              // s
     double h;                                  // s
@@ -34,8 +33,6 @@ typedef struct {
     int law, limit, contact, input, initial;
     int slips; // other than 0 if a bristle with static friction slips at the start
 } ReferenceScene;
-
-enum { REFERENCE_DOUBLES = 36 };
 
 // The results of a step that are graded: the force at the end, its mean, and at the start with the inputs held after a
 // jump [N]; work and heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at

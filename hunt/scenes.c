@@ -378,9 +378,8 @@ static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
                         : of_user ? MOST_MOVING / MOST_STEPS
                                   : MOST_MOVING;
     const double usual_h = length(&draw, &full, most);
-    ReferenceScene before = full;
     for (int k = 0; k < wanted; k++) {
-        ReferenceScene usual = k == 0 ? full : scene_after(&before), s = usual;
+        ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
         if (of_user) {
             s.h = usual_h;
             step_of_signal(&draw, signal, k, &full, linear, &s);
@@ -408,9 +407,7 @@ static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
         if (!is_in_domain(&s)) {
             break;
         }
-        sequence.step[sequence.steps] = k == 0 ? s : changes_between(&usual, &s);
-        sequence.steps++;
-        before = s;
+        sequence.step[sequence.steps++] = s;
     }
     return sequence;
 }

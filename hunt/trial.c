@@ -168,23 +168,23 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
 void trial_run(Trial* trial, const Sequence* sequence) {
     *trial = (Trial){0};
     FmuRun* run = fmu_open(&sequence->step[0], sequence->method, sequence->tolerance);
-    ReferenceScene before = sequence->step[0];
     for (int k = 0; k < sequence->steps; k++) {
         TrialStep* taken = &trial->taken[k];
-        taken->scene = sequence_scene(sequence, k, &before);
+        ReferenceScene before;
+        taken->scene = sequence->step[k];
         if (!fmu_step(run, &taken->scene, &taken->step)) {
             trial->refused = true;
             break;
         }
         if (k > 0) {
-            before = scene_after(&before);
+            before = scene_after(&trial->taken[k - 1].scene);
             taken->scene.delta_0 = taken->step.delta_start;
             taken->scene.delta_y_0 = taken->step.delta_y_start;
             taken->scene.slips = taken->step.slips_start;
         }
         trial->unknown += !grade(taken, k == 0 ? NULL : &before, sequence);
+        trial->worst = fmax(trial->worst, taken->verdict.ratio);
         trial->steps++;
-        before = taken->scene;
     }
     snprintf(trial->message, sizeof trial->message, "%s", fmu_message(run));
     fmu_close(run);
