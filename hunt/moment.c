@@ -429,6 +429,15 @@ static Real separation(const World* w) {
            (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
 }
 
+ReferenceRest reference_rest(const ReferenceScene* scene) {
+    ReferenceScene still = *scene;
+    still.V_1 = still.V_2 = still.a_d = 0.0;
+    still.load = fmax(still.load, 1e-99);
+    const World w = make_world(&still, 0.0L, 1);
+    const At at = scene_at(&w, 0.0L);
+    return (ReferenceRest){(double)separation(&w), (double)at.coulomb, (double)at.sigma};
+}
+
 World ramp_between(const World* from, const World* to) {
     World w = *from;
     ReferenceScene* s = &w.scene;

@@ -54,6 +54,12 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
 
 bool vibrates(const ReferenceScene* scene);
 
+// At the start of a scene, without its vibration. A load below 1e-99 N counts as that.
+typedef struct {
+    double d, limit, sigma; // m, N, N/m
+} ReferenceRest;
+ReferenceRest reference_rest(const ReferenceScene* scene);
+
 // F_t_settled and F_y_settled [N] of the scene's inputs, held, from its start; false if no periods were found that repeat. S is
 // that of a step of length 0.
 bool reference_settled_force(const ReferenceScene* scene, double force[2], double* S);

@@ -97,42 +97,14 @@ static void surfaces(Draw* draw, ReferenceScene* s) {
     }
 }
 
-// F_n e^(lambda d / R_q) [N], by its plastic part, which is nearly all of it: good enough to choose a scale.
-static double pressed(const ReferenceScene* s) {
-    const double p_m = (1.234 + 1.256 * s->nu) * (1.0 - s->nu * s->nu) * s->Y;
-    return s->eta * s->A_n * s->c * 2.0 * TURN / 2.0 * s->R * s->R_q * p_m / (s->lambda * s->lambda);
-}
-
-static double rest_separation(const ReferenceScene* s) {
-    return s->input == INPUT_LOAD ? s->R_q / s->lambda * log(pressed(s) / fmax(s->load, 1e-99)) : s->d;
-}
-
-static double limit_now(const ReferenceScene* s) {
-    const double force = pressed(s) * exp(-s->lambda * rest_separation(s) / s->R_q);
-    return s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
-}
-
-static double stiffness_now(const ReferenceScene* s) {
-    if (s->contact == CONTACT_CONSTANT) {
-        return s->contact_sigma;
-    }
-    const double d = rest_separation(s), e = exp(-s->lambda * d / s->R_q);
-    if (s->contact == CONTACT_ASPERITIES) {
-        const double area =
-            2.0 * s->c * TURN / 2.0 * s->eta * s->R * s->R_q * s->A_n / (s->lambda * s->lambda) * e;
-        return s->stiffnessScale * s->E * area * area / (d * d * d);
-    }
-    const double tangential = 2.0 * (1.0 - s->nu) / (2.0 - s->nu);
-    return s->stiffnessScale * s->eta * s->A_n * s->c * e * 2.0 * s->E * tangential * sqrt(s->R * s->R_q) *
-           0.443 * pow(2.0 / s->lambda, 1.5);
-}
-
 double scene_kappa(const ReferenceScene* s) {
-    return stiffness_now(s) * top_speed(s) / (TURN * s->f * fmax(limit_now(s), 1e-250));
+    const ReferenceRest rest = reference_rest(s);
+    return rest.sigma * top_speed(s) / (TURN * s->f * fmax(rest.limit, 1e-250));
 }
 
 double scene_start_over_limit(const ReferenceScene* s) {
-    return stiffness_now(s) * hypot(s->delta_0, s->delta_y_0) / fmax(limit_now(s), 1e-250);
+    const ReferenceRest rest = reference_rest(s);
+    return rest.sigma * hypot(s->delta_0, s->delta_y_0) / fmax(rest.limit, 1e-250);
 }
 
 double scene_gain(const ReferenceScene* s) {
@@ -140,8 +112,8 @@ double scene_gain(const ReferenceScene* s) {
     if (s->law != LAW_ELASTIC_PLASTIC || V_rate == 0.0) {
         return 0.0;
     }
-    const double D = limit_now(s) / stiffness_now(s);
-    return 2.0 * D * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
+    const ReferenceRest rest = reference_rest(s);
+    return 2.0 * rest.limit / rest.sigma * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
 }
 
 static void friction(Draw* draw, ReferenceScene* s) {
@@ -161,7 +133,7 @@ static void friction(Draw* draw, ReferenceScene* s) {
         s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
         s->V_S = top_speed(s) * log_between(draw, 1e-3, 10.0);
     }
-    const double damping = limit_now(s) / top_speed(s);
+    const double damping = reference_rest(s).limit / top_speed(s);
     if (s->law != LAW_COULOMB && chance(draw, 0.3)) {
         s->sigma_1 = damping * log_between(draw, 1e-4, 1.0);
     }
@@ -171,7 +143,8 @@ static void friction(Draw* draw, ReferenceScene* s) {
 }
 
 static double deflection(Draw* draw, const ReferenceScene* s) {
-    const double most = limit_now(s) / stiffness_now(s) * s->staticRatio;
+    const ReferenceRest rest = reference_rest(s);
+    const double most = rest.limit / rest.sigma * s->staticRatio;
     const double kind = unit(draw);
     if (kind < 0.4) {
         return 0.0;
@@ -295,34 +268,33 @@ static void step_at_random(Draw* draw, ReferenceScene* s) {
 // Steps of signals as users have them
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Shares of the drawn load, velocity and amplitudes at the ends of steps. A load of 0 is an open contact.
+// Shares of the drawn load, velocity and amplitudes at the ends of steps; all 1 if there are none. A load of 0 is an open
+// contact.
 typedef struct {
-    double load[MOST_STEPS], V[MOST_STEPS], vibration[MOST_STEPS];
+    const double *load, *V, *vibration;
 } Signal;
 
+#define SHARES(...)                                                                                          \
+    (const double[MOST_STEPS]) { __VA_ARGS__ }
+// clang-format off
 static const Signal SIGNALS[] = {
     // a tool approaches, presses, slides, lifts off, and is set down again
-    {{0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1}, {0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.load = SHARES(0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1), .V = SHARES(0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0)},
     // a bounce
-    {{0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.load = SHARES(0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0)},
     // a mass on a belt sticks and slips
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.V = SHARES(0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0)},
     // a sweep of V, and of the load
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
-    {{0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.V = SHARES(-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1)},
+    {.load = SHARES(0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01)},
     // the vibration is switched on and off; a contact that is held; stop and go
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0}},
-    {{1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 1, 1, 0, 0, 1, 1}},
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 0, 0, 0, 1, 0, -1, 0, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.vibration = SHARES(0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0)},
+    {.load = SHARES(1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1), .V = SHARES(0), .vibration = SHARES(1, 1, 1, 1, 1, 1, 0, 0, 1, 1)},
+    {.V = SHARES(1, 1, 0, 0, 0, 1, 0, -1, 0, 1)},
 };
+// clang-format on
+
+static double share(const double* of, int k) { return of ? of[k] : 1.0; }
 
 // The load of a share, or the separation that gives it.
 static void press(Draw* draw, const ReferenceScene* full, double share, double* load, double* d) {
@@ -335,18 +307,18 @@ static void press(Draw* draw, const ReferenceScene* full, double share, double* 
 static void step_of_signal(Draw* draw, const Signal* signal, int k, const ReferenceScene* full, bool linear,
                            ReferenceScene* s) {
     double load, d;
-    press(draw, full, signal->load[k], &load, &d);
+    press(draw, full, share(signal->load, k), &load, &d);
     const bool moves = linear && k > 0;
-    const double from =
-        signal->V[moves ? k - 1 : k]; // as the user samples it, not as the last step's rate left it
-    s->V_1 = full->V_1 * signal->vibration[k];
-    s->V_2 = full->V_2 * signal->vibration[k];
-    s->a_d = full->a_d * signal->vibration[k];
+    const double from = share(signal->V, moves ? k - 1 : k); // as the user samples it
+    const double vibration = share(signal->vibration, k);
+    s->V_1 = full->V_1 * vibration;
+    s->V_2 = full->V_2 * vibration;
+    s->a_d = full->a_d * vibration;
     s->V = full->V * from;
     s->V_y = full->V_y * from;
     if (moves) {
-        s->V_rate = (full->V * signal->V[k] - s->V) / s->h;
-        s->V_y_rate = (full->V_y * signal->V[k] - s->V_y) / s->h;
+        s->V_rate = (full->V * share(signal->V, k) - s->V) / s->h;
+        s->V_y_rate = (full->V_y * share(signal->V, k) - s->V_y) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;
     } else {
@@ -364,12 +336,13 @@ static bool is_in_domain(const ReferenceScene* s) {
     const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
     return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
            !(vibrates(s) && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
-           (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
+           (s->input == INPUT_SEPARATION ||
+            fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
 
 static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
     Sequence sequence = {.tolerance = tolerance, .method = 1};
-    const ReferenceScene full = contact_drawn(&draw, plane);
+    ReferenceScene full = contact_drawn(&draw, plane);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
@@ -377,22 +350,18 @@ static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
                         : !linear ? MOST_PERIODS
                         : of_user ? MOST_MOVING / MOST_STEPS
                                   : MOST_MOVING;
-    const double usual_h = length(&draw, &full, most);
+    full.h = length(&draw, &full, most);
     for (int k = 0; k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
         if (of_user) {
-            s.h = usual_h;
             step_of_signal(&draw, signal, k, &full, linear, &s);
             if (tunes && k > 0) {
                 change_parameters(&draw, &s);
             }
         } else if (k > 0) {
             step_at_random(&draw, &s);
-        } else {
-            s.h = usual_h;
-            if (linear) {
-                rates(&draw, &s);
-            }
+        } else if (linear) {
+            rates(&draw, &s);
         }
         if (k == 0) {
             s.delta_0 =
