@@ -108,7 +108,7 @@ static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) 
         char text[SEQUENCE_TEXT];
         sequence_text(sequence, text, sizeof text);
         printf("refused number=%llu step=%d: %s; %s\n", (unsigned long long)number, trial.steps + 1,
-               trial.message, text);
+               trial.message.text, text);
     }
     for (int k = 0; k < trial.steps; k++) {
         const TrialStep* taken = &trial.taken[k];

@@ -2,7 +2,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "scenes.h"
@@ -116,13 +115,14 @@ static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
     double *found = taken->settled[0], *truth = taken->settled[1], S, ratio = -1.0;
     found[0] = found[1] = truth[0] = truth[1] = NAN;
     still.initial = START_GIVEN;
-    FmuRun* run = fmu_open(&still, sequence->method, sequence->tolerance);
-    if (fmu_settled_force(run, found) && reference_settled_force(&still, truth, &S)) {
+    FmuRun run;
+    fmu_open(&run, &still, sequence->method, sequence->tolerance);
+    if (fmu_settled_force(&run, found) && reference_settled_force(&still, truth, &S)) {
         const double off = fmax(fabs(found[0] - truth[0]), fabs(found[1] - truth[1]));
         ratio = isnan(found[0] + found[1]) ? INFINITY
                                            : over(off, (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S));
     }
-    fmu_close(run);
+    fmu_close(&run);
     return ratio;
 }
 
@@ -167,12 +167,13 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
 
 void trial_run(Trial* trial, const Sequence* sequence) {
     *trial = (Trial){0};
-    FmuRun* run = fmu_open(&sequence->step[0], sequence->method, sequence->tolerance);
+    FmuRun run;
+    fmu_open(&run, &sequence->step[0], sequence->method, sequence->tolerance);
     for (int k = 0; k < sequence->steps; k++) {
         TrialStep* taken = &trial->taken[k];
         ReferenceScene before;
         taken->scene = sequence->step[k];
-        if (!fmu_step(run, &taken->scene, &taken->step)) {
+        if (!fmu_step(&run, &taken->scene, &taken->step)) {
             trial->refused = true;
             break;
         }
@@ -186,6 +187,6 @@ void trial_run(Trial* trial, const Sequence* sequence) {
         trial->worst = fmax(trial->worst, taken->verdict.ratio);
         trial->steps++;
     }
-    snprintf(trial->message, sizeof trial->message, "%s", fmu_message(run));
-    fmu_close(run);
+    trial->message = run.message;
+    fmu_close(&run);
 }
