@@ -63,24 +63,18 @@ static const Rule* the_rule(void) {
     return &rule;
 }
 
-void solve(Real A[STAGES][STAGES], int count, Real b[][STAGES]) {
+void solve(Real A[STAGES][STAGES + SIDES]) {
     for (int k = 0; k < STAGES; k++) {
-        for (int i = k + 1; i < STAGES; i++) {
-            const Real factor = A[i][k] / A[k][k];
-            for (int j = k + 1; j < STAGES; j++) {
+        for (int i = 0; i < STAGES; i++) {
+            const Real factor = i == k ? 0.0L : A[i][k] / A[k][k];
+            for (int j = k + 1; j < STAGES + SIDES && i != k; j++) {
                 A[i][j] -= factor * A[k][j];
-            }
-            for (int c = 0; c < count; c++) {
-                b[c][i] -= factor * b[c][k];
             }
         }
     }
-    for (int c = 0; c < count; c++) {
-        for (int i = STAGES - 1; i >= 0; i--) {
-            for (int j = i + 1; j < STAGES; j++) {
-                b[c][i] -= A[i][j] * b[c][j];
-            }
-            b[c][i] /= A[i][i];
+    for (int i = 0; i < STAGES; i++) {
+        for (int c = 0; c < SIDES; c++) {
+            A[i][STAGES + c] /= A[i][i];
         }
     }
 }
@@ -353,20 +347,17 @@ bool is_open(const World* w, Real t) {
 // The step
 // ---------------------------------------------------------------------------------------------------------------------
 
+static World at_rest(const World* w) {
+    World rest = *w;
+    rest.d_cosine = rest.d_sine = 0.0L;
+    return rest;
+}
+
 // Mean of the limit over a period of the vibration with the inputs of a time [N].
 static Real mean_limit(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (s->limit == LIMIT_CONSTANT) {
-        return s->F_C;
-    }
-    if (is_open(w, t)) {
-        return 0.0L;
-    }
-    if (s->input == INPUT_LOAD) {
-        return s->mu * load_at(w, t);
-    }
-    const AtModulus at = modulus_at(w, t);
-    return s->mu * at.force * w->swell * expl(-w->decay * (w->d + w->d_rate * t));
+    World rest = at_rest(w);
+    rest.open = is_open(w, t);
+    return scene_at(&rest, t).coulomb * (w->scene.limit == LIMIT_LOAD ? w->swell : 1.0L);
 }
 
 Real largest_force(const World* w, Vector delta) {
@@ -430,10 +421,9 @@ static Real separation(const World* w) {
 }
 
 ReferenceRest reference_rest(const ReferenceScene* scene) {
-    ReferenceScene still = *scene;
-    still.V_1 = still.V_2 = still.a_d = 0.0;
-    still.load = fmax(still.load, 1e-99);
-    const World w = make_world(&still, 0.0L, 1);
+    ReferenceScene loaded = *scene;
+    loaded.load = fmax(scene->load, 1e-99);
+    const World moves = make_world(&loaded, 0.0L, 1), w = at_rest(&moves);
     const At at = scene_at(&w, 0.0L);
     return (ReferenceRest){(double)separation(&w), (double)at.coulomb, (double)at.sigma};
 }

@@ -20,8 +20,9 @@ typedef struct {
     Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i]
 } Rule;
 
-// Solves A x = b in place for each b, without pivoting.
-void solve(Real A[STAGES][STAGES], int count, Real b[][STAGES]);
+// Solves linear equations without pivoting: the columns after the matrix are right sides, and then their solutions.
+enum { SIDES = 2 };
+void solve(Real A[STAGES][STAGES + SIDES]);
 
 typedef Real Function(const void* context, Real x);
 

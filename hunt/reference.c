@@ -131,22 +131,20 @@ typedef struct {
 
 // The changes of delta at the nodes by Dahl's and LuGre's law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
 static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
-    Real A[STAGES][STAGES], Y[2][STAGES] = {{0}};
-    bool across = false;
+    Real A[STAGES][STAGES + SIDES] = {{0}};
     for (int j = 0; j < STAGES; j++) {
         const Real r = relaxation(w, &at[j]);
         const Vector rate = plus(at[j].V, -r, delta);
-        across = across || rate.y != 0.0L;
         for (int i = 0; i < STAGES; i++) {
             const Real weight = size * w->rule->to[i][j];
             A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
-            Y[0][i] += weight * rate.x;
-            Y[1][i] += weight * rate.y;
+            A[i][STAGES] += weight * rate.x;
+            A[i][STAGES + 1] += weight * rate.y;
         }
     }
-    solve(A, across ? 2 : 1, Y);
+    solve(A);
     for (int i = 0; i < STAGES; i++) {
-        change[i] = (Vector){Y[0][i], Y[1][i]};
+        change[i] = (Vector){A[i][STAGES], A[i][STAGES + 1]};
     }
 }
 
@@ -162,10 +160,10 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
         angle[i] = 0.0L;
     }
     for (int k = 0; k < 25; k++) {
-        Real A[STAGES][STAGES], step[1][STAGES], most = 0.0L;
+        Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
         bool turns = false;
         for (int i = 0; i < STAGES; i++) {
-            step[0][i] = -angle[i];
+            A[i][STAGES] = -angle[i];
         }
         for (int j = 0; j < STAGES; j++) {
             const Vector now = turned(n, angle[j]), across = {-now.y, now.x}, V = at[j].V;
@@ -178,16 +176,16 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             for (int i = 0; i < STAGES; i++) {
                 const Real weight = size * w->rule->to[i][j];
                 A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-                step[0][i] += weight * rate;
+                A[i][STAGES] += weight * rate;
             }
         }
         if (!turns) {
             return true;
         }
-        solve(A, 1, step);
+        solve(A);
         for (int i = 0; i < STAGES; i++) {
-            angle[i] += step[0][i];
-            most = fmaxl(most, fabsl(step[0][i]));
+            angle[i] += A[i][STAGES];
+            most = fmaxl(most, fabsl(A[i][STAGES]));
         }
         if (!(most < 3.0L)) {
             return false;

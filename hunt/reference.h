@@ -54,7 +54,7 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
 
 bool vibrates(const ReferenceScene* scene);
 
-// At the start of a scene, without its vibration. A load below 1e-99 N counts as that.
+// At the start of a scene, at the separation about which it vibrates. A load below 1e-99 N counts as that.
 typedef struct {
     double d, limit, sigma; // m, N, N/m
 } ReferenceRest;
