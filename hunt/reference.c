@@ -455,27 +455,18 @@ static Cuts cuts_between(const World* w, Real a, Real b) {
     return cuts;
 }
 
-// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a part
-// in which a load may fall or rise by decades they become shorter.
-static Real end_of_piece(const World* w, Part part, Real t) {
-    const ReferenceScene* s = &w->scene;
-    const Real span = part.to - part.from, pieces = w->ramp ? 32.0L : 8.0L * s->f;
-    const Real first = w->ramp ? 0.0L : w->cycle / s->f; // s, since the start of the period
-    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
-    Real end = part.to;
-    if (w->ramp || vibrates(s)) {
-        Real k = floorl((first + t) * pieces);
-        while (!(k / pieces - first > t)) {
-            k += 1.0L;
-        }
-        end = fminl(end, k / pieces - first);
+// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp.
+static Real end_of_piece(const World* w, Real t, Real last) {
+    if (!w->ramp && !vibrates(&w->scene)) {
+        return last;
     }
-    for (int k = 1; k <= 60 && moves; k += 2) {
-        const Real early = part.from + ldexpl(span, -k), late = part.to - ldexpl(span, -k);
-        end = early > t && early < end ? early : end;
-        end = late > t && late < end ? late : end;
+    const Real pieces = w->ramp ? 32.0L : 8.0L * w->scene.f;
+    const Real first = w->ramp ? 0.0L : w->cycle / w->scene.f; // s, since the start of the period
+    Real k = floorl((first + t) * pieces);
+    while (!(k / pieces - first > t)) {
+        k += 1.0L;
     }
-    return end;
+    return fminl(last, k / pieces - first);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -555,7 +546,7 @@ static void march_part(March* march, Part part, bool open) {
     }
     w->open = open;
     for (Real from = part.from; from < part.to;) {
-        const Real to = end_of_piece(w, part, from);
+        const Real to = end_of_piece(w, from, part.to);
         const Cuts cuts = cuts_between(w, from, to);
         if (from == part.from) {
             begin(march, from, cuts.time[1]);
