@@ -99,6 +99,7 @@ typedef struct {
     State state;
     bool slipped;  // at any time
     bool met;      // the motion has come to its end,
+    Real from;     // after this time,
     Real met_at;   // then,
     bool at_bound; // at its bound, not by its lead
 } March;
@@ -316,23 +317,10 @@ static bool hides(const World* w, const Panel* p) {
     return false;
 }
 
-static bool is_smallest(const World* w, Real a, Real b, int depth) {
-    const Real middle = 0.5L * (a + b);
-    return depth >= DEEPEST || w->panels > MOST_PANELS || !(middle > a && middle < b);
-}
-
-// A motion on its way to its end.
-typedef struct {
-    const March* march;
-    Real from;
-    bool at_bound;
-} Way;
-
 static Real beyond(const void* context, Real t) {
-    const Way* to = context;
-    const Panel p = panel(to->march, to->from, t, to->march->state.delta);
-    const Signs* last = &p.sign[STAGES];
-    return -(to->at_bound ? last->room : last->lead);
+    const March* march = context;
+    const Panel p = panel(march, march->from, t, march->state.delta);
+    return -(march->at_bound ? p.sign[STAGES].room : p.sign[STAGES].lead);
 }
 
 // Takes an accurate panel, up to the motion's end if that lies in it.
@@ -345,9 +333,9 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
     if (k <= STAGES) {
         march->met = true;
         march->at_bound = p->sign[k].room < 0.0L;
-        const Way to = {march, a, march->at_bound};
+        march->from = a;
         const Real low = k <= 1 ? a : a + (b - a) * march->w->rule->node[k - 2];
-        march->met_at = k == 0 ? a : crossing(beyond, &to, low, a + (b - a) * march->w->rule->node[k - 1]);
+        march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * march->w->rule->node[k - 1]);
         if (!(march->met_at > a)) {
             return;
         }
@@ -355,29 +343,6 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
     }
     add(&march->sums, &part.sums);
     march->state.delta = part.sums.end;
-}
-
-// Takes [a, b], whose single panel is one: halves it until two halves agree with the whole. Stops at the motion's end.
-static void go_on(March* march, Real a, Real b, const Panel* one, int depth) {
-    World* w = march->w;
-    const Real middle = 0.5L * (a + b);
-    const Panel left = panel(march, a, middle, march->state.delta);
-    const Panel right = panel(march, middle, b, left.sums.end);
-    Sums two = left.sums;
-    add(&two, &right.sums);
-    const bool good = agree(w, &one->sums, &two, b - a) && !hides(w, &left) && !hides(w, &right);
-    if (!good && !is_smallest(w, a, b, depth)) {
-        go_on(march, a, middle, &left, depth + 1);
-        if (!march->met) {
-            const Panel again = panel(march, middle, b, march->state.delta);
-            go_on(march, middle, b, &again, depth + 1);
-        }
-        return;
-    }
-    commit(march, a, middle, &left);
-    if (!march->met) {
-        commit(march, middle, b, &right);
-    }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -527,12 +492,31 @@ static void change_motion(March* march) {
     march->motion = slips ? SLIPS : march->state.broke ? CATCHES : STICKS;
 }
 
+// Takes [a, b] in panels that are halved until one agrees with its two halves.
 static void march_between(March* march, Real a, Real b) {
-    while (a < b && march->w->panels <= MOST_PANELS) {
-        const Panel one = panel(march, a, b, march->state.delta);
+    World* w = march->w;
+    const Real least = ldexpl(b - a, -DEEPEST);
+    Real end = b;
+    while (a < b && w->panels <= MOST_PANELS) {
+        const Real middle = 0.5L * (a + end);
+        const Panel one = panel(march, a, end, march->state.delta);
+        const Panel left = panel(march, a, middle, march->state.delta);
+        const Panel right = panel(march, middle, end, left.sums.end);
+        Sums two = left.sums;
+        add(&two, &right.sums);
+        const bool good = agree(w, &one.sums, &two, end - a) && !hides(w, &left) && !hides(w, &right);
+        if (!good && end - a > least && middle > a && middle < end) {
+            end = middle;
+            continue;
+        }
         march->met = false;
-        go_on(march, a, b, &one, 0);
-        a = march->met ? march->met_at : b;
+        commit(march, a, middle, &left);
+        if (!march->met) {
+            commit(march, middle, end, &right);
+        }
+        const Real size = end - a;
+        a = march->met ? march->met_at : end;
+        end = fminl(b, a + 2.0L * size);
         if (march->met) {
             change_motion(march);
         }
