@@ -19,7 +19,7 @@ static void legendre(Real x, Real P[STAGES + 1]) {
 
 static Rule make_rule(void) {
     enum { n = STAGES };
-    Rule rule;
+    Rule rule = {{0}};
     Real x[n], P[n][n + 1];
     for (int i = 0; i < n; i++) {
         // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
@@ -35,7 +35,7 @@ static Rule make_rule(void) {
             x[i] -= value / slope;
         }
         legendre(x[i], P[i]);
-        rule.node[i] = 0.5L * (1.0L + x[i]);
+        rule.node[i + 1] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
     }
     // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of

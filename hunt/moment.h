@@ -15,9 +15,9 @@ static const Real PI = 3.141592653589793238462643383279502884L;
 enum { STAGES = 10 };
 
 typedef struct {
-    Real node[STAGES];       // the last one is 1
+    Real node[STAGES + 1];   // the first one is 0 and no stage, the last one is 1
     Real weight[STAGES];     // sum 1
-    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i]
+    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i + 1]
 } Rule;
 
 // Solves linear equations without pivoting: the columns after the matrix are right sides, and then their solutions.

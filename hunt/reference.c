@@ -221,7 +221,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
     for (int i = 0; i < STAGES; i++) {
-        at[i] = scene_at(w, a + size * rule->node[i]);
+        at[i] = scene_at(w, a + size * rule->node[i + 1]);
     }
     if (slips && !turn_over(w, at, size, start, angle)) {
         p.sums.end.x = NAN; // agrees with nothing
@@ -232,7 +232,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     }
     Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
     for (int i = 0; i < STAGES; i++) {
-        const Real t = a + size * rule->node[i];
+        const Real t = a + size * rule->node[i + 1];
         Vector rate = {0}, spring = {0};
         if (slips) {
             change[i] = plus(scaled(bound(w, &at[i], false), turned(start, angle[i])), -1.0L, delta);
@@ -282,7 +282,7 @@ static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
            fabsl(one->work - two->work) <= energy && fabsl(one->heat - two->heat) <= energy;
 }
 
-// Whether a sign that is positive at three nodes may be negative between them: by the parabola through them.
+// Whether a finite sign that is positive at three nodes may be negative between them: by the parabola through them.
 static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
     const Real left = (y_1 - y_0) / (x[1] - x[0]), right = (y_2 - y_1) / (x[2] - x[1]);
     const Real curve = (right - left) / (x[2] - x[0]), least = fminl(y_0, fminl(y_1, y_2));
@@ -302,15 +302,11 @@ static bool is_over(const Panel* p, int k) {
 
 // Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
-    Real x[STAGES + 1] = {0.0L};
-    for (int k = 0; k < STAGES; k++) {
-        x[k + 1] = w->rule->node[k];
-    }
-    const Real of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
+    const Real *x = w->rule->node, of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
     for (int k = 0; k + 2 <= STAGES && !is_over(p, k + 2); k++) {
         const Signs* s = &p->sign[k];
-        if ((s->room < INFINITY && dips(&x[k], s[0].room, s[1].room, s[2].room, of_room)) ||
-            (s->lead < INFINITY && dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead))) {
+        if (dips(&x[k], s[0].room, s[1].room, s[2].room, of_room) ||
+            dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead)) {
             return true;
         }
     }
@@ -334,8 +330,8 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
         march->met = true;
         march->at_bound = p->sign[k].room < 0.0L;
         march->from = a;
-        const Real low = k <= 1 ? a : a + (b - a) * march->w->rule->node[k - 2];
-        march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * march->w->rule->node[k - 1]);
+        const Real *x = march->w->rule->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
+        march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
         if (!(march->met_at > a)) {
             return;
         }
