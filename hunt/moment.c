@@ -19,7 +19,7 @@ static void legendre(Real x, Real P[STAGES + 1]) {
 
 static Rule make_rule(void) {
     enum { n = STAGES };
-    Rule rule = {{0}};
+    Rule rule = {.node = {0.0L}};
     Real x[n], P[n][n + 1];
     for (int i = 0; i < n; i++) {
         // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
@@ -245,13 +245,18 @@ static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real forc
                                            : at->stiffness * share * share / (d * d * d);
 }
 
+// The bristle, or Coulomb's limit, depends on the separation.
+static bool knows_contact(const ReferenceScene* s) {
+    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
+}
+
 // F_n [N] and sigma [N/m]; the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left
 // out.
 static void contact_at(const World* w, Real t, Vector turn, Real* force, Real* sigma, Real* ratio_rate) {
     const ReferenceScene* s = &w->scene;
     *sigma = s->contact_sigma;
     *ratio_rate = *force = 0.0L;
-    if (w->open || (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT)) {
+    if (w->open || !knows_contact(s)) {
         return;
     }
     const AtModulus at = modulus_at(w, t);
@@ -276,6 +281,22 @@ static void contact_at(const World* w, Real t, Vector turn, Real* force, Real* s
     const Real by_E = of_limit * at.by_force - at.by_stiffness;
     const Real by_d = (of_sigma - of_limit) * w->decay + (s->contact == CONTACT_ASPERITIES ? 3.0L / d : 0.0L);
     *ratio_rate = by_E * s->E_rate + by_d * d_rate;
+}
+
+static World at_rest(const World* w) {
+    World rest = *w;
+    rest.d_cosine = rest.d_sine = 0.0L;
+    return rest;
+}
+
+static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration
+
+bool is_open(const World* w, Real t) {
+    World rest = at_rest(w);
+    rest.open = false;
+    Real force, sigma, unused;
+    contact_at(&rest, t, (Vector){0}, &force, &sigma, &unused);
+    return knows_contact(&w->scene) && !(force >= OPEN && sigma >= OPEN);
 }
 
 At scene_at(const World* w, Real t) {
@@ -320,38 +341,8 @@ Real bound_rate(const World* w, const At* at, bool sticks) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Open or closed
-// ---------------------------------------------------------------------------------------------------------------------
-
-static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration, if d is given
-
-// The bristle, or Coulomb's limit, depends on the separation.
-static bool knows_contact(const ReferenceScene* s) {
-    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
-}
-
-bool is_open(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (!knows_contact(s)) {
-        return false;
-    }
-    if (s->input == INPUT_LOAD) {
-        return !(load_at(w, t) > 0.0L);
-    }
-    const AtModulus at = modulus_at(w, t);
-    const Real d = w->d + w->d_rate * t, force = at.force * expl(-w->decay * d);
-    return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
 // The step
 // ---------------------------------------------------------------------------------------------------------------------
-
-static World at_rest(const World* w) {
-    World rest = *w;
-    rest.d_cosine = rest.d_sine = 0.0L;
-    return rest;
-}
 
 // Mean of the limit over a period of the vibration with the inputs of a time [N].
 static Real mean_limit(const World* w, Real t) {

@@ -345,23 +345,6 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
 // Cuts of the step
 // ---------------------------------------------------------------------------------------------------------------------
 
-// A part of the step; empty: from = to.
-typedef struct {
-    Real from, to;
-} Part;
-
-static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
-
-// The part in which the contact is closed.
-static Part closed_part(const World* w) {
-    const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
-    if (at_start == at_end) {
-        return (Part){at_start ? w->h : 0.0L, w->h};
-    }
-    const Real t = crossing(openness, w, 0.0L, w->h);
-    return at_start ? (Part){t, w->h} : (Part){0.0L, t};
-}
-
 // Times in rising order.
 typedef struct {
     Real time[64]; // at most 4 extremes, and 9 multiples of V_S in each of the 5 parts between them
@@ -519,22 +502,22 @@ static void march_between(March* march, Real a, Real b) {
     }
 }
 
-static void march_part(March* march, Part part, bool open) {
+// Takes [from, to], but for the edge of a closed contact: without load there is no rate.
+static void march_part(March* march, Real from, Real to, bool open) {
     World* w = march->w;
-    if (!(part.to > part.from)) {
-        return;
-    }
+    const Real edge = open ? 0.0L : ldexpl(to - from, -58);
+    to -= to < w->h ? edge : 0.0L;
     w->open = open;
-    for (Real from = part.from; from < part.to;) {
-        const Real to = end_of_piece(w, from, part.to);
-        const Cuts cuts = cuts_between(w, from, to);
-        if (from == part.from) {
-            begin(march, from, cuts.time[1]);
+    for (Real a = from + (from > 0.0L ? edge : 0.0L), first = a; a < to;) {
+        const Real b = end_of_piece(w, a, to);
+        const Cuts cuts = cuts_between(w, a, b);
+        if (a == first) {
+            begin(march, a, cuts.time[1]);
         }
         for (int k = 1; k < cuts.count; k++) {
             march_between(march, cuts.time[k - 1], cuts.time[k]);
         }
-        from = to;
+        a = b;
     }
 }
 
@@ -546,16 +529,15 @@ static Real release(const World* w, State* state) {
     return heat;
 }
 
+static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
+
 static March march_from(World* w, State state) {
     March march = {.w = w, .state = state};
-    const Part part = closed_part(w);
-    const Real edge = ldexpl(part.to - part.from, -58); // without load there is no rate
-    march_part(&march, (Part){0.0L, part.from}, true);
-    march_part(&march,
-               (Part){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
-               false);
-    march.sums.heat += part.to < w->h ? release(w, &march.state) : 0.0L;
-    march_part(&march, (Part){part.to, w->h}, true);
+    const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
+    const Real turn = at_start == at_end ? w->h : crossing(openness, w, 0.0L, w->h);
+    march_part(&march, 0.0L, turn, at_start);
+    march.sums.heat += at_end && !at_start ? release(w, &march.state) : 0.0L;
+    march_part(&march, turn, w->h, at_end);
     w->open = false;
     return march;
 }
