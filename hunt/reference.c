@@ -649,20 +649,24 @@ static Vector after_untouched(const Period* p, int k, Vector delta, Sums* sums) 
 // Takes the periods that touch no bound, at the most n or FOR_EVER, and returns their number; the first one touches none. If a
 // later one touches none, neither do those between, since delta moves along a line and such deflections are a convex set.
 static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
+    World* w = &p->world;
     for (int k = 0; k < POWERS && !p->mapped; k++) {
-        p->power[k] = k == 0 ? find_map(&p->world, p->unit) : twice(&p->power[k - 1]);
+        p->power[k] = k == 0 ? find_map(w, p->unit) : twice(&p->power[k - 1]);
     }
     p->mapped = true;
     Real passed = 1.0L;
-    for (int k = POWERS - 1; k >= 0; k--) {
-        const Real more = ldexpl(1.0L, k);
+    bool rises = true; // to the first power that is too high
+    for (int k = 0; k >= 0; k += rises ? 1 : -1) {
         Sums after = *sums;
         const State to = {after_untouched(p, k, state->delta, &after), false};
-        if (passed + more <= fminl(n, FOR_EVER) && !march_from(&p->world, to).slipped) {
+        const Real then = passed + ldexpl(1.0L, k);
+        const bool fits = then <= fminl(n, FOR_EVER) && (!w->bounded || !march_from(w, to).slipped);
+        if (fits) {
             *state = to;
             *sums = after;
-            passed += more;
+            passed = then;
         }
+        rises = rises && fits && k + 1 < POWERS;
     }
     *state = (State){after_untouched(p, 0, state->delta, sums), false};
     return passed;

@@ -44,7 +44,7 @@ static double top_speed(const ReferenceScene* s) {
     return fmax(fmax(hypot(s->V, s->V_y), fmax(s->V_1, s->V_2)), 1e-6);
 }
 
-static double velocity(Draw* draw, double V_1) {
+static double velocity_along(Draw* draw, double V_1) {
     const double kind = unit(draw);
     if (kind < 0.05) {
         return 0.0;
@@ -61,21 +61,25 @@ static double velocity(Draw* draw, double V_1) {
     return sign(draw) * log_between(draw, 1e-5, 10.0);
 }
 
-// A velocity in the plane for that size of the vibration: zeta, and any direction, or along or transverse.
-static void planar_velocity(Draw* draw, double swing, double* V, double* V_y) {
-    const double size = swing * log_between(draw, 1e-4, 10.0);
+// In the plane: zeta, and any direction, or along or transverse.
+static void velocity(Draw* draw, const ReferenceScene* s, double* V, double* V_y) {
+    if (s->V_2 == 0.0) {
+        *V = velocity_along(draw, s->V_1);
+        *V_y = 0.0;
+        return;
+    }
+    const double size = fmax(s->V_1, s->V_2) * log_between(draw, 1e-4, 10.0);
     const double angle = chance(draw, 0.5) ? TURN / 4.0 * pick(draw, 4) : between(draw, 0.0, TURN);
     *V = size * cos(angle) * (fabs(cos(angle)) > 1e-9);
     *V_y = size * sin(angle) * (fabs(sin(angle)) > 1e-9);
 }
 
 // A transverse vibration alone, or on a line, a circle or any ellipse.
-static void planar(Draw* draw, ReferenceScene* s) {
+static void planar_vibration(Draw* draw, ReferenceScene* s) {
     const double kind = unit(draw);
     s->V_2 = log_between(draw, 1e-3, 3.0);
     s->V_1 = kind < 0.3 ? 0.0 : s->V_2 * (kind < 0.5 ? 1.0 : log_between(draw, 1e-3, 10.0));
     s->phase_2 = kind < 0.5 ? TURN / 4.0 * sign(draw) : kind < 0.6 ? 0.0 : between(draw, -TURN, TURN);
-    planar_velocity(draw, fmax(s->V_1, s->V_2), &s->V, &s->V_y);
 }
 
 static void surfaces(Draw* draw, ReferenceScene* s) {
@@ -169,12 +173,18 @@ static ReferenceScene contact_drawn(Draw* draw, bool plane) {
     ReferenceScene s = start_values();
     s.f = log_between(draw, 1e2, 1e5);
     s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
-    s.V = velocity(draw, s.V_1);
     if (plane) {
-        planar(draw, &s);
+        planar_vibration(draw, &s);
     }
+    velocity(draw, &s, &s.V, &s.V_y);
     surfaces(draw, &s);
     friction(draw, &s);
+    if (s.law != LAW_COULOMB) {
+        const double delta = deflection(draw, &s), angle = plane ? between(draw, 0.0, TURN) : 0.0;
+        s.delta_0 = delta * cos(angle);
+        s.delta_y_0 = delta * sin(angle);
+    }
+    s.initial = chance(draw, 0.15) ? START_SETTLED : START_GIVEN;
     if (chance(draw, 0.6)) {
         s.start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e6 : 1e3) / s.f;
     }
@@ -188,17 +198,13 @@ static ReferenceScene contact_drawn(Draw* draw, bool plane) {
 static void rates(Draw* draw, ReferenceScene* s) {
     const double top = top_speed(s);
     if (chance(draw, 0.6)) {
-        double to = velocity(draw, s->V_1);
-        if (chance(draw, 0.3)) { // V passes zero in the step, or just misses it
+        double to, to_y;
+        velocity(draw, s, &to, &to_y);
+        if (s->V_2 == 0.0 && chance(draw, 0.3)) { // V passes zero in the step, or just misses it
             to = -s->V * log_between(draw, 1e-9, 10.0);
         }
         s->V_rate = fmax(-3.0 * top, fmin(3.0 * top, to - s->V)) / s->h;
-    }
-    if (s->V_2 != 0.0 && chance(draw, 0.6)) {
-        double to, to_y;
-        planar_velocity(draw, fmax(s->V_1, s->V_2), &to, &to_y);
-        s->V_rate = (to - s->V) / s->h;
-        s->V_y_rate = (to_y - s->V_y) / s->h;
+        s->V_y_rate = fmax(-3.0 * top, fmin(3.0 * top, to_y - s->V_y)) / s->h;
     }
     if (chance(draw, 0.5)) {
         const double room = s->d - s->a_d, most = chance(draw, 0.2) ? 18.0 : 2.0;
@@ -239,11 +245,7 @@ static void step_at_random(Draw* draw, ReferenceScene* s) {
     scale(draw, &s->V_1, 3.0);
     scale(draw, &s->V_2, 3.0);
     if (chance(draw, 0.3)) {
-        if (s->V_2 != 0.0) {
-            planar_velocity(draw, fmax(s->V_1, s->V_2), &s->V, &s->V_y);
-        } else {
-            s->V = velocity(draw, s->V_1);
-        }
+        velocity(draw, s, &s->V, &s->V_y);
     }
     scale(draw, &s->d, 1.1);
     s->d = fmax(s->d, 1.1 * s->a_d);
@@ -362,16 +364,6 @@ static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
             step_at_random(&draw, &s);
         } else if (linear) {
             rates(&draw, &s);
-        }
-        if (k == 0) {
-            s.delta_0 =
-                s.law == LAW_COULOMB || (of_user && chance(&draw, 0.7)) ? 0.0 : deflection(&draw, &full);
-            if (plane) {
-                const double angle = between(&draw, 0.0, TURN);
-                s.delta_y_0 = s.delta_0 * sin(angle);
-                s.delta_0 *= cos(angle);
-            }
-            s.initial = chance(&draw, 0.15) ? START_SETTLED : START_GIVEN;
         }
         if (!is_in_domain(&s)) {
             break;
