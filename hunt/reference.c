@@ -672,7 +672,7 @@ static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
     return passed;
 }
 
-enum { MOST_CYCLE = 4096, CYCLE_BEFORE_NEWTON = 32 };
+enum { MOST_CYCLE = 4096 };
 
 typedef struct {
     State state;
@@ -695,10 +695,12 @@ static Real unit_of(const World* w) {
 }
 
 // Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
-// smallest deflection at the end of one that slips. Returns false if none of the first most that slip repeat.
-static bool go_periods(const World* of, State* state, Real n, int most, Sums* sums, Vector* mean) {
+// smallest deflection at the end of one that slips. Returns false if none of the first MOST_CYCLE that slip
+// repeat.
+static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector* mean) {
     Period p = {.world = *of, .unit = unit_of(of)};
     World* w = &p.world;
+    w->panels = 0.0L;
     Mark marks[MOST_CYCLE];
     int count = 0;
     for (Real done = 0.0L; done < n;) {
@@ -720,7 +722,7 @@ static bool go_periods(const World* of, State* state, Real n, int most, Sums* su
             k--;
         }
         if (k < 0) {
-            if (count == most || w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
+            if (count == MOST_CYCLE || w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
                 return false;
             }
             marks[count++] = (Mark){*state, done, *sums};
@@ -787,8 +789,7 @@ static bool settle(World* w, State* state, Vector* mean) {
         Sums sums = {0};
         const bool drifts = s->V != 0.0 || s->V_y != 0.0;
         const bool one_state = !w->elastic || (drifts && w->excess == 0.0L);
-        return go_periods(w, state, INFINITY, one_state ? CYCLE_BEFORE_NEWTON : MOST_CYCLE, &sums, mean) ||
-               (one_state && settle_by_newton(w, state, mean));
+        return (one_state && settle_by_newton(w, state, mean)) || go_periods(w, state, INFINITY, &sums, mean);
     }
     const At at = scene_at(w, 0.0L);
     if (length_of(at.V) > 0.0L) {
@@ -832,7 +833,7 @@ static bool advance(World* w, State* state, Sums* sums) {
         Vector unused;
         period.h = 1.0L / s->f;
         const Real n = floorl(w->h * s->f);
-        known = go_periods(&period, state, n, MOST_CYCLE, sums, &unused);
+        known = go_periods(&period, state, n, sums, &unused);
         rest.h = w->h - n / s->f;
     }
     const March march = march_from(&rest, *state);
