@@ -399,18 +399,27 @@ static Cuts cuts_between(const World* w, Real a, Real b) {
     return cuts;
 }
 
-// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp.
-static Real end_of_piece(const World* w, Real t, Real last) {
-    if (!w->ramp && !vibrates(&w->scene)) {
-        return last;
+// The end of the piece of [from, to] that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a
+// closed contact whose load may fall or rise by decades they become shorter.
+static Real end_of_piece(const World* w, Real from, Real to, Real t) {
+    const ReferenceScene* s = &w->scene;
+    Real end = to;
+    if (w->ramp || vibrates(s)) {
+        const Real pieces = w->ramp ? 32.0L : 8.0L * s->f;
+        const Real first = w->ramp ? 0.0L : w->cycle / s->f; // s, since the start of the period
+        Real k = floorl((first + t) * pieces);
+        while (!(k / pieces - first > t)) {
+            k += 1.0L;
+        }
+        end = fminl(end, k / pieces - first);
     }
-    const Real pieces = w->ramp ? 32.0L : 8.0L * w->scene.f;
-    const Real first = w->ramp ? 0.0L : w->cycle / w->scene.f; // s, since the start of the period
-    Real k = floorl((first + t) * pieces);
-    while (!(k / pieces - first > t)) {
-        k += 1.0L;
+    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
+    for (int k = 1; k <= 60 && moves; k += 2) {
+        const Real part = ldexpl(to - from, -k);
+        end = from + part > t ? fminl(end, from + part) : end;
+        end = to - part > t ? fminl(end, to - part) : end;
     }
-    return fminl(last, k / pieces - first);
+    return end;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -506,12 +515,13 @@ static void march_between(March* march, Real a, Real b) {
 static void march_part(March* march, Real from, Real to, bool open) {
     World* w = march->w;
     const Real edge = open ? 0.0L : ldexpl(to - from, -58);
+    from += from > 0.0L ? edge : 0.0L;
     to -= to < w->h ? edge : 0.0L;
     w->open = open;
-    for (Real a = from + (from > 0.0L ? edge : 0.0L), first = a; a < to;) {
-        const Real b = end_of_piece(w, a, to);
+    for (Real a = from; a < to;) {
+        const Real b = end_of_piece(w, from, to, a);
         const Cuts cuts = cuts_between(w, a, b);
-        if (a == first) {
+        if (a == from) {
             begin(march, a, cuts.time[1]);
         }
         for (int k = 1; k < cuts.count; k++) {
