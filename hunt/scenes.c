@@ -148,14 +148,11 @@ static void friction(Draw* draw, ReferenceScene* s) {
 
 static double deflection(Draw* draw, const ReferenceScene* s) {
     const ReferenceRest rest = reference_rest(s);
-    const double most = rest.limit / rest.sigma * s->staticRatio;
-    const double kind = unit(draw);
-    if (kind < 0.4) {
-        return 0.0;
-    }
-    return most * (kind < 0.45  ? sign(draw)
-                   : kind < 0.6 ? sign(draw) * log_between(draw, 1.0, 100.0)
-                                : between(draw, -1.0, 1.0));
+    const double limit = rest.limit / rest.sigma, kind = unit(draw);
+    return kind < 0.4    ? 0.0
+           : kind < 0.45 ? limit * s->staticRatio * sign(draw)
+           : kind < 0.6  ? limit * sign(draw) * log_between(draw, 1.0, LARGEST_START)
+                         : limit * s->staticRatio * between(draw, -1.0, 1.0);
 }
 
 // The length of a step [s]. If inputs move, the reference goes through each period, so there are fewer
@@ -276,9 +273,8 @@ typedef struct {
     const double *load, *V, *vibration;
 } Signal;
 
-#define SHARES(...)                                                                                          \
-    (const double[MOST_STEPS]) { __VA_ARGS__ }
 // clang-format off
+#define SHARES(...) (const double[MOST_STEPS]){__VA_ARGS__}
 static const Signal SIGNALS[] = {
     // a tool approaches, presses, slides, lifts off, and is set down again
     {.load = SHARES(0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1), .V = SHARES(0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0)},
@@ -342,8 +338,11 @@ static bool is_in_domain(const ReferenceScene* s) {
             fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
 
-static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
-    Sequence sequence = {.tolerance = tolerance, .method = 1};
+Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
+    Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
+    next(&draw);
+    draw.state ^= next(&draw);
+    Sequence sequence = {.tolerance = TOLERANCES[number % 5], .method = 1};
     ReferenceScene full = contact_drawn(&draw, plane);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
@@ -371,11 +370,4 @@ static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
         sequence.step[sequence.steps++] = s;
     }
     return sequence;
-}
-
-Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
-    Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
-    next(&draw);
-    draw.state ^= next(&draw);
-    return sequence_of(draw, TOLERANCES[number % 5], plane);
 }
