@@ -101,14 +101,12 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
 static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
     ReferenceScene still = taken->scene;
     double *found = taken->settled[0], *truth = taken->settled[1], S, ratio = -1.0;
-    found[0] = found[1] = truth[0] = truth[1] = NAN;
     still.initial = START_GIVEN;
     FmuRun run;
     fmu_open(&run, &still, sequence->method, sequence->tolerance);
     if (fmu_settled_force(&run, found) && reference_settled_force(&still, truth, &S)) {
-        const double off = fmax(fabs(found[0] - truth[0]), fabs(found[1] - truth[1]));
-        ratio = isnan(found[0] + found[1]) ? INFINITY
-                                           : over(off, (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S));
+        const double allowed = (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S);
+        ratio = fmax(over(found[0] - truth[0], allowed), over(found[1] - truth[1], allowed));
     }
     fmu_close(&run);
     return ratio;
