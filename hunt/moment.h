@@ -63,7 +63,6 @@ typedef struct {
     bool elastic;   // the law is ElasticPlastic
     bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
     bool open;      // nothing touches
-    bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
     bool ramp;      // between two steps: nothing moves a bristle but its bound
     struct {
         Real limit, scale, ratio,

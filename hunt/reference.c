@@ -104,7 +104,7 @@ typedef struct {
     bool at_bound; // at its bound, not by its lead
 } March;
 
-static bool has_bound(const World* w) { return w->bounded && !w->open && !w->open_ends; }
+static bool has_bound(const World* w) { return w->bounded && !w->open; }
 static bool has_static(const World* w) { return w->elastic && w->excess + w->ln_rate.ratio != 0.0L; }
 
 // Each sign has a slack of little more than its rounding.
@@ -593,7 +593,8 @@ static Map find_map(World* w, Real unit) {
     Map map = {.m = {{1.0L}}};
     Real of[4][5], way[4];
     Vector shift = {0};
-    w->open_ends = true;
+    const bool bounded = w->bounded;
+    w->bounded = false; // of a period that touches none
     for (int k = 0; k < 4; k++) {
         const March march = march_from(w, (State){scaled(unit, AT[k]), false});
         const Sums* s = &march.sums;
@@ -602,7 +603,7 @@ static Map find_map(World* w, Real unit) {
         of[k][0] = s->impulse.x, of[k][1] = s->impulse.y, of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
     }
-    w->open_ends = false;
+    w->bounded = bounded;
     shift.x = w->elastic && w->scene.V == 0.0 ? 0.0L : shift.x; // it does not drift
     shift.y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : shift.y;
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
