@@ -77,7 +77,6 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     step->result[SLIPS_AT_END] = state->slips != 0;
     step->result[W_F] = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
     step->result[Q_F] = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
-    step->evaluations = v->solver.evaluations;
     *before = *state;
     return true;
 }

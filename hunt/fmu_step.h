@@ -10,7 +10,6 @@ typedef struct {
     double delta, delta_y;  // m, at the end
     double delta_start, delta_y_start; // m, before the step and its inputs
     int slips_start;
-    double evaluations; // 1, since the start
 } FmuStep;
 
 typedef struct {

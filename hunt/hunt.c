@@ -79,9 +79,9 @@ static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, co
 static void print_step(const TrialStep* taken, int step) {
     const FmuStep* s = &taken->step;
     const ReferenceStep* t = &taken->truth;
-    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %d, %g evaluations\n",
-           step + 1, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path,
-           taken->scene.delta_0, taken->scene.delta_y_0, taken->scene.slips, s->evaluations);
+    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %d\n", step + 1,
+           taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path, taken->scene.delta_0,
+           taken->scene.delta_y_0, taken->scene.slips);
     for (int k = 0; k < RESULTS; k++) {
         printf("  %-9s  FMU %24.17g  reference %24.17g\n", GRADE_NAMES[k], s->result[k], t->result[k]);
     }

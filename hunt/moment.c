@@ -215,18 +215,6 @@ void velocities(const World* w, Real t, int order, Vector* V) {
     V[1] = order > 0 ? plus(V[1], 1.0L, w->rate) : V[1];
 }
 
-Vector travel(const World* w, Real a, Real b) {
-    const ReferenceScene* s = &w->scene;
-    const Real span = b - a, middle = 0.5L * (a + b);
-    const Vector way = scaled(span, plus((Vector){s->V, s->V_y}, middle, w->rate));
-    if (w->ramp || !vibrates(s)) {
-        return w->ramp ? (Vector){0} : way;
-    }
-    const Vector turn = direction(s->f * middle);
-    const Real chord = 2.0L * sinl(0.5L * w->omega * span) / w->omega;
-    return plus(plus(way, chord * turn.x, w->cosine), -chord * turn.y, w->sine);
-}
-
 // Near 0 it has digits, too.
 static Real load_at(const World* w, Real t) {
     const Real load = w->scene.load, rate = w->scene.load_rate;

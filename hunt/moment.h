@@ -99,9 +99,6 @@ bool is_open(const World* w, Real t);
 // The velocity at a time and its derivatives up to that order.
 void velocities(const World* w, Real t, int order, Vector* V);
 
-// Integral of the velocity that moves a bristle over [a, b].
-Vector travel(const World* w, Real a, Real b);
-
 At scene_at(const World* w, Real t);
 
 // The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].

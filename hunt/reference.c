@@ -130,7 +130,7 @@ typedef struct {
     Signs sign[STAGES + 1]; // at the start and at the nodes
 } Panel;
 
-// The changes of delta at the nodes by Dahl's and LuGre's law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
+// The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
 static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
     Real A[STAGES][STAGES + SIDES] = {{0}};
     for (int j = 0; j < STAGES; j++) {
@@ -227,7 +227,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         p.sums.end.x = NAN; // agrees with nothing
         return p;
     }
-    if (bristle && !slips && !w->elastic) {
+    if (bristle && !slips) {
         collocate(w, at, size, delta, change);
     }
     Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
@@ -236,8 +236,6 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         Vector rate = {0}, spring = {0};
         if (slips) {
             change[i] = plus(scaled(bound(w, &at[i], false), turned(start, angle[i])), -1.0L, delta);
-        } else if (bristle && w->elastic) {
-            change[i] = travel(w, a, t);
         }
         const Vector now = plus(delta, 1.0L, change[i]);
         if (bristle) {
