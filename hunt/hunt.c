@@ -60,18 +60,17 @@ static bool still_misses(const Sequence* sequence) {
     return trial.worst > 1.5;
 }
 
-static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, const TrialStep* taken,
-                       int step) {
-    const int law = taken->scene.law - 1, of = taken->verdict.of;
-    char text[SEQUENCE_TEXT];
-    sequence_text(sequence, text, sizeof text);
-    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n", LAW_NAMES[law],
-           taken->verdict.ratio, GRADE_NAMES[of], step + 1, scene_kappa(&taken->scene),
-           (unsigned long long)number, text);
+static void print_miss(Hunt* hunt, const Sequence* sequence, const char* text, uint64_t number,
+                       const TrialStep* taken, int step) {
+    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
+           LAW_NAMES[taken->scene.law - 1], taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], step + 1,
+           scene_kappa(&taken->scene), (unsigned long long)number, text);
     if (hunt->options.minimize > 0 && still_misses(sequence)) {
         hunt->options.minimize--;
-        make_plain(text, still_misses);
-        printf("plain: %s\n", text);
+        char plain[SEQUENCE_TEXT];
+        snprintf(plain, sizeof plain, "%s", text);
+        make_plain(plain, still_misses);
+        printf("plain: %s\n", plain);
     }
     fflush(stdout);
 }
@@ -96,14 +95,14 @@ static void print_step(const TrialStep* taken, int step) {
 
 static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) {
     Trial trial;
+    char text[SEQUENCE_TEXT];
+    sequence_text(sequence, text, sizeof text);
     trial_run(&trial, sequence);
     pthread_mutex_lock(&hunt->lock);
     hunt->sequences++;
     hunt->unknown += trial.unknown;
     hunt->refused += trial.refused;
     if (trial.refused) {
-        char text[SEQUENCE_TEXT];
-        sequence_text(sequence, text, sizeof text);
         printf("refused number=%llu step=%d: %s; %s\n", (unsigned long long)number, trial.steps + 1,
                trial.message.text, text);
     }
@@ -115,7 +114,7 @@ static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) 
         row->worst = fmax(row->worst, ratio);
         if (!(ratio <= 1.0)) {
             row->misses++;
-            print_miss(hunt, sequence, number, taken, k);
+            print_miss(hunt, sequence, text, number, taken, k);
         }
         if (hunt->options.replay) {
             print_step(taken, k);

@@ -170,7 +170,7 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
 // The scene at a time
 // ---------------------------------------------------------------------------------------------------------------------
 
-// The library takes an angle beyond an eighth of a turn in twice the time.
+// By an angle of at most an eighth of a turn, which the library need not reduce.
 Vector direction(Real turns) {
     const Real quarters = rintl(4.0L * turns), rest = 2.0L * PI * (turns - 0.25L * quarters);
     const Real x = cosl(rest), y = sinl(rest);

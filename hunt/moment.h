@@ -64,12 +64,12 @@ typedef struct {
     bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
     bool open;      // nothing touches
     bool ramp;      // between two steps: nothing moves a bristle but its bound
+    // On a ramp: rates [1/s] of the logarithms of F_C or mu, of the stiffness's factor, ..
     struct {
-        Real limit, scale, ratio,
-            V_S; // 1/s, rates of the logarithms of F_C or mu, of the stiffness's factor, ..
-    } ln_rate;   // on a ramp
-    Real S;      // N
-    Real top;    // m/s, the largest |V|
+        Real limit, scale, ratio, V_S;
+    } ln_rate;
+    Real S;   // N
+    Real top; // m/s, the largest |V|
     const Rule* rule;
     int fineness;
     Real panels; // taken so far

@@ -1,10 +1,9 @@
 // One communication step of a scene by brute force in extended precision: the reference that grades the FMU.
 //
 // Written from docs/physics.md alone; it shares no line with fmu_src. Velocity, deflection and force are vectors: a line is a
-// plane with nothing across. Time is cut at every reversal and extreme of the velocity. In between a bristle that sticks
-// is a closed form; Dahl's and LuGre's is solved by Radau collocation, and so is the angle of one that slips along its bound.
-// Panels are halved until one panel and its two halves agree, and until no bound can be met unseen between two nodes. Many
-// equal periods that touch no bound are taken as one map.
+// plane with nothing across. Time is cut at every reversal and extreme of the velocity. In between Radau collocation solves
+// the law of a bristle, or the angle of one that slips along its bound. Panels are halved until one panel and its two halves
+// agree, and until no bound can be met unseen between two nodes. Many equal periods that touch no bound are taken as one map.
 #ifndef HUNT_REFERENCE_H
 #define HUNT_REFERENCE_H
 
@@ -48,7 +47,7 @@ typedef struct {
 } ReferenceStep;
 
 // before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for
-// smaller panels with more stages: for checks of the result itself.
+// smaller panels: for checks of the result itself.
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result);
 
