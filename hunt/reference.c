@@ -796,8 +796,8 @@ static bool settle(World* w, State* state, Vector* mean) {
     const ReferenceScene* s = &w->scene;
     if (vibrates(s) || is_open(w, 0.0L) || s->law == LAW_COULOMB) {
         Sums sums = {0};
-        const bool drifts = s->V != 0.0 || s->V_y != 0.0;
-        const bool one_state = !w->elastic || (drifts && w->excess == 0.0L);
+        const bool drifts = s->V != 0.0 || s->V_y != 0.0, swings = s->V_1 != 0.0 || s->V_2 != 0.0;
+        const bool one_state = w->elastic ? drifts && w->excess == 0.0L : drifts || swings;
         return (one_state && settle_by_newton(w, state, mean)) || go_periods(w, state, INFINITY, &sums, mean);
     }
     const At at = scene_at(w, 0.0L);
