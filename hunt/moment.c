@@ -2,7 +2,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots

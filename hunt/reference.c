@@ -2,7 +2,7 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stddef.h>
 
 #include "moment.h"
 

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 static const double TURN = 6.283185307179586;
 static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the sequences in turn
