@@ -714,6 +714,9 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
     int count = 0;
     for (Real done = 0.0L; done < n;) {
         const March march = march_from(w, *state);
+        if (w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
+            return false;
+        }
         if (!march.slipped) {
             const Real passed = pass_untouched(&p, state, n - done, sums);
             if (isinf(n) && passed == FOR_EVER) {
@@ -731,7 +734,7 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
             k--;
         }
         if (k < 0) {
-            if (count == MOST_CYCLE || w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
+            if (count == MOST_CYCLE) {
                 return false;
             }
             marks[count++] = (Mark){*state, done, *sums};
