@@ -113,11 +113,5 @@ FC_WITH_AVX void fc_radau_panel(const FcScene* scene, double t, double h, double
         fc_panel_force(count, &at, side_per_limit, side, from->speed, 0.0, u, f);
         mean_error += fc_radau_quadrature_error(f);
     }
-    // Relaxation damps a defect: at the end by the rate there, inside by the least rate of the panel.
-    const double whole = panel->z;
-    const double z_last = fc_most(0.0, fc_least(z[last], whole));
-    const double z_least = fc_most(fc_least(z_last, z[n]), fc_least(whole, sqrt(whole)));
-    panel->end_error = panel->sigma * error / (1.0 + z_last);
-    panel->mean_error = mean_error + FC_MEAN_OF_DEFECT * panel->sigma * error *
-                                         fc_most(1.0 / (1.0 + z_least), rule->weight[last] / (1.0 + z_last));
+    fc_radau_set_errors(panel, z[n], z[last], panel->sigma, error, mean_error);
 }

@@ -14,8 +14,8 @@ double fc_straight_pace(const FcStraight* in, double u) {
     return isinf(in->length) ? 1.0 : in->length * cosh(u);
 }
 
-double fc_half_time(const FcHalf* half, double u) {
-    return fmin(fmax(fc_straight_time(&half->in, u), half->start), half->end);
+double fc_part_time(const FcPart* part, double u) {
+    return fmin(fmax(fc_straight_time(&part->in, u), part->start), part->end);
 }
 
 double fc_straight_place(const FcStraight* in, double t) {
@@ -44,7 +44,7 @@ static double bend_of_square(void* drive, double t) { return sample_at(drive, t)
 
 // The number of samples in a period. Chosen empirically: the rate of |V|^2 has two harmonics and at most one
 // extremum between two samples. Half as many might miss a near-zero, twice as many cost time alone.
-enum { SAMPLES = 16, MOST_CENTERS = FC_MOST_HALVES / 2 };
+enum { SAMPLES = 16, MOST_CENTERS = FC_MOST_PARTS / 2 };
 
 // Whether |V| has a minimum between two samples; its time [s] in *center.
 static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
@@ -88,48 +88,52 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     return count;
 }
 
-// L of the center; infinite if the dip is too flat to matter.
-static double length_of(const FcPlane* plane, double center, double h, double tolerance) {
+// L of a center with that |V|; infinite if the dip is too flat to matter.
+static double length_of(const FcPlane* plane, Sample least, double eps, double h, double tolerance) {
     const FcDrive* drive = &plane->scene->drive;
-    const Sample at = sample_at(drive, center);
-    const double eps = sqrt(2.0 * at.half / at.bend); // bend is c^2
-    if (!(at.bend > 0.0) || eps * drive->omega > 3.0) {
+    if (!(least.bend > 0.0) || eps * drive->omega > 3.0) {
         return INFINITY;
     }
-    const double t = fmin(fmax(center, 0.0), h);
+    const double t = fmin(fmax(least.t, 0.0), h);
     const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
-    const double layer = sqrt(2.0 * near.limit / (near.sigma * sqrt(at.bend)));
+    const double layer = sqrt(2.0 * near.limit / (near.sigma * sqrt(least.bend)));
     const bool has_layer = plane->scene->friction->model != FC_COULOMB;
-    const double least = has_layer ? sqrt(tolerance) * fmin(layer, h) : 0.0;
-    return fmax(fmax(eps, least), 0x1p-40 * fmax(h, fabs(center)));
+    const double least_length = has_layer ? sqrt(tolerance) * fmin(layer, h) : 0.0;
+    return fmax(fmax(eps, least_length), 0x1p-40 * fmax(h, fabs(least.t)));
 }
 
-int fc_halves(const FcPlane* plane, double h, double tolerance, FcHalf halves[FC_MOST_HALVES]) {
+// The part of the interval that is not worth a panel. Rounding of the middles: 4500 eps.
+static const double ROUNDING = 1e-12;
+
+int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MOST_PARTS]) {
     double centers[MOST_CENTERS];
     const int found = find_centers(&plane->scene->drive, h, centers);
     int count = 0;
     double start = 0.0;
     for (int i = 0; i < found; i++) {
-        const double end = i + 1 < found ? fmin(h, 0.5 * (centers[i] + centers[i + 1])) : h;
-        if (!(end > start)) {
+        const double middle = i + 1 < found ? 0.5 * (centers[i] + centers[i + 1]) : h;
+        const double end = h - middle < ROUNDING * h ? h : middle;
+        if (!(end - start > ROUNDING * h)) {
             continue;
         }
-        const double middle = centers[i];
+        const double center = centers[i];
+        const Sample least = sample_at(&plane->scene->drive, center);
+        const double eps = sqrt(2.0 * least.half / least.bend); // bend is c^2
         // If the near-zero is farther away than the part lasts, |V| is smooth in t, and u would round the
         // times.
-        const bool is_far = fmax(start - middle, middle - end) > end - start;
+        const bool is_far = fmax(start - center, center - end) > end - start;
         const FcStraight in = is_far ? (FcStraight){0.0, INFINITY}
-                                     : (FcStraight){middle, length_of(plane, middle, h, tolerance)};
-        if (middle > start && middle < end) {
-            halves[count++] = (FcHalf){start, middle, in};
-            start = middle;
+                                     : (FcStraight){center, length_of(plane, least, eps, h, tolerance)};
+        if (isfinite(in.length) && in.length > eps && center > start && center < end) { // a kink
+            parts[count++] = (FcPart){start, center, in};
+            start = center;
         }
-        halves[count++] = (FcHalf){start, end, in};
+        parts[count++] = (FcPart){start, end, in};
         start = end;
     }
     if (count == 0) {
-        halves[count++] = (FcHalf){0.0, h, {0.0, INFINITY}};
+        parts[count++] = (FcPart){0.0, h, {0.0, INFINITY}};
     }
-    assert(count <= FC_MOST_HALVES);
+    assert(count <= FC_MOST_PARTS);
     return count;
 }

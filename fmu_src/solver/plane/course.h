@@ -21,19 +21,20 @@ double fc_straight_time(const FcStraight* in, double u); // s
 double fc_straight_pace(const FcStraight* in, double u); // s, dt/du
 double fc_straight_place(const FcStraight* in, double t);
 
-// A part of the interval without a near-zero inside, from a near-zero to halfway to the next one, or back.
+// A part of the interval, between the middles of three near-zeros; if |V| has a kink in u, as at a reversal, from or
+// to the near-zero.
 typedef struct {
     double start, end; // s
     FcStraight in;
-} FcHalf;
+} FcPart;
 
-double fc_half_time(const FcHalf* half, double u); // s, within the half in spite of rounding
+double fc_part_time(const FcPart* part, double u); // s, within the part in spite of rounding
 
 // Room for two near-zeros a period, over less than three periods.
-enum { FC_MOST_HALVES = 24 };
+enum { FC_MOST_PARTS = 24 };
 
-// Finds the halves of [0, h], in their order; returns their number. If the scene vibrates, h [s] is less than
+// Finds the parts of [0, h], in their order; returns their number. If the scene vibrates, h [s] is less than
 // two periods.
-int fc_halves(const FcPlane* plane, double h, double tolerance, FcHalf halves[FC_MOST_HALVES]);
+int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_MOST_PARTS]);
 
 #endif

@@ -20,10 +20,10 @@ typedef struct {
     const FcPlane* plane;
     const FcInterval* interval;
     FcDrive across_drive; // fc_drive_across
-    FcHalf half;
-    double u, end;     // reached in the half, and to be reached
-    double path_after; // m, at least, from the end of the half to that of the interval
-    double h;          // of the next panel, in u; 0 before the first of a half
+    FcPart part;
+    double u, end;     // reached in the part, and to be reached
+    double path_after; // m, at least, from the end of the part to that of the interval
+    double h;          // of the next panel, in u; 0 before the first of a part
     FcMap along, across;
     double transient; // N, the rest of the transient of the start
     double scale;     // m, of the starts that the maps are for, beside the one they have
@@ -53,14 +53,15 @@ static FcPlaneFrom from_of(const March* march) {
 // The number of refused panels in a row, after which the next one is accepted: 0.3^12 of the first length, at
 // which rounding limits it. Twice as many would cost time alone.
 enum { MOST_TRIES = 12 };
-// ORDER: derived. Polynomials through 9 stages err by rho^-17 for a function with branch points at the
-// distance pi / 2, with sinh(ln rho) = pi over the panel's length. LAYERS: the length for a decaying
-// exponential, in layers. Chosen empirically: half of it costs panels, twice of it tries.
+// Derived: polynomials through 9 stages err by rho^-17 for a function with branch points at the distance
+// pi / 2, with sinh(ln rho) = pi over the panel's length.
 static const double ORDER = 17.0;
-static const double LAYERS = 6.3;
 // The planned part of that length. Chosen empirically: most panels of the whole length are refused; panels of
 // a third are refused as often as those of a half.
-static const double PART_OF_ELLIPSE = 0.5;
+static const double PART_OF_ELLIPSE = 0.45;
+// The relaxation in a panel, times the seventh root of its transient over the allowed error. Chosen empirically: half
+// of it costs panels, twice of it tries.
+static const double RELAXATION = 80.0;
 // The largest displacement of a sticking bristle in a panel, in radii of its disc. Chosen empirically: up to
 // this value the panel's points show the meeting with the bound. Twice of it makes panels that are cut.
 static const double MOST_OF_DISC = 4.0;
@@ -93,6 +94,12 @@ static double first_transient(const March* march) {
            at.sigma * fabs(from.scale);
 }
 
+// r, or |V| / D of a bristle that sticks [1/s].
+static double rate_at(const March* march, double t) {
+    const FcPlaneCoefficients at = coefficients_at(march, t);
+    return at.sigma * at.speed / at.limit;
+}
+
 static bool is_stuck(const March* march) {
     return march->motion == FREE && march->plane->scene->friction->model == FC_ELASTIC_PLASTIC;
 }
@@ -100,34 +107,49 @@ static bool is_stuck(const March* march) {
 // The length in u of the next panel.
 static double planned(const March* march) {
     const FcInterval* interval = march->interval;
-    const FcStraight* in = &march->half.in;
+    const FcStraight* in = &march->part.in;
     const double left = march->end - march->u;
-    const double t = fc_half_time(&march->half, march->u);
+    const double t = fc_part_time(&march->part, march->u);
+    const double rate = rate_at(march, t);
+    const bool relaxes = !is_stuck(march) && march->motion != NO_BRISTLE;
     const double resolves = pow(interval->tolerance, 1.0 / ORDER);     // 1 / rho
     double span = SMOOTH * resolves * fc_smooth_time(&interval->pace); // s
-    const FcPlaneCoefficients at = coefficients_at(march, t);
-    const double layer = at.limit / (at.sigma * at.speed); // s, 1 / r; infinite if V is 0
-    const double behind = march->transient / (interval->tolerance * interval->force);
-    if (is_stuck(march)) {
-        span = march->is_bounded ? fmin(span, MOST_OF_DISC * layer) : span;
-    } else if (march->motion != NO_BRISTLE && behind > 1.0) {
-        span = fmin(span, LAYERS * pow(behind, -1.0 / ORDER) * layer);
+    double z = INFINITY;                                               // the largest relaxation
+    if (relaxes) {
+        // Behind a near-zero V has turned, and the force follows while the bristle relaxes.
+        const bool has_turned = isfinite(in->length) && in->center > 0.0 && t >= in->center;
+        const double turned = has_turned ? interval->force * exp(-0.5 * rate * (t - in->center)) : 0.0;
+        const double behind = fmax(march->transient, turned) / (interval->tolerance * interval->force);
+        z = behind > 1.0 ? RELAXATION * pow(behind, -1.0 / 7.0) : INFINITY;
+    } else if (is_stuck(march) && march->is_bounded) {
+        span = fmin(span, MOST_OF_DISC / rate);
     }
     double h = fmin(left, fc_straight_place(in, t + span) - march->u);
-    if (isfinite(in->length)) {
-        h = fmin(h, PART_OF_ELLIPSE * FC_PI / sinh(-log(resolves)));
-    }
     if (march->h > 0.0) {
         h = fmin(h, march->h);
     }
-    h = h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
-    return h;
+    if (isfinite(in->length)) {
+        h = fmin(h, FC_PI / sinh(-log(resolves)));
+        // The branch points act in the panel's part of the interval, on the part of the force that relaxes.
+        const double end = fc_part_time(&march->part, march->u + h);
+        const double acts = relaxes ? fmin(1.0, 0.5 * (rate + rate_at(march, end)) * (end - t)) : 1.0;
+        const double counts = acts * (end - t) / (interval->duration * interval->tolerance);
+        h = fmin(h, PART_OF_ELLIPSE * FC_PI / sinh(log1p(counts) / ORDER));
+        h = fmin(h, 0.5 * log1p(2.0 * z / (rate * fc_straight_pace(in, march->u)))); // |V| may grow as e^u
+    } else {
+        h = fmin(h, z / rate);
+    }
+    return h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
 }
 
-// The straight distance [m] from start to end, which is at most the path.
-static double straight_way(const March* march, double start, double end) {
-    return hypot(fc_drive_displacement(&march->interval->scene->drive, start, end),
-                 fc_drive_displacement(&march->across_drive, start, end));
+// A distance [m] from start to end that is at most the path: straight to the near-zero, and from there.
+static double least_path(const March* march, const FcPart* part, double start, double end) {
+    const FcDrive* drive = &march->interval->scene->drive;
+    const double turn = fmin(fmax(part->in.center, start), end);
+    return hypot(fc_drive_displacement(drive, start, turn),
+                 fc_drive_displacement(&march->across_drive, start, turn)) +
+           hypot(fc_drive_displacement(drive, turn, end),
+                 fc_drive_displacement(&march->across_drive, turn, end));
 }
 
 // The safety factors on estimated errors: of all panels, and of a slip through a Stribeck peak, in which
@@ -144,7 +166,7 @@ static const double LEAST_SHARE = 1e-5;
 static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcPanel* panel) {
     const FcInterval* interval = march->interval;
     const double end = nodes->t[STAGES - 1];
-    const double length = march->half.in.length;
+    const double length = march->part.in.length;
     const double forgets =
         panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
     const bool has_peak = fc_has_stribeck_curve(interval->scene->friction);
@@ -162,7 +184,7 @@ static double excess_of(const March* march, const FcPlaneNodes* nodes, const FcP
     whole.z =
         fmax(LEAST_SHARE * fmin(1.0, interval->speed * interval->duration / interval->saturation), whole.z);
     const FcExcess over = fc_radau_panel_excess(&whole, &life, fc_allowed_force(interval));
-    const double path = march->path_after + straight_way(march, end, march->half.end);
+    const double path = march->path_after + least_path(march, &march->part, end, march->part.end);
     const double left_at_end = exp(-path / interval->saturation);
     const double sure = has_peak && march->motion == SLIPS ? SURE_IN_PEAK : SURE;
     return sure * fmax(over.mean, over.end * left_at_end);
@@ -174,7 +196,7 @@ static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlane
 // Makes the panel of the length h at the present place; false if it is too long to be solved.
 static bool make_panel(March* march, double h, FcPlaneNodes* nodes, FcPlanePanel* panel) {
     const FcPlaneFrom from = from_of(march);
-    fc_plane_nodes(march->plane, &march->half, march->u, h, nodes);
+    fc_plane_nodes(march->plane, &march->part, march->u, h, nodes);
     march->evaluations += STAGES;
     switch (march->motion) {
     case SLIPS:
@@ -210,8 +232,8 @@ static void append(March* march, FcPlanePanel* panel, double h) {
     const double next = march->u + h;
     const double end = march->end - next < 1e-12 * h ? march->end : next;
     if (is_stuck(march)) { // it moves with the surfaces: a drift over many periods is exact to rounding
-        const double t_0 = fc_straight_time(&march->half.in, march->u);
-        const double t_1 = fc_straight_time(&march->half.in, end);
+        const double t_0 = fc_straight_time(&march->part.in, march->u);
+        const double t_1 = fc_straight_time(&march->part.in, end);
         panel->along.map.offset = fc_drive_displacement(&march->interval->scene->drive, t_0, t_1);
         panel->across.offset = fc_drive_displacement(&march->across_drive, t_0, t_1);
     }
@@ -247,7 +269,7 @@ typedef struct {
 } Place;
 
 static Place place_of(const March* march) {
-    Place place = {.t = fc_half_time(&march->half, march->u)};
+    Place place = {.t = fc_part_time(&march->part, march->u)};
     place.phase = fc_drive_phase(&march->interval->scene->drive, place.t);
     place.at = fc_plane_coefficients(march->plane, place.t, place.phase);
     place.bound = fc_plane_bound(march->plane, &place.at, 1, place.t, place.phase);
@@ -294,7 +316,7 @@ static double close_to_bound(const March* march, double D) {
     // An excess over the bound costs heat at break-away, whose tolerance goes with the path.
     const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
-    const double of_time = fabs(march->u) * fc_straight_pace(&march->half.in, march->u) + interval->duration;
+    const double of_time = fabs(march->u) * fc_straight_pace(&march->part.in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
     return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
 }
@@ -430,9 +452,9 @@ static void coulomb_panel(const March* march, const FcPlaneNodes* nodes, FcPlane
     fc_plane_force_errors(nodes, march->interval->speed, F_x, F_y, V_x, V_y, &panel->along);
 }
 
-static void cross_half(March* march) {
-    march->u = fc_straight_place(&march->half.in, march->half.start);
-    march->end = fc_straight_place(&march->half.in, march->half.end);
+static void cross_part(March* march) {
+    march->u = fc_straight_place(&march->part.in, march->part.start);
+    march->end = fc_straight_place(&march->part.in, march->part.end);
     march->h = 0.0;
     int stalled = 0; // panels in a row that did not get on
     while (march->u < march->end && march->evaluations <= FC_MOST_EVALUATIONS &&
@@ -454,19 +476,19 @@ static void cross_half(March* march) {
 static void cross(March* march) {
     const FcInterval* interval = march->interval;
     march->transient = first_transient(march);
-    FcHalf halves[FC_MOST_HALVES];
-    const int count = fc_halves(march->plane, interval->duration, interval->tolerance, halves);
+    FcPart parts[FC_MOST_PARTS];
+    const int count = fc_parts(march->plane, interval->duration, interval->tolerance, parts);
     march->across_drive = fc_drive_across(&interval->scene->drive);
-    double way[FC_MOST_HALVES];
+    double way[FC_MOST_PARTS];
     double after = 0.0;
     for (int i = count - 1; i >= 0; i--) {
         way[i] = after;
-        after += straight_way(march, halves[i].start, halves[i].end);
+        after += least_path(march, &parts[i], parts[i].start, parts[i].end);
     }
     for (int i = 0; i < count; i++) {
-        march->half = halves[i];
+        march->part = parts[i];
         march->path_after = way[i];
-        cross_half(march);
+        cross_part(march);
     }
 }
 

@@ -1,4 +1,4 @@
-// A bristle, or Coulomb's law, in the plane over an interval: half by half (course.h), panel by panel
+// A bristle, or Coulomb's law, in the plane over an interval: part by part (course.h), panel by panel
 // (plane_panel.h).
 //
 // The march is that of one line (march/march.h) with a disc for the bound. The polynomial through the points

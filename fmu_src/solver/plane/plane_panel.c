@@ -4,12 +4,12 @@
 
 enum { STAGES = FC_RADAU_STAGES, POINTS = FC_RADAU_POINTS, LAST = STAGES - 1, MOST_SIDES = 3 };
 
-void fc_plane_nodes(const FcPlane* plane, const FcHalf* half, double u, double h, FcPlaneNodes* nodes) {
+void fc_plane_nodes(const FcPlane* plane, const FcPart* part, double u, double h, FcPlaneNodes* nodes) {
     nodes->duration = 0.0;
     for (int i = 0; i < POINTS; i++) {
         const double place = u + (0.5 + FC_RADAU_9.node[i]) * h;
-        nodes->t[i] = fc_half_time(half, place);
-        nodes->tau[i] = h * fc_straight_pace(&half->in, place);
+        nodes->t[i] = fc_part_time(part, place);
+        nodes->tau[i] = h * fc_straight_pace(&part->in, place);
         nodes->phase[i] = fc_drive_phase(&plane->scene->drive, nodes->t[i]);
         nodes->at[i] = fc_plane_coefficients(plane, nodes->t[i], nodes->phase[i]);
         nodes->duration += FC_RADAU_9.weight[i] * nodes->tau[i];
@@ -71,14 +71,6 @@ static double error_of_direction(const FcPlaneNodes* nodes, double speed, const 
         f[i] = F[i] * (1.0 + V[i] / speed + of_limit * (at->speed / speed));
     }
     return error_of_mean(nodes, f);
-}
-
-// Sets the errors of the end and the mean due to a defect, an error [N] of the force at the end without
-// damping.
-static void set_errors(const double* z, double defect, double quadrature, FcPanel* panel) {
-    const double z_last = fmax(0.0, fmin(z[LAST], panel->z));
-    panel->end_error = defect / (1.0 + z_last);
-    panel->mean_error = quadrature + FC_MEAN_OF_DEFECT * defect;
 }
 
 void fc_plane_force_errors(const FcPlaneNodes* nodes, double speed, const double* F_x, const double* F_y,
@@ -159,7 +151,8 @@ void fc_plane_free_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
         }
         quadrature += error_of_direction(nodes, from->speed, F_x, V_x);
     }
-    set_errors(z, sigma[LAST] * defect, quadrature, &panel->along);
+    // 0.0: between its ends r may be less than at both.
+    fc_radau_set_errors(&panel->along, 0.0, z[LAST], sigma[LAST], defect, quadrature);
 }
 
 // The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
@@ -266,6 +259,7 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcPlaneNodes* nodes, const 
     const double force = panel->along.sigma * bound[LAST].D;
     const double quadrature = error_of_direction(nodes, from->speed, F_x, V_x) +
                               error_of_direction(nodes, from->speed, F_y, V_y) + error_of_mean(nodes, heat);
-    set_errors(z, force * fc_radau_unresolved(slope, fmax(0.0, panel->along.z)), quadrature, &panel->along);
+    fc_radau_set_errors(&panel->along, 0.0, z[LAST], force,
+                        fc_radau_unresolved(slope, fmax(0.0, panel->along.z)), quadrature);
     return true;
 }

@@ -21,8 +21,8 @@ typedef struct {
     double duration; // s
 } FcPlaneNodes;
 
-// The panel [u, u + h] of the half; rounding takes no node out of it.
-void fc_plane_nodes(const FcPlane* plane, const FcHalf* half, double u, double h, FcPlaneNodes* nodes);
+// The panel [u, u + h] of the part; rounding takes no node out of it.
+void fc_plane_nodes(const FcPlane* plane, const FcPart* part, double u, double h, FcPlaneNodes* nodes);
 
 // The trajectories whose errors count, as FcTrajectories.
 typedef struct {
