@@ -115,9 +115,8 @@ def test_faults_are_found(tmp_path: Path) -> None:
         assert found in line
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_no_page_has_an_error_or_asks_for_anything(site: Path, browser: Browser, size: str) -> None:
-    assert complaints(browser, site, size) == []
+def test_no_page_has_an_error_or_asks_for_anything(site: Path, browser: Browser) -> None:
+    assert complaints(browser, site) == []
 
 
 def test_complaints_are_heard(browser: Browser, tmp_path: Path) -> None:
@@ -125,7 +124,7 @@ def test_complaints_are_heard(browser: Browser, tmp_path: Path) -> None:
         '<!DOCTYPE html><div style="width: 5000px">.</div><script>undefined.x</script>'
         '<img src="http://127.0.0.1:9/a.png"><script>console.error("no")</script>'
     )
-    heard = " ".join(complaints(browser, tmp_path, "phone"))
+    heard = " ".join(complaints(browser, tmp_path))
     for words in ("script error", "request: http://127.0.0.1:9", "console: no", "wider than a phone"):
         assert words in heard
 
