@@ -1,4 +1,4 @@
-"""The C unit tests of this folder, built and run: one program a module of fmu_src (scripts/check: by CTest)."""
+"""The C unit tests of this folder, built and run: a program for each module of fmu_src."""
 
 from __future__ import annotations
 
