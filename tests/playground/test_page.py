@@ -12,7 +12,7 @@ from playwright.sync_api import Browser
 
 from workshop.browser import SIZES
 from workshop.description import description
-from workshop.playground.browser import SCHEMES
+from workshop.playground.command import SCHEMES
 from workshop.playground.page import XML
 from workshop.presets import Preset
 
