@@ -1,15 +1,6 @@
 #include "fmu_step.h"
 
-#include <stdlib.h>
-
-#include "friction_contact.h"
 #include "settled_force.h"
-
-struct FmuRun {
-    FcFrictionContact contact;
-    FcMessage message;
-    bool started, stepped;
-};
 
 static void set_variables(FcVariables* v, const ReferenceScene* s) {
     v->V = s->V;
@@ -44,53 +35,36 @@ static void set_variables(FcVariables* v, const ReferenceScene* s) {
         .f = s->f, .V_1 = s->V_1, .a_d = s->a_d, .phase_d = s->phase_d, .V_2 = s->V_2, .phase_2 = s->phase_2};
 }
 
-FmuRun* fmu_open(const ReferenceScene* scene, int method, double tolerance) {
-    FmuRun* run = calloc(1, sizeof *run);
-    if (run == NULL) {
-        abort();
-    }
+void fmu_open(FmuRun* run, const ReferenceScene* scene, int method, double tolerance) {
+    *run = (FmuRun){0};
     FcVariables* v = &run->contact.state.variables;
     set_variables(v, scene);
     v->solver.method = method;
     v->solver.tolerance = tolerance;
     v->solver.stepSize = scene->h / 300.0;
     run->started = fc_friction_contact_initialize(&run->contact, scene->start, &run->message);
-    return run;
 }
 
-void fmu_close(FmuRun* run) {
-    fc_friction_contact_free(&run->contact);
-    free(run);
-}
-
-static void set_rates(FcFrictionState* state, const ReferenceScene* s) {
-    state->next_rate[FC_INPUT_V] = s->V_rate;
-    state->next_rate[FC_INPUT_D] = s->d_rate;
-    state->next_rate[FC_INPUT_E] = s->E_rate;
-    state->next_rate[FC_INPUT_LOAD] = s->load_rate;
-    state->next_rate[FC_INPUT_V_Y] = s->V_y_rate;
-    state->next_rate_set = 1;
-}
+void fmu_close(FmuRun* run) { fc_friction_contact_free(&run->contact); }
 
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
-    FcFrictionState* state = &run->contact.state;
+    FcFrictionState *state = &run->contact.state, *before = &run->after;
     FcVariables* v = &state->variables;
-    if (!run->started) {
-        return false;
-    }
-    const FcFrictionState before = *state;
     step->delta_start = v->delta;
     step->delta_y_start = v->delta_y;
     step->slips_start = state->slips;
-    const ReferenceScene still = {0};
     set_variables(v, scene);
-    set_rates(state, &still);
-    if (!fc_friction_contact_refresh(&run->contact, &run->message)) {
+    state->next_rate_set = 1; // all 0
+    if (!run->started || !fc_friction_contact_refresh(&run->contact, &run->message)) {
         return false;
     }
     step->result[F_T_START] = v->F_t;
     step->result[F_Y_START] = v->F_y;
-    set_rates(state, scene);
+    state->next_rate[FC_INPUT_V] = scene->V_rate;
+    state->next_rate[FC_INPUT_D] = scene->d_rate;
+    state->next_rate[FC_INPUT_E] = scene->E_rate;
+    state->next_rate[FC_INPUT_LOAD] = scene->load_rate;
+    state->next_rate[FC_INPUT_V_Y] = scene->V_y_rate;
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
@@ -101,11 +75,9 @@ bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     step->result[F_T_MEAN] = v->F_t_mean;
     step->result[F_Y_MEAN] = v->F_y_mean;
     step->result[SLIPS_AT_END] = state->slips != 0;
-    const FcFrictionState none = {0}, *from = run->stepped ? &before : &none; // the start may leave heat
-    step->result[W_F] = (v->W_f - from->variables.W_f) + (state->W_f_rest - from->W_f_rest);
-    step->result[Q_F] = (v->Q_f - from->variables.Q_f) + (state->Q_f_rest - from->Q_f_rest);
-    run->stepped = true;
-    step->evaluations = v->solver.evaluations;
+    step->result[W_F] = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
+    step->result[Q_F] = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
+    *before = *state;
     return true;
 }
 
@@ -116,5 +88,3 @@ bool fmu_settled_force(FmuRun* run, double force[2]) {
     force[1] = both.y;
     return found;
 }
-
-const char* fmu_message(const FmuRun* run) { return run->message.text; }

@@ -2,8 +2,7 @@
 #ifndef HUNT_FMU_STEP_H
 #define HUNT_FMU_STEP_H
 
-#include <stdbool.h>
-
+#include "friction_contact.h"
 #include "reference.h"
 
 typedef struct {
@@ -11,24 +10,25 @@ typedef struct {
     double delta, delta_y;  // m, at the end
     double delta_start, delta_y_start; // m, before the step and its inputs
     int slips_start;
-    double evaluations; // 1, since the start
 } FmuStep;
 
-typedef struct FmuRun FmuRun;
+typedef struct {
+    FcFrictionContact contact;
+    FcMessage message;     // why the core refused
+    bool started;          // the core did not refuse to
+    FcFrictionState after; // the last step, whose work and heat were counted
+} FmuRun;
 
-// A contact at the start of the scene, for fmu_close. Ends the program if there is no memory.
-FmuRun* fmu_open(const ReferenceScene* scene, int method, double tolerance);
+// Starts a contact at the start of the scene, for fmu_close.
+void fmu_open(FmuRun* run, const ReferenceScene* scene, int method, double tolerance);
 void fmu_close(FmuRun* run);
 
-// One step with the scene's inputs and tunable parameters, from the end of the last one. Returns false if the
-// core refuses it, or refused to start.
+// The next two return false if the core refuses it, or refused to start.
+
+// One step with the scene's inputs and tunable parameters, from the end of the last one.
 bool fmu_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step);
 
-// F_t_settled and F_y_settled [N] at the inputs with which the run was opened. Returns false if the core
-// refuses it, or refused to start.
+// F_t_settled and F_y_settled [N] at the inputs with which the run was opened.
 bool fmu_settled_force(FmuRun* run, double force[2]);
-
-// The reason why the core refused.
-const char* fmu_message(const FmuRun* run);
 
 #endif

@@ -5,10 +5,9 @@
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
 //     build/hunt/hunt --replay "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2"
 //
-// With --plane the scenes slide and vibrate across as well. Each miss is one line: the error over the allowed error, the
-// result that missed, the number of the sequence, and the sequence: its tolerance, and name=value for each value that is
-// not the start value. --replay takes such a sequence, and --file a file of them. The last lines are a table by law and
-// the sums. Ends with 1 if a step missed.
+// Each miss is one line: the error over the allowed error, the result that missed, the number of the sequence, and the
+// sequence: its tolerance, and name=value for each value that is not the start value. The last lines are a table by law and the
+// sums. Ends with 1 if a step missed.
 #include <getopt.h>
 #include <math.h>
 #include <pthread.h>
@@ -23,10 +22,8 @@
 enum { MOST_JOBS = 64, LAWS = 4 };
 
 typedef struct {
-    uint64_t seed, scenes, first;
-    double seconds; // INFINITY: no end but the number of scenes
-    int jobs;
-    int minimize; // misses of each law and grade that are made plain, at most
+    double seed, scenes, first, minutes, jobs;
+    double minimize; // misses that are made plain, at most
     bool plane;
     const char *replay, *file;
 } Options;
@@ -41,10 +38,9 @@ typedef struct {
     Options options;
     double begin; // s
     pthread_mutex_t lock;
-    uint64_t next; // the sequence to be drawn next, from 0 on
+    double next; // the sequence to be drawn next, from 0 on
     Row law[LAWS];
     long sequences, refused, unknown;
-    int minimized[LAWS][GRADES];
 } Hunt;
 
 static double now(void) {
@@ -61,26 +57,20 @@ static double now(void) {
 static bool still_misses(const Sequence* sequence) {
     Trial trial;
     trial_run(&trial, sequence);
-    bool misses = false;
-    for (int k = 0; k < trial.steps; k++) {
-        misses = misses || !(trial.taken[k].verdict.ratio <= 1.5);
-    }
-    return misses;
+    return trial.worst > 1.5;
 }
 
-static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, const TrialStep* taken,
-                       int step) {
-    const int law = taken->scene.law - 1, of = taken->verdict.of;
-    char text[SEQUENCE_TEXT];
-    sequence_text(sequence, text, sizeof text);
-    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n", LAW_NAMES[law],
-           taken->verdict.ratio, GRADE_NAMES[of], step + 1, scene_kappa(&taken->scene),
-           (unsigned long long)number, text);
-    if (hunt->minimized[law][of] < hunt->options.minimize && still_misses(sequence)) {
-        hunt->minimized[law][of]++;
-        const Sequence plain = minimized(sequence, still_misses);
-        sequence_text(&plain, text, sizeof text);
-        printf("plain: %s\n", text);
+static void print_miss(Hunt* hunt, const Sequence* sequence, const char* text, uint64_t number,
+                       const TrialStep* taken, int step) {
+    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e number=%llu: %s\n",
+           LAW_NAMES[taken->scene.law - 1], taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], step + 1,
+           scene_kappa(&taken->scene), (unsigned long long)number, text);
+    if (hunt->options.minimize > 0 && still_misses(sequence)) {
+        hunt->options.minimize--;
+        char plain[SEQUENCE_TEXT];
+        snprintf(plain, sizeof plain, "%s", text);
+        make_plain(plain, still_misses);
+        printf("plain: %s\n", plain);
     }
     fflush(stdout);
 }
@@ -88,9 +78,9 @@ static void print_miss(Hunt* hunt, const Sequence* sequence, uint64_t number, co
 static void print_step(const TrialStep* taken, int step) {
     const FmuStep* s = &taken->step;
     const ReferenceStep* t = &taken->truth;
-    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %d, %g evaluations\n",
-           step + 1, taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path,
-           taken->scene.delta_0, taken->scene.delta_y_0, taken->scene.slips, s->evaluations);
+    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %d\n", step + 1,
+           taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path, taken->scene.delta_0,
+           taken->scene.delta_y_0, taken->scene.slips);
     for (int k = 0; k < RESULTS; k++) {
         printf("  %-9s  FMU %24.17g  reference %24.17g\n", GRADE_NAMES[k], s->result[k], t->result[k]);
     }
@@ -105,16 +95,16 @@ static void print_step(const TrialStep* taken, int step) {
 
 static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) {
     Trial trial;
+    char text[SEQUENCE_TEXT];
+    sequence_text(sequence, text, sizeof text);
     trial_run(&trial, sequence);
     pthread_mutex_lock(&hunt->lock);
     hunt->sequences++;
     hunt->unknown += trial.unknown;
     hunt->refused += trial.refused;
     if (trial.refused) {
-        char text[SEQUENCE_TEXT];
-        sequence_text(sequence, text, sizeof text);
         printf("refused number=%llu step=%d: %s; %s\n", (unsigned long long)number, trial.steps + 1,
-               trial.message, text);
+               trial.message.text, text);
     }
     for (int k = 0; k < trial.steps; k++) {
         const TrialStep* taken = &trial.taken[k];
@@ -124,7 +114,7 @@ static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) 
         row->worst = fmax(row->worst, ratio);
         if (!(ratio <= 1.0)) {
             row->misses++;
-            print_miss(hunt, sequence, number, taken, k);
+            print_miss(hunt, sequence, text, number, taken, k);
         }
         if (hunt->options.replay) {
             print_step(taken, k);
@@ -140,15 +130,16 @@ static void try_sequence(Hunt* hunt, const Sequence* sequence, uint64_t number) 
 static void* run_job(void* of) {
     Hunt* hunt = of;
     const Options* o = &hunt->options;
-    while (now() - hunt->begin < o->seconds) {
+    while (now() - hunt->begin < 60.0 * o->minutes) {
         pthread_mutex_lock(&hunt->lock);
-        const uint64_t drawn = hunt->next++;
+        const double drawn = hunt->next++;
         pthread_mutex_unlock(&hunt->lock);
         if (drawn >= o->scenes) {
             break;
         }
-        const Sequence sequence = sequence_drawn(o->seed, o->first + drawn, o->plane);
-        try_sequence(hunt, &sequence, o->first + drawn);
+        const uint64_t number = (uint64_t)(o->first + drawn);
+        const Sequence sequence = sequence_drawn((uint64_t)o->seed, number, o->plane);
+        try_sequence(hunt, &sequence, number);
     }
     return NULL;
 }
@@ -164,7 +155,7 @@ static void run_all(Hunt* hunt) {
     for (int k = 0; k < hunt->options.jobs; k++) {
         pthread_join(jobs[k], NULL);
     }
-    printf("\nseed %llu\n", (unsigned long long)hunt->options.seed);
+    printf("\nseed %.0f\n", hunt->options.seed);
 }
 
 static void try_text(Hunt* hunt, const char* text, uint64_t number) {
@@ -219,7 +210,7 @@ static void usage(void) {
             "hunt [--seed S] [--scenes N] [--first N] [--minutes M] [--jobs J] [--minimize K] [--plane]\n"
             "     [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--first: number of the first sequence; with --scenes 1 a single one.\n"
-            "--minimize: makes K misses of each law and grade plain.\n"
+            "--minimize: makes K misses plain.\n"
             "--plane: scenes that slide, or vibrate, across.\n"
             "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
             "line.\n");
@@ -236,22 +227,23 @@ static double number_of(const char* text) {
 }
 
 static Options read_options(int argc, char** argv) {
-    enum { SEED, SCENES, FIRST, MINUTES, JOBS, MINIMIZE, NUMBERS, FILE_NAME = NUMBERS, REPLAY, PLANE };
+    enum { SEED, SCENES, FIRST, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY, PLANE };
     static const struct option NAMES[] = {{"seed", 1, NULL, SEED},     {"scenes", 1, NULL, SCENES},
                                           {"first", 1, NULL, FIRST},   {"minutes", 1, NULL, MINUTES},
                                           {"jobs", 1, NULL, JOBS},     {"minimize", 1, NULL, MINIMIZE},
                                           {"plane", 0, NULL, PLANE},   {"file", 1, NULL, FILE_NAME},
                                           {"replay", 1, NULL, REPLAY}, {0}};
-    double number[NUMBERS] = {1.0, 0.0, 0.0, INFINITY, 1.0, 0.0};
-    const char* text[2] = {NULL, NULL};
-    bool plane = false;
+    Options o = {.seed = 1.0, .minutes = INFINITY, .jobs = 1.0};
+    double* const numbers[] = {&o.seed, &o.scenes, &o.first, &o.minutes, &o.jobs, &o.minimize};
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
-        if (name < NUMBERS) {
-            number[name] = number_of(optarg);
-        } else if (name == FILE_NAME || name == REPLAY) {
-            text[name - FILE_NAME] = optarg;
+        if (name == FILE_NAME) {
+            o.file = optarg;
+        } else if (name == REPLAY) {
+            o.replay = optarg;
         } else if (name == PLANE) {
-            plane = true;
+            o.plane = true;
+        } else if (name <= MINIMIZE) {
+            *numbers[name] = number_of(optarg);
         } else {
             usage();
         }
@@ -259,16 +251,9 @@ static Options read_options(int argc, char** argv) {
     if (optind < argc) {
         usage();
     }
-    const double scenes = number[SCENES] > 0.0 ? number[SCENES] : isinf(number[MINUTES]) ? 1000.0 : 1e18;
-    return (Options){.seed = (uint64_t)number[SEED],
-                     .scenes = (uint64_t)scenes,
-                     .first = (uint64_t)number[FIRST],
-                     .seconds = 60.0 * number[MINUTES],
-                     .jobs = (int)fmin(MOST_JOBS, fmax(1.0, number[JOBS])),
-                     .minimize = (int)number[MINIMIZE],
-                     .plane = plane,
-                     .file = text[0],
-                     .replay = text[1]};
+    o.scenes = o.scenes > 0.0 ? o.scenes : isinf(o.minutes) ? 1000.0 : INFINITY;
+    o.jobs = fmin(MOST_JOBS, fmax(1.0, o.jobs));
+    return o;
 }
 
 int main(int argc, char** argv) {

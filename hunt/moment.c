@@ -2,31 +2,29 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-
-static const Real PI = 3.141592653589793238462643383279502884L;
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
 // ---------------------------------------------------------------------------------------------------------------------
 
-// P_0 .. P_n of Legendre at x.
-static void legendre(int n, Real x, Real* P) {
+// P_0 .. P_STAGES of Legendre at x.
+static void legendre(Real x, Real P[STAGES + 1]) {
     P[0] = 1.0L;
     P[1] = x;
-    for (int m = 1; m < n; m++) {
+    for (int m = 1; m < STAGES; m++) {
         P[m + 1] = ((Real)(2 * m + 1) * x * P[m] - (Real)m * P[m - 1]) / (Real)(m + 1);
     }
 }
 
-static Rule make_rule(int n) {
-    Rule rule = {.stages = n};
-    Real x[MOST_STAGES], P[MOST_STAGES][MOST_STAGES + 1];
+static Rule make_rule(void) {
+    enum { n = STAGES };
+    Rule rule = {.node = {0.0L}};
+    Real x[n], P[n][n + 1];
     for (int i = 0; i < n; i++) {
         // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
         x[i] = i == 0 ? -0.999999L : i == n - 1 ? 1.0L : x[i - 1] + 1e-6L;
         for (int k = 0; k < 100 && i < n - 1; k++) {
-            legendre(n, x[i], P[i]);
+            legendre(x[i], P[i]);
             const Real of_n = P[i][n - 1] - x[i] * P[i][n], of_less = P[i][n - 2] - x[i] * P[i][n - 1];
             const Real value = P[i][n] - P[i][n - 1];
             Real slope = ((Real)n * of_n - (Real)(n - 1) * of_less) / (1.0L - x[i] * x[i]);
@@ -35,8 +33,8 @@ static Rule make_rule(int n) {
             }
             x[i] -= value / slope;
         }
-        legendre(n, x[i], P[i]);
-        rule.node[i] = 0.5L * (1.0L + x[i]);
+        legendre(x[i], P[i]);
+        rule.node[i + 1] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
     }
     // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
@@ -53,64 +51,59 @@ static Rule make_rule(int n) {
     return rule;
 }
 
-// Each thread makes a rule once.
-const Rule* rule_of(int stages) {
-    static _Thread_local Rule rules[MOST_STAGES + 1];
-    if (rules[stages].stages == 0) {
-        rules[stages] = make_rule(stages);
+// Each thread makes it once.
+static const Rule* the_rule(void) {
+    static _Thread_local bool made;
+    static _Thread_local Rule rule;
+    if (!made) {
+        rule = make_rule();
+        made = true;
     }
-    return &rules[stages];
+    return &rule;
 }
 
-void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STAGES]) {
-    for (int k = 0; k < n; k++) {
-        for (int i = k + 1; i < n; i++) {
-            const Real factor = A[i][k] / A[k][k];
-            for (int j = k + 1; j < n; j++) {
+void solve(Real A[STAGES][STAGES + SIDES]) {
+    for (int k = 0; k < STAGES; k++) {
+        for (int i = 0; i < STAGES; i++) {
+            const Real factor = i == k ? 0.0L : A[i][k] / A[k][k];
+            for (int j = k + 1; j < STAGES + SIDES && i != k; j++) {
                 A[i][j] -= factor * A[k][j];
             }
-            for (int c = 0; c < count; c++) {
-                b[c][i] -= factor * b[c][k];
-            }
         }
     }
-    for (int c = 0; c < count; c++) {
-        for (int i = n - 1; i >= 0; i--) {
-            for (int j = i + 1; j < n; j++) {
-                b[c][i] -= A[i][j] * b[c][j];
-            }
-            b[c][i] /= A[i][i];
+    for (int i = 0; i < STAGES; i++) {
+        for (int c = 0; c < SIDES; c++) {
+            A[i][STAGES + c] /= A[i][i];
         }
     }
 }
 
-// Regula falsi by the rule of Anderson and Bjorck, which lowers the value of an end that stays for a second time. The
-// nearest that a step may come to an end doubles then, so that rounding does not slow it down. Every eighth step is a
-// bisection.
+// Chandrupatla's method: inverse quadratic interpolation through three points if it is safe there, otherwise bisection.
 Real crossing(Function* function, const void* context, Real low, Real high) {
-    Real at_low = function(context, low), at_high = function(context, high);
-    const bool rises = at_high > 0.0L;
-    Real nearest = 0.0L;
-    bool was_high = false;
-    for (int k = 0; k < 600; k++) {
-        const Real middle = 0.5L * (low + high), least = 2.0L * LDBL_EPSILON * fabsl(high);
-        nearest = fmaxl(nearest, least);
-        Real x = high - at_high * (high - low) / (at_high - at_low);
-        x = fmaxl(low + nearest, fminl(high - nearest, x));
-        x = k % 8 != 7 && x > low && x < high ? x : middle;
-        if (!(x > low && x < high)) {
-            break;
+    // The last point, one on the other side of the zero, and the one before them.
+    Real a = high, b = low, c = high, share = 0.5L;
+    Real at_a = function(context, a), at_b = function(context, b), at_c = at_a;
+    for (;;) {
+        Real x = a + share * (b - a);
+        x = x > fminl(a, b) && x < fmaxl(a, b) ? x : 0.5L * (a + b);
+        if (!(x > fminl(a, b) && x < fmaxl(a, b))) {
+            return fmaxl(a, b);
         }
         const Real at = function(context, x);
-        const bool is_high = (at > 0.0L) == rises, again = k > 0 && is_high == was_high;
-        const Real left = 1.0L - at / (is_high ? at_high : at_low);
-        *(is_high ? &high : &low) = x;
-        *(is_high ? &at_high : &at_low) = at;
-        *(is_high ? &at_low : &at_high) *= !again ? 1.0L : left > 0.0L ? left : 0.5L;
-        nearest = again ? 2.0L * nearest : least;
-        was_high = is_high;
+        const bool same = (at > 0.0L) == (at_a > 0.0L);
+        c = same ? a : b, at_c = same ? at_a : at_b;
+        b = same ? b : a, at_b = same ? at_b : at_a;
+        a = x, at_a = at;
+        const Real way = (a - b) / (c - b), rise = (at_a - at_b) / (at_c - at_b);
+        const bool safe = rise * rise < way && (1.0L - rise) * (1.0L - rise) < 1.0L - way;
+        share = 0.5L;
+        if (safe) {
+            share = at_a / (at_b - at_a) * at_c / (at_b - at_c) +
+                    (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b);
+        }
+        const Real least = 2.0L * LDBL_EPSILON * fabsl(a) / fabsl(b - a);
+        share = fmaxl(least, fminl(1.0L - least, share));
     }
-    return high;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -119,22 +112,8 @@ Real crossing(Function* function, const void* context, Real low, Real high) {
 
 static Real power_3_2(Real x) { return x * sqrtl(x); }
 
-// Lower incomplete gamma function of s = 3/2 and 5/2: x^s e^-x sum of x^k / (s (s + 1) .. (s + k)), for large x by erf.
-static Real lower_gamma(Real s, Real x) {
-    if (x > 4.0L) {
-        const Real of_3_2 = 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x);
-        return s < 2.0L ? of_3_2 : 1.5L * of_3_2 - power_3_2(x) * expl(-x);
-    }
-    Real term = 1.0L / s, sum = term;
-    for (int k = 1; term > 1e-22L * sum; k++) {
-        term *= x / (s + (Real)k);
-        sum += term;
-    }
-    return (s < 2.0L ? 1.0L : x) * power_3_2(x) * expl(-x) * sum;
-}
-
-// Gamma(3/2, y) = sqrt(y) e^-y + sqrt(pi) / 2 erfc(sqrt(y)).
-static Real upper_gamma_3_2(Real y) { return sqrtl(y) * expl(-y) + 0.5L * sqrtl(PI) * erfcl(sqrtl(y)); }
+// gamma(3/2, x); its rounding is that of Gamma(3/2).
+static Real lower_gamma_3_2(Real x) { return 0.5L * sqrtl(PI) * erfl(sqrtl(x)) - sqrtl(x) * expl(-x); }
 
 static Real bessel_I0(Real x) {
     const Real quarter = 0.25L * x * x;
@@ -158,7 +137,7 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
     {
         const Real front = 4.0L / 3.0L * sqrtl(R) * power_3_2(R_q / lambda) / lambda;
         const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
-        const Real gamma = lower_gamma(2.5L, x);
+        const Real gamma = 1.5L * lower_gamma_3_2(x) - power_3_2(x) * decay; // gamma(5/2, x)
         const Real sum = front * E * gamma + plastic * (2.0L + x) * decay;
         const Real slope =
             front * (gamma + E * power_3_2(x) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
@@ -172,8 +151,8 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
         at.by_stiffness = 1.0L / E - 2.0L * decay * x_E / bracket;
     } else if (scene->contact == CONTACT_MINDLIN) {
         const Real half = expl(-0.5L * x), plastic = 0.5L * power_3_2(2.0L / lambda);
-        const Real upper = upper_gamma_3_2(0.5L * x);
-        const Real sum = lower_gamma(1.5L, x) / power_3_2(lambda) + plastic * half * upper;
+        const Real upper = 0.5L * sqrtl(PI) - lower_gamma_3_2(0.5L * x);
+        const Real sum = lower_gamma_3_2(x) / power_3_2(lambda) + plastic * half * upper;
         const Real slope =
             sqrtl(x) * decay / power_3_2(lambda) - 0.5L * plastic * half * (upper + sqrtl(0.5L * x) * half);
         const Real tangential = 2.0L * (1.0L - nu) / (2.0L - nu);
@@ -190,23 +169,12 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
 // The scene at a time
 // ---------------------------------------------------------------------------------------------------------------------
 
-// The library's own reduction to a quarter turn would take half of all time. pi / 2 in two parts, the first of 41
-// bits, is as good for some thousand turns.
-Vector direction(Real angle) {
-    static const Real FIRST = 0x1.921fb54442p0L, SECOND = 0x0.d18469898cc51701b8p-40L;
-    const Real quarters = rintl(angle * (2.0L / PI));
-    const Real rest = (angle - quarters * FIRST) - quarters * SECOND;
+// By an angle of at most an eighth of a turn, which the library need not reduce.
+Vector direction(Real turns) {
+    const Real quarters = rintl(4.0L * turns), rest = 2.0L * PI * (turns - 0.25L * quarters);
     const Real x = cosl(rest), y = sinl(rest);
-    switch ((long)quarters & 3) {
-    case 0:
-        return (Vector){x, y};
-    case 1:
-        return (Vector){-y, x};
-    case 2:
-        return (Vector){-x, -y};
-    default:
-        return (Vector){y, -x};
-    }
+    const Vector of[] = {{x, y}, {-y, x}, {-x, -y}, {y, -x}};
+    return of[(long)quarters & 3];
 }
 
 Vector plus(Vector a, Real factor, Vector b) { return (Vector){a.x + factor * b.x, a.y + factor * b.y}; }
@@ -227,7 +195,7 @@ bool is_held(const ReferenceScene* s) {
 
 // (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
 static Vector turn_at(const World* w, Real t) {
-    const Vector half = vibrates(&w->scene) ? direction(0.5L * w->omega * t) : (Vector){1.0L, 0.0L};
+    const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : (Vector){1.0L, 0.0L};
     return (Vector){-2.0L * half.y * half.y, 2.0L * half.x * half.y};
 }
 
@@ -246,21 +214,10 @@ void velocities(const World* w, Real t, int order, Vector* V) {
     V[1] = order > 0 ? plus(V[1], 1.0L, w->rate) : V[1];
 }
 
-Vector travel(const World* w, Real a, Real b) {
-    const ReferenceScene* s = &w->scene;
-    const Real span = b - a, middle = 0.5L * (a + b);
-    const Vector way = scaled(span, plus((Vector){s->V, s->V_y}, middle, w->rate));
-    if (w->ramp || !vibrates(s)) {
-        return w->ramp ? (Vector){0} : way;
-    }
-    const Vector turn = direction(w->omega * middle);
-    const Real chord = 2.0L * sinl(0.5L * w->omega * span) / w->omega;
-    return plus(plus(way, chord * turn.x, w->cosine), -chord * turn.y, w->sine);
-}
-
+// Near 0 it has digits, too.
 static Real load_at(const World* w, Real t) {
-    return w->no_load > -INFINITY ? w->scene.load_rate * (t - w->no_load)
-                                  : (Real)w->scene.load + w->scene.load_rate * t;
+    const Real load = w->scene.load, rate = w->scene.load_rate;
+    return rate == 0.0L ? load : rate * (t + load / rate);
 }
 
 static AtModulus modulus_at(const World* w, Real t) {
@@ -275,51 +232,66 @@ static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real forc
                                            : at->stiffness * share * share / (d * d * d);
 }
 
+// The bristle, or Coulomb's limit, depends on the separation.
+static bool knows_contact(const ReferenceScene* s) {
+    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
+}
+
 // F_n [N] and sigma [N/m]; the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left
 // out.
-static void contact_at(const World* w, Real t, Vector turn, bool with_rates, Real* force, Real* sigma,
-                       Real* ratio_rate) {
+static void contact_at(const World* w, Real t, Vector turn, Real* force, Real* sigma, Real* ratio_rate) {
     const ReferenceScene* s = &w->scene;
     *sigma = s->contact_sigma;
     *ratio_rate = *force = 0.0L;
-    if (w->open || (s->contact == CONTACT_CONSTANT && s->limit == LIMIT_CONSTANT)) {
+    if (w->open || !knows_contact(s)) {
         return;
     }
     const AtModulus at = modulus_at(w, t);
     const Real swing = w->d_cosine * (1.0L + turn.x) - w->d_sine * turn.y;
-    Real d, rest_rate;
+    Real d, d_rate = -w->omega * (w->d_cosine * turn.y + w->d_sine * (1.0L + turn.x));
     if (s->input == INPUT_LOAD) {
         const Real load = load_at(w, t);
         *force = load / w->swell * expl(-w->decay * swing);
         d = logl(at.force * w->swell / load) / w->decay + swing;
-        rest_rate = (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
+        d_rate += (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
     } else {
         d = w->d + w->d_rate * t + swing;
         *force = at.force * expl(-w->decay * d);
-        rest_rate = w->d_rate;
+        d_rate += w->d_rate;
     }
     *sigma = stiffness_at(s, &at, *force, d);
-    if (with_rates) {
-        const Real d_rate = rest_rate - w->omega * (w->d_cosine * turn.y + w->d_sine * (1.0L + turn.x));
-        Real of_E = s->limit == LIMIT_LOAD ? at.by_force : 0.0L;
-        Real of_d = s->limit == LIMIT_LOAD ? -w->decay : 0.0L;
-        if (s->contact == CONTACT_ASPERITIES) {
-            of_E -= at.by_stiffness;
-            of_d += 2.0L * w->decay + 3.0L / d;
-        } else if (s->contact == CONTACT_MINDLIN) {
-            of_E -= at.by_stiffness;
-            of_d += w->decay;
-        }
-        *ratio_rate = of_E * s->E_rate + of_d * d_rate;
-    }
+    // The powers of F_n in the limit and in the stiffness.
+    const Real of_limit = s->limit == LIMIT_LOAD ? 1.0L : 0.0L;
+    const Real of_sigma = s->contact == CONTACT_ASPERITIES ? 2.0L
+                          : s->contact == CONTACT_MINDLIN  ? 1.0L
+                                                           : 0.0L;
+    const Real by_E = of_limit * at.by_force - at.by_stiffness;
+    const Real by_d = (of_sigma - of_limit) * w->decay + (s->contact == CONTACT_ASPERITIES ? 3.0L / d : 0.0L);
+    *ratio_rate = by_E * s->E_rate + by_d * d_rate;
 }
 
-At scene_at(const World* w, Real t, bool with_rates) {
+static World at_rest(const World* w) {
+    World rest = *w;
+    rest.d_cosine = rest.d_sine = 0.0L;
+    return rest;
+}
+
+static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration
+
+bool is_open(const World* w, Real t) {
+    World rest = at_rest(w);
+    rest.open = false;
+    Real force, sigma, unused;
+    contact_at(&rest, t, (Vector){0}, &force, &sigma, &unused);
+    return knows_contact(&w->scene) && !(force >= OPEN && sigma >= OPEN);
+}
+
+At scene_at(const World* w, Real t) {
     const ReferenceScene* s = &w->scene;
     const Vector turn = turn_at(w, t);
     At at = {.V = velocity(w, t, turn)};
     Real force, excess = w->excess, V_S = s->V_S;
-    contact_at(w, t, turn, with_rates, &force, &at.sigma, &at.bound_rate);
+    contact_at(w, t, turn, &force, &at.sigma, &at.bound_rate);
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
     if (w->ramp) {
         at.sigma *= expl(w->ln_rate.scale * t);
@@ -336,12 +308,10 @@ At scene_at(const World* w, Real t, bool with_rates) {
         const Real square = dot(at.V, at.V) / (V_S * V_S), fall = expl(-square);
         const Real curve = 1.0L + excess * fall;
         at.g *= curve;
-        if (with_rates) {
-            Vector V[2];
-            velocities(w, t, 1, V);
-            const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V[0], V[1]) / (V_S * V_S));
-            at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
-        }
+        Vector V[2];
+        velocities(w, t, 1, V);
+        const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V[0], V[1]) / (V_S * V_S));
+        at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
     }
     if (w->ramp) {
         at.V = (Vector){0};
@@ -358,47 +328,14 @@ Real bound_rate(const World* w, const At* at, bool sticks) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Open or closed
-// ---------------------------------------------------------------------------------------------------------------------
-
-static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibration, if d is given
-
-// The bristle, or Coulomb's limit, depends on the separation.
-static bool knows_contact(const ReferenceScene* s) {
-    return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
-}
-
-bool is_open(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (!knows_contact(s)) {
-        return false;
-    }
-    if (s->input == INPUT_LOAD) {
-        return !(load_at(w, t) > 0.0L);
-    }
-    const AtModulus at = modulus_at(w, t);
-    const Real d = w->d + w->d_rate * t, force = at.force * expl(-w->decay * d);
-    return force < OPEN || stiffness_at(s, &at, force, d) < OPEN;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
 // The step
 // ---------------------------------------------------------------------------------------------------------------------
 
 // Mean of the limit over a period of the vibration with the inputs of a time [N].
 static Real mean_limit(const World* w, Real t) {
-    const ReferenceScene* s = &w->scene;
-    if (s->limit == LIMIT_CONSTANT) {
-        return s->F_C;
-    }
-    if (is_open(w, t)) {
-        return 0.0L;
-    }
-    if (s->input == INPUT_LOAD) {
-        return s->mu * load_at(w, t);
-    }
-    const AtModulus at = modulus_at(w, t);
-    return s->mu * at.force * w->swell * expl(-w->decay * (w->d + w->d_rate * t));
+    World rest = at_rest(w);
+    rest.open = is_open(w, t);
+    return scene_at(&rest, t).coulomb * (w->scene.limit == LIMIT_LOAD ? w->swell : 1.0L);
 }
 
 Real largest_force(const World* w, Vector delta) {
@@ -406,7 +343,7 @@ Real largest_force(const World* w, Vector delta) {
     const bool bristle = s->law != LAW_COULOMB;
     Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
     if (bristle && !is_open(w, 0.0L)) {
-        S = fmaxl(S, scene_at(w, 0.0L, false).sigma * length_of(delta));
+        S = fmaxl(S, scene_at(w, 0.0L).sigma * length_of(delta));
     }
     return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
 }
@@ -417,7 +354,6 @@ World held_world(const World* w, Real h) {
     s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
     held.rate = (Vector){0};
     held.d_rate = 0.0L;
-    held.no_load = -INFINITY;
     held.h = h;
     return held;
 }
@@ -435,9 +371,9 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     // The whole periods are taken off f start exactly: off the product and the remainder of its rounding.
     const double cycles = scene->f * scene->start;
     const double lost = fma(scene->f, scene->start, -cycles);
-    w.theta_0 = 2.0L * PI * ((Real)(cycles - floor(cycles)) + lost);
-    const Vector x = direction(w.theta_0), y = direction(w.theta_0 + scene->phase_2);
-    const Vector separation = direction(w.theta_0 + scene->phase_d);
+    w.cycle = (Real)(cycles - floor(cycles)) + lost;
+    const Vector x = direction(w.cycle), y = direction(w.cycle + scene->phase_2 / (2.0L * PI));
+    const Vector separation = direction(w.cycle + scene->phase_d / (2.0L * PI));
     w.cosine = (Vector){scene->V_1 * x.x, scene->V_2 * y.x};
     w.sine = (Vector){scene->V_1 * x.y, scene->V_2 * y.y};
     w.d_cosine = scene->a_d * separation.x;
@@ -451,11 +387,7 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.held = at_modulus(scene, scene->E);
     w.d = scene->d;
     w.d_rate = scene->d_rate;
-    w.rule = rule_of(fineness == 1 ? 10 : 12);
-    const Real load_end = (Real)scene->load + scene->load_rate * h;
-    w.no_load = (scene->load > 0.0) != (load_end > 0.0L) && scene->load_rate != 0.0
-                    ? -(Real)scene->load / scene->load_rate
-                    : -INFINITY;
+    w.rule = the_rule();
     return w;
 }
 
@@ -464,6 +396,14 @@ static Real separation(const World* w) {
     const ReferenceScene* s = &w->scene;
     return w->d_cosine +
            (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
+}
+
+ReferenceRest reference_rest(const ReferenceScene* scene) {
+    ReferenceScene loaded = *scene;
+    loaded.load = fmax(scene->load, 1e-99);
+    const World moves = make_world(&loaded, 0.0L, 1), w = at_rest(&moves);
+    const At at = scene_at(&w, 0.0L);
+    return (ReferenceRest){(double)separation(&w), (double)at.coulomb, (double)at.sigma};
 }
 
 World ramp_between(const World* from, const World* to) {

@@ -6,23 +6,23 @@
 
 typedef long double Real;
 
+static const Real PI = 3.141592653589793238462643383279502884L;
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots; vectors
 // ---------------------------------------------------------------------------------------------------------------------
 
-enum { MOST_STAGES = 12 };
+enum { STAGES = 10 };
 
 typedef struct {
-    int stages;
-    Real node[MOST_STAGES];            // the last one is 1
-    Real weight[MOST_STAGES];          // sum 1
-    Real to[MOST_STAGES][MOST_STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i]
+    Real node[STAGES + 1];   // the first one is 0 and no stage, the last one is 1
+    Real weight[STAGES];     // sum 1
+    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i + 1]
 } Rule;
 
-const Rule* rule_of(int stages);
-
-// Solves A x = b in place for each b, without pivoting.
-void solve(int n, Real A[MOST_STAGES][MOST_STAGES], int count, Real b[][MOST_STAGES]);
+// Solves linear equations without pivoting: the columns after the matrix are right sides, and then their solutions.
+enum { SIDES = 2 };
+void solve(Real A[STAGES][STAGES + SIDES]);
 
 typedef Real Function(const void* context, Real x);
 
@@ -39,7 +39,7 @@ Vector scaled(Real factor, Vector a);
 Real dot(Vector a, Vector b);
 Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0
-Vector direction(Real angle);        // (cos, sin)
+Vector direction(Real turns);        // (cos, sin) of 2 pi turns
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The scene at a time
@@ -57,26 +57,25 @@ typedef struct {
     Vector start, rate, cosine, sine;
     // The separation [m] is d + d_rate t + d_cosine cos(omega t) - d_sine sin(omega t).
     Real d, d_rate, d_cosine, d_sine;
-    Real h, omega, theta_0, decay, swell, excess;
-    Real no_load;   // s, when a load that moves is 0
+    Real h, omega, decay, swell, excess;
+    Real cycle;     // 1, the part of a period before the start
     AtModulus held; // at the modulus of the start
     bool elastic;   // the law is ElasticPlastic
     bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
     bool open;      // nothing touches
-    bool open_ends; // a bristle is taken as if it had no bound: for the map of a period that touches none
     bool ramp;      // between two steps: nothing moves a bristle but its bound
+    // On a ramp: rates [1/s] of the logarithms of F_C or mu, of the stiffness's factor, ..
     struct {
-        Real limit, scale, ratio,
-            V_S; // 1/s, rates of the logarithms of F_C or mu, of the stiffness's factor, ..
-    } ln_rate;   // on a ramp
-    Real S;      // N
-    Real top;    // m/s, the largest |V|
+        Real limit, scale, ratio, V_S;
+    } ln_rate;
+    Real S;   // N
+    Real top; // m/s, the largest |V|
     const Rule* rule;
     int fineness;
     Real panels; // taken so far
 } World;
 
-// At a local time; rates are time derivatives of logarithms, found only when they are asked for.
+// At a local time; rates are time derivatives of logarithms.
 typedef struct {
     Vector V;                      // m/s
     Real sigma;                    // N/m
@@ -100,10 +99,7 @@ bool is_open(const World* w, Real t);
 // The velocity at a time and its derivatives up to that order.
 void velocities(const World* w, Real t, int order, Vector* V);
 
-// Integral of the velocity that moves a bristle over [a, b].
-Vector travel(const World* w, Real a, Real b);
-
-At scene_at(const World* w, Real t, bool with_rates);
+At scene_at(const World* w, Real t);
 
 // The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
 Real bound(const World* w, const At* at, bool sticks);

@@ -2,7 +2,7 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stddef.h>
 
 #include "moment.h"
 
@@ -15,13 +15,13 @@
 typedef enum { STICKS, CATCHES, SLIPS } Motion;
 
 typedef struct {
-    Vector end,
-        change; // m, delta at the end, and its change: a soft bristle's has more digits than the difference
+    Vector end;            // m, delta at the end
+    Vector change;         // m, of delta: a soft bristle's has more digits than the difference
     Vector impulse;        // N s
     Real work, heat, path; // J, J, m
-    Real length;           // m, the scale of errors of the end
+    Real length;           // m, the scale of errors of delta
     Real force, power;     // N s, J, the scales of errors of impulse and energies
-    Real blur;             // m, of the end by the rounding of time
+    Real blur;             // m, of delta by the rounding of time
 } Sums;
 
 static void add_times(Sums* sums, const Sums* one, Real factor) {
@@ -59,6 +59,15 @@ static Real relaxation(const World* w, const At* at) {
     return w->elastic ? 0.0L : at->sigma * length_of(at->V) / at->g;
 }
 
+// The rate [m/s] of a bristle by its law, or of one that slips along its bound.
+static Vector rate_of(const World* w, const At* at, Vector delta, bool slips) {
+    if (!slips) {
+        return plus(at->V, -relaxation(w, at), delta);
+    }
+    const Vector n = along(delta, 1.0L), across = {-n.y, n.x};
+    return plus(scaled(bound_rate(w, at, false), n), dot(at->V, across), across);
+}
+
 // The speed [m/s] at which the law alone would carry a bristle of that direction beyond its kinetic bound.
 static Real outward(const World* w, const At* at, Vector delta) {
     const Real own = dot(along(delta, 1.0L), at->V) - relaxation(w, at) * bound(w, at, false);
@@ -76,30 +85,39 @@ static const Real ON_BOUND =
     1e-10L; // of a bound: the rounding of a phase may leave a bristle that slips so far inside
 static const Real AS_DOUBLE = 1e-15L; // of a bound: the rounding of a deflection that is a double
 
+// The bristle between two marches.
+typedef struct {
+    Vector delta; // m
+    bool broke;   // with static friction: it slips, or catches up
+} State;
+
 // The state of a march through the step.
 typedef struct {
     World* w;
     Sums sums;
-    Vector delta;
     Motion motion;
-    bool broke;    // with static friction: it slips, or catches up
+    State state;
     bool slipped;  // at any time
     bool met;      // the motion has come to its end,
+    Real from;     // after this time,
     Real met_at;   // then,
     bool at_bound; // at its bound, not by its lead
 } March;
 
-static bool has_bound(const World* w) { return w->bounded && !w->open && !w->open_ends; }
+static bool has_bound(const World* w) { return w->bounded && !w->open; }
 static bool has_static(const World* w) { return w->elastic && w->excess + w->ln_rate.ratio != 0.0L; }
 
 // Each sign has a slack of little more than its rounding.
 static Signs signs_at(const March* march, const At* at, Vector delta) {
     const World* w = march->w;
     Signs signs = {INFINITY, INFINITY};
+    if (!has_bound(w)) {
+        return signs;
+    }
     if (march->motion != SLIPS) {
         // on a ramp in which nothing moves the deflection is a double
-        const Real slack = w->ramp && has_static(w) && !march->broke ? 1e-11L : ROUNDING;
-        signs.room = bound(w, at, !march->broke) * (1.0L + slack) - length_of(delta);
+        const Real slack = w->ramp && has_static(w) && !march->state.broke ? 1e-11L : ROUNDING;
+        signs.room = bound(w, at, !march->state.broke) * (1.0L + slack) - length_of(delta);
     }
     if (march->motion == SLIPS || (march->motion == CATCHES && !w->ramp)) {
         signs.lead = outward(w, at, delta) + ROUNDING * (w->top + fabsl(bound_rate(w, at, false)));
@@ -109,74 +127,66 @@ static Signs signs_at(const March* march, const At* at, Vector delta) {
 
 typedef struct {
     Sums sums;
-    Signs sign[MOST_STAGES + 1]; // at the start and at the nodes, of a bristle with a bound
+    Signs sign[STAGES + 1]; // at the start and at the nodes
 } Panel;
 
-// The changes of delta at the nodes by Dahl's and LuGre's law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
+// The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
 static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
-    const int n = w->rule->stages;
-    Real A[MOST_STAGES][MOST_STAGES], Y[2][MOST_STAGES] = {{0}};
-    bool across = false;
-    for (int j = 0; j < n; j++) {
+    Real A[STAGES][STAGES + SIDES] = {{0}};
+    for (int j = 0; j < STAGES; j++) {
         const Real r = relaxation(w, &at[j]);
         const Vector rate = plus(at[j].V, -r, delta);
-        across = across || rate.y != 0.0L;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < STAGES; i++) {
             const Real weight = size * w->rule->to[i][j];
             A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
-            Y[0][i] += weight * rate.x;
-            Y[1][i] += weight * rate.y;
+            A[i][STAGES] += weight * rate.x;
+            A[i][STAGES + 1] += weight * rate.y;
         }
     }
-    solve(n, A, across ? 2 : 1, Y);
-    for (int i = 0; i < n; i++) {
-        change[i] = (Vector){Y[0][i], Y[1][i]};
+    solve(A);
+    for (int i = 0; i < STAGES; i++) {
+        change[i] = (Vector){A[i][STAGES], A[i][STAGES + 1]};
     }
 }
 
-// That direction, turned by an angle.
+// That direction, turned by an angle [rad].
 static Vector turned(Vector n, Real angle) {
-    const Vector turn = angle == 0.0L ? (Vector){1.0L, 0.0L} : direction(angle);
+    const Vector turn = angle == 0.0L ? (Vector){1.0L, 0.0L} : direction(angle / (2.0L * PI));
     return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
-}
-
-// The rate [rad/s] at which a deflection of direction n turns if it slips.
-static Real turn(const World* w, const At* at, Vector n) {
-    return (at->V.y * n.x - at->V.x * n.y) / bound(w, at, false);
 }
 
 // The angles from the direction n at the nodes of a bristle that slips, by Newton; returns false if it does not converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
-    const int stages = w->rule->stages;
-    for (int i = 0; i < stages; i++) {
+    for (int i = 0; i < STAGES; i++) {
         angle[i] = 0.0L;
     }
     for (int k = 0; k < 25; k++) {
-        Real A[MOST_STAGES][MOST_STAGES], step[1][MOST_STAGES], most = 0.0L;
+        Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
         bool turns = false;
-        for (int i = 0; i < stages; i++) {
-            step[0][i] = -angle[i];
+        for (int i = 0; i < STAGES; i++) {
+            A[i][STAGES] = -angle[i];
         }
-        for (int j = 0; j < stages; j++) {
-            const Vector now = turned(n, angle[j]);
-            const Real rate = turn(w, &at[j], now), slope = -dot(at[j].V, now) / bound(w, &at[j], false);
+        for (int j = 0; j < STAGES; j++) {
+            const Vector now = turned(n, angle[j]), across = {-now.y, now.x}, V = at[j].V;
+            const Real lies = bound(w, &at[j], false), rate = dot(V, across) / lies,
+                       slope = -dot(V, now) / lies;
             turns = turns || rate != 0.0L || angle[j] != 0.0L;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
-            for (int i = 0; i < stages; i++) {
+            for (int i = 0; i < STAGES; i++) {
                 const Real weight = size * w->rule->to[i][j];
                 A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-                step[0][i] += weight * rate;
+                A[i][STAGES] += weight * rate;
             }
         }
         if (!turns) {
             return true;
         }
-        solve(stages, A, 1, step);
-        for (int i = 0; i < stages; i++) {
-            angle[i] += step[0][i];
-            most = fmaxl(most, fabsl(step[0][i]));
+        solve(A);
+        for (int i = 0; i < STAGES; i++) {
+            angle[i] += A[i][STAGES];
+            most = fmaxl(most, fabsl(A[i][STAGES]));
         }
         if (!(most < 3.0L)) {
             return false;
@@ -199,58 +209,46 @@ static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
 }
 
 static Panel panel(const March* march, Real a, Real b, Vector delta) {
+    enum { last = STAGES - 1 };
     World* w = march->w;
     const Rule* rule = w->rule;
-    const int n = rule->stages, last = n - 1;
     const Real size = b - a;
     const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
-    const bool rates = march->motion != STICKS, bounded = has_bound(w);
     Panel p = {.sums = {.end = delta}};
-    At at[MOST_STAGES];
-    Vector change[MOST_STAGES] = {{0}};
-    Real angle[MOST_STAGES];
+    At at[STAGES];
+    Vector change[STAGES] = {{0}};
+    Real angle[STAGES];
     const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
-    for (int i = 0; i < n; i++) {
-        at[i] = scene_at(w, a + size * rule->node[i], rates);
+    for (int i = 0; i < STAGES; i++) {
+        at[i] = scene_at(w, a + size * rule->node[i + 1]);
     }
     if (slips && !turn_over(w, at, size, start, angle)) {
         p.sums.end.x = NAN; // agrees with nothing
         return p;
     }
-    if (bristle && !slips && !w->elastic) {
+    if (bristle && !slips) {
         collocate(w, at, size, delta, change);
     }
     Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
-    for (int i = 0; i < n; i++) {
-        const Real t = a + size * rule->node[i];
-        const Vector V = at[i].V;
+    for (int i = 0; i < STAGES; i++) {
+        const Real t = a + size * rule->node[i + 1];
         Vector rate = {0}, spring = {0};
         if (slips) {
-            const Vector now = turned(start, angle[i]), across = {-now.y, now.x};
-            const Real lies = bound(w, &at[i], false);
-            change[i] = plus(scaled(lies, now), -1.0L, delta);
-            rate = plus(scaled(bound_rate(w, &at[i], false), now), lies * turn(w, &at[i], now), across);
-        } else if (bristle && w->elastic) {
-            change[i] = travel(w, a, t);
-            rate = V;
-        } else if (bristle) {
-            const Real r = relaxation(w, &at[i]);
-            rate = plus(V, -r, plus(delta, 1.0L, change[i]));
-            relaxed += size * rule->weight[i] * r;
+            change[i] = plus(scaled(bound(w, &at[i], false), turned(start, angle[i])), -1.0L, delta);
         }
         const Vector now = plus(delta, 1.0L, change[i]);
         if (bristle) {
+            rate = rate_of(w, &at[i], now, slips);
             spring = scaled(at[i].sigma, now);
+            relaxed += slips ? 0.0L : size * rule->weight[i] * relaxation(w, &at[i]);
             longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
         } else if (w->scene.law == LAW_COULOMB) {
             spring = coulomb_force(w, &at[i], t, i == last);
         }
-        account(w, &p.sums, spring, rate, V, size * rule->weight[i]);
-        if (bounded) {
-            p.sign[i + 1] = signs_at(march, &at[i], now);
-        }
+        account(w, &p.sums, spring, rate, at[i].V, size * rule->weight[i]);
+        p.sign[i + 1] = signs_at(march, &at[i], now);
     }
     if (bristle) {
         p.sums.change = change[last];
@@ -260,10 +258,8 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         p.sums.impulse = plus(p.sums.impulse, w->scene.sigma_1, p.sums.change);
         p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
-    if (bounded) {
-        const At first = scene_at(w, a, rates);
-        p.sign[0] = signs_at(march, &first, delta);
-    }
+    const At first = scene_at(w, a);
+    p.sign[0] = signs_at(march, &first, delta);
     return p;
 }
 
@@ -284,7 +280,7 @@ static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
            fabsl(one->work - two->work) <= energy && fabsl(one->heat - two->heat) <= energy;
 }
 
-// Whether a sign that is positive at three nodes may be negative between them: by the parabola through them.
+// Whether a finite sign that is positive at three nodes may be negative between them: by the parabola through them.
 static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
     const Real left = (y_1 - y_0) / (x[1] - x[0]), right = (y_2 - y_1) / (x[2] - x[1]);
     const Real curve = (right - left) / (x[2] - x[0]), least = fminl(y_0, fminl(y_1, y_2));
@@ -304,107 +300,48 @@ static bool is_over(const Panel* p, int k) {
 
 // Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
-    const int n = w->rule->stages;
-    Real x[MOST_STAGES + 1] = {0.0L};
-    for (int k = 0; k < n; k++) {
-        x[k + 1] = w->rule->node[k];
-    }
-    const Real of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
-    for (int k = 0; has_bound(w) && k + 2 <= n && !is_over(p, k + 2); k++) {
+    const Real *x = w->rule->node, of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
+    for (int k = 0; k + 2 <= STAGES && !is_over(p, k + 2); k++) {
         const Signs* s = &p->sign[k];
-        if ((s->room < INFINITY && dips(&x[k], s[0].room, s[1].room, s[2].room, of_room)) ||
-            (s->lead < INFINITY && dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead))) {
+        if (dips(&x[k], s[0].room, s[1].room, s[2].room, of_room) ||
+            dips(&x[k], s[0].lead, s[1].lead, s[2].lead, of_lead)) {
             return true;
         }
     }
     return false;
 }
 
-static bool is_smallest(const World* w, Real a, Real b, int depth) {
-    const Real middle = 0.5L * (a + b);
-    return depth >= DEEPEST || w->panels > MOST_PANELS || !(middle > a && middle < b);
-}
-
-// A motion on its way to its end.
-typedef struct {
-    const March* march;
-    Real from;
-    bool at_bound;
-} Way;
-
 static Real beyond(const void* context, Real t) {
-    const Way* to = context;
-    const Panel p = panel(to->march, to->from, t, to->march->delta);
-    const Signs* last = &p.sign[to->march->w->rule->stages];
-    return -(to->at_bound ? last->room : last->lead);
+    const March* march = context;
+    const Panel p = panel(march, march->from, t, march->state.delta);
+    return -(march->at_bound ? p.sign[STAGES].room : p.sign[STAGES].lead);
 }
 
 // Takes an accurate panel, up to the motion's end if that lies in it.
 static void commit(March* march, Real a, Real b, const Panel* p) {
-    const int n = march->w->rule->stages;
-    int k = has_bound(march->w) ? 0 : n + 1;
-    while (k <= n && !is_over(p, k)) {
+    int k = 0;
+    while (k <= STAGES && !is_over(p, k)) {
         k++;
     }
     Panel part = *p;
-    if (k <= n) {
+    if (k <= STAGES) {
         march->met = true;
         march->at_bound = p->sign[k].room < 0.0L;
-        const Way to = {march, a, march->at_bound};
-        const Real low = k <= 1 ? a : a + (b - a) * march->w->rule->node[k - 2];
-        march->met_at = k == 0 ? a : crossing(beyond, &to, low, a + (b - a) * march->w->rule->node[k - 1]);
+        march->from = a;
+        const Real *x = march->w->rule->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
+        march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
         if (!(march->met_at > a)) {
             return;
         }
-        part = panel(march, a, march->met_at, march->delta);
+        part = panel(march, a, march->met_at, march->state.delta);
     }
     add(&march->sums, &part.sums);
-    march->delta = part.sums.end;
-}
-
-// Takes [a, b], whose single panel is one: halves it until two halves agree with the whole. Stops at the motion's end.
-static void go_on(March* march, Real a, Real b, const Panel* one, int depth) {
-    World* w = march->w;
-    const Real middle = 0.5L * (a + b);
-    const Panel left = panel(march, a, middle, march->delta);
-    const Panel right = panel(march, middle, b, left.sums.end);
-    Sums two = left.sums;
-    add(&two, &right.sums);
-    const bool good = agree(w, &one->sums, &two, b - a) && !hides(w, &left) && !hides(w, &right);
-    if (!good && !is_smallest(w, a, b, depth)) {
-        go_on(march, a, middle, &left, depth + 1);
-        if (!march->met) {
-            const Panel again = panel(march, middle, b, march->delta);
-            go_on(march, middle, b, &again, depth + 1);
-        }
-        return;
-    }
-    commit(march, a, middle, &left);
-    if (!march->met) {
-        commit(march, middle, b, &right);
-    }
+    march->state.delta = part.sums.end;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Cuts of the step
 // ---------------------------------------------------------------------------------------------------------------------
-
-// A part of the step; empty: from = to.
-typedef struct {
-    Real from, to;
-} Part;
-
-static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
-
-// The part in which the contact is closed.
-static Part closed_part(const World* w) {
-    const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
-    if (at_start == at_end) {
-        return (Part){at_start ? w->h : 0.0L, w->h};
-    }
-    const Real t = crossing(openness, w, 0.0L, w->h);
-    return at_start ? (Part){t, w->h} : (Part){0.0L, t};
-}
 
 // Times in rising order.
 typedef struct {
@@ -460,24 +397,25 @@ static Cuts cuts_between(const World* w, Real a, Real b) {
     return cuts;
 }
 
-// The end of the piece that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a part
-// in which a load may fall or rise by decades they become shorter.
-static Real end_of_piece(const World* w, Part part, Real t) {
+// The end of the piece of [from, to] that begins at t: pieces are equal parts of a period, or of a ramp. Towards both ends of a
+// closed contact whose load may fall or rise by decades they become shorter.
+static Real end_of_piece(const World* w, Real from, Real to, Real t) {
     const ReferenceScene* s = &w->scene;
-    const Real span = part.to - part.from, pieces = w->ramp ? 32.0L : 8.0L * s->f;
-    const Real first = w->ramp ? 0.0L : w->theta_0 / w->omega; // s, since the start of the period
-    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
-    Real end = part.to;
-    for (Real k = floorl((first + t) * pieces); w->ramp || vibrates(s); k += 1.0L) {
-        if (k / pieces - first > t) {
-            end = fminl(end, k / pieces - first);
-            break;
+    Real end = to;
+    if (w->ramp || vibrates(s)) {
+        const Real pieces = w->ramp ? 32.0L : 8.0L * s->f;
+        const Real first = w->ramp ? 0.0L : w->cycle / s->f; // s, since the start of the period
+        Real k = floorl((first + t) * pieces);
+        while (!(k / pieces - first > t)) {
+            k += 1.0L;
         }
+        end = fminl(end, k / pieces - first);
     }
+    const bool moves = !w->open && (s->load_rate != 0.0 || s->E_rate != 0.0 || w->d_rate != 0.0L);
     for (int k = 1; k <= 60 && moves; k += 2) {
-        const Real early = part.from + ldexpl(span, -k), late = part.to - ldexpl(span, -k);
-        end = early > t && early < end ? early : end;
-        end = late > t && late < end ? late : end;
+        const Real part = ldexpl(to - from, -k);
+        end = from + part > t ? fminl(end, from + part) : end;
+        end = to - part > t ? fminl(end, to - part) : end;
     }
     return end;
 }
@@ -494,119 +432,130 @@ static void begin(March* march, Real a, Real b) {
     if (!has_bound(w)) {
         return;
     }
-    const At at = scene_at(w, a, true), later = scene_at(w, 0.5L * (a + b), true);
-    const Real push = outward(w, &at, march->delta);
+    const At at = scene_at(w, a), later = scene_at(w, 0.5L * (a + b));
+    const Real push = outward(w, &at, march->state.delta);
     const Real rounding = ROUNDING * (w->top + fabsl(bound_rate(w, &at, false)));
-    const bool pushed = push > rounding || (push >= -rounding && outward(w, &later, march->delta) > 0.0L);
-    const bool lies = length_of(march->delta) >= (1.0L - (w->ramp ? 0.0L : AS_DOUBLE)) * bound(w, &at, false);
-    if (pushed && lies && (march->broke || !has_static(w))) {
+    const bool pushed =
+        push > rounding || (push >= -rounding && outward(w, &later, march->state.delta) > 0.0L);
+    const bool lies =
+        length_of(march->state.delta) >= (1.0L - (w->ramp ? 0.0L : AS_DOUBLE)) * bound(w, &at, false);
+    if (pushed && lies && (march->state.broke || !has_static(w))) {
         march->motion = SLIPS;
-    } else if (march->broke && (pushed || w->ramp)) {
+    } else if (march->state.broke && (pushed || w->ramp)) {
         march->motion = CATCHES;
     }
-    march->broke = march->broke && march->motion != STICKS;
+    march->state.broke = march->state.broke && march->motion != STICKS;
     march->slipped = march->slipped || march->motion != STICKS;
 }
 
 // Break-away: the bristle drops along its direction, and its damping adds an impulse.
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
-    const Vector from = march->delta, to = along(from, bound(w, at, false));
+    const Vector from = march->state.delta, to = along(from, bound(w, at, false));
     const Vector damping = scaled(w->scene.sigma_1, plus(to, -1.0L, from));
     const Real lost = dot(plus(from, -1.0L, to), plus(from, 1.0L, to));
     march->sums.impulse = plus(march->sums.impulse, 1.0L, damping);
     march->sums.work += dot(damping, at->V);
     march->sums.heat += dot(damping, at->V) + 0.5L * at->sigma * lost;
-    march->delta = to;
-    march->broke = true;
+    march->state = (State){to, true};
 }
 
 // The motion after the end of another. On a ramp a bristle that has broken away does not stick again.
 static void change_motion(March* march) {
     const World* w = march->w;
-    const At at = scene_at(w, march->met_at, true);
+    const At at = scene_at(w, march->met_at);
     bool slips = false;
     if (march->at_bound) {
-        if (has_static(w) && !march->broke) {
+        if (has_static(w) && !march->state.broke) {
             break_away(march, &at);
         } else {
-            march->delta = along(march->delta, bound(w, &at, false));
+            march->state.delta = along(march->state.delta, bound(w, &at, false));
         }
-        slips = outward(w, &at, march->delta) > 0.0L;
+        slips = outward(w, &at, march->state.delta) > 0.0L;
         march->slipped = true;
     }
-    march->broke = march->broke && (slips || w->ramp);
-    march->motion = slips ? SLIPS : march->broke ? CATCHES : STICKS;
+    march->state.broke = march->state.broke && (slips || w->ramp);
+    march->motion = slips ? SLIPS : march->state.broke ? CATCHES : STICKS;
 }
 
+// Takes [a, b] in panels that are halved until one agrees with its two halves.
 static void march_between(March* march, Real a, Real b) {
-    while (a < b && march->w->panels <= MOST_PANELS) {
-        const Panel one = panel(march, a, b, march->delta);
+    World* w = march->w;
+    const Real least = ldexpl(b - a, -DEEPEST);
+    Real end = b;
+    while (a < b && w->panels <= MOST_PANELS) {
+        const Real middle = 0.5L * (a + end);
+        const Panel one = panel(march, a, end, march->state.delta);
+        const Panel left = panel(march, a, middle, march->state.delta);
+        const Panel right = panel(march, middle, end, left.sums.end);
+        Sums two = left.sums;
+        add(&two, &right.sums);
+        const bool good = agree(w, &one.sums, &two, end - a) && !hides(w, &left) && !hides(w, &right);
+        if (!good && end - a > least && middle > a && middle < end) {
+            end = middle;
+            continue;
+        }
         march->met = false;
-        go_on(march, a, b, &one, 0);
-        a = march->met ? march->met_at : b;
+        commit(march, a, middle, &left);
+        if (!march->met) {
+            commit(march, middle, end, &right);
+        }
+        const Real size = end - a;
+        a = march->met ? march->met_at : end;
+        end = fminl(b, a + 2.0L * size);
         if (march->met) {
             change_motion(march);
         }
     }
 }
 
-static void march_part(March* march, Part part, bool open) {
+// Takes [from, to], but for the edge of a closed contact: without load there is no rate.
+static void march_part(March* march, Real from, Real to, bool open) {
     World* w = march->w;
-    if (!(part.to > part.from)) {
-        return;
-    }
+    const Real edge = open ? 0.0L : ldexpl(to - from, -58);
+    from += from > 0.0L ? edge : 0.0L;
+    to -= to < w->h ? edge : 0.0L;
     w->open = open;
-    for (Real from = part.from; from < part.to;) {
-        const Real to = end_of_piece(w, part, from);
-        const Cuts cuts = cuts_between(w, from, to);
-        if (from == part.from) {
-            begin(march, from, cuts.time[1]);
+    for (Real a = from; a < to;) {
+        const Real b = end_of_piece(w, from, to, a);
+        const Cuts cuts = cuts_between(w, a, b);
+        if (a == from) {
+            begin(march, a, cuts.time[1]);
         }
         for (int k = 1; k < cuts.count; k++) {
             march_between(march, cuts.time[k - 1], cuts.time[k]);
         }
-        from = to;
+        a = b;
     }
 }
 
-// The bristle between two marches.
-typedef struct {
-    Vector delta;
-    bool broke;
-} State;
+// The contact opens; returns the heat: if the stiffness is constant, the bristle slides to 0 as the limit falls.
+static Real release(const World* w, State* state) {
+    const bool slides = w->scene.contact == CONTACT_CONSTANT && w->scene.law != LAW_COULOMB;
+    const Real heat = slides ? 0.5L * w->scene.contact_sigma * dot(state->delta, state->delta) : 0.0L;
+    *state = (State){0};
+    return heat;
+}
 
-static State state_of(const March* march) { return (State){march->delta, march->broke}; }
+static Real openness(const void* world, Real t) { return is_open(world, t) ? 1.0L : -1.0L; }
 
 static March march_from(World* w, State state) {
-    March march = {.w = w, .delta = state.delta, .broke = state.broke};
-    const Part part = closed_part(w);
-    const Real edge = ldexpl(part.to - part.from, -58); // without load there is no rate
-    march_part(&march, (Part){0.0L, part.from}, true);
-    march_part(&march,
-               (Part){part.from + (part.from > 0.0L ? edge : 0.0L), part.to - (part.to < w->h ? edge : 0.0L)},
-               false);
-    if (part.to < w->h) {
-        const bool slides = w->scene.contact == CONTACT_CONSTANT && w->scene.law != LAW_COULOMB;
-        march.sums.heat += slides ? 0.5L * w->scene.contact_sigma * dot(march.delta, march.delta) : 0.0L;
-        march.delta = (Vector){0};
-        march.broke = false;
-    }
-    march_part(&march, (Part){part.to, w->h}, true);
+    March march = {.w = w, .state = state};
+    const bool at_start = !w->ramp && is_open(w, 0.0L), at_end = !w->ramp && is_open(w, w->h);
+    const Real turn = at_start == at_end ? w->h : crossing(openness, w, 0.0L, w->h);
+    march_part(&march, 0.0L, turn, at_start);
+    march.sums.heat += at_end && !at_start ? release(w, &march.state) : 0.0L;
+    march_part(&march, turn, w->h, at_end);
     w->open = false;
     return march;
 }
 
 // The effect of a jump of the inputs, or of a start beyond the bound, on the bristle; returns its heat.
 static Real jump(const ReferenceScene* before, const World* w, State* state) {
-    const ReferenceScene* s = &w->scene;
     const World past = before ? make_world(before, 0.0L, w->fineness) : *w;
-    const bool was_open = before && is_open(&past, 0.0L); // at the very start something held the bristle
-    if (is_open(w, 0.0L) || was_open) {
-        const bool slides = s->contact == CONTACT_CONSTANT && s->limit == LIMIT_LOAD && !was_open;
-        const Real heat = slides ? 0.5L * s->contact_sigma * dot(state->delta, state->delta) : 0.0L;
-        *state = (State){0};
-        return heat;
+    if (is_open(w, 0.0L) ||
+        (before && is_open(&past, 0.0L))) { // at the very start something held the bristle
+        return release(w, state);
     }
     if (!w->bounded) {
         return 0.0L;
@@ -614,10 +563,10 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
     if (before != NULL) {
         World ramp = ramp_between(&past, w);
         const March march = march_from(&ramp, *state);
-        *state = (State){march.delta, march.broke && has_static(w)};
+        *state = (State){march.state.delta, march.state.broke && has_static(w)};
         return march.sums.heat;
     }
-    const At at = scene_at(w, 0.0L, false);
+    const At at = scene_at(w, 0.0L);
     const Real length = length_of(state->delta), lies = bound(w, &at, false);
     if (length <= (1.0L + 1e-11L) * bound(w, &at, !state->broke)) {
         return 0.0L;
@@ -632,7 +581,7 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
 
 // As long as it touches no bound, a period maps delta in an affine way, the same along and across, and its sums are
 // polynomials of degree 2 in delta: it multiplies (1, x, y, x^2 + y^2, impulse, work, heat, path) by a matrix, x = delta / unit.
-enum { ROWS = 9, POWERS = 50 };
+enum { ROWS = 9, POWERS = 40 };
 typedef struct {
     Real m[ROWS][ROWS];
 } Map;
@@ -642,7 +591,8 @@ static Map find_map(World* w, Real unit) {
     Map map = {.m = {{1.0L}}};
     Real of[4][5], way[4];
     Vector shift = {0};
-    w->open_ends = true;
+    const bool bounded = w->bounded;
+    w->bounded = false; // of a period that touches none
     for (int k = 0; k < 4; k++) {
         const March march = march_from(w, (State){scaled(unit, AT[k]), false});
         const Sums* s = &march.sums;
@@ -651,7 +601,7 @@ static Map find_map(World* w, Real unit) {
         of[k][0] = s->impulse.x, of[k][1] = s->impulse.y, of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
     }
-    w->open_ends = false;
+    w->bounded = bounded;
     shift.x = w->elastic && w->scene.V == 0.0 ? 0.0L : shift.x; // it does not drift
     shift.y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : shift.y;
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
@@ -682,7 +632,7 @@ static Map twice(const Map* map) {
     return two;
 }
 
-// A period, and its map's powers of 1, 2, 4 .. when they are needed
+// A period, and its map's powers of 1, 2, 4 .. when they are needed.
 typedef struct {
     World world;
     Real unit; // m, of x
@@ -690,53 +640,48 @@ typedef struct {
     Map power[POWERS];
 } Period;
 
-// delta after n periods that touch no bound; adds their sums.
-static Vector after_untouched(Period* p, Vector delta, Real n, Sums* sums) {
+static const Real FOR_EVER = 0x1p39L + 1.0L; // periods: the highest power, and one
+
+// delta after 2^k periods that touch no bound; adds their sums.
+static Vector after_untouched(const Period* p, int k, Vector delta, Sums* sums) {
+    const Vector x = scaled(1.0L / p->unit, delta);
+    Real of[ROWS];
+    for (int i = 0; i < ROWS; i++) {
+        const Real* row = p->power[k].m[i];
+        of[i] = row[0] + x.x * row[1] + x.y * row[2] + dot(x, x) * row[3];
+    }
+    const Sums part = {.impulse = {of[4], of[5]}, .work = of[6], .heat = of[7], .path = of[8]};
+    add_times(sums, &part, 1.0L);
+    return scaled(p->unit, (Vector){of[1], of[2]});
+}
+
+// Takes the periods that touch no bound, at the most n or FOR_EVER, and returns their number; the first one touches none. If a
+// later one touches none, neither do those between, since delta moves along a line and such deflections are a convex set.
+static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
+    World* w = &p->world;
     for (int k = 0; k < POWERS && !p->mapped; k++) {
-        p->power[k] = k == 0 ? find_map(&p->world, p->unit) : twice(&p->power[k - 1]);
+        p->power[k] = k == 0 ? find_map(w, p->unit) : twice(&p->power[k - 1]);
     }
     p->mapped = true;
-    Vector x = scaled(1.0L / p->unit, delta);
-    for (int k = 0; k < POWERS; k++) {
-        if (fmodl(floorl(ldexpl(n, -k)), 2.0L) == 0.0L) {
-            continue;
+    Real passed = 1.0L;
+    bool rises = true; // to the first power that is too high
+    for (int k = 0; k >= 0; k += rises ? 1 : -1) {
+        Sums after = *sums;
+        const State to = {after_untouched(p, k, state->delta, &after), false};
+        const Real then = passed + ldexpl(1.0L, k);
+        const bool fits = then <= fminl(n, FOR_EVER) && (!w->bounded || !march_from(w, to).slipped);
+        if (fits) {
+            *state = to;
+            *sums = after;
+            passed = then;
         }
-        Real of[ROWS];
-        for (int i = 0; i < ROWS; i++) {
-            const Real* row = p->power[k].m[i];
-            of[i] = row[0] + x.x * row[1] + x.y * row[2] + dot(x, x) * row[3];
-        }
-        const Sums part = {.impulse = {of[4], of[5]}, .work = of[6], .heat = of[7], .path = of[8]};
-        add_times(sums, &part, 1.0L);
-        x = (Vector){of[1], of[2]};
+        rises = rises && fits && k + 1 < POWERS;
     }
-    return scaled(p->unit, x);
+    *state = (State){after_untouched(p, 0, state->delta, sums), false};
+    return passed;
 }
 
-// Whether period number n from delta on touches a bound, if none before it does.
-static bool touches(Period* p, Vector delta, Real n) {
-    Sums unused = {0};
-    return march_from(&p->world, (State){after_untouched(p, delta, n - 1.0L, &unused), false}).slipped;
-}
-
-// How many periods from delta touch no bound, at the most n, or 2^(POWERS - 1); the first one touches none.
-static Real count_untouched(Period* p, Vector delta, Real n) {
-    Real low = 1.0L, high = fminl(n, ldexpl(1.0L, POWERS - 1));
-    if (!touches(p, delta, high)) {
-        return high;
-    }
-    while (2.0L * low < high && !touches(p, delta, 2.0L * low)) {
-        low *= 2.0L;
-    }
-    high = fminl(high, 2.0L * low);
-    while (high - low > 1.0L) {
-        const Real middle = floorl(0.5L * (low + high));
-        *(touches(p, delta, middle) ? &high : &low) = middle;
-    }
-    return low;
-}
-
-enum { MOST_CYCLE = 4096, CYCLE_BEFORE_NEWTON = 32 };
+enum { MOST_CYCLE = 4096 };
 
 typedef struct {
     State state;
@@ -754,78 +699,71 @@ static Real unit_of(const World* w) {
     if (w->scene.law == LAW_COULOMB || is_open(w, 0.0L)) {
         return 1.0L;
     }
-    const At at = scene_at(w, 0.0L, false);
+    const At at = scene_at(w, 0.0L);
     return bound(w, &at, true);
 }
 
-static void* memory(size_t size) {
-    void* found = malloc(size);
-    if (found == NULL) {
-        abort();
-    }
-    return found;
-}
-
 // Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
-// smallest deflection at the end of one that slips. Returns false if none of the first most that slip repeat.
-static bool go_periods(const World* of, State* state, Real n, int most, Sums* sums, Vector* mean) {
-    Period* p = memory(sizeof *p);
-    *p = (Period){.world = *of, .unit = unit_of(of)};
-    World* w = &p->world;
-    Mark* marks = memory((size_t)most * sizeof *marks);
+// smallest deflection at the end of one that slips. Returns false if none of the first MOST_CYCLE that slip
+// repeat.
+static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector* mean) {
+    Period p = {.world = *of, .unit = unit_of(of)};
+    World* w = &p.world;
+    w->panels = 0.0L;
+    Mark marks[MOST_CYCLE];
     int count = 0;
-    bool known = true;
-    for (Real done = 0.0L; done < n && known;) {
+    for (Real done = 0.0L; done < n;) {
         const March march = march_from(w, *state);
+        if (w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
+            return false;
+        }
         if (!march.slipped) {
-            const Real many = count_untouched(p, state->delta, n - done);
-            *state = (State){after_untouched(p, state->delta, many, sums), march.broke};
-            done += many;
-            if (isinf(n) && many == ldexpl(1.0L, POWERS - 1)) {
+            const Real passed = pass_untouched(&p, state, n - done, sums);
+            if (isinf(n) && passed == FOR_EVER) {
                 *mean = scaled(w->scene.f, march_from(w, *state).sums.impulse);
-                break;
+                return true;
             }
+            done += passed;
             continue;
         }
         add_times(sums, &march.sums, 1.0L);
-        *state = state_of(&march);
+        *state = march.state;
         done += 1.0L;
         int k = count - 1;
-        while (k >= 0 && !are_equal(marks[k].state, *state, p->unit)) {
+        while (k >= 0 && !are_equal(marks[k].state, *state, p.unit)) {
             k--;
         }
-        if (k >= 0) {
-            Sums cycle = *sums;
-            add_times(&cycle, &marks[k].sums, -1.0L);
-            const Real length = done - marks[k].count;
-            if (isinf(n)) {
-                *mean = scaled(w->scene.f / length, cycle.impulse);
-                for (; k < count; k++) {
-                    *state =
-                        length_of(marks[k].state.delta) < length_of(state->delta) ? marks[k].state : *state;
-                }
-                break;
+        if (k < 0) {
+            if (count == MOST_CYCLE) {
+                return false;
             }
-            const Real repeats = floorl((n - done) / length);
-            add_times(sums, &cycle, repeats);
-            done += repeats * length;
-            count = 0;
-        } else if (count == most || w->panels > (isinf(n) ? MOST_OF_SETTLING : MOST_PANELS)) {
-            known = false;
-        } else {
             marks[count++] = (Mark){*state, done, *sums};
+            continue;
         }
+        Sums cycle = *sums;
+        add_times(&cycle, &marks[k].sums, -1.0L);
+        const Real length = done - marks[k].count;
+        if (isinf(n)) {
+            *mean = scaled(w->scene.f / length, cycle.impulse);
+            for (; k < count; k++) {
+                const bool is_less = length_of(marks[k].state.delta) < length_of(state->delta);
+                *state = is_less ? marks[k].state : *state;
+            }
+            return true;
+        }
+        const Real repeats = floorl((n - done) / length);
+        add_times(sums, &cycle, repeats);
+        done += repeats * length;
+        count = 0;
     }
-    free(marks);
-    free(p);
-    return known;
+    return true;
 }
 
 // Newton's step to the fixed point of a period's map, from a state, its end and its miss after the period.
 static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
     const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
-    const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).delta));
-    const Vector by_y = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).delta));
+    const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).state.delta));
+    const Vector by_y = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).state.delta));
     const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
     return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
 }
@@ -835,27 +773,25 @@ static Vector newton_step(World* w, State state, Vector end, Vector miss, Real s
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
     const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->scene.V, w->scene.V_y});
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
-    bool found = false;
-    Period* p = memory(sizeof *p);
     w->panels = 0.0L;
-    for (int k = 0; k < 60 && !found && w->panels <= MOST_OF_SETTLING; k++) {
+    for (int k = 0; k < 60 && w->panels <= MOST_OF_SETTLING; k++) {
         const March march = march_from(w, *state);
-        const Vector miss = plus(march.delta, -1.0L, state->delta);
-        *mean = scaled(w->scene.f, march.sums.impulse);
+        const Vector miss = plus(march.state.delta, -1.0L, state->delta);
         if (w->elastic && !march.slipped) { // it drifts until it slips
             Sums unused = {0};
-            *p = (Period){.world = *w, .unit = unit};
-            state->delta =
-                after_untouched(p, state->delta, count_untouched(p, state->delta, INFINITY), &unused);
+            Period p = {.world = *w, .unit = unit};
+            pass_untouched(&p, state, INFINITY, &unused);
             continue;
         }
-        const Vector newton = newton_step(w, *state, march.delta, miss, step);
-        found = length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit);
+        const Vector newton = newton_step(w, *state, march.state.delta, miss, step);
+        if (length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
+            *mean = scaled(w->scene.f, march.sums.impulse);
+            return true;
+        }
         const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
-        state->delta = found ? state->delta : plus(state->delta, 1.0L, plain ? miss : newton);
+        state->delta = plus(state->delta, 1.0L, plain ? miss : newton);
     }
-    free(p);
-    return found;
+    return false;
 }
 
 // To the periodic state of held inputs, w of one period, or to sliding for ever; the mean force.
@@ -863,12 +799,11 @@ static bool settle(World* w, State* state, Vector* mean) {
     const ReferenceScene* s = &w->scene;
     if (vibrates(s) || is_open(w, 0.0L) || s->law == LAW_COULOMB) {
         Sums sums = {0};
-        const bool drifts = s->V != 0.0 || s->V_y != 0.0;
-        const bool one_state = !w->elastic || (drifts && w->excess == 0.0L);
-        return go_periods(w, state, INFINITY, one_state ? CYCLE_BEFORE_NEWTON : MOST_CYCLE, &sums, mean) ||
-               (one_state && settle_by_newton(w, state, mean));
+        const bool drifts = s->V != 0.0 || s->V_y != 0.0, swings = s->V_1 != 0.0 || s->V_2 != 0.0;
+        const bool one_state = w->elastic ? drifts && w->excess == 0.0L : drifts || swings;
+        return (one_state && settle_by_newton(w, state, mean)) || go_periods(w, state, INFINITY, &sums, mean);
     }
-    const At at = scene_at(w, 0.0L, false);
+    const At at = scene_at(w, 0.0L);
     if (length_of(at.V) > 0.0L) {
         *state = (State){along(at.V, at.g / at.sigma), has_static(w)};
     }
@@ -885,17 +820,14 @@ static Vector force_at(const World* w, Real t, State state) {
     const ReferenceScene* s = &w->scene;
     World there = *w;
     there.open = is_open(w, t);
-    const At at = scene_at(&there, t, true);
+    const At at = scene_at(&there, t);
     if (s->law == LAW_COULOMB || there.open) {
         return plus(along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L), s->sigma_2, at.V);
     }
-    Vector rate = plus(at.V, -relaxation(w, &at), state.delta);
-    const bool may_slip = w->bounded && (state.broke || !has_static(w));
-    if (may_slip && length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
-        outward(w, &at, state.delta) > 0.0L) {
-        const Vector n = along(state.delta, 1.0L), across = {-n.y, n.x};
-        rate = plus(scaled(bound_rate(w, &at, false), n), dot(at.V, across), across);
-    }
+    const bool slips = w->bounded && (state.broke || !has_static(w)) &&
+                       length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
+                       outward(w, &at, state.delta) > 0.0L;
+    const Vector rate = rate_of(w, &at, state.delta, slips);
     return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
 }
 
@@ -913,12 +845,12 @@ static bool advance(World* w, State* state, Sums* sums) {
         Vector unused;
         period.h = 1.0L / s->f;
         const Real n = floorl(w->h * s->f);
-        known = go_periods(&period, state, n, MOST_CYCLE, sums, &unused);
+        known = go_periods(&period, state, n, sums, &unused);
         rest.h = w->h - n / s->f;
     }
     const March march = march_from(&rest, *state);
     add_times(sums, &march.sums, 1.0L);
-    *state = state_of(&march);
+    *state = march.state;
     return known && rest.panels <= MOST_PANELS;
 }
 
@@ -951,11 +883,11 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
 }
 
 bool reference_settled_force(const ReferenceScene* scene, double force[2], double* S) {
-    ReferenceScene still = *scene;
-    still.V_rate = still.V_y_rate = still.d_rate = still.E_rate = still.load_rate = 0.0;
-    still.start = 0.0;
-    World w = make_world(&still, 1.0L / still.f, 1);
-    State state = start_of(&still);
+    ReferenceScene from_0 = *scene;
+    from_0.start = 0.0;
+    const World now = make_world(&from_0, 0.0L, 1);
+    World w = held_world(&now, 1.0L / scene->f);
+    State state = start_of(scene);
     Vector mean = {0};
     w.S = largest_force(&w, state.delta);
     jump(NULL, &w, &state);

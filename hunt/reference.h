@@ -1,10 +1,9 @@
 // One communication step of a scene by brute force in extended precision: the reference that grades the FMU.
 //
 // Written from docs/physics.md alone; it shares no line with fmu_src. Velocity, deflection and force are vectors: a line is a
-// plane with nothing across. Time is cut at every reversal and extreme of the velocity. In between a bristle that sticks
-// is a closed form; Dahl's and LuGre's is solved by Radau collocation, and so is the angle of one that slips along its bound.
-// Panels are halved until one panel and its two halves agree, and until no bound can be met unseen between two nodes. Many
-// equal periods that touch no bound are taken as one map.
+// plane with nothing across. Time is cut at every reversal and extreme of the velocity. In between Radau collocation solves
+// the law of a bristle, or the angle of one that slips along its bound. Panels are halved until one panel and its two halves
+// agree, and until no bound can be met unseen between two nodes. Many equal periods that touch no bound are taken as one map.
 #ifndef HUNT_REFERENCE_H
 #define HUNT_REFERENCE_H
 
@@ -17,8 +16,7 @@ enum { CONTACT_ASPERITIES = 1, CONTACT_CONSTANT = 2, CONTACT_MINDLIN = 3 };
 enum { INPUT_SEPARATION = 1, INPUT_LOAD = 2 };
 enum { START_GIVEN = 1, START_SETTLED = 2 };
 
-// A scene and its step [start, start + h]. Doubles first, so that a table of names finds them all by their
-// index.
+// A scene and its step [start, start + h].
 typedef struct {
     double start;                              // s
     double h;                                  // s
@@ -35,8 +33,6 @@ typedef struct {
     int slips; // other than 0 if a bristle with static friction slips at the start
 } ReferenceScene;
 
-enum { REFERENCE_DOUBLES = 36 };
-
 // The results of a step that are graded: the force at the end, its mean, and at the start with the inputs held after a
 // jump [N]; work and heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at
 // the end.
@@ -51,11 +47,17 @@ typedef struct {
 } ReferenceStep;
 
 // before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for
-// smaller panels with more stages: for checks of the result itself.
+// smaller panels: for checks of the result itself.
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result);
 
 bool vibrates(const ReferenceScene* scene);
+
+// At the start of a scene, at the separation about which it vibrates. A load below 1e-99 N counts as that.
+typedef struct {
+    double d, limit, sigma; // m, N, N/m
+} ReferenceRest;
+ReferenceRest reference_rest(const ReferenceScene* scene);
 
 // F_t_settled and F_y_settled [N] of the scene's inputs, held, from its start; false if no periods were found that repeat. S is
 // that of a step of length 0.

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 static const double TURN = 6.283185307179586;
 static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the sequences in turn
@@ -44,7 +43,7 @@ static double top_speed(const ReferenceScene* s) {
     return fmax(fmax(hypot(s->V, s->V_y), fmax(s->V_1, s->V_2)), 1e-6);
 }
 
-static double velocity(Draw* draw, double V_1) {
+static double velocity_along(Draw* draw, double V_1) {
     const double kind = unit(draw);
     if (kind < 0.05) {
         return 0.0;
@@ -61,21 +60,25 @@ static double velocity(Draw* draw, double V_1) {
     return sign(draw) * log_between(draw, 1e-5, 10.0);
 }
 
-// A velocity in the plane for that size of the vibration: zeta, and any direction, or along or transverse.
-static void planar_velocity(Draw* draw, double swing, double* V, double* V_y) {
-    const double size = swing * log_between(draw, 1e-4, 10.0);
+// In the plane: zeta, and any direction, or along or transverse.
+static void velocity(Draw* draw, const ReferenceScene* s, double* V, double* V_y) {
+    if (s->V_2 == 0.0) {
+        *V = velocity_along(draw, s->V_1);
+        *V_y = 0.0;
+        return;
+    }
+    const double size = fmax(s->V_1, s->V_2) * log_between(draw, 1e-4, 10.0);
     const double angle = chance(draw, 0.5) ? TURN / 4.0 * pick(draw, 4) : between(draw, 0.0, TURN);
     *V = size * cos(angle) * (fabs(cos(angle)) > 1e-9);
     *V_y = size * sin(angle) * (fabs(sin(angle)) > 1e-9);
 }
 
 // A transverse vibration alone, or on a line, a circle or any ellipse.
-static void planar(Draw* draw, ReferenceScene* s) {
+static void planar_vibration(Draw* draw, ReferenceScene* s) {
     const double kind = unit(draw);
     s->V_2 = log_between(draw, 1e-3, 3.0);
     s->V_1 = kind < 0.3 ? 0.0 : s->V_2 * (kind < 0.5 ? 1.0 : log_between(draw, 1e-3, 10.0));
     s->phase_2 = kind < 0.5 ? TURN / 4.0 * sign(draw) : kind < 0.6 ? 0.0 : between(draw, -TURN, TURN);
-    planar_velocity(draw, fmax(s->V_1, s->V_2), &s->V, &s->V_y);
 }
 
 static void surfaces(Draw* draw, ReferenceScene* s) {
@@ -97,42 +100,14 @@ static void surfaces(Draw* draw, ReferenceScene* s) {
     }
 }
 
-// F_n e^(lambda d / R_q) [N], by its plastic part, which is nearly all of it: good enough to choose a scale.
-static double pressed(const ReferenceScene* s) {
-    const double p_m = (1.234 + 1.256 * s->nu) * (1.0 - s->nu * s->nu) * s->Y;
-    return s->eta * s->A_n * s->c * 2.0 * TURN / 2.0 * s->R * s->R_q * p_m / (s->lambda * s->lambda);
-}
-
-static double rest_separation(const ReferenceScene* s) {
-    return s->input == INPUT_LOAD ? s->R_q / s->lambda * log(pressed(s) / fmax(s->load, 1e-99)) : s->d;
-}
-
-static double limit_now(const ReferenceScene* s) {
-    const double force = pressed(s) * exp(-s->lambda * rest_separation(s) / s->R_q);
-    return s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
-}
-
-static double stiffness_now(const ReferenceScene* s) {
-    if (s->contact == CONTACT_CONSTANT) {
-        return s->contact_sigma;
-    }
-    const double d = rest_separation(s), e = exp(-s->lambda * d / s->R_q);
-    if (s->contact == CONTACT_ASPERITIES) {
-        const double area =
-            2.0 * s->c * TURN / 2.0 * s->eta * s->R * s->R_q * s->A_n / (s->lambda * s->lambda) * e;
-        return s->stiffnessScale * s->E * area * area / (d * d * d);
-    }
-    const double tangential = 2.0 * (1.0 - s->nu) / (2.0 - s->nu);
-    return s->stiffnessScale * s->eta * s->A_n * s->c * e * 2.0 * s->E * tangential * sqrt(s->R * s->R_q) *
-           0.443 * pow(2.0 / s->lambda, 1.5);
-}
-
 double scene_kappa(const ReferenceScene* s) {
-    return stiffness_now(s) * top_speed(s) / (TURN * s->f * fmax(limit_now(s), 1e-250));
+    const ReferenceRest rest = reference_rest(s);
+    return rest.sigma * top_speed(s) / (TURN * s->f * fmax(rest.limit, 1e-250));
 }
 
 double scene_start_over_limit(const ReferenceScene* s) {
-    return stiffness_now(s) * hypot(s->delta_0, s->delta_y_0) / fmax(limit_now(s), 1e-250);
+    const ReferenceRest rest = reference_rest(s);
+    return rest.sigma * hypot(s->delta_0, s->delta_y_0) / fmax(rest.limit, 1e-250);
 }
 
 double scene_gain(const ReferenceScene* s) {
@@ -140,8 +115,8 @@ double scene_gain(const ReferenceScene* s) {
     if (s->law != LAW_ELASTIC_PLASTIC || V_rate == 0.0) {
         return 0.0;
     }
-    const double D = limit_now(s) / stiffness_now(s);
-    return 2.0 * D * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
+    const ReferenceRest rest = reference_rest(s);
+    return 2.0 * rest.limit / rest.sigma * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
 }
 
 static void friction(Draw* draw, ReferenceScene* s) {
@@ -161,7 +136,7 @@ static void friction(Draw* draw, ReferenceScene* s) {
         s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
         s->V_S = top_speed(s) * log_between(draw, 1e-3, 10.0);
     }
-    const double damping = limit_now(s) / top_speed(s);
+    const double damping = reference_rest(s).limit / top_speed(s);
     if (s->law != LAW_COULOMB && chance(draw, 0.3)) {
         s->sigma_1 = damping * log_between(draw, 1e-4, 1.0);
     }
@@ -171,14 +146,12 @@ static void friction(Draw* draw, ReferenceScene* s) {
 }
 
 static double deflection(Draw* draw, const ReferenceScene* s) {
-    const double most = limit_now(s) / stiffness_now(s) * s->staticRatio;
-    const double kind = unit(draw);
-    if (kind < 0.4) {
-        return 0.0;
-    }
-    return most * (kind < 0.45  ? sign(draw)
-                   : kind < 0.6 ? sign(draw) * log_between(draw, 1.0, 100.0)
-                                : between(draw, -1.0, 1.0));
+    const ReferenceRest rest = reference_rest(s);
+    const double limit = rest.limit / rest.sigma, kind = unit(draw);
+    return kind < 0.4    ? 0.0
+           : kind < 0.45 ? limit * s->staticRatio * sign(draw)
+           : kind < 0.6  ? limit * sign(draw) * log_between(draw, 1.0, LARGEST_START)
+                         : limit * s->staticRatio * between(draw, -1.0, 1.0);
 }
 
 // The length of a step [s]. If inputs move, the reference goes through each period, so there are fewer
@@ -196,12 +169,18 @@ static ReferenceScene contact_drawn(Draw* draw, bool plane) {
     ReferenceScene s = start_values();
     s.f = log_between(draw, 1e2, 1e5);
     s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
-    s.V = velocity(draw, s.V_1);
     if (plane) {
-        planar(draw, &s);
+        planar_vibration(draw, &s);
     }
+    velocity(draw, &s, &s.V, &s.V_y);
     surfaces(draw, &s);
     friction(draw, &s);
+    if (s.law != LAW_COULOMB) {
+        const double delta = deflection(draw, &s), angle = plane ? between(draw, 0.0, TURN) : 0.0;
+        s.delta_0 = delta * cos(angle);
+        s.delta_y_0 = delta * sin(angle);
+    }
+    s.initial = chance(draw, 0.15) ? START_SETTLED : START_GIVEN;
     if (chance(draw, 0.6)) {
         s.start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e6 : 1e3) / s.f;
     }
@@ -215,17 +194,13 @@ static ReferenceScene contact_drawn(Draw* draw, bool plane) {
 static void rates(Draw* draw, ReferenceScene* s) {
     const double top = top_speed(s);
     if (chance(draw, 0.6)) {
-        double to = velocity(draw, s->V_1);
-        if (chance(draw, 0.3)) { // V passes zero in the step, or just misses it
+        double to, to_y;
+        velocity(draw, s, &to, &to_y);
+        if (s->V_2 == 0.0 && chance(draw, 0.3)) { // V passes zero in the step, or just misses it
             to = -s->V * log_between(draw, 1e-9, 10.0);
         }
         s->V_rate = fmax(-3.0 * top, fmin(3.0 * top, to - s->V)) / s->h;
-    }
-    if (s->V_2 != 0.0 && chance(draw, 0.6)) {
-        double to, to_y;
-        planar_velocity(draw, fmax(s->V_1, s->V_2), &to, &to_y);
-        s->V_rate = (to - s->V) / s->h;
-        s->V_y_rate = (to_y - s->V_y) / s->h;
+        s->V_y_rate = fmax(-3.0 * top, fmin(3.0 * top, to_y - s->V_y)) / s->h;
     }
     if (chance(draw, 0.5)) {
         const double room = s->d - s->a_d, most = chance(draw, 0.2) ? 18.0 : 2.0;
@@ -266,11 +241,7 @@ static void step_at_random(Draw* draw, ReferenceScene* s) {
     scale(draw, &s->V_1, 3.0);
     scale(draw, &s->V_2, 3.0);
     if (chance(draw, 0.3)) {
-        if (s->V_2 != 0.0) {
-            planar_velocity(draw, fmax(s->V_1, s->V_2), &s->V, &s->V_y);
-        } else {
-            s->V = velocity(draw, s->V_1);
-        }
+        velocity(draw, s, &s->V, &s->V_y);
     }
     scale(draw, &s->d, 1.1);
     s->d = fmax(s->d, 1.1 * s->a_d);
@@ -295,34 +266,32 @@ static void step_at_random(Draw* draw, ReferenceScene* s) {
 // Steps of signals as users have them
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Shares of the drawn load, velocity and amplitudes at the ends of steps. A load of 0 is an open contact.
+// Shares of the drawn load, velocity and amplitudes at the ends of steps; all 1 if there are none. A load of 0 is an open
+// contact.
 typedef struct {
-    double load[MOST_STEPS], V[MOST_STEPS], vibration[MOST_STEPS];
+    const double *load, *V, *vibration;
 } Signal;
 
+// clang-format off
+#define SHARES(...) (const double[MOST_STEPS]){__VA_ARGS__}
 static const Signal SIGNALS[] = {
     // a tool approaches, presses, slides, lifts off, and is set down again
-    {{0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1}, {0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.load = SHARES(0, 0, 0.3, 1, 1, 1, 0.3, 0, 0, 1), .V = SHARES(0, 0, 0, 0, 0.5, 1, 1, 1, 0, 0)},
     // a bounce
-    {{0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.load = SHARES(0.5, 1, 0.6, 0, 0, 0.4, 0.2, 0, 0.1, 0)},
     // a mass on a belt sticks and slips
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.V = SHARES(0, 0, 0.01, 0.4, 1, 0.7, 0.1, 0.003, 0, 0)},
     // a sweep of V, and of the load
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
-    {{0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-     {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.V = SHARES(-1, -0.6, -0.3, -0.1, -0.01, 0.01, 0.1, 0.3, 0.6, 1)},
+    {.load = SHARES(0.01, 0.03, 0.1, 0.3, 1, 1, 0.6, 0.3, 0.1, 0.01)},
     // the vibration is switched on and off; a contact that is held; stop and go
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0}},
-    {{1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 1, 1, 0, 0, 1, 1}},
-    {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, {1, 1, 0, 0, 0, 1, 0, -1, 0, 1}, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+    {.vibration = SHARES(0, 0, 1, 1, 1, 0, 0, 0.5, 1, 0)},
+    {.load = SHARES(1, 1, 1, 1, 0.7, 0.7, 1, 1, 1, 1), .V = SHARES(0), .vibration = SHARES(1, 1, 1, 1, 1, 1, 0, 0, 1, 1)},
+    {.V = SHARES(1, 1, 0, 0, 0, 1, 0, -1, 0, 1)},
 };
+// clang-format on
+
+static double share(const double* of, int k) { return of ? of[k] : 1.0; }
 
 // The load of a share, or the separation that gives it.
 static void press(Draw* draw, const ReferenceScene* full, double share, double* load, double* d) {
@@ -335,18 +304,18 @@ static void press(Draw* draw, const ReferenceScene* full, double share, double* 
 static void step_of_signal(Draw* draw, const Signal* signal, int k, const ReferenceScene* full, bool linear,
                            ReferenceScene* s) {
     double load, d;
-    press(draw, full, signal->load[k], &load, &d);
+    press(draw, full, share(signal->load, k), &load, &d);
     const bool moves = linear && k > 0;
-    const double from =
-        signal->V[moves ? k - 1 : k]; // as the user samples it, not as the last step's rate left it
-    s->V_1 = full->V_1 * signal->vibration[k];
-    s->V_2 = full->V_2 * signal->vibration[k];
-    s->a_d = full->a_d * signal->vibration[k];
+    const double from = share(signal->V, moves ? k - 1 : k); // as the user samples it
+    const double vibration = share(signal->vibration, k);
+    s->V_1 = full->V_1 * vibration;
+    s->V_2 = full->V_2 * vibration;
+    s->a_d = full->a_d * vibration;
     s->V = full->V * from;
     s->V_y = full->V_y * from;
     if (moves) {
-        s->V_rate = (full->V * signal->V[k] - s->V) / s->h;
-        s->V_y_rate = (full->V_y * signal->V[k] - s->V_y) / s->h;
+        s->V_rate = (full->V * share(signal->V, k) - s->V) / s->h;
+        s->V_y_rate = (full->V_y * share(signal->V, k) - s->V_y) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;
     } else {
@@ -364,12 +333,16 @@ static bool is_in_domain(const ReferenceScene* s) {
     const double E = s->E_rate == 0.0 ? 1.0 : end.E / s->E;
     return s->d > s->a_d && end.d > s->a_d && E > 0.1 && E < 10.0 &&
            !(vibrates(s) && s->law != LAW_COULOMB && fmax(scene_kappa(s), scene_kappa(&end)) > MOST_KAPPA) &&
-           (s->input == INPUT_SEPARATION || fmax(s->load, end.load) < 0.02 * pressed(s));
+           (s->input == INPUT_SEPARATION ||
+            fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
 
-static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
-    Sequence sequence = {.tolerance = tolerance, .method = 1};
-    const ReferenceScene full = contact_drawn(&draw, plane);
+Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
+    Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
+    next(&draw);
+    draw.state ^= next(&draw);
+    Sequence sequence = {.tolerance = TOLERANCES[number % 5], .method = 1};
+    ReferenceScene full = contact_drawn(&draw, plane);
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
@@ -377,47 +350,23 @@ static Sequence sequence_of(Draw draw, double tolerance, bool plane) {
                         : !linear ? MOST_PERIODS
                         : of_user ? MOST_MOVING / MOST_STEPS
                                   : MOST_MOVING;
-    const double usual_h = length(&draw, &full, most);
-    ReferenceScene before = full;
+    full.h = length(&draw, &full, most);
     for (int k = 0; k < wanted; k++) {
-        ReferenceScene usual = k == 0 ? full : scene_after(&before), s = usual;
+        ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
         if (of_user) {
-            s.h = usual_h;
             step_of_signal(&draw, signal, k, &full, linear, &s);
             if (tunes && k > 0) {
                 change_parameters(&draw, &s);
             }
         } else if (k > 0) {
             step_at_random(&draw, &s);
-        } else {
-            s.h = usual_h;
-            if (linear) {
-                rates(&draw, &s);
-            }
-        }
-        if (k == 0) {
-            s.delta_0 =
-                s.law == LAW_COULOMB || (of_user && chance(&draw, 0.7)) ? 0.0 : deflection(&draw, &full);
-            if (plane) {
-                const double angle = between(&draw, 0.0, TURN);
-                s.delta_y_0 = s.delta_0 * sin(angle);
-                s.delta_0 *= cos(angle);
-            }
-            s.initial = chance(&draw, 0.15) ? START_SETTLED : START_GIVEN;
+        } else if (linear) {
+            rates(&draw, &s);
         }
         if (!is_in_domain(&s)) {
             break;
         }
-        sequence.step[sequence.steps] = k == 0 ? s : changes_between(&usual, &s);
-        sequence.steps++;
-        before = s;
+        sequence.step[sequence.steps++] = s;
     }
     return sequence;
-}
-
-Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
-    Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
-    next(&draw);
-    draw.state ^= next(&draw);
-    return sequence_of(draw, TOLERANCES[number % 5], plane);
 }

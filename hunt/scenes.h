@@ -9,7 +9,7 @@
 // A sequence, which depends only on the seed and the number. plane: with a transverse vibration.
 Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane);
 
-// sigma V / (2 pi f limit), by rules of thumb, at the scene's start.
+// sigma V / (2 pi f limit) at the scene's start, without its vibration.
 double scene_kappa(const ReferenceScene* scene);
 
 // The factor by which a break-away that sticks at once multiplies an error of the deflection

@@ -1,6 +1,5 @@
 #include "sequence.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +23,12 @@ typedef struct {
 
 #define NUMBER(name, start_value) {#name, offsetof(ReferenceScene, name), start_value, NULL}
 // clang-format off
-static const Field TABLE[FIELDS] = {
+static const Field TABLE[] = {
+    {"law", offsetof(ReferenceScene, law), LAW_DAHL, LAW_NAMES},
+    {"limit", offsetof(ReferenceScene, limit), LIMIT_CONSTANT, LIMITS},
+    {"contact", offsetof(ReferenceScene, contact), CONTACT_ASPERITIES, CONTACTS},
+    {"input", offsetof(ReferenceScene, input), INPUT_SEPARATION, INPUTS},
+    {"initial", offsetof(ReferenceScene, initial), START_GIVEN, STARTS},
     NUMBER(start, 0.0), NUMBER(h, 1e-4), NUMBER(V, 0.005), NUMBER(d, 14e-6), NUMBER(E, 58.556936170e9),
     NUMBER(load, 312.44), NUMBER(V_rate, 0.0), NUMBER(d_rate, 0.0), NUMBER(E_rate, 0.0), NUMBER(load_rate, 0.0),
     NUMBER(f, 20e3), NUMBER(V_1, 0.0), NUMBER(a_d, 0.0), NUMBER(phase_d, 0.0), NUMBER(V_y, 0.0), NUMBER(V_y_rate, 0.0),
@@ -32,23 +36,19 @@ static const Field TABLE[FIELDS] = {
     NUMBER(staticRatio, 1.0), NUMBER(V_S, 0.01), NUMBER(sigma_1, 0.0), NUMBER(sigma_2, 0.0), NUMBER(delta_0, 0.0),
     NUMBER(contact_sigma, 2.5e6), NUMBER(stiffnessScale, 1.0), NUMBER(R_q, 6e-6), NUMBER(R, 1.7e-6), NUMBER(eta, 47e9),
     NUMBER(A_n, 1e-4), NUMBER(nu, 0.33), NUMBER(Y, 410e6), NUMBER(c, 17.0), NUMBER(lambda, 3.0),
-    {"law", offsetof(ReferenceScene, law), LAW_DAHL, LAW_NAMES},
-    {"limit", offsetof(ReferenceScene, limit), LIMIT_CONSTANT, LIMITS},
-    {"contact", offsetof(ReferenceScene, contact), CONTACT_ASPERITIES, CONTACTS},
-    {"input", offsetof(ReferenceScene, input), INPUT_SEPARATION, INPUTS},
-    {"initial", offsetof(ReferenceScene, initial), START_GIVEN, STARTS},
 };
 // clang-format on
 #undef NUMBER
+enum { FIELDS = sizeof TABLE / sizeof *TABLE };
 
-double scene_get(const ReferenceScene* scene, int field) {
-    const void* place = (const char*)scene + TABLE[field].offset;
-    return TABLE[field].choices ? (double)*(const int*)place : *(const double*)place;
+static double get(const ReferenceScene* scene, const Field* field) {
+    const void* place = (const char*)scene + field->offset;
+    return field->choices ? (double)*(const int*)place : *(const double*)place;
 }
 
-void scene_set(ReferenceScene* scene, int field, double value) {
-    void* place = (char*)scene + TABLE[field].offset;
-    if (TABLE[field].choices) {
+static void set(ReferenceScene* scene, const Field* field, double value) {
+    void* place = (char*)scene + field->offset;
+    if (field->choices) {
         *(int*)place = (int)value;
     } else {
         *(double*)place = value;
@@ -58,13 +58,10 @@ void scene_set(ReferenceScene* scene, int field, double value) {
 ReferenceScene start_values(void) {
     ReferenceScene scene = {0};
     for (int k = 0; k < FIELDS; k++) {
-        scene_set(&scene, k, TABLE[k].start_value);
+        set(&scene, &TABLE[k], TABLE[k].start_value);
     }
     return scene;
 }
-
-// The same number, or both none.
-static bool are_same(double a, double b) { return a == b || (isnan(a) && isnan(b)); }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Steps
@@ -83,34 +80,6 @@ ReferenceScene scene_after(const ReferenceScene* before) {
     return s;
 }
 
-ReferenceScene changes_between(const ReferenceScene* left, const ReferenceScene* scene) {
-    ReferenceScene changes = {0};
-    for (int k = 0; k < REFERENCE_DOUBLES; k++) {
-        const double value = scene_get(scene, k);
-        scene_set(&changes, k, are_same(value, scene_get(left, k)) ? NAN : value);
-    }
-    return changes;
-}
-
-static ReferenceScene no_change(void) {
-    const ReferenceScene any = {0};
-    return changes_between(&any, &any);
-}
-
-ReferenceScene sequence_scene(const Sequence* sequence, int k, const ReferenceScene* before) {
-    if (k == 0) {
-        return sequence->step[0];
-    }
-    ReferenceScene scene = scene_after(before);
-    for (int i = 0; i < REFERENCE_DOUBLES; i++) {
-        const double value = scene_get(&sequence->step[k], i);
-        scene_set(&scene, i, isnan(value) ? scene_get(&scene, i) : value);
-    }
-    return scene;
-}
-
-static ReferenceScene usual_step(int step) { return step == 0 ? start_values() : no_change(); }
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Text
 // ---------------------------------------------------------------------------------------------------------------------
@@ -121,12 +90,12 @@ void sequence_text(const Sequence* sequence, char* text, size_t size) {
         length += (size_t)snprintf(text + length, size - length, "method=%d ", sequence->method);
     }
     for (int step = 0; step < sequence->steps; step++) {
-        const ReferenceScene usual = usual_step(step);
+        const ReferenceScene usual = step == 0 ? start_values() : scene_after(&sequence->step[step - 1]);
         length += (size_t)snprintf(text + length, size - length, step == 0 ? "" : "then ");
         for (int k = 0; k < FIELDS && length + 100 < size; k++) {
-            const int field = (k + LAW_FIELD) % FIELDS; // the enumerations first
-            const double value = scene_get(&sequence->step[step], field);
-            if (are_same(value, scene_get(&usual, field))) {
+            const Field* field = &TABLE[k];
+            const double value = get(&sequence->step[step], field);
+            if (value == get(&usual, field)) {
                 continue;
             }
             char word[40];
@@ -136,35 +105,31 @@ void sequence_text(const Sequence* sequence, char* text, size_t size) {
                     break;
                 }
             }
-            const char* const* choices = TABLE[field].choices;
-            length += (size_t)snprintf(text + length, size - length, "%s=%s ", TABLE[field].name,
-                                       choices ? choices[(int)value - 1] : word);
+            length += (size_t)snprintf(text + length, size - length, "%s=%s ", field->name,
+                                       field->choices ? field->choices[(int)value - 1] : word);
         }
     }
 }
 
-// Sets the field that the word name=value names.
+// Sets the field that the word name=value names. Returns false if there is none, or no such value.
 static bool read_field(ReferenceScene* scene, const char* word) {
     const size_t name = strcspn(word, "=");
     const char* value = word + name + (word[name] == '=');
-    for (int k = 0; k < FIELDS; k++) {
-        if (strlen(TABLE[k].name) != name || strncmp(word, TABLE[k].name, name) != 0) {
+    for (const Field* field = TABLE; field < TABLE + FIELDS; field++) {
+        if (strlen(field->name) != name || strncmp(word, field->name, name) != 0) {
             continue;
         }
-        char* end;
-        const char* const* choices = TABLE[k].choices;
-        for (int j = 0; choices && choices[j]; j++) {
-            if (strcmp(value, choices[j]) == 0) {
-                scene_set(scene, k, j + 1);
+        for (int j = 0; field->choices && field->choices[j]; j++) {
+            if (strcmp(value, field->choices[j]) == 0) {
+                set(scene, field, j + 1);
                 return true;
             }
         }
+        char* end;
         const double number = strtod(value, &end);
-        if (choices || end == value || *end) {
-            return false;
-        }
-        scene_set(scene, k, number);
-        return true;
+        const bool is_number = !field->choices && end != value && *end == '\0';
+        set(scene, field, is_number ? number : 1.0);
+        return is_number;
     }
     return false;
 }
@@ -176,7 +141,8 @@ bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t siz
     for (char* word = strtok(copy, " \n"); word != NULL; word = strtok(NULL, " \n")) {
         snprintf(wrong, size, "%s", word);
         if (strcmp(word, "then") == 0 && sequence->steps < MOST_STEPS) {
-            sequence->step[sequence->steps++] = no_change();
+            sequence->step[sequence->steps] = scene_after(&sequence->step[sequence->steps - 1]);
+            sequence->steps++;
         } else if (sscanf(word, "method=%d", &sequence->method) != 1 &&
                    sscanf(word, "tolerance=%lf", &sequence->tolerance) != 1 &&
                    !read_field(&sequence->step[sequence->steps - 1], word)) {
@@ -190,46 +156,42 @@ bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t siz
 // Plainer
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Takes the plainer sequence if it still shows the miss.
-static bool keep(Sequence* plain, const Sequence* plainer, StillShows* shows) {
-    const bool kept = shows(plainer);
-    *plain = kept ? *plainer : *plain;
-    return kept;
-}
-
-// Tries the start value, then ever more digits.
-static bool simplify_field(Sequence* plain, int step, int field, StillShows* shows) {
-    static const int DIGITS[] = {0, 1, 2, 3, 5, 8, 12};
-    const ReferenceScene base = usual_step(step);
-    const double value = scene_get(&plain->step[step], field), usual = scene_get(&base, field);
-    const int tries = field < REFERENCE_DOUBLES ? sizeof DIGITS / sizeof *DIGITS : 1;
-    for (int k = 0; k < tries && !are_same(value, usual); k++) {
-        char text[40];
-        snprintf(text, sizeof text, "%.*g", DIGITS[k], value);
-        const double plainer = k == 0 ? usual : strtod(text, NULL);
-        Sequence changed = *plain;
-        scene_set(&changed.step[step], field, plainer);
-        if (plainer == value) { // it has so few digits already
-            return false;
-        }
-        if (keep(plain, &changed, shows)) {
-            return true;
-        }
+// Puts another word, or none, in place of a part of the text, if it still shows the miss.
+static bool replace(char* text, size_t begin, size_t length, const char* word, StillShows* shows) {
+    char plainer[SEQUENCE_TEXT], wrong[100];
+    Sequence sequence;
+    snprintf(plainer, sizeof plainer, "%.*s%s%s", (int)begin, text, word, text + begin + length);
+    if (!sequence_read(plainer, &sequence, wrong, sizeof wrong) || !shows(&sequence)) {
+        return false;
     }
-    return false;
+    strcpy(text, plainer);
+    return true;
 }
 
-Sequence minimized(const Sequence* sequence, StillShows* shows) {
-    Sequence plain = *sequence;
+void make_plain(char* text, StillShows* shows) {
+    static const int DIGITS[] = {1, 2, 3, 5, 8, 12};
     for (bool changed = true; changed;) {
-        Sequence fewer = plain;
-        fewer.steps--;
-        changed = fewer.steps > 0 && keep(&plain, &fewer, shows);
-        for (int step = 0; step < plain.steps; step++) {
-            for (int k = 0; k < (step == 0 ? FIELDS : LAW_FIELD); k++) {
-                changed = (k != LAW_FIELD && simplify_field(&plain, step, k, shows)) || changed;
+        changed = false;
+        size_t begin = strcspn(text, " ") + 1; // after the tolerance
+        while (text[begin]) {
+            const size_t length = strcspn(text + begin, " ") + 1;
+            if (replace(text, begin, length, "", shows)) {
+                changed = true;
+                continue;
             }
+            char word[100];
+            snprintf(word, sizeof word, "%.*s", (int)length, text + begin);
+            int name;
+            double value;
+            const bool is_number = sscanf(word, "%*[^=]=%n%lf", &name, &value) == 1;
+            for (size_t k = 0; is_number && k < sizeof DIGITS / sizeof *DIGITS; k++) {
+                snprintf(word + name, sizeof word - (size_t)name, "%.*g ", DIGITS[k], value);
+                if (strlen(word) < length && replace(text, begin, length, word, shows)) {
+                    changed = true;
+                    break;
+                }
+            }
+            begin += strcspn(text + begin, " ") + 1;
         }
     }
-    return plain;
 }

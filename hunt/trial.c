@@ -2,8 +2,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "scenes.h"
 
@@ -14,29 +12,18 @@ static const double ROUNDING = 1e-11; // of S, beside the tolerance
 static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
 static const double LEAST_S = 1e-20;  // N, and J: S and the path are 0 if nothing acts
 
-// The results that the reference allows.
-typedef struct {
-    double least[RESULTS], largest[RESULTS];
-} Range;
-
-static void include(Range* range, const ReferenceStep* step) {
+// Widens the results that the reference allows, the least and the largest.
+static void include(ReferenceStep range[2], const ReferenceStep* step) {
     for (int k = 0; k < RESULTS; k++) {
-        range->least[k] = fmin(range->least[k], step->result[k]);
-        range->largest[k] = fmax(range->largest[k], step->result[k]);
+        range[0].result[k] = fmin(range[0].result[k], step->result[k]);
+        range[1].result[k] = fmax(range[1].result[k], step->result[k]);
     }
-}
-
-static Range range_of(const ReferenceStep* step) {
-    Range range;
-    memcpy(range.least, step->result, sizeof range.least);
-    memcpy(range.largest, step->result, sizeof range.largest);
-    return range;
 }
 
 static double over(double error, double allowed) { return isnan(error) ? INFINITY : fabs(error) / allowed; }
 
 // The largest error of a step outside the range.
-static Verdict verdict_outside(const TrialStep* taken, const Range* range, double tolerance) {
+static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range[2], double tolerance) {
     const ReferenceStep* truth = &taken->truth;
     const FmuStep* step = &taken->step;
     const double S = fmax(truth->S, LEAST_S);
@@ -49,7 +36,7 @@ static Verdict verdict_outside(const TrialStep* taken, const Range* range, doubl
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k < RESULTS; k++) {
         const double found = step->result[k];
-        const double off = found - fmin(fmax(found, range->least[k]), range->largest[k]);
+        const double off = found - fmin(fmax(found, range[0].result[k]), range[1].result[k]);
         const double allowed = k == SLIPS_AT_END ? 0.0 : k == W_F || k == Q_F ? energy : force;
         const double ratio = off == 0.0 ? 0.0 : over(off, allowed);
         worst = ratio > worst.ratio ? (Verdict){ratio, k} : worst;
@@ -82,7 +69,7 @@ static bool may_be_chaotic(const ReferenceScene* scene) { return scene_gain(scen
 // deflection that differs by 2e-10 of itself. If the motion may be chaotic, the deflection differs by the tolerance, and
 // the range of the results grows by itself to both sides.
 static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep* taken, double tolerance) {
-    Range range = range_of(&taken->truth);
+    ReferenceStep range[2] = {taken->truth, taken->truth};
     const bool grows = may_be_chaotic(&taken->scene);
     const double of_delta = grows ? fmax(tolerance, 2e-10) : 2e-10;
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
@@ -99,30 +86,29 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
         if (moved.h > 0.0) {
             ReferenceStep found;
             step_of_reference(before ? &past : NULL, &moved, &taken->step, &found);
-            include(&range, &found);
+            include(range, &found);
         }
     }
     for (int k = 0; k < RESULTS && grows; k++) {
-        const double width = range.largest[k] - range.least[k];
-        range.least[k] -= width;
-        range.largest[k] += width;
+        const double width = range[1].result[k] - range[0].result[k];
+        range[0].result[k] -= width;
+        range[1].result[k] += width;
     }
-    return verdict_outside(taken, &range, tolerance);
+    return verdict_outside(taken, range, tolerance);
 }
 
 // The error of F_t_settled over the allowed error, -1 if the reference does not know it.
 static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
     ReferenceScene still = taken->scene;
     double *found = taken->settled[0], *truth = taken->settled[1], S, ratio = -1.0;
-    found[0] = found[1] = truth[0] = truth[1] = NAN;
     still.initial = START_GIVEN;
-    FmuRun* run = fmu_open(&still, sequence->method, sequence->tolerance);
-    if (fmu_settled_force(run, found) && reference_settled_force(&still, truth, &S)) {
-        const double off = fmax(fabs(found[0] - truth[0]), fabs(found[1] - truth[1]));
-        ratio = isnan(found[0] + found[1]) ? INFINITY
-                                           : over(off, (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S));
+    FmuRun run;
+    fmu_open(&run, &still, sequence->method, sequence->tolerance);
+    if (fmu_settled_force(&run, found) && reference_settled_force(&still, truth, &S)) {
+        const double allowed = (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S);
+        ratio = fmax(over(found[0] - truth[0], allowed), over(found[1] - truth[1], allowed));
     }
-    fmu_close(run);
+    fmu_close(&run);
     return ratio;
 }
 
@@ -151,8 +137,8 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
     if (!taken->truth.known) {
         return false;
     }
-    const Range truth = range_of(&taken->truth);
-    Verdict verdict = verdict_outside(taken, &truth, sequence->tolerance);
+    const ReferenceStep truth[2] = {taken->truth, taken->truth};
+    Verdict verdict = verdict_outside(taken, truth, sequence->tolerance);
     if (!(verdict.ratio <= 1.0)) {
         verdict = verdict_by_rounding(before, taken, sequence->tolerance);
     }
@@ -167,25 +153,26 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
 
 void trial_run(Trial* trial, const Sequence* sequence) {
     *trial = (Trial){0};
-    FmuRun* run = fmu_open(&sequence->step[0], sequence->method, sequence->tolerance);
-    ReferenceScene before = sequence->step[0];
+    FmuRun run;
+    fmu_open(&run, &sequence->step[0], sequence->method, sequence->tolerance);
     for (int k = 0; k < sequence->steps; k++) {
         TrialStep* taken = &trial->taken[k];
-        taken->scene = sequence_scene(sequence, k, &before);
-        if (!fmu_step(run, &taken->scene, &taken->step)) {
+        ReferenceScene before;
+        taken->scene = sequence->step[k];
+        if (!fmu_step(&run, &taken->scene, &taken->step)) {
             trial->refused = true;
             break;
         }
         if (k > 0) {
-            before = scene_after(&before);
+            before = scene_after(&trial->taken[k - 1].scene);
             taken->scene.delta_0 = taken->step.delta_start;
             taken->scene.delta_y_0 = taken->step.delta_y_start;
             taken->scene.slips = taken->step.slips_start;
         }
         trial->unknown += !grade(taken, k == 0 ? NULL : &before, sequence);
+        trial->worst = fmax(trial->worst, taken->verdict.ratio);
         trial->steps++;
-        before = taken->scene;
     }
-    snprintf(trial->message, sizeof trial->message, "%s", fmu_message(run));
-    fmu_close(run);
+    trial->message = run.message;
+    fmu_close(&run);
 }

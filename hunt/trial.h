@@ -43,8 +43,9 @@ typedef struct {
 
 typedef struct {
     int steps, unknown; // the number of steps taken, and of steps that are not judged
+    double worst;       // of the ratios
     bool refused;       // whether the step after them was refused
-    char message[320];  // why
+    FcMessage message;  // why
     TrialStep taken[MOST_STEPS];
 } Trial;
 

@@ -19,7 +19,7 @@ from workshop.build import build_fmu
 from workshop.project import ROOT
 
 parser = argparse.ArgumentParser(
-    description="Mean friction over stiffness and velocity, a million scenarios."
+    description="Mean friction against stiffness and velocity, a million scenarios."
 )
 parser.add_argument("--points", type=int, default=1000, help="along each axis of the map (1000)")
 parser.add_argument("--quick", action="store_true", help="60 points along each axis")

@@ -1,7 +1,7 @@
 """An ultrasonic motor: the contact point of a stator moves on an ellipse and drives a slider.
 
-Its force over speed, its stall force and no-load speed over the stiffness of the contact, and one run with a
-slider of 0.2 kg. Needs the package alone: python ultrasonic_motor.py
+Its force against speed, its stall force and no-load speed against the stiffness of the contact, and one run
+with a slider of 0.2 kg. Needs the package alone: python ultrasonic_motor.py
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def draw(path: Path) -> None:
 
 
 def table() -> str:
-    """Stall force, no-load speed, largest output and its efficiency, over the stiffness."""
+    """Stall force, no-load speed, largest output and its efficiency, against the stiffness."""
     rows = [
         "| κ | stiffness [N/µm] | stall force [N] | no-load speed [mm/s] | maximum output [W] "
         "| efficiency [%] |",

@@ -48,9 +48,10 @@ static const double FC_SHARE_OF_SETTLED_PANEL = 0.3;
 static const double FC_SHARE_OF_CURVE_LEFT = 0.05;
 
 // The march. FREE: a free motion between meetings. FORMULA: the estimate of a quadrature of a formula, which
-// is 10 to 1e5 times too large. EVENT: a bristle that passes its bound by less does not meet it. CUT: the
-// distance to the bound at the cut of a panel. GRAZE: the error between the nodes of a panel that may graze
-// the bound.
+// is 10 to 1e5 times too large. EVENT: a bristle that passes its bound by less does not meet it; along a
+// line in ElasticPlastic, which meets its bound to rounding, the error of a meeting and of the end of a slip.
+// CUT: the distance to the bound at the cut of a panel. GRAZE: the error between the nodes of a panel
+// that may graze the bound.
 static const double FC_SHARE_OF_FREE = 0.5;
 static const double FC_SHARE_OF_FORMULA = 3.0;
 static const double FC_SHARE_OF_EVENT = 0.02;

@@ -116,7 +116,7 @@ class FrictionLaw:
             yield
 
     def plot(self, V: npt.ArrayLike | None = None, **inputs: float) -> Figure:
-        """A figure of the force and of its derivative over the velocity. Needs frictioncontact[plot].
+        """A figure of the force and of its derivative against the velocity. Needs frictioncontact[plot].
 
         V         velocities, m/s; if not given from 0 to 1.5 times the vibration's amplitude, or 10 times V_S
         inputs    as in a call, numbers

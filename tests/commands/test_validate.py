@@ -40,10 +40,10 @@ def test_the_dry_rows(fmu_path: Path) -> None:
             assert fit.least == pytest.approx(stiff, rel=1e-3)
             assert fit.most == pytest.approx(soft, rel=1e-3)
             assert np.all(data.vibrated > 3.7 * fit.most)
-    assert f"{1e-6 * fit.stiffness:.2f} N/µm" in PAGE
+    assert f"ElasticPlastic, {1e-6 * fit.stiffness:.3f} N/µm" in PAGE
     assert f"within a factor of {fit.factor:.2f}" in PAGE
     assert f"{data.static_without - fit.stiffness * data.amplitude:.2f} N for" in PAGE
-    assert f"yields by F_C/k = {1e6 * float(data.without[0]) / fit.stiffness:.2f} µm" in PAGE
+    assert f"deflection F_C/k = {1e6 * float(data.without[0]) / fit.stiffness:.2f} µm" in PAGE
     misfit = measurements.rms(fit.model - data.vibrated)
     assert f"{100 * misfit / data.vibrated.mean():.0f} % of the mean vibrated friction" in PAGE
     assert f"{100 * misfit / data.without.mean():.0f} % of F_C" in PAGE
@@ -102,7 +102,7 @@ def test_the_record_is_what_its_page_says() -> None:
     from_mean, from_last, work = record.scatter(data)
     assert f"{percent(from_mean)} from the mean cycle" in PAGE
     assert f"{percent(from_last)} from the one before" in PAGE
-    assert f"work by {percent(work)}" in PAGE
+    assert f"The work scatters by {percent(work)}" in PAGE
     assert f"sliding friction, {record.sliding_friction(data):.2f} N" in PAGE
     assert abs(data.between(0.0, record.UNLOADED).friction.mean()) < 5e-4
     same, later = record.repeated(data), record.predicted_cycles(data)
@@ -134,9 +134,9 @@ def test_the_cycles_and_the_unloading(fits: dict[str, record.RecordFit]) -> None
     dahl, elastic_plastic = fits["Dahl"], fits["ElasticPlastic"]
     without = record.without_bound(data, dahl)
     for name, friction in (
-        ("ElasticPlastic, limit µ F_n", elastic_plastic.unloading),
-        ("µ F_n alone, µ of ElasticPlastic", -elastic_plastic.mu * part.load),
-        ("Dahl, limit µ F_n in Eq. 2 alone", without),
+        ("ElasticPlastic, limit μ F_n", elastic_plastic.unloading),
+        ("μ F_n alone, μ of ElasticPlastic", -elastic_plastic.mu * part.load),
+        ("Dahl, limit μ F_n in Eq. 2 alone", without),
         ("ElasticPlastic, constant limit", elastic_plastic.constant_limit),
         ("Dahl, constant limit", dahl.constant_limit),
     ):
@@ -151,7 +151,7 @@ def test_a_bounded_bristle_unloads(fits: dict[str, record.RecordFit]) -> None:
     data, dahl = measurements.record(), fits["Dahl"]
     expected = in_short_pieces(data.between(*record.UNLOADING), dahl, bounded=True)
     assert dahl.unloading == pytest.approx(expected, abs=2e-3)
-    assert unloading_row(data, "Dahl, limit µ F_n, bounded by it", dahl.unloading) in PAGE
+    assert unloading_row(data, "Dahl, limit μ F_n, bounded by it", dahl.unloading) in PAGE
 
 
 def unloading_row(data: measurements.Record, name: str, friction: np.ndarray) -> str:

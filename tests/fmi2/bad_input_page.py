@@ -34,9 +34,9 @@ x: allowed. -: `fmi2Error`, with a message such as
     {example}
 
 and nothing changes. A function of one interface is refused everywhere by an instance for the other;
-fmi2GetStatus, fmi2GetIntegerStatus and fmi2GetStringStatus are refused in every state, since no step is ever
-pending. Without an instance (NULL) every function returns `fmi2Error` and `fmi2FreeInstance` does nothing. An
-instance for co-simulation:
+fmi2GetStatus, fmi2GetIntegerStatus and fmi2GetStringStatus are refused even in the states with an x, since no
+step is ever pending. Without an instance (NULL) every function returns `fmi2Error` and `fmi2FreeInstance`
+does nothing. An instance for co-simulation:
 
 """
 

@@ -122,6 +122,7 @@ def test_7_no_variant_gives_the_printed_area() -> None:
         area_eq_20(SURFACES, SEPARATION, E_FULL, *flags) for flags in product((False, True), repeat=3)
     ]
     nearest = min(variants, key=lambda value: abs(math.log(value / 1.397e-7)))
+    assert nearest == area_eq_20(SURFACES, SEPARATION, E_FULL, swapped=False, positive_exponent=True)
     assert abs(math.log(nearest / 1.397e-7)) > 1.0
     at = brentq(lambda d: closed_form_area(SURFACES, d) - 1.397e-7, 14e-6, 18e-6)
     stated(7, f"{nearest:.4g} m²", f"{nearest / 1.397e-7:.2f} times", f"{1e6 * at:.2f} µm")
@@ -212,7 +213,7 @@ def test_14_where_the_printed_means_come_from() -> None:
     stated(14, f"{row_1:.2f}, {row_4:.2f} and {row_5:.2f} N", f"{mean:.2f} N")
     reductions = [100 * (1 - row / row_1) for row in (row_4, row_5)]
     assert [round(reduction) for reduction in reductions] == [12, 1]
-    stated(14, "{:.1f} and {:.1f} %".format(*reductions))
+    stated(14, "{:.1f} and {:.2f} %".format(*reductions))
 
 
 def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:
@@ -280,7 +281,9 @@ def test_17_exponential_against_gaussian() -> None:
     assert min(ratio(h) for h in np.linspace(low, high, 60)) > 0.5
     at = ratio(14 / 6)
     inside = math.ceil(100 * low) / 100, math.floor(100 * high) / 100
-    stated(17, f"{at:.3f} of the Gaussian's", f"{at**2:.3f} of it", "{:.2f} and {:.2f}".format(*inside))
+    stated(
+        17, f"{at:.3f} of the Gaussian's", f"the stiffness {at**2:.3f}.", "{:.2f} and {:.2f}".format(*inside)
+    )
 
 
 def test_17_at_a_given_load_the_areas_are_equal_and_eq_3_is_not() -> None:

@@ -56,7 +56,7 @@ def cycles(data: Record, fits: Sequence[RecordFit]) -> Figure:
     time.plot(t, whole.friction[shown], ".", ms=2, color=style.BLACK)
     for fit in fits:
         if fit.stiffness is not None:
-            label = f"{fit.law}, {fit.stiffness * 1e-3:.1f} N/mm, µ {fit.mu:.3f}"
+            label = f"{fit.law}, {fit.stiffness * 1e-3:.1f} N/mm, μ {fit.mu:.3f}"
             path.plot(x, fit.friction[shown], color=LAW[fit.law], label=label)
             time.plot(t, fit.friction[shown], color=LAW[fit.law])
     path.set(xlabel="position [µm]", ylabel="friction [N]", title="Two of the 47 later cycles")
@@ -72,9 +72,9 @@ def unloading(data: Record, fits: Sequence[RecordFit]) -> Figure:
     dahl = next(fit for fit in fits if fit.law == "Dahl")
     elastic_plastic = next(fit for fit in fits if fit.law == "ElasticPlastic")
     curves = (
-        ("ElasticPlastic, limit µ F_n", elastic_plastic.unloading, LAW["ElasticPlastic"], "-"),
-        ("Dahl, limit µ F_n, bounded", dahl.unloading, LAW["Dahl"], "-"),
-        ("Dahl, limit µ F_n, Eq. 2 alone", record.without_bound(data, dahl), LAW["Dahl"], "--"),
+        ("ElasticPlastic, limit μ F_n", elastic_plastic.unloading, LAW["ElasticPlastic"], "-"),
+        ("Dahl, limit μ F_n, bounded", dahl.unloading, LAW["Dahl"], "-"),
+        ("Dahl, limit μ F_n, Eq. 2 alone", record.without_bound(data, dahl), LAW["Dahl"], "--"),
         ("ElasticPlastic, constant limit", elastic_plastic.constant_limit, LAW["ElasticPlastic"], ":"),
         ("Dahl, constant limit", dahl.constant_limit, LAW["Dahl"], ":"),
     )

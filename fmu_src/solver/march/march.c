@@ -32,7 +32,7 @@ static const double ROUNDING_AT_REVERSAL = 1e-9;
 // from one bound to the other it is 2. Half of it costs panels; twice of it makes panels that are cut early.
 static const double SOON = 3.0;
 
-// The number of regimes of next to no duration in a row, after which the next panel slips whatever its push.
+// The number of regimes of next to no duration in a row, beyond which a panel slips whatever its push.
 // Chosen empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
 enum { MOST_IDLE = 4 };
 // The length of the first such panel, and the longest of such regimes, over the interval. The next panels are
@@ -51,9 +51,9 @@ static const double BENDS = 1.5;
 // that is missed lasts less than 1e-3 of the cell. One more halving costs one evaluation.
 enum { MOST_HALVINGS = 10 };
 
-// A bound of the rate of ln D over that of FcPace. Derived: of E, ln sigma goes with at most 2.2 ln E, and of a
-// load, ln g with ln load. A smaller factor could end a slip too late, a larger one costs evaluations.
-static const double FASTEST = 3.0;
+// A bound of |D''| over that of |D'| and the rate at which the scene moves. Derived: with L of FcPace and w of the
+// vibration, |D''| <= D (L^2 + |(ln D)''|), and |(ln D)''| <= L w + 2 L^2: the last by E, load and 1 / d^3.
+static const double BEND_OF_BOUND = 3.0;
 
 typedef struct {
     const FcScene* scene;
@@ -89,7 +89,7 @@ static void plan(March* m) {
         const FcPace pace = fc_pace(&m->bound, m->duration);
         m->planner = fc_planner(m->options.tolerance);
         m->smooth_time = fc_smooth_time(&pace);
-        m->fastest_bound = FASTEST * pace.log_sigma * fc_scene_largest_saturation(&m->bound, m->duration);
+        m->fastest_bound = pace.log_sigma * fc_scene_largest_saturation(&m->bound, m->duration);
     }
 }
 
@@ -410,11 +410,79 @@ static double sure_end(const March* m, double end) {
     return m->side * fc_drive_V(&slower, 0.5 * (m->t + event)) > 0.0 ? event : m->t;
 }
 
+static void stick_until(March* m, const FcScene* bound, double end);
+
+typedef struct {
+    const March* march;
+    double from, delta; // s, m
+    int side;
+} Stuck;
+
+static double beyond_bound(void* context, double t) {
+    const Stuck* of = context;
+    const double x = fc_drive_displacement(&of->march->scene->drive, of->from, t);
+    return of->side * (of->delta + x) - fc_bound(&of->march->bound, t);
+}
+
+// Slips on, leaves the bound as V turns after `sure`, and sticks until it meets the other bound or V comes near to 0
+// again: all without a search, if |V'| exceeds |D''| while |V| may be below |D'|. The push then falls to 0 once, and
+// the distance to the other bound does. False, and nothing has happened, if V turns more slowly.
+static bool turn_to_other_bound(March* m, double sure, double end) {
+    const FcDrive* drive = &m->scene->drive;
+    const int side = m->side;
+    FcDrive faster = *drive;
+    faster.V.value += side * m->fastest_bound;
+    const double turned = fc_drive_next_event(&faster, sure, end).time;
+    const double until = fc_drive_next_event(&faster, turned, end).time;
+    const FcVelocity middle = fc_drive_velocity(drive, 0.5 * (sure + turned));
+    const double bend = drive->vibration.V_1 * drive->omega * drive->omega;
+    const double rate = -side * middle.rate - 0.5 * (turned - sure) * bend;
+    if (!(rate > BEND_OF_BOUND * m->fastest_bound / m->smooth_time) ||
+        !(-side * fc_drive_V(drive, 0.5 * (turned + until)) > m->fastest_bound)) {
+        return false;
+    }
+    FcPushed push = {m->scene, &m->bound, side};
+    const double before = fc_push_at(&push, sure);
+    const double after = fc_push_at(&push, turned);
+    m->result->evaluations += 2.0;
+    if (!(before > 0.0 && after < 0.0)) { // by rounding
+        return false;
+    }
+    const FcCoefficients at = fc_scene_coefficients(&m->bound, m->t);
+    const double seen = unseen(m, at.sigma, at.limit / at.sigma);
+    slip_to(m, fc_root_between(fc_push_at, &push, sure, before, turned, after, 0.0, seen,
+                               &m->result->evaluations));
+    end_slip(m);
+    Stuck stuck = {m, m->t, m->result->delta, -side};
+    const double way = 2.0 * fabs(stuck.delta);
+    const FcVelocity now = fc_drive_velocity(drive, m->t);
+    double b = fmin(until, m->t + fc_time_to_move(fabs(now.V), fabs(now.rate), SOON * fabs(stuck.delta)));
+    double beyond = beyond_bound(&stuck, b);
+    m->result->evaluations += 1.0;
+    if (!(beyond > 0.0) && b < until) {
+        b = until;
+        beyond = beyond_bound(&stuck, b);
+        m->result->evaluations += 1.0;
+    }
+    const bool meets = beyond > 0.0;
+    stick_until(m, &m->bound,
+                meets ? fc_root_between(beyond_bound, &stuck, m->t, -way, b, beyond, seen, 0.0,
+                                        &m->result->evaluations)
+                      : until);
+    if (meets) {
+        begin_slip(m, -side);
+    }
+    return true;
+}
+
 // Slips along the bound for a panel, up to `end` at most, or until the bristle leaves the bound.
 static void slip(March* m, double end) {
     plan(m);
     if (!relaxes(m->scene) && !fc_has_static_friction(m->scene->friction)) {
         const double sure = sure_end(m, end);
+        if (turn_to_other_bound(m, sure, end)) {
+            return;
+        }
         if (sure > m->t) {
             slip_to(m, sure);
             return;

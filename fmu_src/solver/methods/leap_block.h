@@ -4,7 +4,7 @@
 // polynomial; the n maps are applied one after the other.
 //
 //     point       x = from + (to - from) (1 - cos(angle)) / 2,   angle = 0, pi, pi / 2, 3 pi / 4, pi / 4, ...
-//     variable    x = acos(V / V_1) if V reverses, else x = k
+//     variable    x = acos(V / V_1) if V reverses along a line, else x = k
 //
 // A block is smooth if the points so far predict the map at the next one.
 #ifndef FC_SOLVER_LEAP_BLOCK_H

@@ -82,8 +82,8 @@ FC_INLINE void panel_of_nodes(int count, const FcScene* scene, double t, double 
     }
 }
 
-void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
-                    FcPanel* panel) {
+FC_WITH_AVX void fc_gauss_panel(const FcScene* scene, double t, double h, int count,
+                                const FcTrajectories* from, FcPanel* panel) {
     panel_of_nodes(count, scene, t, h, from, true, panel);
 }
 
@@ -128,8 +128,9 @@ static double allowed_bound(const FcInterval* interval, double X, double z, cons
            (force * fc_most(1.0, force / interval->limit) + damping);
 }
 
-bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t, double h, double X,
-                      double z, const FcTrajectories* from, FcPanel* panel, double* evaluations) {
+FC_WITH_AVX bool fc_bounded_panel(const FcInterval* interval, const FcScene* scene, double t, double h,
+                                  double X, double z, const FcTrajectories* from, FcPanel* panel,
+                                  double* evaluations) {
     if (z > FC_MOST_BOUNDED) {
         return false;
     }

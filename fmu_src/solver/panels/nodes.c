@@ -140,8 +140,8 @@ static void with_library(const FcScene* scene, double t, double h, const double*
     }
 }
 
-void fc_node_coefficients(const FcScene* scene, double t, double h, const double* node, int count,
-                          FcNodeCoefficients* at) {
+FC_WITH_AVX void fc_node_coefficients(const FcScene* scene, double t, double h, const double* node, int count,
+                                      FcNodeCoefficients* at) {
     assert(count % 2 == 0 && count <= FC_MOST_NODES);
     const FcDrive* drive = &scene->drive;
     const double half_angle = 0.5 * h * drive->omega;

@@ -48,8 +48,8 @@ FC_INLINE void solve(StageSystem row) {
     }
 }
 
-void fc_radau_panel(const FcScene* scene, double t, double h, double sign, const FcTrajectories* from,
-                    FcPanel* panel) {
+FC_WITH_AVX void fc_radau_panel(const FcScene* scene, double t, double h, double sign,
+                                const FcTrajectories* from, FcPanel* panel) {
     assert(h > 0.0);
     enum { n = STAGES, count = COUNT };
     const FcRadauRule* rule = &FC_RADAU_9;
