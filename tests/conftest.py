@@ -24,15 +24,16 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
 
 ROOT = Path(__file__).resolve().parent.parent
-LONGEST = {
-    "release", "site", "unit", "test_belt_page.py", "test_building.py", "test_identify.py",
-    "test_random_fits.py", "test_report.py", "test_scenes.py", "test_sweep_cluster.py", "test_wheel.py",
-}  # fmt: skip
+LONGEST = """
+    test_wheel test_site test_reproducible test_identify test_sweep test_building test_sweep_cluster
+    test_scenes test_report test_c_units test_belt_page test_against_co_simulation test_release_command
+    test_validate test_simulate_many test_random_fits test_sources
+""".split()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest files first, so that no core waits for another at the end."""
-    items.sort(key=lambda item: LONGEST.isdisjoint(item.path.parts))
+    """The longest files first, each before shorter ones, so that no core waits for another at the end."""
+    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
 
 
 @pytest.fixture(scope="session")

@@ -231,8 +231,9 @@ static bool settled_force_along(const FcFrictionContact* contact, const Directio
 }
 
 static double derivative_of(Tangent* tangent, const FcVariableInfo* unknown) {
+    const double slope = slope_of(&tangent->outputs, unknown, tangent->mean_is_force);
     double* state = state_of(fc_variable_is_rate(unknown) ? &tangent->rates : &tangent->states, unknown);
-    return state ? *state : slope_of(&tangent->outputs, unknown, tangent->mean_is_force);
+    return state ? *state : slope;
 }
 
 // Reads the direction; false after logging the fault.

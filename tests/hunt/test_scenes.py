@@ -1,10 +1,12 @@
-"""What a hunt found stays found: every sequence of scenes.txt holds what is promised."""
+"""A short hunt finds nothing, and what hunts found stays found: every sequence holds what is promised."""
 
 from __future__ import annotations
 
 import subprocess
 from functools import cache
 from pathlib import Path
+
+import pytest
 
 from workshop.build import build_targets
 
@@ -18,6 +20,14 @@ def program() -> str:
 
 def hunt(*options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([program(), *options], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(("count", "plane"), [("200", []), ("40", ["--plane"])])
+def test_the_first_sequences_of_the_hunts_on_the_page(count: str, plane: list[str]) -> None:
+    """Of docs/reliability.md: every law, contact and limit, and jumps from step to step."""
+    done = hunt("--seed", "1", "--scenes", count, *plane)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " 0 beyond the reference, 0 misses" in done.stdout
 
 
 def test_scenes_that_were_found() -> None:

@@ -1,4 +1,4 @@
-"""Seeded scenes for model exchange, and how far a run of the FMU in a host is from the reference."""
+"""Seeded scenes for both interfaces, and how far a run of the FMU is from the reference."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from physics.course import Course
+from physics.course import Step
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.exchange import Host
@@ -17,6 +17,7 @@ from workshop.reference.start_values import start_values_of
 
 LAWS = ("Dahl", "LuGre", "ElasticPlastic")
 F, MU, LOAD, FREQUENCY = 55.0, 0.176, 312.0, 20e3
+INPUTS = ("V", "d", "E", "load")
 OUTPUTS = 40  # points at which the host ends a step of its own
 
 
@@ -31,12 +32,11 @@ class ExchangeScene:
         return {**start_values_of(self.scene), "delta_0": self.delta_0}
 
     def inputs(self, t: float) -> dict[str, float]:
-        names = ("V", "d", "E", "load")
-        return {n: getattr(self.scene, n) + getattr(self.scene, f"{n}_rate") * t for n in names}
+        return {n: getattr(self.scene, n) + getattr(self.scene, f"{n}_rate") * t for n in INPUTS}
 
     @property
     def is_held(self) -> bool:
-        return all(getattr(self.scene, f"{name}_rate") == 0.0 for name in ("V", "d", "E", "load"))
+        return all(getattr(self.scene, f"{name}_rate") == 0.0 for name in INPUTS)
 
 
 class Errors(NamedTuple):
@@ -94,9 +94,8 @@ def drawn(number: int, fmu: FrictionFmu) -> ExchangeScene:
     return ExchangeScene(number, scene, rng.uniform(-0.9, 0.9) * bound, h)
 
 
-def errors(scene: ExchangeScene, values: Mapping[str, float]) -> Errors:
+def errors(truth: Step, values: Mapping[str, float]) -> Errors:
     """Of F_t, W_f and Q_f at the end."""
-    truth = Course(scene.scene, scene.delta_0).step(scene.scene, scene.h)
     return Errors(
         abs(float(truth.F_t) - values["F_t"]) / truth.scale,
         abs(float(truth.W_f) - values["W_f"]) / (truth.scale * truth.path),
@@ -104,8 +103,18 @@ def errors(scene: ExchangeScene, values: Mapping[str, float]) -> Errors:
     )
 
 
+def stepped(scene: ExchangeScene, fmu: FrictionFmu, settings: dict[str, Value]) -> dict[str, float]:
+    """Outputs after one step of co-simulation."""
+    rates = {name: getattr(scene.scene, f"{name}_rate") for name in INPUTS}
+    names = ("F_t", "W_f", "Q_f")
+    with fmu.session(scene.start_values() | settings) as session:
+        session.set_rates(**{name: rate for name, rate in rates.items() if rate})
+        session.step(scene.h)
+        return dict(zip(names, session.read(names), strict=True))
+
+
 def run(scene: ExchangeScene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:
-    """The last outputs, after an event: a bristle that slips has then been taken onto its bound."""
+    """The last outputs in a host, after an event: a bristle that slips has then been taken onto its bound."""
     with Host(
         fmu,
         scene.start_values(),

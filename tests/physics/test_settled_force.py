@@ -1,9 +1,11 @@
-"""F_t_settled, the mean force of a settled period, and its derivatives: against reference and formulas."""
+"""F_t_settled, the mean force of a settled period, and its derivatives: against formulas and differences.
+
+The hunt grades it in every sequence (tests/hunt/test_scenes.py).
+"""
 
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -12,7 +14,6 @@ from scipy.integrate import solve_ivp
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.reference.scene import Scene
-from workshop.reference.settled import settled
 from workshop.reference.start_values import scene_of
 
 F_C = 55.0
@@ -51,23 +52,6 @@ def drawn(law: str, number: int) -> dict[str, Value]:
     return scene
 
 
-@cache
-def expected(law: str, number: int) -> tuple[float, float]:
-    """The reference's mean over a settled period, and the largest force [N]."""
-    values = drawn(law, number)
-    scene, delta_0 = scene_of(values), float(values.get("delta_0", 0.0))
-    return float(settled(scene, 0.0, delta_0).mean), scale(scene, 0.0, 1 / scene.f, delta_0)
-
-
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-8])
-@pytest.mark.parametrize("law", LAWS)
-def test_every_law_to_its_tolerance(fmu: FrictionFmu, law: str, tolerance: float) -> None:
-    for number in range(10):
-        values, (mean, size) = drawn(law, number), expected(law, number)
-        with fmu.session(values | {"solver.tolerance": tolerance}) as session:
-            assert abs(session.get("F_t_settled") - mean) < (tolerance + 1e-11) * size, (number, values)
-
-
 def scale_of(scene: Scene, name: str) -> float:
     """How far the input moves before the force is another one."""
     if name == "d":
@@ -76,7 +60,7 @@ def scale_of(scene: Scene, name: str) -> float:
 
 
 def slope_by_differences(fmu: FrictionFmu, values: dict[str, Value], name: str, step: float) -> float:
-    """Central difference of order 6 of F_t_settled, which the reference grades above."""
+    """Central difference of order 6 of F_t_settled."""
     start, h, total = getattr(scene_of(values), name), step * scale_of(scene_of(values), name), 0.0
     with fmu.session(values | {"solver.tolerance": 1e-12}) as session:
         for k, weight in enumerate((3 / 4, -3 / 20, 1 / 60), start=1):

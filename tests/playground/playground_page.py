@@ -10,6 +10,23 @@ from playwright.sync_api import Page
 from workshop.browser import watch
 from workshop.presets import Preset
 
+# The page's worker computes curves and map of each scene shown: it starts where a test waits for them.
+HELD_WORKER = """{
+    const Started = Worker;
+    Worker = class {
+        posted = [];
+        constructor(source) { globalThis.startWorker = () => this.start(source); }
+        postMessage(data) { this.posted = [...this.posted.slice(0, 1), data]; }
+        start(source) {
+            const worker = new Started(source);
+            worker.onmessage = this.onmessage;
+            this.postMessage = (data) => worker.postMessage(data);
+            this.posted.forEach(this.postMessage);
+            globalThis.startWorker = () => {};
+        }
+    };
+}"""
+
 
 class Playground:
     """problems: errors, warnings, requests beyond the page's own file."""
@@ -19,6 +36,7 @@ class Playground:
         self.address = html.as_uri()
         self.problems: list[str] = []
         watch(page, html, self.problems)
+        page.add_init_script(HELD_WORKER)
 
     def open(self, words: str = "") -> None:
         self.page.goto("about:blank")
@@ -46,6 +64,7 @@ class Playground:
     def finish(self) -> None:
         """Waits for curves and map as well."""
         self.settle()
+        self.page.evaluate("startWorker()")
         self.page.wait_for_selector("body[data-worker=done]")
 
     def number(self, name: str) -> float:

@@ -9,10 +9,9 @@ from playground_page import Playground
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from workshop.description import description
-from workshop.playground.page import XML
 
 LIMIT = 1e-12  # of the largest force
-VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}
+VARIABLES = {variable["name"]: variable for variable in description()["variables"]}
 # What must be chosen for a control to have an effect.
 CONTEXT = {
     "contact.sigma": {"contact.model": "Constant"},

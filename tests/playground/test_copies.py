@@ -15,11 +15,10 @@ from playground_page import Playground
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.description import description
-from workshop.playground.page import XML
 from workshop.presets import Preset
 
 SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
-VARIABLES = {variable["name"]: variable for variable in description(XML)["variables"]}
+VARIABLES = {variable["name"]: variable for variable in description()["variables"]}
 TOLERANCE = 1e-6 * 55.0  # N
 
 

@@ -12,8 +12,7 @@ from playwright.sync_api import Browser
 
 from workshop.browser import SIZES
 from workshop.description import description
-from workshop.playground.browser import SCHEMES
-from workshop.playground.page import XML
+from workshop.playground.command import SCHEMES
 from workshop.presets import Preset
 
 PAINTED = """() => new Promise((resolve) => {
@@ -50,7 +49,7 @@ def test_every_control_has_its_own_name(playground: Playground) -> None:
 
 
 def test_every_input_and_parameter_with_a_control_is_one_of_the_fmu(playground: Playground) -> None:
-    known = {variable["name"] for variable in description(XML)["variables"]}
+    known = {variable["name"] for variable in description()["variables"]}
     found = playground.page.locator("[data-variable]").evaluate_all(
         "all => all.map((c) => c.dataset.variable)"
     )

@@ -1,4 +1,7 @@
-"""What the FMU holds beside the model: its manifest, its parameter sets, and results that it must meet."""
+"""What the FMU holds beside the model: its manifest, its parameter sets, and reference results.
+
+tests/examples/test_check_reference.py has that the FMU meets them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,6 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from frictioncontact.fmu import FrictionFmu
 from workshop.presets import presets
 from workshop.related.experiments import Experiment, experiments
 from workshop.related.files import CHECKSUMS, EXPERIMENTS, FOLDER, LAYERED, MANIFEST, STANDARD, files
@@ -101,17 +103,3 @@ def test_the_results_are_the_reference_s(run: Experiment) -> None:
     assert len(stored) == round(run.stop / run.step) + 1
     for computed, line in zip(rows(run), stored[:8], strict=False):
         np.testing.assert_allclose(list(computed.values()), list(line), rtol=1e-14)
-
-
-@pytest.mark.parametrize("run", RUNS)
-def test_the_fmu_meets_the_results(fmu: FrictionFmu, run: Experiment) -> None:
-    expected = np.genfromtxt(run.result, delimiter=",", names=True)
-    names = COLUMNS[1:]
-    with fmu.session(run.values, tolerance=run.tolerance) as session:
-        found = [session.read(names)]
-        for _ in range(len(expected) - 1):
-            session.step(run.step)
-            found.append(session.read(names))
-    for name, column in zip(names, np.transpose(found), strict=True):
-        bound = run.tolerance * np.max(np.abs(expected[name]))
-        np.testing.assert_allclose(column, expected[name], rtol=0, atol=bound, err_msg=name)

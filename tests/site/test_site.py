@@ -115,9 +115,8 @@ def test_faults_are_found(tmp_path: Path) -> None:
         assert found in line
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_no_page_has_an_error_or_asks_for_anything(site: Path, browser: Browser, size: str) -> None:
-    assert complaints(browser, site, size) == []
+def test_no_page_has_an_error_or_asks_for_anything(site: Path, browser: Browser) -> None:
+    assert complaints(browser, site) == []
 
 
 def test_complaints_are_heard(browser: Browser, tmp_path: Path) -> None:
@@ -125,7 +124,7 @@ def test_complaints_are_heard(browser: Browser, tmp_path: Path) -> None:
         '<!DOCTYPE html><div style="width: 5000px">.</div><script>undefined.x</script>'
         '<img src="http://127.0.0.1:9/a.png"><script>console.error("no")</script>'
     )
-    heard = " ".join(complaints(browser, tmp_path, "phone"))
+    heard = " ".join(complaints(browser, tmp_path))
     for words in ("script error", "request: http://127.0.0.1:9", "console: no", "wider than a phone"):
         assert words in heard
 
@@ -150,11 +149,17 @@ def test_search_finds_a_variable_in_its_table_first(page: Page, site: Path) -> N
     expect(first).to_have_attribute("href", re.compile(r"docs/using\.html#index-\d"))
 
 
-def test_the_playground_lives_in_its_page(page: Page, site: Path) -> None:
-    page.goto((site / "docs" / "playground.html").as_uri())
-    frame = page.frame_locator("iframe.playground")
-    frame.locator("body[data-worker=done]").wait_for()
-    expect(frame.get_by_text("21.56").first).to_be_visible()  # N, row 2 of Table 2 in the README
+def test_the_playground_lives_in_its_page(browser: Browser, site: Path) -> None:
+    """tests/playground has windows of each size."""
+    heard: list[str] = []
+    with window(browser, "desktop") as opened:
+        page = opened.new_page()
+        watch(page, site, heard)
+        page.goto((site / "docs" / "playground.html").as_uri())
+        frame = page.frame_locator("iframe.playground")
+        frame.locator("body[data-worker=done]").wait_for()
+        expect(frame.get_by_text("21.56").first).to_be_visible()  # N, row 2 of Table 2 in the README
+    assert heard == []
 
 
 def test_the_menu_of_a_phone_leads_on(browser: Browser, site: Path) -> None:

@@ -27,35 +27,19 @@ def areas(points: int = 61) -> Figure:
         Line(s, [gaussian(x) for x in s], "Gaussian", GREEN, "dashed"),
     ]
     area_lines = [Line(h, by_model[m] / surfaces.A_n, NAMES[m], COLOURS[m], DASHES[m], 2.2) for m in NAMES]
+    ratio = by_model["exponential"] / by_model["gaussian"]
+    printed = area(surfaces, SEPARATION) / area(surfaces, SEPARATION, model="gaussian")
     errors = [
-        Line(h, by_model["exponential"] / by_model["gaussian"], "area A_r", BLUE, width=2.4),
-        Line(
-            h,
-            (by_model["exponential"] / by_model["gaussian"]) ** 2,
-            "stiffness σ = E A_r² / d³",
-            ORANGE,
-            "dashed",
-        ),
+        Line(h, ratio, "area A_r", BLUE, width=2.4),
+        Line(h, ratio**2, "stiffness σ = E A_r² / d³", ORANGE, "dashed"),
         Level(1.0, "exact", GREY, "dotted"),
-        Line(
-            [SEPARATION / surfaces.R_q],
-            [area(surfaces, SEPARATION) / area(surfaces, SEPARATION, model="gaussian")],
-            "14 µm of the paper",
-            BLACK,
-            markers=True,
-        ),
+        Line([SEPARATION / surfaces.R_q], [printed], "14 µm of the paper", BLACK, markers=True),
     ]
+    separation, title = "separation d / R_q", "Exponential over Gaussian"
     panels = [
         Panel("Height density", "height s = z / R_q", "density", density, y_log=True, y_range=(1e-5, 30.0)),
-        Panel("Real contact area", "separation d / R_q", "A_r / A_n", area_lines, y_log=True),
-        Panel(
-            "Exponential over Gaussian",
-            "separation d / R_q",
-            "ratio",
-            errors,
-            y_log=True,
-            y_range=(0.05, 20.0),
-        ),
+        Panel("Real contact area", separation, "A_r / A_n", area_lines, y_log=True),
+        Panel(title, separation, "ratio", errors, y_log=True, y_range=(0.05, 20.0)),
     ]
     caption = (
         "The exponential stands in for the upper tail of a Gaussian. At the paper's d / R_q = 2.33 it "

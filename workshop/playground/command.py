@@ -2,17 +2,20 @@
 
 import argparse
 import sys
+from itertools import product
 from pathlib import Path
+
+from playwright.sync_api import Browser
 
 from frictioncontact.command import shown
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
-from workshop.browser import chromium
-from workshop.playground.browser import take_pictures
+from workshop.browser import SIZES, chromium, window
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 
 DEFAULT = ROOT / "build" / "playground.html"
+SCHEMES = ("light", "dark")
 
 
 def main() -> None:
@@ -39,3 +42,18 @@ def main() -> None:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {options.output} can't be written: {error.strerror}")
+
+
+def take_pictures(browser: Browser, html: Path, folder: Path) -> list[Path]:
+    """playground-SIZE-SCHEME.png of the first window of the page, all its figures drawn."""
+    paths = []
+    for size, scheme in product(SIZES, SCHEMES):
+        scale = 2 if size == "phone" else 1
+        context = window(browser, size, color_scheme=scheme, device_scale_factor=scale)
+        page = context.new_page()
+        page.goto(html.resolve().as_uri())
+        page.wait_for_selector("body.ready[data-worker=done]")
+        paths.append(folder / f"playground-{size}-{scheme}.png")
+        page.screenshot(path=paths[-1])
+        context.close()
+    return paths

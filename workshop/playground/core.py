@@ -4,13 +4,16 @@ All files in one call with -flto: built by CMake, from archives and with -flto=t
 functions of a system, and a page has none.
 """
 
+import hashlib
 import subprocess
 import tempfile
+from importlib.metadata import version
 from pathlib import Path
 
 import fmpy
 
 from frictioncontact.errors import UserError
+from frictioncontact.files import whole_file
 from workshop.packing import model_description, variable_table
 from workshop.project import ROOT
 from workshop.release.targets import environment, zig
@@ -24,21 +27,27 @@ OPTIONS = (
 
 
 def core() -> bytes:
-    """The WebAssembly; UserError holds the compiler's first error."""
-    with tempfile.TemporaryDirectory(prefix="playground-") as temporary:
-        variables, output = Path(temporary) / "variables.c", Path(temporary) / "core.wasm"
-        description = model_description.read(ROOT / "modelDescription.xml")
-        variables.write_text(variable_table.table(description), encoding="utf-8")
-        sources = [*sorted((ROOT / "fmu_src").rglob("*.c")), variables, HOST]
-        includes = [f"-I{ROOT / 'fmu_src'}", "-isystem", str(Path(fmpy.__file__).parent / "c-code")]
-        _compile([*OPTIONS, *includes, *map(str, sources), "-o", str(output)])
-        return output.read_bytes()
+    """The WebAssembly, compiled once for the same sources; UserError holds the compiler's first error."""
+    compiler = zig()
+    table = variable_table.table(model_description.read(ROOT / "modelDescription.xml"))
+    sources = [*sorted((ROOT / "fmu_src").rglob("*.c")), HOST]
+    headers = sorted((ROOT / "fmu_src").rglob("*.h"))
+    parts = [repr((OPTIONS, version("ziglang"), version("fmpy"))).encode(), table.encode()]
+    parts += [path.read_bytes() for path in (*sources, *headers)]
+    digest = hashlib.sha256(b"\0".join(parts)).hexdigest()
+    made = ROOT / "build" / "playground" / f"{digest}.wasm"
+    if not made.exists():
+        with tempfile.TemporaryDirectory(prefix="playground-") as temporary, whole_file(made) as output:
+            variables = Path(temporary) / "variables.c"
+            variables.write_text(table, encoding="utf-8")
+            includes = [f"-I{ROOT / 'fmu_src'}", "-isystem", str(Path(fmpy.__file__).parent / "c-code")]
+            files = map(str, [*sources, variables, "-o", output])
+            _compile([str(compiler), "cc", *OPTIONS, *includes, *files])
+    return made.read_bytes()
 
 
-def _compile(arguments: list[str]) -> None:
-    run = subprocess.run(
-        [str(zig()), "cc", *arguments], env=environment(), capture_output=True, text=True, errors="replace"
-    )
+def _compile(command: list[str]) -> None:
+    run = subprocess.run(command, env=environment(), capture_output=True, text=True, errors="replace")
     if run.returncode:
         lines = run.stderr.splitlines()
         errors = [line for line in lines if "error" in line] or lines

@@ -10,22 +10,20 @@ from typing import Any
 from workshop.description import description
 from workshop.playground.core import core
 from workshop.presets import Preset, presets
-from workshop.project import ROOT
 
-XML = ROOT / "modelDescription.xml"
 ASSETS = Path(__file__).with_name("assets")
 PLACE = re.compile(r"/\*\[([\w.]+)\]\*/|<!--\[(\w+)\]-->")
 
 
-def page(wasm: bytes) -> str:
-    """The text of the page."""
-    model = description(XML)
+def page_text() -> str:
+    """The page of this FMU; UserError says why it can't be compiled."""
+    model = description()
     parts = {
         "version": model["version"],
         "description": _json(model),
         "presets": _json([_fields(preset) for preset in presets()]),
         "controls": _json(json.loads((ASSETS / "controls.json").read_text(encoding="utf-8"))),
-        "wasm": base64.b64encode(wasm).decode(),
+        "wasm": base64.b64encode(core()).decode(),
     }
 
     def part(match: re.Match[str]) -> str:
@@ -42,8 +40,3 @@ def _fields(preset: Preset) -> dict[str, Any]:
 def _json(value: object) -> str:
     """JSON that can stand in a script element."""
     return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
-
-
-def page_text() -> str:
-    """The page of this FMU; UserError says why it can't be compiled."""
-    return page(core())

@@ -4,7 +4,7 @@
 - `settled`: the state and the mean force after infinitely many periods.
 
 What tests alone need of it is in tests/physics: `course`, a contact from step to step, whose inputs may jump
-between them; it made tests/data.
+between them.
 
 hunt/reference.c is independent of these: brute force in extended precision, which grades the hunt's scenes.
 """

@@ -7,25 +7,13 @@ from workshop.reference.contact import Contact
 from workshop.reference.scene import Scene
 
 _CONTACT = {f"contact.{field.name.rstrip('_')}": field.name for field in fields(Contact)}
-_SCENE = {
-    "V": "V",
-    "d": "d",
-    "E": "E",
-    "F_C": "F_C",
-    "friction.model": "friction",
-    "vibration.f": "f",
-    "vibration.V_1": "V_1",
-    "vibration.a_d": "a_d",
-    "vibration.phase_d": "phase_d",
-    "friction.limit": "limit",
-    "friction.mu": "mu",
-    "friction.staticRatio": "staticRatio",
-    "friction.V_S": "V_S",
-    "friction.sigma_1": "sigma_1",
-    "friction.sigma_2": "sigma_2",
-    "contact.input": "input",
-    "load": "load",
-}
+_NAMES = (
+    *("V", "d", "E", "F_C", "friction.model"),
+    *("vibration.f", "vibration.V_1", "vibration.a_d", "vibration.phase_d"),
+    *("friction.limit", "friction.mu", "friction.staticRatio", "friction.V_S"),
+    *("friction.sigma_1", "friction.sigma_2", "contact.input", "load"),
+)
+_SCENE = {name: name.rpartition(".")[2] for name in _NAMES} | {"friction.model": "friction"}
 
 
 def scene_of(start_values: Mapping[str, float | str]) -> Scene:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
 from frictioncontact.style import AMBER, BLACK, BLUE, GREEN, GREY, ORANGE, PINK, SKY
 from workshop.figure import Classes, Figure, Level, Line, Map, Panel, Span
 from workshop.regimes.mean import (
@@ -72,14 +73,8 @@ def sensitivity_cuts(probe: Probe, quick: bool) -> Figure:
     for names in groups:
         items = []
         for name, colour in zip(names, colours, strict=False):
-            items.append(
-                Line(
-                    kappas,
-                    probe.sensitivity(Regime(kappas, zeta, ALPHA, PHASE), name),
-                    f"FMU, to {SYMBOLS[name]}",
-                    colour,
-                )
-            )
+            values = probe.sensitivity(Regime(kappas, zeta, ALPHA, PHASE), name)
+            items.append(Line(kappas, values, f"FMU, to {SYMBOLS[name]}", colour))
             limits = soft_sensitivity(zeta, name, ALPHA, PHASE), coulomb_sensitivity(zeta, name)
             for x, y in zip(ends, limits, strict=True):
                 items.append(Line(x, [y, y], "", BLACK, "dashed", 2.4))
@@ -99,16 +94,10 @@ def regimes(probe: Probe, quick: bool) -> Figure:
     n = 21 if quick else 61
     kappas, zetas = np.geomspace(1e-2, 1e7, n), np.geomspace(1e-3, 1.5, n)
     panels = []
-    for alpha, words in (
-        (0.0, "d constant"),
-        (0.02, "a_d / R_q = 0.02"),
-        (ALPHA, "a_d / R_q = 0.18 (paper)"),
-    ):
+    amplitudes = {0.0: "d constant", 0.02: "a_d / R_q = 0.02", ALPHA: "a_d / R_q = 0.18 (paper)"}
+    for alpha, words in amplitudes.items():
         z = regime_map(probe, kappas, zetas, alpha, phases=8 if quick else 12)
-        items = [
-            Classes(kappas, zetas, z, REGIMES, (SKY, GREEN, AMBER, PINK)),
-            *_table_2_points(),
-        ]
+        items = [Classes(kappas, zetas, z, REGIMES, (SKY, GREEN, AMBER, PINK)), *_table_2_points()]
         panels.append(Panel(words, KAPPA, ZETA, items, True, True))
     caption = (
         "The simplest model whose mean friction is within 1 % of F_C at every phase of the separation. "
@@ -119,8 +108,6 @@ def regimes(probe: Probe, quick: bool) -> Figure:
 
 
 def _table_2_points() -> list[Line]:
-    from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, IDENTIFIED, PRINTED, TABLE_2
-
     points = []
     for parameters, colour in ((PRINTED, BLACK), (IDENTIFIED, ORANGE)):
         V_1 = TABLE_2[2].V_1
@@ -158,23 +145,11 @@ def reduction(probe: Probe, quick: bool) -> Figure:
         values = 100.0 * (1.0 - probe.mean(Regime(kappa, zetas)))
         lines.append(Line(zetas, values, f"FMU, κ = {kappa:g}", colour))
     lines += [soft, Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, markers=True)]
-    model = Panel(
-        "Tangential vibration, d constant",
-        "V / V_1",
-        "friction reduction [%]",
-        lines,
-        True,
-        y_range=(0.0, 105.0),
-        x_range=(1e-3, 2.0),
-    )
+    y, limits = "friction reduction [%]", (0.0, 105.0)
+    title = "Tangential vibration, d constant"
+    model = Panel(title, "V / V_1", y, lines, True, y_range=limits, x_range=(1e-3, 2.0))
     measured = [*MEASURED, *_limits(np.linspace(0.01, 1.2, 80)), Level(*UP_TO, ORANGE, "dotted")]
-    against = Panel(
-        "Measured headline ranges",
-        "V / V_1 of the limits",
-        "friction reduction [%]",
-        measured,
-        y_range=(0.0, 105.0),
-    )
+    against = Panel("Measured headline ranges", "V / V_1 of the limits", y, measured, y_range=limits)
     caption = (
         "With a constant separation every stiffness lies between the two dashed limits. The measured "
         "ranges are those that the abstracts state; they give no V / V_1, so they are bands over the whole "
@@ -184,11 +159,5 @@ def reduction(probe: Probe, quick: bool) -> Figure:
         "343–350 (2014), the paper's reference 9. The printed V / V_1 of Table 2 is 0.0035: there every "
         "stiffness gives at least 99.4 %, not 51 %."
     )
-    return Figure(
-        "reduction",
-        "Friction reduction against the velocity ratio",
-        caption,
-        [model, against],
-        2,
-        (12.0, 5.4),
-    )
+    title = "Friction reduction against the velocity ratio"
+    return Figure("reduction", title, caption, [model, against], 2, (12.0, 5.4))

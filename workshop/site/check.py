@@ -14,10 +14,7 @@ from workshop.browser import SIZES, chromium, watch, window
 def problems(folder: Path) -> list[str]:
     """All that is wrong, a line each."""
     with chromium() as browser:
-        return [
-            *broken_links(folder),
-            *(line for size in SIZES for line in complaints(browser, folder, size)),
-        ]
+        return [*broken_links(folder), *complaints(browser, folder)]
 
 
 def pages(folder: Path) -> list[Path]:
@@ -53,14 +50,16 @@ def broken_links(folder: Path) -> Iterator[str]:
                 yield f"{where}: no such anchor"
 
 
-def complaints(browser: Browser, folder: Path, size: str) -> list[str]:
-    """What the pages do wrong, opened one by one: errors, requests, text wider than the window."""
+def complaints(browser: Browser, folder: Path) -> list[str]:
+    """What the pages do wrong, opened one by one: errors, requests, text wider than a window of each size."""
     heard: list[str] = []
-    with window(browser, size) as opened:
+    with window(browser, "desktop") as opened:
         page = opened.new_page()
         watch(page, folder, heard)
         for path in pages(folder):
             page.goto(path.resolve().as_uri())
-            if page.evaluate("document.documentElement.scrollWidth > window.innerWidth + 1"):
-                heard.append(f"{path.relative_to(folder)}: wider than a {size}")
+            for size, (width, height) in SIZES.items():
+                page.set_viewport_size({"width": width, "height": height})
+                if page.evaluate("document.documentElement.scrollWidth > window.innerWidth + 1"):
+                    heard.append(f"{path.relative_to(folder)}: wider than a {size}")
     return heard
