@@ -28,10 +28,6 @@ static const double PART_OF_PERIOD = 1.0 / 32.0;
 static const double PART_OF_PEAK = 0.5;
 static const double LEAST_PART_OF_PERIOD = 1e-4;
 
-// The velocity over V_S beyond which Stribeck's peak has ended: e^-25 of it remains. At half of it e^-6 would
-// remain.
-static const double END_OF_PEAK = 5.0;
-
 // The slope in the plane: V + SLANT V_y passes 0 at a reversal in any direction. Chosen empirically:
 // tan(1/2), a ratio of V_y to V that hosts are unlikely to have. With such a ratio a reversal would be
 // missed.
@@ -323,7 +319,7 @@ static double part_of_period(const View* view, double t, double period) {
     double part = PART_OF_PERIOD * period;
     if (fc_has_static_friction(friction) && view->side != 0) {
         const FcVelocity at = fc_drive_velocity(&view->scene.drive, t);
-        const double change = fmax(PART_OF_PEAK * friction->V_S, fabs(at.V) - END_OF_PEAK * friction->V_S);
+        const double change = fmax(PART_OF_PEAK * friction->V_S, fabs(at.V) - FC_END_OF_PEAK * friction->V_S);
         part = fmin(part, fc_velocity_time_of_change(&at, change));
     }
     assert(!(part < 0.0) && period > 0.0);

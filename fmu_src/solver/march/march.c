@@ -12,10 +12,6 @@
 #include "solver/methods/methods.h"
 #include "solver/stretches/watch.h"
 
-// The velocity over V_S beyond which panels ignore Stribeck's curve: e^-25 of it remains. Chosen empirically;
-// at half of it e^-6 would remain.
-static const double END_OF_PEAK = 5.0;
-
 // The change of V over V_S in which the curve is assumed to move by 1. Chosen empirically: twice of it makes
 // panels that are refused, half of it more panels.
 static const double CURVE_MOVES = 0.5;
@@ -131,7 +127,7 @@ static void find_cut(March* m, double end) {
     if (fc_has_stribeck_curve(m->scene->friction)) {
         for (int side = -1; side <= 1; side += 2) {
             FcDrive shifted = *drive;
-            shifted.V.value -= side * END_OF_PEAK * m->scene->friction->V_S;
+            shifted.V.value -= side * FC_END_OF_PEAK * m->scene->friction->V_S;
             m->cut = fmin(m->cut, fc_drive_next_event(&shifted, m->t, m->cut).time);
         }
     }
@@ -145,8 +141,8 @@ static double smooth_time_of_slip(const March* m) {
     const FcVelocity at = fc_drive_velocity(&m->scene->drive, m->t);
     const double time = fc_velocity_time_of_change(&at, CURVE_MOVES * friction->V_S);
     const double ahead = fc_drive_V(&m->scene->drive, 0.5 * (m->t + fmin(m->cut, m->t + m->smooth_time)));
-    return fabs(ahead) < END_OF_PEAK * friction->V_S ? 1.0 / (1.0 / m->smooth_time + 1.0 / time)
-                                                     : m->smooth_time;
+    return fabs(ahead) < FC_END_OF_PEAK * friction->V_S ? 1.0 / (1.0 / m->smooth_time + 1.0 / time)
+                                                        : m->smooth_time;
 }
 
 static void advance(March* m, double h) { m->t = fc_panel_end(m->t, h, m->cut); }
@@ -331,7 +327,7 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
     }
     // The heat g (V - D') may err by its part of the path of surfaces and bristle alone, since D' may be fast
     // for a short time.
-    const double path = m->speed * m->duration + (most - least);
+    const double path = m->speed * m->duration + (most - least) + ROUNDING_OF_BOUND * most;
     const double of_path = fastest > 0.0 ? fmin(1.0, path / (fastest * m->duration)) : 1.0;
     return fc_error_at_points(&slip->at, f) * slip->at.h <=
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;

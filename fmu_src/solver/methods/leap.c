@@ -25,14 +25,18 @@ static void take_part(FcIntegration law, const FcScene* scene, const FcSolverOpt
     fc_periods_take(law, &part, options, to - from, total);
 }
 
-// The number of periods from k to the kink at |V| = V_1, beyond which V begins or ends to reverse.
+// The number of periods from k to the next kink, at |V| = V_1, beyond which V begins or ends to reverse, or to the next
+// end of a Stribeck peak beside it: few points far from a peak do not see it.
 static double to_kink(const FcScene* scene, double k) {
     const FcDrive* drive = &scene->drive;
+    const double V_1 = drive->vibration.V_1;
+    const double peak = fc_has_stribeck_curve(scene->friction) ? FC_END_OF_PEAK * scene->friction->V_S : 0.0;
+    const double kinks[] = {V_1, V_1 - peak, V_1 + peak};
     double nearest = HUGE_VAL;
-    for (int side = -1; side <= 1 && drive->V.rate != 0.0; side++) {
-        const double at =
-            (side * drive->vibration.V_1 - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
-        if (at > k && (side != 0 || drive->vibration.V_1 == 0.0)) {
+    for (int i = 0; i < 6 && drive->V.rate != 0.0; i++) {
+        const double V = i < 3 ? kinks[i] : -kinks[i - 3];
+        const double at = (V - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
+        if (at > k) {
             nearest = fmin(nearest, floor(at - k));
         }
     }
