@@ -274,7 +274,7 @@ def renew_tables(
         head = f"errors of at most {error:.0e} `F_C`:".replace("e-0", "e-")
         text = with_table(text, head, ["scene", "calls", *COLUMNS], rows)
     headings = ["law", "limit", "held", "moving", "moving, CPU time"]
-    text = with_table(text, "does so with the CPU time:", headings, period_cells(periods))
+    text = with_table(text, "divides CPU times:", headings, period_cells(periods))
     PAGE.write_text(text, encoding="utf-8")
     return PAGE
 
@@ -283,7 +283,10 @@ def with_table(text: str, head: str, headings: Sequence[str], rows: Sequence[Seq
     """The text with this table in place of the one under the words head."""
     lines = [headings, ["---"] * len(headings), *rows]
     table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    return re.sub(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)*", table, text)
+    text, count = re.subn(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)+", table, text)
+    if count != 1:
+        raise ValueError(f"{count} tables under {head!r}")
+    return text
 
 
 def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
