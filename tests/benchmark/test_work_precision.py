@@ -63,6 +63,7 @@ def test_the_page_has_the_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     page = tmp_path / "numerics.md"
     page.write_text(
         "with errors of at most 1e-6 `F_C`:\n\n| old |\n| 1 |\n\nand errors of at most 1e-9 `F_C`:\n\n"
+        "\nthe last divides CPU times:\n\n"
     )
     monkeypatch.setattr(work_precision, "PAGE", page)
     rows = [{"error": error, "case": "held", "calls": 0.5, "Radau 9": 1e9 * error} for error in (1e-6, 1e-9)]
@@ -96,7 +97,8 @@ def test_the_page_has_what_long_steps_cost(bench: Bench) -> None:
 
 def test_the_table_of_long_steps_is_renewed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     page = tmp_path / "numerics.md"
-    page.write_text("of one does so with the CPU time:\n\n| old |\n| 1 |\n\nmore\n")
+    heads = "".join(f"errors of at most {error} `F_C`:\n\n" for error in ("1e-6", "1e-9"))
+    page.write_text(f"{heads}the last divides CPU times:\n\n| old |\n| 1 |\n\nmore\n")
     monkeypatch.setattr(work_precision, "PAGE", page)
     rows = [
         {
@@ -112,3 +114,6 @@ def test_the_table_of_long_steps_is_renewed(monkeypatch: pytest.MonkeyPatch, tmp
     renew_tables([], rows, {})
     assert "| Dahl | Load | 2.00 | 16.0 | 1600 |\n\nmore" in page.read_text()
     assert "old" not in page.read_text()
+    page.write_text("a page without these words")
+    with pytest.raises(ValueError, match="0 tables"):
+        renew_tables([], rows, {})

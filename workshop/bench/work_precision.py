@@ -283,7 +283,7 @@ def with_table(text: str, head: str, headings: Sequence[str], rows: Sequence[Seq
     """The text with this table in place of the one under the words head."""
     lines = [headings, ["---"] * len(headings), *rows]
     table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    text, count = re.subn(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)+", table, text)
+    text, count = re.subn(rf"(?<={re.escape(head)}\n\n)(?:\|.*\n)*", table, text)
     if count != 1:
         raise ValueError(f"{count} tables under {head!r}")
     return text
