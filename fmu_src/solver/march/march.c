@@ -429,22 +429,24 @@ static bool turn_to_other_bound(March* m, double sure, double end) {
     FcDrive faster = *drive;
     faster.V.value += side * m->fastest_bound;
     const double turned = fc_drive_next_event(&faster, sure, end).time;
-    const double until = fc_drive_next_event(&faster, turned, end).time;
     const FcVelocity middle = fc_drive_velocity(drive, 0.5 * (sure + turned));
     const double bend = drive->vibration.V_1 * drive->omega * drive->omega;
     const double rate = -side * middle.rate - 0.5 * (turned - sure) * bend;
-    if (!(rate > BEND_OF_BOUND * m->fastest_bound / m->smooth_time) ||
-        !(-side * fc_drive_V(drive, 0.5 * (turned + until)) > m->fastest_bound)) {
+    if (!(rate > BEND_OF_BOUND * m->fastest_bound / m->smooth_time)) {
+        return false;
+    }
+    const double until = fc_drive_next_event(&faster, turned, end).time;
+    if (!(-side * fc_drive_V(drive, 0.5 * (turned + until)) > m->fastest_bound)) {
         return false;
     }
     FcPushed push = {m->scene, &m->bound, side};
     const double before = fc_push_at(&push, sure);
     const double after = fc_push_at(&push, turned);
-    m->result->evaluations += 2.0;
+    const FcCoefficients at = fc_scene_coefficients(&m->bound, m->t);
+    m->result->evaluations += 3.0;
     if (!(before > 0.0 && after < 0.0)) { // by rounding
         return false;
     }
-    const FcCoefficients at = fc_scene_coefficients(&m->bound, m->t);
     const double seen = unseen(m, at.sigma, at.limit / at.sigma);
     slip_to(m, fc_root_between(fc_push_at, &push, sure, before, turned, after, 0.0, seen,
                                &m->result->evaluations));
