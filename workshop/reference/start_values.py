@@ -8,8 +8,8 @@ from workshop.reference.scene import Scene
 
 _CONTACT = {f"contact.{field.name.rstrip('_')}": field.name for field in fields(Contact)}
 _NAMES = """
-    V d E load F_C vibration.f vibration.V_1 vibration.a_d vibration.phase_d contact.input
-    friction.model friction.limit friction.mu friction.staticRatio friction.V_S friction.sigma_1 friction.sigma_2
+    V d E load F_C vibration.f vibration.V_1 vibration.a_d vibration.phase_d contact.input friction.model
+    friction.limit friction.mu friction.staticRatio friction.V_S friction.sigma_1 friction.sigma_2
 """.split()
 _SCENE = {name: name.rpartition(".")[2] for name in _NAMES} | {"friction.model": "friction"}
 
