@@ -38,12 +38,17 @@ typedef struct {
     double rate;  // m, of D along the ramp
 } Place;
 
+// Whether a bristle that breaks away drops: with static friction at the start or the end of the ramp.
+static bool drops(const Ramp* ramp) {
+    const FcFriction* friction = ramp->scene->friction;
+    return friction->model == FC_ELASTIC_PLASTIC && (ramp->past.ratio > 1.0 || friction->staticRatio > 1.0);
+}
+
 // Static over Coulomb friction, or Stribeck's curve of a bristle that slips, and the rate of its logarithm.
 static double curve_at(const Ramp* ramp, double s, double* log_rate) {
-    const FcFriction* friction = ramp->scene->friction;
     const double ratio = ramp->past.ratio * exp(s * ramp->log_ratio);
     *log_rate = ramp->log_ratio;
-    if (!fc_has_static_friction(friction) || ramp->slips == 0) {
+    if (!drops(ramp) || ramp->slips == 0) {
         return ratio;
     }
     const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
@@ -161,7 +166,7 @@ static double next_place(const Ramp* ramp, double s, double step) {
     const double V = hypot(ramp->past.V + s * ramp->V, ramp->past.V_y + s * ramp->V_y);
     const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
-    if (ramp->slips != 0 && fc_has_static_friction(ramp->scene->friction) && change != 0.0) {
+    if (ramp->slips != 0 && drops(ramp) && change != 0.0) {
         next = fmin(next, s + fmax(STEP_OF_CURVE * least, V - END_OF_CURVE * most) / change);
     }
     const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
@@ -179,18 +184,40 @@ static double step_from(const Ramp* ramp, double s) {
     return (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
 }
 
+// The number of parts of a step on Stribeck's curve in which D is sought to turn. Two turns in one part are not
+// seen: they change the heat by the fourth power of the part.
+static const double PARTS = 8.0;
+
+static int parts_between(const Ramp* ramp, double s, double next) {
+    if (ramp->slips == 0 || !drops(ramp)) {
+        return 1;
+    }
+    const double least = fmin(ramp->scene->friction->V_S, ramp->past.V_S);
+    const double moves = hypot(ramp->V, ramp->V_y) / least + fabs(ramp->log_V_S);
+    return (int)ceil(PARTS * fmin(1.0, (next - s) * moves / STEP_OF_CURVE) + 1e-3);
+}
+
 // The next place to stop at after s, or the one before it at which D turns.
 static double next_stop(const Ramp* ramp, double s, double step) {
     const double next = next_place(ramp, s, step);
-    const double rate = at_place(ramp, s).rate;
-    const double rate_next = at_place(ramp, next).rate;
-    if (!(rate * rate_next < 0.0)) {
-        return next;
-    }
     AboveBound of = {ramp, 0.0};
-    double none = 0.0;
-    const double turn = fc_root_between(bound_rate, &of, s, rate, next, rate_next, 0.0, 0.0, &none);
-    return turn > s + 1e-9 ? turn : next;
+    double rate = bound_rate(&of, s);
+    double from = s;
+    const int parts = parts_between(ramp, s, next);
+    for (int i = 1; i <= parts; i++) {
+        const double to = i < parts ? s + (next - s) * i / parts : next;
+        const double rate_to = bound_rate(&of, to);
+        double none = 0.0;
+        const double turn = rate * rate_to < 0.0
+                                ? fc_root_between(bound_rate, &of, from, rate, to, rate_to, 0.0, 0.0, &none)
+                                : 0.0;
+        if (turn > s + 1e-9) {
+            return turn;
+        }
+        rate = rate_to;
+        from = to;
+    }
+    return next;
 }
 
 // |delta| at the end of the ramp, from the place s on.
@@ -247,7 +274,7 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     const int side = bristle.delta < 0.0 ? -1 : 1;
     Ramp ramp = ramp_from(scene, past, bristle.slips);
     double reached = delta;
-    if (fc_has_static_friction(scene->friction) && bristle.slips == 0) {
+    if (drops(&ramp) && bristle.slips == 0) {
         const double s = where_it_breaks(&ramp, delta);
         if (s < 1.0) {
             bristle.slips = side;
@@ -258,6 +285,9 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         }
     } else {
         reached = follow_from(&ramp, 0.0, delta, heat);
+    }
+    if (!fc_has_static_friction(scene->friction)) {
+        bristle.slips = 0;
     }
     if (bristle.delta_y == 0.0) {
         bristle.delta = side * reached;

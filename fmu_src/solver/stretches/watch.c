@@ -126,7 +126,7 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
     const double may = fc_allowed_force(interval) / sigma * fc_least(1.0, watch->reach / course.D[last]); // m
     const double missed = missed_between(at, &course) * course.D[last];
     if (nearest(&course) * course.D[last] > course.D[last] - NEAR_BOUND * missed &&
-        missed > FC_SHARE_OF_GRAZE * fc_allowed_force(interval) / sigma) {
+        missed > fc_most(1e-13 * course.D[last], FC_SHARE_OF_GRAZE * may)) {
         return FC_UNRESOLVED;
     }
     const double over = fc_most(1e-13 * course.D[last], FC_SHARE_OF_EVENT * may);
