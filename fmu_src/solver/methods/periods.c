@@ -29,7 +29,7 @@ static const double MOST_FORGOTTEN = 0.5;
 
 // The largest number of periods that meet the bound before a repetition is given up. With static friction the
 // place of sticking may depend on the place of break-away. Then periods need not repeat, and the mean over
-// the last half of the meetings counts. Half as many would give a mean over fewer periods; twice as many
+// the last third of the meetings counts. Half as many would give a mean over fewer periods; twice as many
 // would cost twice the time.
 enum { MOST_MEETINGS = 1000 };
 // The number of those without an extrapolation in the plane, with static friction. An extrapolation may lead to
@@ -75,7 +75,7 @@ typedef struct {
     double edge[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
     FcStepResult total;
     double done; // periods
-    // After a period that met its bound: the last one whose number is a power of 2.
+    // After a period that met its bound: the last one that was kept.
     FcStepResult met;
     double met_at; // periods; negative for none
     FcBristle
@@ -321,13 +321,14 @@ static void extrapolate(const FcScene* scene, Ends* ends, FcStepResult* total) {
 }
 
 // Takes `periods`, which may be infinitely many, and stops if periods repeat. Those since met_at do, or a
-// single free one if met_at is negative. If too many meetings do not repeat, met_at is about half of them
-// ago.
+// single free one if met_at is negative. If too many meetings do not repeat, met_at is up to a third of
+// them ago.
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
     walk->met_at = -1.0;
     walk->least.delta = INFINITY;
     int meetings = 0;
+    double keep = 1.0; // the number of the next meeting that is kept
     const int alone = fc_has_static_friction(walk->scene->friction) ? ALONE : 0;
     Ends ends = {.count = 0};
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
@@ -349,8 +350,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
             if (repeats(walk)) {
                 return;
             }
-            // Each is kept twice as long as the last, so that a cycle of any length returns to it.
-            if ((meetings & (meetings - 1)) == 0) {
+            // Each is kept half as long again as the last, so that a cycle of any length returns to it.
+            if (meetings >= keep) {
+                keep = ceil(1.5 * meetings);
                 if (isinf(periods)) { // the sums of free periods would take digits from the cycle's
                     *total = fc_result_from(fc_bristle_of(total), total->evaluations);
                 }
