@@ -48,7 +48,7 @@ def test_the_dry_rows(fmu_path: Path) -> None:
     assert f"{100 * misfit / data.vibrated.mean():.0f} % of the mean vibrated friction" in PAGE
     assert f"{100 * misfit / data.without.mean():.0f} % of F_C" in PAGE
     missed = measurements.rms(fit.predicted - data.vibrated)
-    said = f"rms of its predictions, {missed:.3f} N, is {100 * missed / data.vibrated.mean():.0f} %."
+    said = f"rms error of its predictions, {missed:.3f} N, is {100 * missed / data.vibrated.mean():.0f} %."
     assert said in PAGE
     assert f"F_C - k a = {data.without[0] - fit.stiffness * data.amplitude:.3f} N" in PAGE
     assert longitudinal.STRIBECK == 1e-4 and "V_S = 0.1 mm/s" in PAGE
