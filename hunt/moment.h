@@ -78,7 +78,7 @@ typedef struct {
 // At a local time; rates are time derivatives of logarithms.
 typedef struct {
     Vector V;                      // m/s
-    Real sigma;                    // N/m
+    Real F_n, sigma;               // N, N/m
     Real coulomb;                  // N, F_C or mu F_n
     Real g;                        // N, the force to which a bristle tends
     Real B;                        // N, the bound of a bristle that sticks
