@@ -135,8 +135,7 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
     const Real force = elastic * E * gamma + plastic * (2.0L + x) * decay;
     const Real force_E =
         elastic * (gamma + E * power_3_2(x) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
-    AtModulus at = {
-        .force = density * force, .by_force = force_E / force, .stiffness = scene->contact_sigma};
+    AtModulus at = {.force = density * force, .by_force = force_E / force, .stiffness = scene->contact_sigma};
     if (scene->contact == CONTACT_ASPERITIES) {
         const Real area = scene->c * PI * (Real)scene->eta * R * R_q * scene->A_n / (lambda * lambda);
         const Real bracket = 1.0L + decay;
