@@ -203,16 +203,6 @@ void velocities(const World* w, Real t, int order, Vector* V) {
     V[1] = order > 0 ? plus(V[1], 1.0L, w->rate) : V[1];
 }
 
-// Near 0 it has digits, too.
-static Real load_at(const World* w, Real t) {
-    const Real load = w->scene.load, rate = w->scene.load_rate;
-    return rate == 0.0L ? load : rate * (t + load / rate);
-}
-
-static AtModulus modulus_at(const World* w, Real t) {
-    return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
-}
-
 // The bristle, or Coulomb's limit, depends on the separation.
 static bool knows_contact(const ReferenceScene* s) {
     return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
@@ -225,11 +215,11 @@ static At contact_at(const World* w, Real t, Vector turn) {
     if (w->open || !knows_contact(s)) {
         return at;
     }
-    const AtModulus of = modulus_at(w, t);
+    const AtModulus of = s->E_rate == 0.0 ? w->held : at_modulus(s, (Real)s->E + s->E_rate * t);
     const Real swing = w->d_cosine * (1.0L + turn.x) - w->d_sine * turn.y;
     Real d, d_rate = -w->omega * (w->d_cosine * turn.y + w->d_sine * (1.0L + turn.x));
     if (s->input == INPUT_LOAD) {
-        const Real load = load_at(w, t);
+        const Real rate = s->load_rate, load = rate == 0.0L ? s->load : rate * (t + s->load / rate);
         at.F_n = load / w->swell * expl(-w->decay * swing);
         d = logl(of.force * w->swell / load) / w->decay + swing;
         d_rate += (of.by_force * s->E_rate - s->load_rate / load) / w->decay;

@@ -162,7 +162,6 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
     }
     for (int k = 0; k < 25; k++) {
         Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
-        bool turns = false;
         for (int i = 0; i < STAGES; i++) {
             A[i][STAGES] = -angle[i];
         }
@@ -170,7 +169,6 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             const Vector now = turned(n, angle[j]), across = {-now.y, now.x}, V = at[j].V;
             const Real lies = bound(w, &at[j], false), rate = dot(V, across) / lies,
                        slope = -dot(V, now) / lies;
-            turns = turns || rate != 0.0L || angle[j] != 0.0L;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
@@ -180,9 +178,6 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
                 A[i][STAGES] += weight * rate;
             }
         }
-        if (!turns) {
-            return true;
-        }
         solve(A);
         for (int i = 0; i < STAGES; i++) {
             angle[i] += A[i][STAGES];
@@ -191,7 +186,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
         if (!(most < 3.0L)) {
             return false;
         }
-        if (most < 1e-9L && k > 0) { // the next would be 1e-18
+        if (most < 1e-9L) { // the next would be 1e-18
             return true;
         }
     }
@@ -696,11 +691,8 @@ static bool are_equal(State a, State b, Real unit) {
 
 // A length [m] of deflections.
 static Real unit_of(const World* w) {
-    if (w->scene.law == LAW_COULOMB || is_open(w, 0.0L)) {
-        return 1.0L;
-    }
     const At at = scene_at(w, 0.0L);
-    return bound(w, &at, true);
+    return is_open(w, 0.0L) ? 1.0L : bound(w, &at, true);
 }
 
 // Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the

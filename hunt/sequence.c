@@ -63,10 +63,6 @@ ReferenceScene start_values(void) {
     return scene;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Steps
-// ---------------------------------------------------------------------------------------------------------------------
-
 ReferenceScene scene_after(const ReferenceScene* before) {
     ReferenceScene s = *before;
     s.start = before->start + before->h;
@@ -151,10 +147,6 @@ bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t siz
     }
     return true;
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Plainer
-// ---------------------------------------------------------------------------------------------------------------------
 
 // Puts another word, or none, in place of a part of the text, if it still shows the miss.
 static bool replace(char* text, size_t begin, size_t length, const char* word, StillShows* shows) {

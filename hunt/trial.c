@@ -112,20 +112,17 @@ static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
     return ratio;
 }
 
-// Over so many periods of a motion that may be chaotic the result does not depend on the state before.
-static bool may_forget(const ReferenceScene* s) {
-    return vibrates(s) && may_be_chaotic(s) && s->h * s->f > 10.0;
-}
-
 // Whether the scene has a settled state that is promised.
 static bool settles(const ReferenceScene* s) {
     return s->law == LAW_COULOMB || !vibrates(s) || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
 }
 
-// Whether the step is outside the domain of the promise.
+// Whether the step is outside the domain of the promise. Over more than ten periods of a motion that may be chaotic the
+// result does not depend on the state before.
 static bool is_outside(const ReferenceScene* s, const ReferenceScene* first) {
     const bool swings = s->law != LAW_COULOMB && (s->V_1 != 0.0 || s->V_2 != 0.0);
-    return (swings && scene_kappa(s) < LEAST_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
+    const bool forgets = vibrates(s) && may_be_chaotic(s) && s->h * s->f > 10.0;
+    return forgets || (swings && scene_kappa(s) < LEAST_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
            (first->initial == START_SETTLED && !settles(first));
 }
 
@@ -142,7 +139,7 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
     if (!(verdict.ratio <= 1.0)) {
         verdict = verdict_by_rounding(before, taken, sequence->tolerance);
     }
-    if (!(verdict.ratio <= 1.0) && (may_forget(scene) || is_outside(scene, &sequence->step[0]))) {
+    if (!(verdict.ratio <= 1.0) && is_outside(scene, &sequence->step[0])) {
         return false;
     }
     const double settled = before == NULL ? settled_ratio(taken, sequence) : -1.0;
