@@ -146,12 +146,7 @@ static void run_all(Hunt* hunt) {
 }
 
 static void try_text(Hunt* hunt, const char* text) {
-    Sequence sequence;
-    char wrong[100];
-    if (!sequence_read(text, &sequence, wrong, sizeof wrong)) {
-        fprintf(stderr, "hunt: %s is not a name=value of a scene\n", wrong);
-        exit(2);
-    }
+    const Sequence sequence = sequence_read(text);
     try_sequence(hunt, &sequence);
 }
 
@@ -185,10 +180,6 @@ static long print_sums(const Hunt* hunt) {
            hunt->sequences, steps, hunt->refused, hunt->unknown, misses);
     return misses;
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The command line
-// ---------------------------------------------------------------------------------------------------------------------
 
 static void usage(void) {
     fprintf(stderr,

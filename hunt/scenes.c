@@ -43,21 +43,15 @@ static double top_speed(const ReferenceScene* s) {
     return fmax(fmax(hypot(s->V, s->V_y), fmax(s->V_1, s->V_2)), 1e-6);
 }
 
+// Next to a vibration also dips of |V|, and grazing reversals.
 static double velocity_along(Draw* draw, double V_1) {
     const double kind = unit(draw);
-    if (kind < 0.05) {
-        return 0.0;
-    }
-    if (V_1 > 0.0 && kind < 0.25) { // dips and grazing reversals
-        return sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-9, 1e-1));
-    }
-    if (V_1 > 0.0 && kind < 0.35) {
-        return sign(draw) * V_1 * log_between(draw, 1e-9, 1.0);
-    }
-    if (V_1 > 0.0 && kind < 0.8) {
-        return V_1 * between(draw, -3.0, 3.0);
-    }
-    return sign(draw) * log_between(draw, 1e-5, 10.0);
+    const bool swings = V_1 > 0.0 && kind < 0.8;
+    return kind < 0.05   ? 0.0
+           : !swings     ? sign(draw) * log_between(draw, 1e-5, 10.0)
+           : kind < 0.25 ? sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-9, 1e-1))
+           : kind < 0.35 ? sign(draw) * V_1 * log_between(draw, 1e-9, 1.0)
+                         : V_1 * between(draw, -3.0, 3.0);
 }
 
 // In the plane: zeta, and any direction, or along or transverse.
