@@ -82,9 +82,8 @@ static void print_step(const TrialStep* taken, int step) {
     printf("  delta      FMU %.17g, %.17g  reference %.17g, %.17g\n", s->delta, s->delta_y, t->delta,
            t->delta_y);
     if (step == 0) {
-        const double (*both)[2] = taken->settled;
-        printf("  settled    FMU %.17g, %.17g  reference %.17g, %.17g\n", both[0][0], both[0][1], both[1][0],
-               both[1][1]);
+        printf("  settled    FMU %.17g, %.17g  reference %.17g, %.17g\n", taken->settled.x, taken->settled.y,
+               taken->settled_truth[0], taken->settled_truth[1]);
     }
 }
 
