@@ -177,11 +177,6 @@ Vector along(Vector a, Real length) {
 
 bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }
 
-bool is_held(const ReferenceScene* s) {
-    return s->V_rate == 0.0 && s->V_y_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 &&
-           s->load_rate == 0.0;
-}
-
 // (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
 static Vector turn_at(const World* w, Real t) {
     const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : (Vector){1.0L, 0.0L};
@@ -260,8 +255,9 @@ At scene_at(const World* w, Real t) {
     const ReferenceScene* s = &w->scene;
     const Vector turn = turn_at(w, t);
     At at = contact_at(w, t, turn);
+    const Vector V = velocity(w, t, turn);
     Real excess = w->excess, V_S = s->V_S;
-    at.V = velocity(w, t, turn);
+    at.V = w->ramp ? (Vector){0} : V;
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * at.F_n : s->F_C;
     if (w->ramp) {
         at.sigma *= expl(w->ln_rate.scale * t);
@@ -275,21 +271,17 @@ At scene_at(const World* w, Real t) {
     at.B = at.coulomb * (1.0L + excess);
     at.g = at.coulomb;
     if (excess != 0.0L) {
-        const Real square = dot(at.V, at.V) / (V_S * V_S), fall = expl(-square);
+        const Real square = dot(V, V) / (V_S * V_S), fall = expl(-square);
         const Real curve = 1.0L + excess * fall;
         at.g *= curve;
-        Vector V[2];
-        velocities(w, t, 1, V);
-        const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V[0], V[1]) / (V_S * V_S));
+        Vector moves[2];
+        velocities(w, t, 1, moves);
+        const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V, moves[1]) / (V_S * V_S));
         at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
-    }
-    if (w->ramp) {
-        at.V = (Vector){0};
     }
     return at;
 }
 
-// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
 Real bound(const World* w, const At* at, bool sticks) {
     return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
 }

@@ -155,11 +155,9 @@ static Vector turned(Vector n, Real angle) {
     return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
 }
 
-// The angles from the direction n at the nodes of a bristle that slips, by Newton; returns false if it does not converge.
+// The angles from the direction n at the nodes of a bristle that slips, by Newton from 0; returns false if it does not
+// converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
-    for (int i = 0; i < STAGES; i++) {
-        angle[i] = 0.0L;
-    }
     for (int k = 0; k < 25; k++) {
         Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
         for (int i = 0; i < STAGES; i++) {
@@ -212,7 +210,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
     Vector change[STAGES] = {{0}};
-    Real angle[STAGES];
+    Real angle[STAGES] = {0.0L};
     const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
     for (int i = 0; i < STAGES; i++) {
@@ -627,12 +625,11 @@ static Map twice(const Map* map) {
     return two;
 }
 
-// A period, and its map's powers of 1, 2, 4 .. when they are needed.
+// A period, and the powers 1, 2, 4, .. of its map.
 typedef struct {
     World world;
-    Real unit; // m, of x
-    bool mapped;
-    Map power[POWERS];
+    Real unit;         // m, of x
+    Map power[POWERS]; // 0 before they are needed
 } Period;
 
 static const Real FOR_EVER = 0x1p39L + 1.0L; // periods: the highest power, and one
@@ -654,10 +651,9 @@ static Vector after_untouched(const Period* p, int k, Vector delta, Sums* sums) 
 // later one touches none, neither do those between, since delta moves along a line and such deflections are a convex set.
 static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
     World* w = &p->world;
-    for (int k = 0; k < POWERS && !p->mapped; k++) {
+    for (int k = 0; k < POWERS && p->power[k].m[0][0] == 0.0L; k++) {
         p->power[k] = k == 0 ? find_map(w, p->unit) : twice(&p->power[k - 1]);
     }
-    p->mapped = true;
     Real passed = 1.0L;
     bool rises = true; // to the first power that is too high
     for (int k = 0; k >= 0; k += rises ? 1 : -1) {
@@ -821,6 +817,11 @@ static Vector force_at(const World* w, Real t, State state) {
                        outward(w, &at, state.delta) > 0.0L;
     const Vector rate = rate_of(w, &at, state.delta, slips);
     return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
+}
+
+static bool is_held(const ReferenceScene* s) {
+    return s->V_rate == 0.0 && s->V_y_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 &&
+           s->load_rate == 0.0;
 }
 
 static State start_of(const ReferenceScene* s) {

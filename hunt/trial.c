@@ -108,17 +108,9 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
 // Grades
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Widens the results that the reference allows, the least and the largest.
-static void include(ReferenceStep range[2], const ReferenceStep* step) {
-    for (int k = 0; k < RESULTS; k++) {
-        range[0].result[k] = fmin(range[0].result[k], step->result[k]);
-        range[1].result[k] = fmax(range[1].result[k], step->result[k]);
-    }
-}
-
 static double over(double error, double allowed) { return isnan(error) ? INFINITY : fabs(error) / allowed; }
 
-// The largest error of a step outside the range.
+// The largest error of a step outside the range between the least and the largest results that the reference allows.
 static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range[2], double tolerance) {
     const ReferenceStep* truth = &taken->truth;
     const FmuStep* step = &taken->step;
@@ -179,10 +171,13 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
             moved.delta_y_0 *= 1.0 + way * of_delta;
         }
         past.start = moved.start;
+        ReferenceStep found = taken->truth;
         if (moved.h > 0.0) {
-            ReferenceStep found;
             step_of_reference(before ? &past : NULL, &moved, &taken->step, &found);
-            include(range, &found);
+        }
+        for (int j = 0; j < RESULTS; j++) {
+            range[0].result[j] = fmin(range[0].result[j], found.result[j]);
+            range[1].result[j] = fmax(range[1].result[j], found.result[j]);
         }
     }
     for (int k = 0; k < RESULTS && grows; k++) {
