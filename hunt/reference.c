@@ -865,13 +865,14 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     const Vector start = force_at(&held, 0.0L, state);
     result->known = advance(&w, &state, &sums) && result->known;
     const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
-    const Real results[RESULTS] = {[F_T] = force.x,     [F_Y] = force.y,       [F_T_MEAN] = mean.x,
-                                   [F_Y_MEAN] = mean.y, [F_T_START] = start.x, [F_Y_START] = start.y,
-                                   [W_F] = sums.work,   [Q_F] = sums.heat,     [SLIPS_AT_END] = state.broke};
+    const Real results[RESULTS] = {
+        [F_T] = force.x,         [F_Y] = force.y,          [F_T_MEAN] = mean.x,
+        [F_Y_MEAN] = mean.y,     [F_T_START] = start.x,    [F_Y_START] = start.y,
+        [W_F] = sums.work,       [Q_F] = sums.heat,        [SLIPS_AT_END] = state.broke,
+        [DELTA] = state.delta.x, [DELTA_Y] = state.delta.y};
     for (int k = 0; k < RESULTS; k++) {
         result->result[k] = (double)results[k];
     }
-    result->delta = (double)state.delta.x, result->delta_y = (double)state.delta.y;
     result->path = (double)sums.path;
 }
 

@@ -6,8 +6,8 @@
 #include "scenes.h"
 #include "settled_force.h"
 
-const char* const GRADE_NAMES[GRADES] = {"F_t",       "F_y", "F_t_mean", "F_y_mean", "F_t_start",
-                                         "F_y_start", "W_f", "Q_f",      "side",     "settled"};
+const char* const GRADE_NAMES[GRADES] = {"F_t", "F_y", "F_t_mean", "F_y_mean", "F_t_start", "F_y_start",
+                                         "W_f", "Q_f", "side",     "delta",    "delta_y",   "settled"};
 
 static const double ROUNDING = 1e-11; // of S, beside the tolerance
 static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
@@ -91,8 +91,8 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
         return false;
     }
-    step->delta = v->delta;
-    step->delta_y = v->delta_y;
+    step->result[DELTA] = v->delta;
+    step->result[DELTA_Y] = v->delta_y;
     step->result[F_T] = v->F_t;
     step->result[F_Y] = v->F_y;
     step->result[F_T_MEAN] = v->F_t_mean;
@@ -115,14 +115,15 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
     const ReferenceStep* truth = &taken->truth;
     const FmuStep* step = &taken->step;
     const double S = fmax(truth->S, LEAST_S);
-    const double path =
-        truth->path + hypot(truth->delta - step->delta_start, truth->delta_y - step->delta_y_start);
-    const double lengths = hypot(step->delta_start, step->delta_y_start) + hypot(step->delta, step->delta_y);
+    const double path = truth->path + hypot(truth->result[DELTA] - step->delta_start,
+                                            truth->result[DELTA_Y] - step->delta_y_start);
+    const double lengths =
+        hypot(step->delta_start, step->delta_y_start) + hypot(step->result[DELTA], step->result[DELTA_Y]);
     const ReferenceScene* scene = &taken->scene;
     const double digits = DIGITS + (vibrates(scene) ? 4.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
     const double force = (tolerance + ROUNDING) * S, energy = force * path + LEAST_S + digits * S * lengths;
     Verdict worst = {.ratio = -1.0};
-    for (int k = 0; k < RESULTS; k++) {
+    for (int k = 0; k <= SLIPS_AT_END; k++) {
         const double found = step->result[k];
         const double off = found - fmin(fmax(found, range[0].result[k]), range[1].result[k]);
         const double allowed = k == SLIPS_AT_END ? 0.0 : k == W_F || k == Q_F ? energy : force;

@@ -32,7 +32,6 @@ extern const char* const GRADE_NAMES[GRADES];
 // A step of the FMU.
 typedef struct {
     double result[RESULTS]; // as of the reference; the heat of the first step includes that of the start
-    double delta, delta_y;  // m, at the end
     double delta_start, delta_y_start; // m, before the step and its inputs
     int slips_start;
 } FmuStep;
