@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
@@ -16,23 +17,25 @@ static void legendre(Real x, Real P[STAGES + 1]) {
     }
 }
 
+// Its zeros are the nodes.
+static Real radau(const void* unused, Real x) {
+    Real P[STAGES + 1];
+    (void)unused;
+    legendre(x, P);
+    return P[STAGES] - P[STAGES - 1];
+}
+
 static Rule make_rule(void) {
     enum { n = STAGES };
+    static const Real GRID = 1.0L / 64.0L; // less than the distance of two zeros
     Rule rule = {.node = {0.0L}};
-    Real x[n], P[n][n + 1];
+    Real x[n], P[n][n + 1], from = -1.0L;
     for (int i = 0; i < n; i++) {
-        // The roots of P_n - P_(n-1) from the least to 1, each by Newton with those before it divided out.
-        x[i] = i == 0 ? -0.999999L : i == n - 1 ? 1.0L : x[i - 1] + 1e-6L;
-        for (int k = 0; k < 100 && i < n - 1; k++) {
-            legendre(x[i], P[i]);
-            const Real of_n = P[i][n - 1] - x[i] * P[i][n], of_less = P[i][n - 2] - x[i] * P[i][n - 1];
-            const Real value = P[i][n] - P[i][n - 1];
-            Real slope = ((Real)n * of_n - (Real)(n - 1) * of_less) / (1.0L - x[i] * x[i]);
-            for (int j = 0; j < i; j++) {
-                slope -= value / (x[i] - x[j]);
-            }
-            x[i] -= value / slope;
+        while (i < n - 1 && radau(NULL, from) * radau(NULL, from + GRID) > 0.0L) {
+            from += GRID;
         }
+        x[i] = i < n - 1 ? crossing(radau, NULL, from, from + GRID) : 1.0L;
+        from += GRID;
         legendre(x[i], P[i]);
         rule.node[i + 1] = 0.5L * (1.0L + x[i]);
         rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
@@ -53,27 +56,22 @@ static Rule make_rule(void) {
 
 // Each thread makes it once.
 static const Rule* the_rule(void) {
-    static _Thread_local bool made;
     static _Thread_local Rule rule;
-    if (!made) {
+    if (rule.node[STAGES] == 0.0L) {
         rule = make_rule();
-        made = true;
     }
     return &rule;
 }
 
 void solve(Real A[STAGES][STAGES + SIDES]) {
     for (int k = 0; k < STAGES; k++) {
-        for (int i = 0; i < STAGES; i++) {
-            const Real factor = i == k ? 0.0L : A[i][k] / A[k][k];
-            for (int j = k + 1; j < STAGES + SIDES && i != k; j++) {
-                A[i][j] -= factor * A[k][j];
-            }
+        for (int j = STAGES + SIDES - 1; j >= k; j--) {
+            A[k][j] /= A[k][k];
         }
-    }
-    for (int i = 0; i < STAGES; i++) {
-        for (int c = 0; c < SIDES; c++) {
-            A[i][STAGES + c] /= A[i][i];
+        for (int i = 0; i < STAGES; i++) {
+            for (int j = STAGES + SIDES - 1; j >= k && i != k; j--) {
+                A[i][j] -= A[i][k] * A[k][j];
+            }
         }
     }
 }
@@ -81,8 +79,8 @@ void solve(Real A[STAGES][STAGES + SIDES]) {
 // Chandrupatla's method: inverse quadratic interpolation through three points if it is safe there, otherwise bisection.
 Real crossing(Function* function, const void* context, Real low, Real high) {
     // The last point, one on the other side of the zero, and the one before them.
-    Real a = high, b = low, c = high, share = 0.5L;
-    Real at_a = function(context, a), at_b = function(context, b), at_c = at_a;
+    Real a = high, b = low, share = 0.5L;
+    Real at_a = function(context, a), at_b = function(context, b);
     for (;;) {
         Real x = a + share * (b - a);
         x = x > fminl(a, b) && x < fmaxl(a, b) ? x : 0.5L * (a + b);
@@ -91,16 +89,14 @@ Real crossing(Function* function, const void* context, Real low, Real high) {
         }
         const Real at = function(context, x);
         const bool same = (at > 0.0L) == (at_a > 0.0L);
-        c = same ? a : b, at_c = same ? at_a : at_b;
+        const Real c = same ? a : b, at_c = same ? at_a : at_b;
         b = same ? b : a, at_b = same ? at_b : at_a;
         a = x, at_a = at;
         const Real way = (a - b) / (c - b), rise = (at_a - at_b) / (at_c - at_b);
         const bool safe = rise * rise < way && (1.0L - rise) * (1.0L - rise) < 1.0L - way;
-        share = 0.5L;
-        if (safe) {
-            share = at_a / (at_b - at_a) * at_c / (at_b - at_c) +
-                    (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b);
-        }
+        share = !safe ? 0.5L
+                      : at_a / (at_b - at_a) * at_c / (at_b - at_c) +
+                            (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b);
         const Real least = 2.0L * LDBL_EPSILON * fabsl(a) / fabsl(b - a);
         share = fmaxl(least, fminl(1.0L - least, share));
     }
@@ -133,34 +129,27 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
     const Real x = lambda * yields * yields * R / R_q;
     const Real x_E = -2.0L * x / E;
     const Real decay = expl(-x);
-    AtModulus at;
-    {
-        const Real front = 4.0L / 3.0L * sqrtl(R) * power_3_2(R_q / lambda) / lambda;
-        const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
-        const Real gamma = 1.5L * lower_gamma_3_2(x) - power_3_2(x) * decay; // gamma(5/2, x)
-        const Real sum = front * E * gamma + plastic * (2.0L + x) * decay;
-        const Real slope =
-            front * (gamma + E * power_3_2(x) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
-        at.force = density * sum;
-        at.by_force = slope / sum;
-    }
+    const Real elastic = 4.0L / 3.0L * sqrtl(R) * power_3_2(R_q / lambda) / lambda;
+    const Real plastic = PI * R * R_q * p_m / (lambda * lambda);
+    const Real gamma = 1.5L * lower_gamma_3_2(x) - power_3_2(x) * decay; // gamma(5/2, x)
+    const Real force = elastic * E * gamma + plastic * (2.0L + x) * decay;
+    const Real force_E =
+        elastic * (gamma + E * power_3_2(x) * decay * x_E) - plastic * (1.0L + x) * decay * x_E;
+    AtModulus at = {.force = density * force, .by_force = force_E / force, .stiffness = scene->contact_sigma};
     if (scene->contact == CONTACT_ASPERITIES) {
         const Real area = scene->c * PI * (Real)scene->eta * R * R_q * scene->A_n / (lambda * lambda);
         const Real bracket = 1.0L + decay;
         at.stiffness = scene->stiffnessScale * E * area * area * bracket * bracket;
         at.by_stiffness = 1.0L / E - 2.0L * decay * x_E / bracket;
     } else if (scene->contact == CONTACT_MINDLIN) {
-        const Real half = expl(-0.5L * x), plastic = 0.5L * power_3_2(2.0L / lambda);
+        const Real half = expl(-0.5L * x), yielded = 0.5L * power_3_2(2.0L / lambda);
         const Real upper = 0.5L * sqrtl(PI) - lower_gamma_3_2(0.5L * x);
-        const Real sum = lower_gamma_3_2(x) / power_3_2(lambda) + plastic * half * upper;
+        const Real sum = lower_gamma_3_2(x) / power_3_2(lambda) + yielded * half * upper;
         const Real slope =
-            sqrtl(x) * decay / power_3_2(lambda) - 0.5L * plastic * half * (upper + sqrtl(0.5L * x) * half);
+            sqrtl(x) * decay / power_3_2(lambda) - 0.5L * yielded * half * (upper + sqrtl(0.5L * x) * half);
         const Real tangential = 2.0L * (1.0L - nu) / (2.0L - nu);
         at.stiffness = scene->stiffnessScale * density * 2.0L * E * tangential * sqrtl(R * R_q) * sum;
         at.by_stiffness = 1.0L / E + slope * x_E / sum;
-    } else {
-        at.stiffness = scene->contact_sigma;
-        at.by_stiffness = 0.0L;
     }
     return at;
 }
@@ -188,11 +177,6 @@ Vector along(Vector a, Real length) {
 
 bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }
 
-bool is_held(const ReferenceScene* s) {
-    return s->V_rate == 0.0 && s->V_y_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 &&
-           s->load_rate == 0.0;
-}
-
 // (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
 static Vector turn_at(const World* w, Real t) {
     const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : (Vector){1.0L, 0.0L};
@@ -214,60 +198,42 @@ void velocities(const World* w, Real t, int order, Vector* V) {
     V[1] = order > 0 ? plus(V[1], 1.0L, w->rate) : V[1];
 }
 
-// Near 0 it has digits, too.
-static Real load_at(const World* w, Real t) {
-    const Real load = w->scene.load, rate = w->scene.load_rate;
-    return rate == 0.0L ? load : rate * (t + load / rate);
-}
-
-static AtModulus modulus_at(const World* w, Real t) {
-    return w->scene.E_rate == 0.0 ? w->held : at_modulus(&w->scene, (Real)w->scene.E + w->scene.E_rate * t);
-}
-
-// sigma [N/m] at that F_n and d.
-static Real stiffness_at(const ReferenceScene* s, const AtModulus* at, Real force, Real d) {
-    const Real share = force / at->force;
-    return s->contact == CONTACT_CONSTANT  ? (Real)s->contact_sigma
-           : s->contact == CONTACT_MINDLIN ? at->stiffness * share
-                                           : at->stiffness * share * share / (d * d * d);
-}
-
 // The bristle, or Coulomb's limit, depends on the separation.
 static bool knows_contact(const ReferenceScene* s) {
     return s->limit == LIMIT_LOAD || s->contact != CONTACT_CONSTANT;
 }
 
-// F_n [N] and sigma [N/m]; the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left
-// out.
-static void contact_at(const World* w, Real t, Vector turn, Real* force, Real* sigma, Real* ratio_rate) {
+// F_n, sigma and the rate of ln(limit / sigma) without Stribeck's curve. The terms that cancel in it are left out.
+static At contact_at(const World* w, Real t, Vector turn) {
     const ReferenceScene* s = &w->scene;
-    *sigma = s->contact_sigma;
-    *ratio_rate = *force = 0.0L;
+    At at = {.sigma = s->contact_sigma};
     if (w->open || !knows_contact(s)) {
-        return;
+        return at;
     }
-    const AtModulus at = modulus_at(w, t);
+    const AtModulus of = s->E_rate == 0.0 ? w->held : at_modulus(s, (Real)s->E + s->E_rate * t);
     const Real swing = w->d_cosine * (1.0L + turn.x) - w->d_sine * turn.y;
     Real d, d_rate = -w->omega * (w->d_cosine * turn.y + w->d_sine * (1.0L + turn.x));
     if (s->input == INPUT_LOAD) {
-        const Real load = load_at(w, t);
-        *force = load / w->swell * expl(-w->decay * swing);
-        d = logl(at.force * w->swell / load) / w->decay + swing;
-        d_rate += (at.by_force * s->E_rate - s->load_rate / load) / w->decay;
+        const Real rate = s->load_rate, load = rate == 0.0L ? s->load : rate * (t + s->load / rate);
+        at.F_n = load / w->swell * expl(-w->decay * swing);
+        d = logl(of.force * w->swell / load) / w->decay + swing;
+        d_rate += (of.by_force * s->E_rate - s->load_rate / load) / w->decay;
     } else {
         d = w->d + w->d_rate * t + swing;
-        *force = at.force * expl(-w->decay * d);
+        at.F_n = of.force * expl(-w->decay * d);
         d_rate += w->d_rate;
     }
-    *sigma = stiffness_at(s, &at, *force, d);
+    const bool asperities = s->contact == CONTACT_ASPERITIES, mindlin = s->contact == CONTACT_MINDLIN;
+    const Real share = at.F_n / of.force;
+    at.sigma = asperities ? of.stiffness * share * share / (d * d * d)
+               : mindlin  ? of.stiffness * share
+                          : of.stiffness;
     // The powers of F_n in the limit and in the stiffness.
-    const Real of_limit = s->limit == LIMIT_LOAD ? 1.0L : 0.0L;
-    const Real of_sigma = s->contact == CONTACT_ASPERITIES ? 2.0L
-                          : s->contact == CONTACT_MINDLIN  ? 1.0L
-                                                           : 0.0L;
-    const Real by_E = of_limit * at.by_force - at.by_stiffness;
-    const Real by_d = (of_sigma - of_limit) * w->decay + (s->contact == CONTACT_ASPERITIES ? 3.0L / d : 0.0L);
-    *ratio_rate = by_E * s->E_rate + by_d * d_rate;
+    const Real of_limit = s->limit == LIMIT_LOAD ? 1.0L : 0.0L, of_sigma = asperities ? 2.0L : mindlin;
+    const Real by_E = of_limit * of.by_force - of.by_stiffness;
+    const Real by_d = (of_sigma - of_limit) * w->decay + (asperities ? 3.0L / d : 0.0L);
+    at.bound_rate = by_E * s->E_rate + by_d * d_rate;
+    return at;
 }
 
 static World at_rest(const World* w) {
@@ -281,18 +247,18 @@ static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibratio
 bool is_open(const World* w, Real t) {
     World rest = at_rest(w);
     rest.open = false;
-    Real force, sigma, unused;
-    contact_at(&rest, t, (Vector){0}, &force, &sigma, &unused);
-    return knows_contact(&w->scene) && !(force >= OPEN && sigma >= OPEN);
+    const At at = contact_at(&rest, t, (Vector){0});
+    return knows_contact(&w->scene) && !(at.F_n >= OPEN && at.sigma >= OPEN);
 }
 
 At scene_at(const World* w, Real t) {
     const ReferenceScene* s = &w->scene;
     const Vector turn = turn_at(w, t);
-    At at = {.V = velocity(w, t, turn)};
-    Real force, excess = w->excess, V_S = s->V_S;
-    contact_at(w, t, turn, &force, &at.sigma, &at.bound_rate);
-    at.coulomb = s->limit == LIMIT_LOAD ? s->mu * force : s->F_C;
+    At at = contact_at(w, t, turn);
+    const Vector V = velocity(w, t, turn);
+    Real excess = w->excess, V_S = s->V_S;
+    at.V = w->ramp ? (Vector){0} : V;
+    at.coulomb = s->limit == LIMIT_LOAD ? s->mu * at.F_n : s->F_C;
     if (w->ramp) {
         at.sigma *= expl(w->ln_rate.scale * t);
         at.coulomb *= expl(w->ln_rate.limit * t);
@@ -305,21 +271,17 @@ At scene_at(const World* w, Real t) {
     at.B = at.coulomb * (1.0L + excess);
     at.g = at.coulomb;
     if (excess != 0.0L) {
-        const Real square = dot(at.V, at.V) / (V_S * V_S), fall = expl(-square);
+        const Real square = dot(V, V) / (V_S * V_S), fall = expl(-square);
         const Real curve = 1.0L + excess * fall;
         at.g *= curve;
-        Vector V[2];
-        velocities(w, t, 1, V);
-        const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V[0], V[1]) / (V_S * V_S));
+        Vector moves[2];
+        velocities(w, t, 1, moves);
+        const Real squares = 2.0L * (square * w->ln_rate.V_S - dot(V, moves[1]) / (V_S * V_S));
         at.kinetic_rate += ((1.0L + excess) * w->ln_rate.ratio + excess * squares) * fall / curve;
-    }
-    if (w->ramp) {
-        at.V = (Vector){0};
     }
     return at;
 }
 
-// The bound [m] of a bristle that sticks, or of one that slips, and how fast it moves [m/s].
 Real bound(const World* w, const At* at, bool sticks) {
     return (sticks || !w->elastic ? at->B : at->g) / at->sigma;
 }

@@ -1,4 +1,4 @@
-// The scene at a time, and tools of the reference.
+// Tools of the reference, and the scene at a time.
 #ifndef HUNT_MOMENT_H
 #define HUNT_MOMENT_H
 
@@ -8,12 +8,9 @@ typedef long double Real;
 
 static const Real PI = 3.141592653589793238462643383279502884L;
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots; vectors
-// ---------------------------------------------------------------------------------------------------------------------
-
 enum { STAGES = 10 };
 
+// Radau's right rule on [0, 1] and its collocation matrix.
 typedef struct {
     Real node[STAGES + 1];   // the first one is 0 and no stage, the last one is 1
     Real weight[STAGES];     // sum 1
@@ -78,7 +75,7 @@ typedef struct {
 // At a local time; rates are time derivatives of logarithms.
 typedef struct {
     Vector V;                      // m/s
-    Real sigma;                    // N/m
+    Real F_n, sigma;               // N, N/m
     Real coulomb;                  // N, F_C or mu F_n
     Real g;                        // N, the force to which a bristle tends
     Real B;                        // N, the bound of a bristle that sticks
@@ -93,7 +90,6 @@ World held_world(const World* w, Real h);
 // The limit of a fast ramp from the start of a world to that of another, in a time of 1.
 World ramp_between(const World* from, const World* to);
 
-bool is_held(const ReferenceScene* s);
 bool is_open(const World* w, Real t);
 
 // The velocity at a time and its derivatives up to that order.

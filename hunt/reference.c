@@ -155,14 +155,11 @@ static Vector turned(Vector n, Real angle) {
     return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
 }
 
-// The angles from the direction n at the nodes of a bristle that slips, by Newton; returns false if it does not converge.
+// The angles from the direction n at the nodes of a bristle that slips, by Newton from 0; returns false if it does not
+// converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
-    for (int i = 0; i < STAGES; i++) {
-        angle[i] = 0.0L;
-    }
     for (int k = 0; k < 25; k++) {
         Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
-        bool turns = false;
         for (int i = 0; i < STAGES; i++) {
             A[i][STAGES] = -angle[i];
         }
@@ -170,7 +167,6 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             const Vector now = turned(n, angle[j]), across = {-now.y, now.x}, V = at[j].V;
             const Real lies = bound(w, &at[j], false), rate = dot(V, across) / lies,
                        slope = -dot(V, now) / lies;
-            turns = turns || rate != 0.0L || angle[j] != 0.0L;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
@@ -180,9 +176,6 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
                 A[i][STAGES] += weight * rate;
             }
         }
-        if (!turns) {
-            return true;
-        }
         solve(A);
         for (int i = 0; i < STAGES; i++) {
             angle[i] += A[i][STAGES];
@@ -191,7 +184,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
         if (!(most < 3.0L)) {
             return false;
         }
-        if (most < 1e-9L && k > 0) { // the next would be 1e-18
+        if (most < 1e-9L) { // the next would be 1e-18
             return true;
         }
     }
@@ -217,7 +210,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
     Vector change[STAGES] = {{0}};
-    Real angle[STAGES];
+    Real angle[STAGES] = {0.0L};
     const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
     for (int i = 0; i < STAGES; i++) {
@@ -632,12 +625,11 @@ static Map twice(const Map* map) {
     return two;
 }
 
-// A period, and its map's powers of 1, 2, 4 .. when they are needed.
+// A period, and the powers 1, 2, 4, .. of its map.
 typedef struct {
     World world;
-    Real unit; // m, of x
-    bool mapped;
-    Map power[POWERS];
+    Real unit;         // m, of x
+    Map power[POWERS]; // 0 before they are needed
 } Period;
 
 static const Real FOR_EVER = 0x1p39L + 1.0L; // periods: the highest power, and one
@@ -659,10 +651,9 @@ static Vector after_untouched(const Period* p, int k, Vector delta, Sums* sums) 
 // later one touches none, neither do those between, since delta moves along a line and such deflections are a convex set.
 static Real pass_untouched(Period* p, State* state, Real n, Sums* sums) {
     World* w = &p->world;
-    for (int k = 0; k < POWERS && !p->mapped; k++) {
+    for (int k = 0; k < POWERS && p->power[k].m[0][0] == 0.0L; k++) {
         p->power[k] = k == 0 ? find_map(w, p->unit) : twice(&p->power[k - 1]);
     }
-    p->mapped = true;
     Real passed = 1.0L;
     bool rises = true; // to the first power that is too high
     for (int k = 0; k >= 0; k += rises ? 1 : -1) {
@@ -696,11 +687,8 @@ static bool are_equal(State a, State b, Real unit) {
 
 // A length [m] of deflections.
 static Real unit_of(const World* w) {
-    if (w->scene.law == LAW_COULOMB || is_open(w, 0.0L)) {
-        return 1.0L;
-    }
     const At at = scene_at(w, 0.0L);
-    return bound(w, &at, true);
+    return is_open(w, 0.0L) ? 1.0L : bound(w, &at, true);
 }
 
 // Takes n periods. If n is INFINITY, *mean is the mean force of the periods that repeat at last, and *state is that of the
@@ -831,6 +819,11 @@ static Vector force_at(const World* w, Real t, State state) {
     return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
 }
 
+static bool is_held(const ReferenceScene* s) {
+    return s->V_rate == 0.0 && s->V_y_rate == 0.0 && s->d_rate == 0.0 && s->E_rate == 0.0 &&
+           s->load_rate == 0.0;
+}
+
 static State start_of(const ReferenceScene* s) {
     return s->law == LAW_COULOMB ? (State){0} : (State){{s->delta_0, s->delta_y_0}, s->slips != 0};
 }
@@ -872,13 +865,14 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     const Vector start = force_at(&held, 0.0L, state);
     result->known = advance(&w, &state, &sums) && result->known;
     const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
-    const Real results[RESULTS] = {[F_T] = force.x,     [F_Y] = force.y,       [F_T_MEAN] = mean.x,
-                                   [F_Y_MEAN] = mean.y, [F_T_START] = start.x, [F_Y_START] = start.y,
-                                   [W_F] = sums.work,   [Q_F] = sums.heat,     [SLIPS_AT_END] = state.broke};
+    const Real results[RESULTS] = {
+        [F_T] = force.x,         [F_Y] = force.y,          [F_T_MEAN] = mean.x,
+        [F_Y_MEAN] = mean.y,     [F_T_START] = start.x,    [F_Y_START] = start.y,
+        [W_F] = sums.work,       [Q_F] = sums.heat,        [SLIPS_AT_END] = state.broke,
+        [DELTA] = state.delta.x, [DELTA_Y] = state.delta.y};
     for (int k = 0; k < RESULTS; k++) {
         result->result[k] = (double)results[k];
     }
-    result->delta = (double)state.delta.x, result->delta_y = (double)state.delta.y;
     result->path = (double)sums.path;
 }
 

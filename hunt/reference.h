@@ -33,17 +33,16 @@ typedef struct {
     int slips; // other than 0 if a bristle with static friction slips at the start
 } ReferenceScene;
 
-// The results of a step that are graded: the force at the end, its mean, and at the start with the inputs held after a
-// jump [N]; work and heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at
-// the end.
-enum { F_T, F_Y, F_T_MEAN, F_Y_MEAN, F_T_START, F_Y_START, W_F, Q_F, SLIPS_AT_END, RESULTS };
+// The results of a step: the force at the end, its mean, and at the start with the inputs held after a jump [N]; work and
+// heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at the end. These are
+// graded. The last ones are the deflection at the end [m].
+enum { F_T, F_Y, F_T_MEAN, F_Y_MEAN, F_T_START, F_Y_START, W_F, Q_F, SLIPS_AT_END, DELTA, DELTA_Y, RESULTS };
 
 typedef struct {
     double result[RESULTS];
-    double delta, delta_y; // m, at the end
-    double S;              // N, the scale of errors of forces
-    double path;           // m, time integral of |V|
-    bool known; // false: it takes more panels or cycles than the reference goes through, and only S is known
+    double S;    // N, the scale of errors of forces
+    double path; // m, time integral of |V|
+    bool known;  // false: it takes more panels or cycles than the reference goes through, and only S is known
 } ReferenceStep;
 
 // before: the inputs and parameters at the end of the last step, NULL at the very start. fineness 1, or 2 for

@@ -43,21 +43,15 @@ static double top_speed(const ReferenceScene* s) {
     return fmax(fmax(hypot(s->V, s->V_y), fmax(s->V_1, s->V_2)), 1e-6);
 }
 
+// Next to a vibration also dips of |V|, and grazing reversals.
 static double velocity_along(Draw* draw, double V_1) {
     const double kind = unit(draw);
-    if (kind < 0.05) {
-        return 0.0;
-    }
-    if (V_1 > 0.0 && kind < 0.25) { // dips and grazing reversals
-        return sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-9, 1e-1));
-    }
-    if (V_1 > 0.0 && kind < 0.35) {
-        return sign(draw) * V_1 * log_between(draw, 1e-9, 1.0);
-    }
-    if (V_1 > 0.0 && kind < 0.8) {
-        return V_1 * between(draw, -3.0, 3.0);
-    }
-    return sign(draw) * log_between(draw, 1e-5, 10.0);
+    const bool swings = V_1 > 0.0 && kind < 0.8;
+    return kind < 0.05   ? 0.0
+           : !swings     ? sign(draw) * log_between(draw, 1e-5, 10.0)
+           : kind < 0.25 ? sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-9, 1e-1))
+           : kind < 0.35 ? sign(draw) * V_1 * log_between(draw, 1e-9, 1.0)
+                         : V_1 * between(draw, -3.0, 3.0);
 }
 
 // In the plane: zeta, and any direction, or along or transverse.
@@ -293,18 +287,14 @@ static const Signal SIGNALS[] = {
 
 static double share(const double* of, int k) { return of ? of[k] : 1.0; }
 
-// The load of a share, or the separation that gives it.
-static void press(Draw* draw, const ReferenceScene* full, double share, double* load, double* d) {
-    *load = share > 0.0 ? full->load * share : chance(draw, 0.3) ? -0.1 * full->load : 0.0;
-    *d = full->d - full->R_q / full->lambda * (share > 0.0 ? log(share) : -between(draw, 30.0, 600.0));
-    *d = fmax(*d, 1.1 * full->a_d);
-}
-
 // Step k of the signal: from its value k - 1 to its value k, or held at that.
 static void step_of_signal(Draw* draw, const Signal* signal, int k, const ReferenceScene* full, bool linear,
                            ReferenceScene* s) {
-    double load, d;
-    press(draw, full, share(signal->load, k), &load, &d);
+    const double pressed = share(signal->load, k);
+    const double load = pressed > 0.0 ? full->load * pressed : chance(draw, 0.3) ? -0.1 * full->load : 0.0;
+    // The separation that gives the load, or one that opens the contact.
+    const double lengths = pressed > 0.0 ? log(pressed) : -between(draw, 30.0, 600.0);
+    const double d = fmax(full->d - full->R_q / full->lambda * lengths, 1.1 * full->a_d);
     const bool moves = linear && k > 0;
     const double from = share(signal->V, moves ? k - 1 : k); // as the user samples it
     const double vibration = share(signal->vibration, k);

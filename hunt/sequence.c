@@ -63,10 +63,6 @@ ReferenceScene start_values(void) {
     return scene;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Steps
-// ---------------------------------------------------------------------------------------------------------------------
-
 ReferenceScene scene_after(const ReferenceScene* before) {
     ReferenceScene s = *before;
     s.start = before->start + before->h;
@@ -134,38 +130,33 @@ static bool read_field(ReferenceScene* scene, const char* word) {
     return false;
 }
 
-bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t size) {
+Sequence sequence_read(const char* text) {
     char copy[SEQUENCE_TEXT];
     snprintf(copy, sizeof copy, "%s", text);
-    *sequence = (Sequence){.tolerance = 1e-4, .method = 1, .steps = 1, .step = {start_values()}};
+    Sequence sequence = {.tolerance = 1e-4, .method = 1, .steps = 1, .step = {start_values()}};
     for (char* word = strtok(copy, " \n"); word != NULL; word = strtok(NULL, " \n")) {
-        snprintf(wrong, size, "%s", word);
-        if (strcmp(word, "then") == 0 && sequence->steps < MOST_STEPS) {
-            sequence->step[sequence->steps] = scene_after(&sequence->step[sequence->steps - 1]);
-            sequence->steps++;
-        } else if (sscanf(word, "method=%d", &sequence->method) != 1 &&
-                   sscanf(word, "tolerance=%lf", &sequence->tolerance) != 1 &&
-                   !read_field(&sequence->step[sequence->steps - 1], word)) {
-            return false;
+        ReferenceScene* last = &sequence.step[sequence.steps - 1];
+        if (strcmp(word, "then") == 0 && sequence.steps < MOST_STEPS) {
+            sequence.step[sequence.steps++] = scene_after(last);
+        } else if (sscanf(word, "method=%d", &sequence.method) != 1 &&
+                   sscanf(word, "tolerance=%lf", &sequence.tolerance) != 1 && !read_field(last, word)) {
+            fprintf(stderr, "hunt: %s is not a name=value of a scene\n", word);
+            exit(2);
         }
     }
-    return true;
+    return sequence;
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Plainer
-// ---------------------------------------------------------------------------------------------------------------------
 
 // Puts another word, or none, in place of a part of the text, if it still shows the miss.
 static bool replace(char* text, size_t begin, size_t length, const char* word, StillShows* shows) {
-    char plainer[SEQUENCE_TEXT], wrong[100];
-    Sequence sequence;
+    char plainer[SEQUENCE_TEXT];
     snprintf(plainer, sizeof plainer, "%.*s%s%s", (int)begin, text, word, text + begin + length);
-    if (!sequence_read(plainer, &sequence, wrong, sizeof wrong) || !shows(&sequence)) {
-        return false;
+    const Sequence sequence = sequence_read(plainer);
+    const bool still = shows(&sequence);
+    if (still) {
+        strcpy(text, plainer);
     }
-    strcpy(text, plainer);
-    return true;
+    return still;
 }
 
 void make_plain(char* text, StillShows* shows) {

@@ -34,7 +34,7 @@ void sequence_text(const Sequence* sequence, char* text, size_t size);
 typedef bool StillShows(const Sequence* sequence);
 void make_plain(char* text, StillShows* shows);
 
-// Returns false if the text has an unknown name, which goes into wrong.
-bool sequence_read(const char* text, Sequence* sequence, char* wrong, size_t size);
+// Ends the program, with 2, at a word that is not a name=value of a scene.
+Sequence sequence_read(const char* text);
 
 #endif

@@ -4,37 +4,126 @@
 #include <math.h>
 
 #include "scenes.h"
+#include "settled_force.h"
 
-const char* const GRADE_NAMES[GRADES] = {"F_t",       "F_y", "F_t_mean", "F_y_mean", "F_t_start",
-                                         "F_y_start", "W_f", "Q_f",      "side",     "settled"};
+const char* const GRADE_NAMES[GRADES] = {"F_t", "F_y", "F_t_mean", "F_y_mean", "F_t_start", "F_y_start",
+                                         "W_f", "Q_f", "side",     "delta",    "delta_y",   "settled"};
 
 static const double ROUNDING = 1e-11; // of S, beside the tolerance
 static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
 static const double LEAST_S = 1e-20;  // N, and J: S and the path are 0 if nothing acts
 
-// Widens the results that the reference allows, the least and the largest.
-static void include(ReferenceStep range[2], const ReferenceStep* step) {
-    for (int k = 0; k < RESULTS; k++) {
-        range[0].result[k] = fmin(range[0].result[k], step->result[k]);
-        range[1].result[k] = fmax(range[1].result[k], step->result[k]);
-    }
+// ---------------------------------------------------------------------------------------------------------------------
+// The FMU
+// ---------------------------------------------------------------------------------------------------------------------
+
+typedef struct {
+    FcFrictionContact contact;
+    FcMessage message;     // why the core refused
+    bool started;          // the core did not refuse to
+    FcFrictionState after; // the last step, whose work and heat were counted
+} FmuRun;
+
+static void set_variables(FcVariables* v, const ReferenceScene* s) {
+    v->V = s->V;
+    v->d = s->d;
+    v->E = s->E;
+    v->load = s->load;
+    v->V_y = s->V_y;
+    v->F_C = s->F_C;
+    v->delta_0 = s->delta_0;
+    v->delta_y_0 = s->delta_y_0;
+    v->initialState = s->initial;
+    v->friction = (FcFriction){.model = s->law,
+                               .limit = s->limit,
+                               .mu = s->mu,
+                               .staticRatio = s->staticRatio,
+                               .V_S = s->V_S,
+                               .sigma_1 = s->sigma_1,
+                               .sigma_2 = s->sigma_2};
+    v->contact = (FcContactParameters){.model = s->contact,
+                                       .input = s->input,
+                                       .sigma = s->contact_sigma,
+                                       .stiffnessScale = s->stiffnessScale,
+                                       .R_q = s->R_q,
+                                       .R = s->R,
+                                       .eta = s->eta,
+                                       .A_n = s->A_n,
+                                       .nu = s->nu,
+                                       .Y = s->Y,
+                                       .c = s->c,
+                                       .lambda = s->lambda};
+    v->vibration = (FcVibration){
+        .f = s->f, .V_1 = s->V_1, .a_d = s->a_d, .phase_d = s->phase_d, .V_2 = s->V_2, .phase_2 = s->phase_2};
 }
+
+// Starts a contact at the start of the scene, to be freed.
+static void open_run(FmuRun* run, const ReferenceScene* scene, const Sequence* sequence) {
+    *run = (FmuRun){0};
+    FcVariables* v = &run->contact.state.variables;
+    set_variables(v, scene);
+    v->solver.method = sequence->method;
+    v->solver.tolerance = sequence->tolerance;
+    v->solver.stepSize = scene->h / 300.0;
+    run->started = fc_friction_contact_initialize(&run->contact, scene->start, &run->message);
+}
+
+// One step with the scene's inputs and tunable parameters, from the end of the last one. Returns false if the core refuses it,
+// or refused to start.
+static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
+    FcFrictionState *state = &run->contact.state, *before = &run->after;
+    FcVariables* v = &state->variables;
+    step->delta_start = v->delta;
+    step->delta_y_start = v->delta_y;
+    step->slips_start = state->slips;
+    set_variables(v, scene);
+    state->next_rate_set = 1; // all 0
+    if (!run->started || !fc_friction_contact_refresh(&run->contact, &run->message)) {
+        return false;
+    }
+    step->result[F_T_START] = v->F_t;
+    step->result[F_Y_START] = v->F_y;
+    state->next_rate[FC_INPUT_V] = scene->V_rate;
+    state->next_rate[FC_INPUT_D] = scene->d_rate;
+    state->next_rate[FC_INPUT_E] = scene->E_rate;
+    state->next_rate[FC_INPUT_LOAD] = scene->load_rate;
+    state->next_rate[FC_INPUT_V_Y] = scene->V_y_rate;
+    if (!fc_friction_contact_advance(&run->contact, scene->start, scene->h, &run->message)) {
+        return false;
+    }
+    step->result[DELTA] = v->delta;
+    step->result[DELTA_Y] = v->delta_y;
+    step->result[F_T] = v->F_t;
+    step->result[F_Y] = v->F_y;
+    step->result[F_T_MEAN] = v->F_t_mean;
+    step->result[F_Y_MEAN] = v->F_y_mean;
+    step->result[SLIPS_AT_END] = state->slips != 0;
+    step->result[W_F] = (v->W_f - before->variables.W_f) + (state->W_f_rest - before->W_f_rest);
+    step->result[Q_F] = (v->Q_f - before->variables.Q_f) + (state->Q_f_rest - before->Q_f_rest);
+    *before = *state;
+    return true;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Grades
+// ---------------------------------------------------------------------------------------------------------------------
 
 static double over(double error, double allowed) { return isnan(error) ? INFINITY : fabs(error) / allowed; }
 
-// The largest error of a step outside the range.
+// The largest error of a step outside the range between the least and the largest results that the reference allows.
 static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range[2], double tolerance) {
     const ReferenceStep* truth = &taken->truth;
     const FmuStep* step = &taken->step;
     const double S = fmax(truth->S, LEAST_S);
-    const double path =
-        truth->path + hypot(truth->delta - step->delta_start, truth->delta_y - step->delta_y_start);
-    const double lengths = hypot(step->delta_start, step->delta_y_start) + hypot(step->delta, step->delta_y);
+    const double path = truth->path + hypot(truth->result[DELTA] - step->delta_start,
+                                            truth->result[DELTA_Y] - step->delta_y_start);
+    const double lengths =
+        hypot(step->delta_start, step->delta_y_start) + hypot(step->result[DELTA], step->result[DELTA_Y]);
     const ReferenceScene* scene = &taken->scene;
     const double digits = DIGITS + (vibrates(scene) ? 4.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
     const double force = (tolerance + ROUNDING) * S, energy = force * path + LEAST_S + digits * S * lengths;
     Verdict worst = {.ratio = -1.0};
-    for (int k = 0; k < RESULTS; k++) {
+    for (int k = 0; k <= SLIPS_AT_END; k++) {
         const double found = step->result[k];
         const double off = found - fmin(fmax(found, range[0].result[k]), range[1].result[k]);
         const double allowed = k == SLIPS_AT_END ? 0.0 : k == W_F || k == Q_F ? energy : force;
@@ -83,10 +172,13 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
             moved.delta_y_0 *= 1.0 + way * of_delta;
         }
         past.start = moved.start;
+        ReferenceStep found = taken->truth;
         if (moved.h > 0.0) {
-            ReferenceStep found;
             step_of_reference(before ? &past : NULL, &moved, &taken->step, &found);
-            include(range, &found);
+        }
+        for (int j = 0; j < RESULTS; j++) {
+            range[0].result[j] = fmin(range[0].result[j], found.result[j]);
+            range[1].result[j] = fmax(range[1].result[j], found.result[j]);
         }
     }
     for (int k = 0; k < RESULTS && grows; k++) {
@@ -100,21 +192,18 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
 // The error of F_t_settled over the allowed error, -1 if the reference does not know it.
 static double settled_ratio(TrialStep* taken, const Sequence* sequence) {
     ReferenceScene still = taken->scene;
-    double *found = taken->settled[0], *truth = taken->settled[1], S, ratio = -1.0;
+    FcVector* found = &taken->settled;
+    double *truth = taken->settled_truth, S, ratio = -1.0;
     still.initial = START_GIVEN;
     FmuRun run;
-    fmu_open(&run, &still, sequence->method, sequence->tolerance);
-    if (fmu_settled_force(&run, found) && reference_settled_force(&still, truth, &S)) {
+    open_run(&run, &still, sequence);
+    if (run.started && fc_settled_force(&run.contact, found, &run.message) &&
+        reference_settled_force(&still, truth, &S)) {
         const double allowed = (sequence->tolerance + ROUNDING) * fmax(S, LEAST_S);
-        ratio = fmax(over(found[0] - truth[0], allowed), over(found[1] - truth[1], allowed));
+        ratio = fmax(over(found->x - truth[0], allowed), over(found->y - truth[1], allowed));
     }
-    fmu_close(&run);
+    fc_friction_contact_free(&run.contact);
     return ratio;
-}
-
-// Over so many periods of a motion that may be chaotic the result does not depend on the state before.
-static bool may_forget(const ReferenceScene* s) {
-    return vibrates(s) && may_be_chaotic(s) && s->h * s->f > 10.0;
 }
 
 // Whether the scene has a settled state that is promised.
@@ -122,10 +211,12 @@ static bool settles(const ReferenceScene* s) {
     return s->law == LAW_COULOMB || !vibrates(s) || (scene_kappa(s) >= LEAST_KAPPA && !may_be_chaotic(s));
 }
 
-// Whether the step is outside the domain of the promise.
+// Whether the step is outside the domain of the promise. Over more than ten periods of a motion that may be chaotic the
+// result does not depend on the state before.
 static bool is_outside(const ReferenceScene* s, const ReferenceScene* first) {
     const bool swings = s->law != LAW_COULOMB && (s->V_1 != 0.0 || s->V_2 != 0.0);
-    return (swings && scene_kappa(s) < LEAST_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
+    const bool forgets = vibrates(s) && may_be_chaotic(s) && s->h * s->f > 10.0;
+    return forgets || (swings && scene_kappa(s) < LEAST_KAPPA) || scene_start_over_limit(s) > LARGEST_START ||
            (first->initial == START_SETTLED && !settles(first));
 }
 
@@ -142,7 +233,7 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
     if (!(verdict.ratio <= 1.0)) {
         verdict = verdict_by_rounding(before, taken, sequence->tolerance);
     }
-    if (!(verdict.ratio <= 1.0) && (may_forget(scene) || is_outside(scene, &sequence->step[0]))) {
+    if (!(verdict.ratio <= 1.0) && is_outside(scene, &sequence->step[0])) {
         return false;
     }
     const double settled = before == NULL ? settled_ratio(taken, sequence) : -1.0;
@@ -154,12 +245,12 @@ static bool grade(TrialStep* taken, const ReferenceScene* before, const Sequence
 void trial_run(Trial* trial, const Sequence* sequence) {
     *trial = (Trial){0};
     FmuRun run;
-    fmu_open(&run, &sequence->step[0], sequence->method, sequence->tolerance);
+    open_run(&run, &sequence->step[0], sequence);
     for (int k = 0; k < sequence->steps; k++) {
         TrialStep* taken = &trial->taken[k];
         ReferenceScene before;
         taken->scene = sequence->step[k];
-        if (!fmu_step(&run, &taken->scene, &taken->step)) {
+        if (!take_step(&run, &taken->scene, &taken->step)) {
             trial->refused = true;
             break;
         }
@@ -174,5 +265,5 @@ void trial_run(Trial* trial, const Sequence* sequence) {
         trial->steps++;
     }
     trial->message = run.message;
-    fmu_close(&run);
+    fc_friction_contact_free(&run.contact);
 }

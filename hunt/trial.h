@@ -22,11 +22,19 @@
 #ifndef HUNT_TRIAL_H
 #define HUNT_TRIAL_H
 
-#include "fmu_step.h"
+#include "friction_contact.h"
+#include "reference.h"
 #include "sequence.h"
 
 enum { SETTLED = RESULTS, GRADES }; // the results of a step, and F_t_settled with F_y_settled
 extern const char* const GRADE_NAMES[GRADES];
+
+// A step of the FMU.
+typedef struct {
+    double result[RESULTS]; // as of the reference; the heat of the first step includes that of the start
+    double delta_start, delta_y_start; // m, before the step and its inputs
+    int slips_start;
+} FmuStep;
 
 typedef struct {
     double ratio; // the largest error over the allowed error
@@ -37,7 +45,8 @@ typedef struct {
     ReferenceScene scene; // from the FMU's state
     FmuStep step;
     ReferenceStep truth;
-    double settled[2][2]; // N, F_t_settled and F_y_settled of the FMU and of the reference, at the first step
+    FcVector settled; // N, F_t_settled and F_y_settled of the FMU, at the first step
+    double settled_truth[2];
     Verdict verdict;
 } TrialStep;
 
