@@ -225,8 +225,8 @@ static void change_parameters(Draw* draw, ReferenceScene* s) {
         scale(draw, factors[k], 3.0);
     }
     s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
-    if (s->staticRatio != 1.0 && chance(draw, 0.2)) {
-        s->staticRatio = 1.0 + log_between(draw, 1e-3, 2.0);
+    if (chance(draw, 0.2)) {
+        s->staticRatio = chance(draw, 0.2) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
     }
 }
 
