@@ -638,7 +638,7 @@ static void stick(March* m, double end) {
     double slip_end = end;
     if (slips != 0) {
         m->result->evaluations += 1.0;
-        if (!(fc_push(m->scene, m->scene, m->t, slips) > 0.0)) {
+        if (!(fc_push(m->scene, m->scene, m->t, slips) >= 0.0)) { // if it is 0, the panel decides
             end_slip(m);
             return;
         }
