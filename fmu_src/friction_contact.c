@@ -44,10 +44,11 @@ static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E
     return &contact->at_E;
 }
 
-// The load after a step in which it moves: 0 if the step opens the contact at its very end (fc_scene_piece).
+// The load after a step in which it moves: 0 if the step opens or closes the contact at its very end
+// (fc_scene_piece).
 static double load_after(FcLinearInput load, double h) {
     const double after = fc_input_after(load, h);
-    return load.rate < 0.0 && after <= -FC_NEARLY_OPEN * load.rate * h ? fmin(after, 0.0) : after;
+    return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fmin(after, 0.0) : after;
 }
 
 // The scene from the absolute time start + rest on, with the inputs moving at these rates for ahead [s]
