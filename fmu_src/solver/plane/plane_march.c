@@ -243,9 +243,21 @@ static void append(March* march, FcPlanePanel* panel, double h) {
     march->u = end;
 }
 
-// |delta|^2 - D^2 at the points of a free panel.
+// Whether the bristle is stuck below a static bound, from which it drops: any excess, however small, counts.
+static bool may_drop(const March* march) {
+    return is_stuck(march) && march->slips == 0 && fc_has_static_friction(march->plane->scene->friction);
+}
+
+// |delta|^2 - D^2 at the points of a free panel; that of a bristle that may drop is exact.
 static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
+    const FcDrive* drive = &march->interval->scene->drive;
+    const FcVector from = from_of(march).delta;
+    const double* t = nodes->t;
     for (int i = 0; i < POINTS; i++) {
+        if (may_drop(march)) {
+            panel->delta[i].x = from.x + fc_drive_displacement(drive, t[STAGES], t[i]);
+            panel->delta[i].y = from.y + fc_drive_displacement(&march->across_drive, t[STAGES], t[i]);
+        }
         const double D = fc_plane_radius(march->plane, &nodes->at[i], march->slips);
         panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
     }
@@ -291,7 +303,7 @@ static const double LITTLE_PUSH = 1e-9;
 // pushed.
 static bool begins_to_slip(March* march) {
     const Place place = place_of(march);
-    const bool breaks_away = fc_has_static_friction(march->plane->scene->friction) && march->slips == 0;
+    const bool breaks_away = may_drop(march);
     const FcPlaneBound held = fc_plane_bound(march->plane, &place.at, march->slips, place.t, place.phase);
     const double push = fc_plane_push(march->plane, &place.at, &held, place.n);
     if (!(push > ROUNDING_OF_PUSH * largest_push(march))) {
@@ -313,8 +325,8 @@ static bool begins_to_slip(March* march) {
 // The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow.
 static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
-    // An excess over the bound costs heat at break-away, whose tolerance goes with the path.
-    const double allowed = FC_SHARE_OF_EVENT * fc_allowed_force(interval) / interval->stiffness *
+    const double share = may_drop(march) ? 0.0 : FC_SHARE_OF_EVENT;
+    const double allowed = share * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->part.in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;
@@ -338,6 +350,25 @@ static double end_of_push(const March* march, const double push[POINTS]) {
         is_pushed = is_pushed || push[i] > rounding;
     }
     return inwards[STAGES] > rounding || !is_pushed ? 0.0 : fc_first_rise(inwards, rounding);
+}
+
+// The part of a panel by which it may begin or end beside a top. Derived: |delta| is less by its square, 1e-12
+// of the panel's motion. Twice of it is less by four times as much.
+static const double BESIDE_TOP = 1e-6;
+
+// The place in a panel, over its length, at which a bristle that may drop is nearest to its bound; 2 if it
+// lies far within. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there.
+static double top_at_bound(const March* march, const FcPlaneNodes* nodes, const FcPlanePanel* panel) {
+    double recedes[POINTS];
+    bool is_near = false;
+    for (int i = 0; i < POINTS && may_drop(march); i++) {
+        const FcPlaneBound held =
+            fc_plane_bound(march->plane, &nodes->at[i], 0, nodes->t[i], nodes->phase[i]);
+        recedes[i] = held.rate - fc_product(panel->delta[i], nodes->at[i].V) / held.D;
+        is_near = is_near || panel->to_bound[i] > -0.5 * held.D * held.D;
+    }
+    const double top = is_near ? fc_first_rise(recedes, ROUNDING_OF_PUSH * largest_push(march)) : 2.0;
+    return top > BESIDE_TOP && top < 1.0 - BESIDE_TOP ? top : 2.0;
 }
 
 // Whether the push of a slipping bristle that lies inside its bound, after an input has jumped, ends in the
@@ -385,11 +416,12 @@ static void free_panel(March* march, double h) {
         over =
             close_to_bound(march, sqrt(fmax(1e-300, fc_product(delta, delta) - panel.to_bound[STAGES - 1])));
         const double meets = fc_first_rise(panel.to_bound, over);
-        if (meets > 1.0) {
+        const double top = meets > 1.0 ? top_at_bound(march, &nodes, &panel) : 2.0;
+        if (meets > 1.0 && top > 1.0) {
             break;
         }
-        is_cut = true;
-        h *= fmax(meets, SHORTENED_BY);
+        is_cut = is_cut || meets <= 1.0;
+        h *= meets > 1.0 ? top : fmax(meets, SHORTENED_BY);
         take_again(march, h, &nodes, &panel);
     }
     append(march, &panel, h);
