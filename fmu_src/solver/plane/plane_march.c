@@ -303,7 +303,6 @@ static const double LITTLE_PUSH = 1e-9;
 // pushed.
 static bool begins_to_slip(March* march) {
     const Place place = place_of(march);
-    const bool breaks_away = may_drop(march);
     const FcPlaneBound held = fc_plane_bound(march->plane, &place.at, march->slips, place.t, place.phase);
     const double push = fc_plane_push(march->plane, &place.at, &held, place.n);
     if (!(push > ROUNDING_OF_PUSH * largest_push(march))) {
@@ -314,9 +313,9 @@ static bool begins_to_slip(March* march) {
     march->drag += (place.bound.D - place.size) * fc_product(place.n, place.at.V);
     set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
     march->meetings++;
+    march->touches = !may_drop(march);
     march->slips = place.push > 0.0;
     march->motion = place.push > 0.0 ? SLIPS : FREE;
-    march->touches = !breaks_away;
     march->transient = place.at.sigma * place.bound.D *
                        fabs(place.n.x * place.at.V.y - place.n.y * place.at.V.x) / place.at.speed;
     return true;
@@ -412,9 +411,7 @@ static void free_panel(March* march, double h) {
     double over = 0.0;
     for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
         find_to_bound(march, &nodes, &panel);
-        const FcVector delta = panel.delta[STAGES - 1];
-        over =
-            close_to_bound(march, sqrt(fmax(1e-300, fc_product(delta, delta) - panel.to_bound[STAGES - 1])));
+        over = close_to_bound(march, fc_plane_radius(march->plane, &nodes.at[STAGES - 1], march->slips));
         const double meets = fc_first_rise(panel.to_bound, over);
         const double top = meets > 1.0 ? top_at_bound(march, &nodes, &panel) : 2.0;
         if (meets > 1.0 && top > 1.0) {
