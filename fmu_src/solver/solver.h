@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "message.h"
-#include "model/scene.h"
+#include "model/plane.h"
 
 // The values of modelDescription.xml.
 typedef enum {
@@ -47,6 +47,8 @@ typedef struct {
     double delta_y;     // m     across, as delta, lost and impulse are along; work, heat and drag are of both
     double lost_y;      // m
     double impulse_y;   // N s
+    FcVector
+        by_start[2]; //     in the plane, the derivatives of the deflection at the end by that at the start
 } FcStepResult;
 
 static inline FcBristle fc_bristle_of(const FcStepResult* result) {

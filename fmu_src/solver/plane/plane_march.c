@@ -33,7 +33,8 @@ typedef struct {
     int slips; // FcBristle
     Motion motion;
     int meetings;
-    bool touches; // a free bristle is at its bound
+    bool touches;         // a free bristle is at its bound
+    FcVector by_start[2]; // as in FcStepResult
     double evaluations;
 } March;
 
@@ -228,6 +229,8 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
     }
 }
 
+static FcVector scaled(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
+
 static void append(March* march, FcPlanePanel* panel, double h) {
     const double next = march->u + h;
     const double end = march->end - next < 1e-12 * h ? march->end : next;
@@ -240,21 +243,19 @@ static void append(March* march, FcPlanePanel* panel, double h) {
     fc_map_append(&march->along, &panel->along.map);
     fc_map_append(&march->across, &panel->across);
     march->transient *= exp(-fmax(0.0, panel->along.z));
+    for (int k = 0; k < 2; k++) {
+        march->by_start[k] = scaled(exp(-panel->along.z), march->by_start[k]);
+    }
     march->u = end;
 }
 
-// Whether the bristle is stuck below a static bound, from which it drops: any excess, however small, counts.
-static bool may_drop(const March* march) {
-    return is_stuck(march) && march->slips == 0 && fc_has_static_friction(march->plane->scene->friction);
-}
-
-// |delta|^2 - D^2 at the points of a free panel; that of a bristle that may drop is exact.
+// |delta|^2 - D^2 at the points of a free panel; that of a stuck bristle is exact.
 static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
     const FcDrive* drive = &march->interval->scene->drive;
     const FcVector from = from_of(march).delta;
     const double* t = nodes->t;
     for (int i = 0; i < POINTS; i++) {
-        if (may_drop(march)) {
+        if (is_stuck(march)) {
             panel->delta[i].x = from.x + fc_drive_displacement(drive, t[STAGES], t[i]);
             panel->delta[i].y = from.y + fc_drive_displacement(&march->across_drive, t[STAGES], t[i]);
         }
@@ -299,6 +300,21 @@ static Place place_of(const March* march) {
 static const double ROUNDING_OF_PUSH = 1e-13;
 static const double LITTLE_PUSH = 1e-9;
 
+// A bristle that deviates meets its bound earlier by a time, drops there, and moves on for that time.
+static void drop_derivatives(March* march, const Place* at, const FcPlaneBound* held, double push) {
+    const FcVector n = at->n;
+    const double V_n = fc_product(n, at->at.V);
+    const double V_t = n.x * at->at.V.y - n.y * at->at.V.x;
+    for (int k = 0; k < 2; k++) {
+        FcVector* by = &march->by_start[k];
+        const double earlier = fc_product(n, *by) / push; // s
+        const double along = n.x * by->y - n.y * by->x;
+        const double turns = at->bound.D / held->D * (along - V_t * earlier) + V_t * earlier;
+        const double rises = (V_n - at->bound.rate) * earlier;
+        *by = (FcVector){rises * n.x - turns * n.y, rises * n.y + turns * n.x};
+    }
+}
+
 // A free bristle at its bound slips if it is pushed; one with static friction breaks away. False if it is not
 // pushed.
 static bool begins_to_slip(March* march) {
@@ -308,12 +324,13 @@ static bool begins_to_slip(March* march) {
     if (!(push > ROUNDING_OF_PUSH * largest_push(march))) {
         return false;
     }
+    drop_derivatives(march, &place, &held, push);
     // The energy that it loses is heat, also that of its small excess over the bound.
     march->heat += 0.5 * place.at.sigma * (place.size - place.bound.D) * (place.size + place.bound.D);
     march->drag += (place.bound.D - place.size) * fc_product(place.n, place.at.V);
     set_delta(march, (FcVector){place.bound.D * place.n.x, place.bound.D * place.n.y});
     march->meetings++;
-    march->touches = !may_drop(march);
+    march->touches = march->slips != 0 || !fc_has_static_friction(march->plane->scene->friction);
     march->slips = place.push > 0.0;
     march->motion = place.push > 0.0 ? SLIPS : FREE;
     march->transient = place.at.sigma * place.bound.D *
@@ -324,7 +341,7 @@ static bool begins_to_slip(March* march) {
 // The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow.
 static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
-    const double share = may_drop(march) ? 0.0 : FC_SHARE_OF_EVENT;
+    const double share = is_stuck(march) ? 0.0 : FC_SHARE_OF_EVENT;
     const double allowed = share * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->part.in, march->u) + interval->duration;
@@ -355,14 +372,15 @@ static double end_of_push(const March* march, const double push[POINTS]) {
 // of the panel's motion. Twice of it is less by four times as much.
 static const double BESIDE_TOP = 1e-6;
 
-// The place in a panel, over its length, at which a bristle that may drop is nearest to its bound; 2 if it
-// lies far within. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there.
+// The place in a panel, over its length, at which a stuck bristle is nearest to its bound; 2 if it lies far
+// within. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there: with static
+// friction it decides a break-away, and in a settled state the slips are as small as the drift in a period.
 static double top_at_bound(const March* march, const FcPlaneNodes* nodes, const FcPlanePanel* panel) {
     double recedes[POINTS];
     bool is_near = false;
-    for (int i = 0; i < POINTS && may_drop(march); i++) {
+    for (int i = 0; i < POINTS && is_stuck(march); i++) {
         const FcPlaneBound held =
-            fc_plane_bound(march->plane, &nodes->at[i], 0, nodes->t[i], nodes->phase[i]);
+            fc_plane_bound(march->plane, &nodes->at[i], march->slips, nodes->t[i], nodes->phase[i]);
         recedes[i] = held.rate - fc_product(panel->delta[i], nodes->at[i].V) / held.D;
         is_near = is_near || panel->to_bound[i] > -0.5 * held.D * held.D;
     }
@@ -432,6 +450,16 @@ static void free_panel(March* march, double h) {
     }
 }
 
+// A slip from start to end keeps of a deviation the part along the circle. By D a' = V_y cos a - V sin a it changes as D
+// does, and by the panel's z.
+static void turn_derivatives(March* march, FcVector start, FcVector end) {
+    for (int k = 0; k < 2; k++) {
+        FcVector* by = &march->by_start[k];
+        const double turned = (start.x * by->y - start.y * by->x) / fc_product(start, start);
+        *by = (FcVector){-turned * end.y, turned * end.x};
+    }
+}
+
 static void slip_panel(March* march, double h) {
     FcPlaneNodes nodes;
     FcPlanePanel panel;
@@ -447,6 +475,7 @@ static void slip_panel(March* march, double h) {
         ends = end_of_push(march, panel.to_bound);
     }
     if (ends > 0.0) {
+        turn_derivatives(march, panel.delta[STAGES], panel.delta[STAGES - 1]);
         append(march, &panel, h);
         is_over = is_over && panel.to_bound[STAGES - 1] < LITTLE_PUSH * largest_push(march);
     }
@@ -525,6 +554,7 @@ static void start_march(March* march, const FcPlane* plane, const FcInterval* in
     *march = (March){.plane = plane,
                      .interval = interval,
                      .motion = plane->scene->friction->model == FC_COULOMB ? NO_BRISTLE : FREE,
+                     .by_start = {{1.0, 0.0}, {0.0, 1.0}},
                      .evaluations = evaluations};
 }
 
@@ -551,6 +581,8 @@ void fc_plane_step(const FcScene* scene, const FcSolverOptions* options, double 
     result->meetings += march.meetings;
     result->slips = fc_has_static_friction(scene->friction) ? march.slips : 0;
     result->on_bound = march.motion == SLIPS;
+    result->by_start[0] = march.by_start[0];
+    result->by_start[1] = march.by_start[1];
     result->evaluations = march.evaluations;
 }
 
