@@ -59,6 +59,17 @@ SCENES = {
     "inputs that move": Scene(
         {**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-5}, 5.5 * PERIOD, 3, {"V": -40.0, "d": 2e-3}
     ),
+    "moving periods, of which some are not leapt over": Scene(
+        {
+            "V": 0.05,
+            "vibration.V_1": 0.17,
+            "friction.model": "ElasticPlastic",
+            "contact.model": "Constant",
+            "contact.sigma": 5e5,
+        },
+        300 * PERIOD,
+        rates={"V": -3.0},
+    ),
     "the limit and the surfaces follow a load": Scene(
         {
             **SLIDER,
@@ -78,6 +89,9 @@ SCENES = {
     "bells of the Stribeck curve, soft": Scene({**BELLS, "contact.stiffnessScale": 1e-8}, 0.93 * PERIOD, 10),
     "bells of the Stribeck curve, in layers": Scene(
         {**BELLS, "contact.stiffnessScale": 1e-4}, 0.93 * PERIOD, 10
+    ),
+    "bells of the Stribeck curve, stiff, tolerance 1e-3": Scene(
+        {**BELLS, "friction.V_S": 0.005, "solver.tolerance": 1e-3}, 0.93 * PERIOD, 10
     ),
     "cvode": Scene({**SLIDER, **NORMAL, "contact.stiffnessScale": 1e-6, "solver.method": "cvode"}, PERIOD),
 }
