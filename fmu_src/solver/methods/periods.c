@@ -251,7 +251,8 @@ static const double SAME_WAY = 0.01;
 // of periods that repeat, by a step of Newton.
 static bool take_newton_step(const FcScene* scene, const FcStepResult* before, FcVector last,
                              FcStepResult* total) {
-    const FcVector *x = &total->by_start[0], *y = &total->by_start[1];
+    const FcVector* x = &total->by_start[0];
+    const FcVector* y = &total->by_start[1];
     const FcVector moved = {total->delta - before->delta, total->delta_y - before->delta_y};
     if (fc_has_static_friction(scene->friction) &&
         !(hypot(moved.x - last.x, moved.y - last.y) < SAME_WAY * hypot(moved.x, moved.y))) {

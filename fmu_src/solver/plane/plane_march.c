@@ -450,8 +450,8 @@ static void free_panel(March* march, double h) {
     }
 }
 
-// A slip from start to end keeps of a deviation the part along the circle. By D a' = V_y cos a - V sin a it changes as D
-// does, and by the panel's z.
+// A slip from start to end keeps of a deviation the part along the circle. By D a' = V_y cos a - V sin a it
+// changes as D does, and by the panel's z.
 static void turn_derivatives(March* march, FcVector start, FcVector end) {
     for (int k = 0; k < 2; k++) {
         FcVector* by = &march->by_start[k];
