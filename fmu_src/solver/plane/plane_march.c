@@ -477,7 +477,8 @@ static void slip_panel(March* march, double h) {
     if (ends > 0.0) {
         turn_derivatives(march, panel.delta[STAGES], panel.delta[STAGES - 1]);
         append(march, &panel, h);
-        is_over = is_over && panel.to_bound[STAGES - 1] < LITTLE_PUSH * largest_push(march);
+        const double rest = panel.to_bound[STAGES - 1] / largest_push(march);
+        is_over = rest < (is_over ? LITTLE_PUSH : ROUNDING_OF_PUSH); // also if V is just 0 at the end
     }
     if (is_over) {
         march->motion = FREE;
