@@ -23,9 +23,9 @@ double fc_straight_place(const FcStraight* in, double t) {
     return isinf(in->length) ? x : asinh(x / in->length);
 }
 
-// Half of |V|^2 at a time, its rate, and the rate of that.
+// Half of |V|^2 at a time, its rate, the rate of that, and so on.
 typedef struct {
-    double t, half, rate, bend; // s, m2/s2 and so on
+    double t, half, rate, bend, twist; // s, m2/s2 and so on
 } Sample;
 
 static Sample sample_at(const FcDrive* drive, double t) {
@@ -35,12 +35,17 @@ static Sample sample_at(const FcDrive* drive, double t) {
     return (Sample){.t = t,
                     .half = 0.5 * (x.V * x.V + y.V * y.V),
                     .rate = x.V * x.rate + y.V * y.rate,
-                    .bend = (x.rate * x.rate + y.rate * y.rate) + (x.V * x.curvature + y.V * y.curvature)};
+                    .bend = (x.rate * x.rate + y.rate * y.rate) + (x.V * x.curvature + y.V * y.curvature),
+                    .twist = 3.0 * (x.rate * x.curvature + y.rate * y.curvature) -
+                             drive->omega * drive->omega *
+                                 (x.V * (x.rate - drive->V.rate) + y.V * (y.rate - drive->V_y.rate))};
 }
 
 static double rate_of_square(void* drive, double t) { return sample_at(drive, t).rate; }
 
 static double bend_of_square(void* drive, double t) { return sample_at(drive, t).bend; }
+
+static double twist_of_square(void* drive, double t) { return sample_at(drive, t).twist; }
 
 // The number of samples in a period. Chosen empirically: the rate of |V|^2 has two harmonics and at most one
 // extremum between two samples. Half as many might miss a near-zero, twice as many cost time alone.
@@ -69,6 +74,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
 // The times [s] of the minima of |V| in and beside [0, h].
 static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS]) {
     FcDrive drive = *of;
+    double none = 0.0;
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
         const Sample at = sample_at(&drive, 0.0);
@@ -80,8 +86,17 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     }
     const double period = 1.0 / drive.vibration.f;
     Sample a = sample_at(&drive, -0.5 * period);
-    while (a.t < h + 0.5 * period && count < MOST_CENTERS) {
+    while (a.t < h + 0.5 * period && count < MOST_CENTERS - 1) {
         const Sample b = sample_at(&drive, a.t + period / SAMPLES);
+        if (a.twist < 0.0 && b.twist > 0.0) { // between two minima it bends down
+            const double t =
+                fc_root_between(twist_of_square, &drive, a.t, a.twist, b.t, b.twist, 0.0, 0.0, &none);
+            const Sample between = sample_at(&drive, t);
+            if (between.bend < 0.0) {
+                count += has_least(&drive, a, between, &centers[count]);
+                a = between;
+            }
+        }
         count += has_least(&drive, a, b, &centers[count]);
         a = b;
     }
