@@ -252,7 +252,7 @@ class Session(Closing):
         return value[0]
 
     def slope(self, output: str, name: str) -> float:
-        """Partial derivative of an output by an input or a tunable parameter now, SI units."""
+        """Partial derivative of an output by an input now, SI units."""
         of, by = ([self.fmu.known.readable(each, "slope").valueReference] for each in (output, name))
         return self._call(self.slave.getDirectionalDerivative, of, by, [1.0])[0]
 
