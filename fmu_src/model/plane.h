@@ -18,6 +18,8 @@ typedef struct {
 } FcVector;
 
 static inline double fc_product(FcVector a, FcVector b) { return a.x * b.x + a.y * b.y; }
+// |a| |b| times the sine of the angle from a to b.
+static inline double fc_across(FcVector a, FcVector b) { return a.x * b.y - a.y * b.x; }
 
 // Whether the contact moves or is deflected transversely.
 static inline bool fc_is_planar(const FcScene* scene, FcBristle bristle) {

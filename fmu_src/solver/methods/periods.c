@@ -248,12 +248,11 @@ static const double MOST_OF_NEWTON = 1.0;
 static const double SAME_WAY = 0.01;
 
 // In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that
-// of periods that repeat, by a step of Newton.
-static bool take_newton_step(const FcScene* scene, const FcStepResult* before, FcVector last,
+// of periods that repeat, by a step of Newton. The period has moved by `moved`, the one before it by `last`.
+static bool take_newton_step(const FcScene* scene, const FcStepResult* before, FcVector moved, FcVector last,
                              FcStepResult* total) {
     const FcVector* x = &total->by_start[0];
     const FcVector* y = &total->by_start[1];
-    const FcVector moved = {total->delta - before->delta, total->delta_y - before->delta_y};
     if (fc_has_static_friction(scene->friction) &&
         !(hypot(moved.x - last.x, moved.y - last.y) < SAME_WAY * hypot(moved.x, moved.y))) {
         return false;
@@ -315,8 +314,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
             } else if (walk->law.is_planar && isinf(periods) && meetings > alone &&
-                       meetings < MOST_MEETINGS / 2 && !was_free &&
-                       take_newton_step(walk->scene, &before, last, total)) {
+                       meetings < MOST_MEETINGS / 2 &&
+                       !was_free && // the mean over the last third must be one
+                       take_newton_step(walk->scene, &before, moved, last, total)) {
                 walk->met_at = -1.0; // periods repeat only if no step lies between them
             }
             last = moved;

@@ -47,8 +47,8 @@ static double bend_of_square(void* drive, double t) { return sample_at(drive, t)
 
 static double twist_of_square(void* drive, double t) { return sample_at(drive, t).twist; }
 
-// The number of samples in a period. Chosen empirically: the rate of |V|^2 has two harmonics and at most one
-// extremum between two samples. Half as many might miss a near-zero, twice as many cost time alone.
+// The number of samples in a period. Chosen empirically: the rate of |V|^2 has two harmonics, and at most two
+// extrema are assumed between two samples. Half as many might miss a near-zero, twice as many cost time alone.
 enum { SAMPLES = 16, MOST_CENTERS = FC_MOST_PARTS / 2 };
 
 // Whether |V| has a minimum between two samples; its time [s] in *center.
@@ -86,7 +86,7 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     }
     const double period = 1.0 / drive.vibration.f;
     Sample a = sample_at(&drive, -0.5 * period);
-    while (a.t < h + 0.5 * period && count < MOST_CENTERS - 1) {
+    while (a.t < h + 0.5 * period && count < MOST_CENTERS - 1) { // two may follow
         const Sample b = sample_at(&drive, a.t + period / SAMPLES);
         if (a.twist < 0.0 && b.twist > 0.0) { // between two minima it bends down
             const double t =

@@ -229,8 +229,6 @@ static double take_accurate(March* march, double h, FcPlaneNodes* nodes, FcPlane
     }
 }
 
-static FcVector scaled(double factor, FcVector a) { return (FcVector){factor * a.x, factor * a.y}; }
-
 static void append(March* march, FcPlanePanel* panel, double h) {
     const double next = march->u + h;
     const double end = march->end - next < 1e-12 * h ? march->end : next;
@@ -242,9 +240,11 @@ static void append(March* march, FcPlanePanel* panel, double h) {
     }
     fc_map_append(&march->along, &panel->along.map);
     fc_map_append(&march->across, &panel->across);
-    march->transient *= exp(-fmax(0.0, panel->along.z));
+    const double kept = exp(-panel->along.z);
+    march->transient *= fmin(1.0, kept);
     for (int k = 0; k < 2; k++) {
-        march->by_start[k] = scaled(exp(-panel->along.z), march->by_start[k]);
+        march->by_start[k].x *= kept;
+        march->by_start[k].y *= kept;
     }
     march->u = end;
 }
@@ -304,11 +304,11 @@ static const double LITTLE_PUSH = 1e-9;
 static void drop_derivatives(March* march, const Place* at, const FcPlaneBound* held, double push) {
     const FcVector n = at->n;
     const double V_n = fc_product(n, at->at.V);
-    const double V_t = n.x * at->at.V.y - n.y * at->at.V.x;
+    const double V_t = fc_across(n, at->at.V);
     for (int k = 0; k < 2; k++) {
         FcVector* by = &march->by_start[k];
         const double earlier = fc_product(n, *by) / push; // s
-        const double along = n.x * by->y - n.y * by->x;
+        const double along = fc_across(n, *by);
         const double turns = at->bound.D / held->D * (along - V_t * earlier) + V_t * earlier;
         const double rises = (V_n - at->bound.rate) * earlier;
         *by = (FcVector){rises * n.x - turns * n.y, rises * n.y + turns * n.x};
@@ -333,14 +333,15 @@ static bool begins_to_slip(March* march) {
     march->touches = march->slips != 0 || !fc_has_static_friction(march->plane->scene->friction);
     march->slips = place.push > 0.0;
     march->motion = place.push > 0.0 ? SLIPS : FREE;
-    march->transient = place.at.sigma * place.bound.D *
-                       fabs(place.n.x * place.at.V.y - place.n.y * place.at.V.x) / place.at.speed;
+    march->transient = place.at.sigma * place.bound.D * fabs(fc_across(place.n, place.at.V)) / place.at.speed;
     return true;
 }
 
-// The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow.
+// The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow if
+// the bristle is not stuck.
 static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
+    // An excess over the bound costs heat, whose tolerance goes with the path.
     const double share = is_stuck(march) ? 0.0 : FC_SHARE_OF_EVENT;
     const double allowed = share * fc_allowed_force(interval) / interval->stiffness *
                            fmin(1.0, interval->speed * interval->duration / D);
@@ -372,8 +373,8 @@ static double end_of_push(const March* march, const double push[POINTS]) {
 // of the panel's motion. Twice of it is less by four times as much.
 static const double BESIDE_TOP = 1e-6;
 
-// The place in a panel, over its length, at which a stuck bristle is nearest to its bound; 2 if it lies far
-// within. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there: with static
+// The place in a panel, over its length, at which a stuck bristle is nearest to its bound; 2 if |delta| is
+// below 0.7 D at all points. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there: with static
 // friction it decides a break-away, and in a settled state the slips are as small as the drift in a period.
 static double top_at_bound(const March* march, const FcPlaneNodes* nodes, const FcPlanePanel* panel) {
     double recedes[POINTS];
@@ -455,7 +456,7 @@ static void free_panel(March* march, double h) {
 static void turn_derivatives(March* march, FcVector start, FcVector end) {
     for (int k = 0; k < 2; k++) {
         FcVector* by = &march->by_start[k];
-        const double turned = (start.x * by->y - start.y * by->x) / fc_product(start, start);
+        const double turned = fc_across(start, *by) / fc_product(start, start);
         *by = (FcVector){-turned * end.y, turned * end.x};
     }
 }
