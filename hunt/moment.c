@@ -258,6 +258,7 @@ At scene_at(const World* w, Real t) {
     const Vector V = velocity(w, t, turn);
     Real excess = w->excess, V_S = s->V_S;
     at.V = w->ramp ? (Vector){0} : V;
+    at.input = V;
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * at.F_n : s->F_C;
     if (w->ramp) {
         at.sigma *= expl(w->ln_rate.scale * t);

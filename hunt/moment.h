@@ -61,6 +61,7 @@ typedef struct {
     bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
     bool open;      // nothing touches
     bool ramp;      // between two steps: nothing moves a bristle but its bound
+    bool pushed;    // after the ramp, a bristle that has broken away
     // On a ramp: rates [1/s] of the logarithms of F_C or mu, of the stiffness's factor, ..
     struct {
         Real limit, scale, ratio, V_S;
@@ -74,7 +75,8 @@ typedef struct {
 
 // At a local time; rates are time derivatives of logarithms.
 typedef struct {
-    Vector V;                      // m/s
+    Vector V;                      // m/s, 0 on a ramp
+    Vector input;                  // m/s, the same on a ramp too
     Real F_n, sigma;               // N, N/m
     Real coulomb;                  // N, F_C or mu F_n
     Real g;                        // N, the force to which a bristle tends

@@ -119,7 +119,9 @@ static Signs signs_at(const March* march, const At* at, Vector delta) {
         const Real slack = w->ramp && has_static(w) && !march->state.broke ? 1e-11L : ROUNDING;
         signs.room = bound(w, at, !march->state.broke) * (1.0L + slack) - length_of(delta);
     }
-    if (march->motion == SLIPS || (march->motion == CATCHES && !w->ramp)) {
+    if (march->motion == CATCHES && w->ramp) {
+        signs.lead = w->pushed ? INFINITY : dot(along(delta, 1.0L), at->input);
+    } else if (march->motion != STICKS) {
         signs.lead = outward(w, at, delta) + ROUNDING * (w->top + fabsl(bound_rate(w, at, false)));
     }
     return signs;
@@ -417,6 +419,12 @@ static Real end_of_piece(const World* w, Real from, Real to, Real t) {
 // The march through the step
 // ---------------------------------------------------------------------------------------------------------------------
 
+// Whether a bristle that has broken away, but does not slip, catches up with its bound; else it sticks. On a ramp V or the
+// push after it decides, so that held steps come to the ramp that they sample.
+static bool catches(const World* w, const At* at, Vector delta, bool pushed) {
+    return w->ramp ? w->pushed || dot(delta, at->input) > 0.0L : pushed;
+}
+
 // The motion at the begin of a part. If the push is 0, the later push decides: the bristle slips if V or its bound moves so
 // that it is pushed then, and sticks if not.
 static void begin(March* march, Real a, Real b) {
@@ -431,10 +439,10 @@ static void begin(March* march, Real a, Real b) {
     const bool pushed =
         push > rounding || (push >= -rounding && outward(w, &later, march->state.delta) > 0.0L);
     const bool lies =
-        length_of(march->state.delta) >= (1.0L - (w->ramp ? 0.0L : AS_DOUBLE)) * bound(w, &at, false);
+        length_of(march->state.delta) >= (1.0L - (!w->ramp ? AS_DOUBLE : march->state.broke ? ON_BOUND : 0.0L)) * bound(w, &at, false);
     if (pushed && lies && (march->state.broke || !has_static(w))) {
         march->motion = SLIPS;
-    } else if (march->state.broke && (pushed || w->ramp)) {
+    } else if (march->state.broke && catches(w, &at, march->state.delta, pushed)) {
         march->motion = CATCHES;
     }
     march->state.broke = march->state.broke && march->motion != STICKS;
@@ -453,7 +461,7 @@ static void break_away(March* march, const At* at) {
     march->state = (State){to, true};
 }
 
-// The motion after the end of another. On a ramp a bristle that has broken away does not stick again.
+// The motion after the end of another.
 static void change_motion(March* march) {
     const World* w = march->w;
     const At at = scene_at(w, march->met_at);
@@ -467,7 +475,8 @@ static void change_motion(March* march) {
         slips = outward(w, &at, march->state.delta) > 0.0L;
         march->slipped = true;
     }
-    march->state.broke = march->state.broke && (slips || w->ramp);
+    march->state.broke =
+        march->state.broke && (slips || (w->ramp && catches(w, &at, march->state.delta, false)));
     march->motion = slips ? SLIPS : march->state.broke ? CATCHES : STICKS;
 }
 
@@ -555,6 +564,8 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
     }
     if (before != NULL) {
         World ramp = ramp_between(&past, w);
+        const At after = scene_at(w, 0.0L);
+        ramp.pushed = outward(w, &after, state->delta) > 0.0L;
         const March march = march_from(&ramp, *state);
         *state = (State){march.state.delta, march.state.broke && has_static(w)};
         return march.sums.heat;

@@ -28,7 +28,9 @@ typedef struct {
     FcPast past;
     double d, V, V_y, E;                             // by which they change
     double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
-    int slips;                                       // the bristle's, which chooses the bound
+    double along, along_change;                      // m2/s, V times delta, and by which it changes
+    bool pushed;                                     // after the ramp, if the bristle slips
+    bool slips;                                      // the bristle, which chooses the bound
 } Ramp;
 
 typedef struct {
@@ -48,7 +50,7 @@ static bool drops(const Ramp* ramp) {
 static double curve_at(const Ramp* ramp, double s, double* log_rate) {
     const double ratio = ramp->past.ratio * exp(s * ramp->log_ratio);
     *log_rate = ramp->log_ratio;
-    if (!drops(ramp) || ramp->slips == 0) {
+    if (!drops(ramp) || !ramp->slips) {
         return ratio;
     }
     const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
@@ -94,8 +96,7 @@ static Place at_place(const Ramp* ramp, double s) {
     return at;
 }
 
-// The ramp of the bound of a bristle that slips (slips not 0) or sticks.
-static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
+static Ramp ramp_from(const FcScene* scene, const FcPast* past, const FcBristle* bristle) {
     const FcPast now = fc_past(scene);
     Ramp ramp = {.scene = scene, .past = *past};
     ramp.d = now.d - past->d;
@@ -107,7 +108,9 @@ static Ramp ramp_from(const FcScene* scene, const FcPast* past, int slips) {
     const Place start = at_place(&ramp, 0.0); // with the other parameters of now
     ramp.log_limit = log(start.limit / (past->ratio * past->limit));
     ramp.log_sigma = log(start.sigma / past->sigma);
-    ramp.slips = slips;
+    ramp.along = past->V * bristle->delta + past->V_y * bristle->delta_y;
+    ramp.along_change = ramp.V * bristle->delta + ramp.V_y * bristle->delta_y;
+    ramp.slips = bristle->slips != 0;
     return ramp;
 }
 
@@ -166,8 +169,10 @@ static double next_place(const Ramp* ramp, double s, double step) {
     const double V = hypot(ramp->past.V + s * ramp->V, ramp->past.V_y + s * ramp->V_y);
     const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
-    if (ramp->slips != 0 && drops(ramp) && change != 0.0) {
+    if (ramp->slips && drops(ramp) && change != 0.0) {
         next = fmin(next, s + fmax(STEP_OF_CURVE * least, V - END_OF_CURVE * most) / change);
+        const double reversal = -ramp->along / ramp->along_change;
+        next = reversal > s && reversal < next ? reversal : next;
     }
     const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
     assert(place > s && place <= 1.0);
@@ -189,7 +194,7 @@ static double step_from(const Ramp* ramp, double s) {
 static const double PARTS = 8.0;
 
 static int parts_between(const Ramp* ramp, double s, double next) {
-    if (ramp->slips == 0 || !drops(ramp)) {
+    if (!ramp->slips || !drops(ramp)) {
         return 1;
     }
     const double least = fmin(ramp->scene->friction->V_S, ramp->past.V_S);
@@ -220,22 +225,36 @@ static double next_stop(const Ramp* ramp, double s, double step) {
     return next;
 }
 
-// |delta| at the end of the ramp, from the place s on.
-static double follow_from(const Ramp* ramp, double s, double delta, double* heat) {
+// Whether a bristle that has broken away sticks between two stops: neither V nor the motion after the ramp
+// pushes it outward, and it lies inside its bound, or its bound rises. A bristle that is pushed does not stick,
+// so that held steps come to the ramp that they sample.
+static bool sticks_between(const Ramp* ramp, double s, double next, double delta) {
+    if (!drops(ramp) || ramp->pushed || ramp->along + 0.5 * (s + next) * ramp->along_change > 0.0) {
+        return false;
+    }
+    const double D = at_place(ramp, s).D;
+    return delta < (1.0 - FC_ROUNDING_OF_BOUND) * D || !(at_place(ramp, next).D < D);
+}
+
+// Takes a bristle that slips to the end of the ramp or to the place at which it sticks, which is returned.
+static double slip_from(Ramp* ramp, double s, double* delta, double* heat) {
     const double step = step_from(ramp, s);
     while (s < 1.0) {
         const double next = next_stop(ramp, s, step);
-        delta = follow(ramp, s, next, delta, heat);
+        if (sticks_between(ramp, s, next, *delta)) {
+            ramp->slips = false;
+            return s;
+        }
+        *delta = follow(ramp, s, next, *delta, heat);
         s = next;
     }
-    return delta;
+    return s;
 }
 
-// The first place at which the static bound falls below |delta|; 1 for none.
-static double where_it_breaks(const Ramp* ramp, double delta) {
+// The first place from s on at which the static bound falls below |delta|; 1 for none.
+static double where_it_breaks(const Ramp* ramp, double s, double delta) {
     AboveBound of = {ramp, (1.0 - FC_ROUNDING_OF_BOUND) * delta};
     double none = 0.0;
-    double s = 0.0;
     double at_s = above_bound(&of, s);
     const double step = step_from(ramp, s);
     while (s < 1.0 && at_s <= 0.0) {
@@ -247,6 +266,18 @@ static double where_it_breaks(const Ramp* ramp, double delta) {
         }
         s = next;
         at_s = at_next;
+    }
+    return s;
+}
+
+// Takes a bristle that sticks to the end of the ramp or to the place at which it breaks away, which is returned.
+static double stick_from(Ramp* ramp, double s, double* delta, double* heat) {
+    s = where_it_breaks(ramp, s, *delta);
+    if (s < 1.0) {
+        ramp->slips = true;
+        const Place at = at_place(ramp, s);
+        *heat += 0.5 * at.sigma * (*delta - at.D) * (*delta + at.D);
+        *delta = at.D;
     }
     return s;
 }
@@ -272,23 +303,18 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         return fc_reach(scene, bristle);
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;
-    Ramp ramp = ramp_from(scene, past, bristle.slips);
+    Ramp ramp = ramp_from(scene, past, &bristle);
+    const int slips = fc_is_planar(scene, bristle) ? 1 : side;
+    if (drops(&ramp)) {
+        bristle.slips = slips;
+        ramp.pushed = fc_push_in_plane(scene, bristle) > 0.0;
+    }
     double reached = delta;
-    if (drops(&ramp) && bristle.slips == 0) {
-        const double s = where_it_breaks(&ramp, delta);
-        if (s < 1.0) {
-            bristle.slips = side;
-            ramp = ramp_from(scene, past, side);
-            const Place at = at_place(&ramp, s);
-            *heat = 0.5 * at.sigma * (delta - at.D) * (delta + at.D);
-            reached = follow_from(&ramp, s, at.D, heat);
-        }
-    } else {
-        reached = follow_from(&ramp, 0.0, delta, heat);
+    for (double s = 0.0; s < 1.0;) {
+        s = drops(&ramp) && !ramp.slips ? stick_from(&ramp, s, &reached, heat)
+                                        : slip_from(&ramp, s, &reached, heat);
     }
-    if (!fc_has_static_friction(scene->friction)) {
-        bristle.slips = 0;
-    }
+    bristle.slips = ramp.slips && fc_has_static_friction(scene->friction) ? slips : 0;
     if (bristle.delta_y == 0.0) {
         bristle.delta = side * reached;
     } else {

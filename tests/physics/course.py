@@ -97,7 +97,7 @@ class _Ramp:
     """The way between two scenes, over s from 0 to 1."""
 
     def __init__(self, before: Scene, after: Scene, t: Any) -> None:
-        self.after = after
+        self.after, self.t = after, t
         ends, now = (Drive(before, t, MULTIPRECISION), Drive(after, t, MULTIPRECISION)), MP.mpf(0)
         self.V, self.d, self.E = ([REAL(getattr(end, name)(now)) for end in ends] for name in ("V", "d", "E"))
         plain = {"a_d": 0.0, "V_1": 0.0, "input": "Separation", "E": float(min(self.E))}
@@ -121,12 +121,13 @@ class _Ramp:
         curve = drive.curve(s) if self.after.friction == "ElasticPlastic" and not static else 1 + drive.excess
         return g * curve / self._power("sigma", s)
 
-    def follow(self, delta: Any, slips: int) -> tuple[Any, int, Any]:
-        side, size, heat, begin = int(np.sign(delta)), abs(delta), REAL(0), REAL(0)
+    def follow(self, delta: Any, slips: int, begin: Any = 0) -> tuple[Any, int, Any]:
+        """Deflection [m], the side it slips to and heat [J] at the end, from there on."""
+        side, size, heat, begin = int(np.sign(delta)), abs(delta), REAL(0), REAL(begin)
         if side == 0:
             return delta, slips, heat
         if self.after.drops and slips == 0:
-            meets = [low for low, _ in self._falls(size, static=True)]
+            meets = [low for low, _ in self._falls(size, begin, static=True)]
             if not meets:
                 return delta, 0, heat
             begin, slips = meets[0], side
@@ -134,15 +135,33 @@ class _Ramp:
             sigma = self._power("sigma", at(begin)).value
             heat += sigma * (size - kinetic) * (size + kinetic) / 2
             size = kinetic
+        released = self._released(side, begin)
         rule = gauss_arrays(EXTENDED.nodes, EXTENDED)
         for low, high in self._falls(size, begin):
+            if low > released + 1e-12:
+                break
             edges = low + (high - low) * np.arange(65, dtype=np.longdouble) / 64
             length = np.diff(edges)[:, None]
             s = at(edges[:-1, None] + length * rule.nodes)
             D = self.bound(s)
             heat -= (length * rule.weights * self._power("sigma", s).value * D.value * D.first).sum()
             size = self.bound(high).value
+            released = max(released, high)
+        if self.after.drops and released < 1:
+            delta, slips, more = self.follow(side * size, 0, released)
+            return delta, slips, heat + more
         return side * size, slips if self.after.drops else 0, heat
+
+    def _released(self, side: int, begin: Any) -> Any:
+        """The place from which nothing pushes a bristle that has broken away: it sticks as soon as it does not slip."""
+        drive = Drive(self.after, self.t, JETS)
+        now = at(REAL(0))
+        if not self.after.drops or side * drive.V(now).value > drive.bound(now).first:
+            return REAL(1)
+        first, last = (side * V for V in self.V)
+        if min(first, last) > 0:
+            return REAL(1)
+        return max(begin, first / (first - last)) if first > 0 else begin
 
     def _falls(self, size: Any, begin: Any = 0, *, static: bool = False) -> list[tuple[Any, Any]]:
         """Where the bound is below all it was, and below size: from, to."""

@@ -661,9 +661,6 @@ static void stick(March* m, double end) {
     const FcCourse course = course_of(m, bound, &at, x);
     FcMeeting met = fc_first_meeting(&course, ROUNDING_OF_BOUND * course.D[0],
                                      unseen(m, at.sigma[0], course.D[0]), &m->result->evaluations);
-    if (slips != 0 && met.side != slips) {
-        met.side = 0;
-    }
     double until = met.side != 0 ? met.t : fc_panel_end(m->t, h, m->cut);
     bool sticks = false; // at that time
     if (slips != 0) {
@@ -684,6 +681,8 @@ static void stick(March* m, double end) {
         end_slip(m);
     } else if (met.side != 0) {
         begin_slip(m, met.side);
+    } else if (slips * m->result->delta < 0.0) { // it moves to its other bound
+        m->result->slips = -slips;
     }
 }
 
