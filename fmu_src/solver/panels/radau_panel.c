@@ -9,7 +9,9 @@
 
 // The lengths of the loops below are known only once the outer one is unrolled; then they become vector
 // instructions.
-#ifdef __clang__
+#ifdef FC_NO_UNROLLING
+#define UNROLL
+#elif defined __clang__
 #define UNROLL _Pragma("unroll")
 #else
 #define UNROLL _Pragma("GCC unroll 16")
