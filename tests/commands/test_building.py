@@ -26,12 +26,15 @@ BINARY = "binaries/linux64/FrictionContact.so"
 COMMAND = [sys.executable, "-m", "workshop", "workshop.build", "--preset", "debug"]
 LINUX_ONLY = pytest.mark.skipif(sys.platform != "linux", reason="shared libraries are loaded as on Linux")
 
-# A compiler that is killed, with all that called it, when it has begun to write the library.
+# A compiler that leaves objects cut short, and is killed, with all that called it, when it has begun to write the
+# library.
 COMPILER = """#!/bin/bash
-if [[ -e $KILL_WHILE_LINKING && " $* " == *" -shared "* && " $* " == *"FrictionContact"* ]]; then
-    while [[ $1 != -o ]]; do shift; done
-    : >"$2"
-    kill -KILL 0
+if [[ -e $KILL_WHILE_LINKING && " $* " =~ " -o "([^ ]+) ]]; then
+    output=${BASH_REMATCH[1]}
+    case " $* " in
+        *" -c "*/fmu_src/*) head -c 100 "$BASH" >"$output"; exit ;;
+        *" -shared "*FrictionContact*) : >"$output"; kill -KILL 0 ;;
+    esac
 fi
 exec cc "$@"
 """
@@ -68,7 +71,7 @@ def check_loads(project: Path, folder: Path) -> None:
 @LINUX_ONLY
 @pytest.mark.slow
 def test_killed_while_linking_and_two_at_once(project: Path, tmp_path: Path) -> None:
-    """With what a kill can leave of an object and of an archive, and make takes for current."""
+    """With what a kill can leave of objects and of an archive, and make takes for current."""
     compiler, kill = tmp_path / "compiler", tmp_path / "kill"
     compiler.write_text(COMPILER)
     compiler.chmod(0o755)
@@ -79,8 +82,8 @@ def test_killed_while_linking_and_two_at_once(project: Path, tmp_path: Path) -> 
     assert killed.returncode == -9
     folder = project / "build/debug"
     assert not (folder / "FrictionContact.so").exists()
-    for path in (*folder.rglob("contact.c.o"), *folder.rglob("libfriction_core.a")):
-        path.write_bytes(path.read_bytes()[:100])
+    (archive,) = folder.rglob("libfriction_core.a")
+    archive.write_bytes(archive.read_bytes()[:100])
     kill.unlink()
     for process in [start(project, **variables) for _ in range(2)]:
         check_built(process)
