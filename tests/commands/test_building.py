@@ -26,8 +26,8 @@ BINARY = "binaries/linux64/FrictionContact.so"
 COMMAND = [sys.executable, "-m", "workshop", "workshop.build", "--preset", "debug"]
 LINUX_ONLY = pytest.mark.skipif(sys.platform != "linux", reason="shared libraries are loaded as on Linux")
 
-# A compiler that leaves objects cut short, and is killed, with all that called it, when it has begun to write the
-# library.
+# A compiler that leaves objects cut short, and is killed, with all that called it, when it has begun to write
+# the library.
 COMPILER = """#!/bin/bash
 if [[ -e $KILL_WHILE_LINKING && " $* " =~ " -o "([^ ]+) ]]; then
     output=${BASH_REMATCH[1]}
