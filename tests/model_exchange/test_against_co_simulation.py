@@ -167,7 +167,7 @@ def test_inputs_that_jump_at_an_event(fmu: FrictionFmu) -> None:
 
 @pytest.mark.parametrize(("load", "rate"), [(50.0, 0.0), (500.0, -25e3)])
 def test_inputs_whose_speed_changes_at_an_event(fmu: FrictionFmu, load: float, rate: float) -> None:
-    """A falling load lets the bristle slip against V. Held, it sticks; raised, it moves to its other bound."""
+    """A falling load lets a bristle slip against V. Held, it sticks; raised, it moves to its other bound."""
     start: dict[str, Value] = {
         "friction.model": "ElasticPlastic",
         "friction.limit": "Load",

@@ -153,7 +153,7 @@ class _Ramp:
         return side * size, slips if self.after.drops else 0, heat
 
     def _released(self, side: int, begin: Any) -> Any:
-        """The place from which nothing pushes a bristle that has broken away: it sticks as soon as it does not slip."""
+        """The place from which nothing pushes a bristle that has broken away: it sticks unless it slips."""
         drive = Drive(self.after, self.t, JETS)
         now = at(REAL(0))
         if not self.after.drops or side * drive.V(now).value > drive.bound(now).first:
