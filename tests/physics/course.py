@@ -135,6 +135,11 @@ class _Ramp:
             sigma = self._power("sigma", at(begin)).value
             heat += sigma * (size - kinetic) * (size + kinetic) / 2
             size = kinetic
+        elif self.after.drops:
+            # behind a bound that rises again it sticks
+            low, high = (self.bound(REAL(place)).value for place in (0, 1))
+            if size < low * (1 - 1e-10) and high > low * (1 + 1e-10):
+                return self.follow(delta, 0)
         released = self._released(side, begin)
         rule = gauss_arrays(EXTENDED.nodes, EXTENDED)
         for low, high in self._falls(size, begin):
