@@ -210,7 +210,9 @@ static void set_outputs(FcVariables* v, const Outputs* now) {
 
 FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
     const FcVariables* v = &contact->state.variables;
-    return (FcBristle){.delta = v->delta, .slips = contact->state.slips, .delta_y = v->delta_y};
+    FcBristle bristle = {.delta = v->delta, .slips = contact->state.slips, .delta_y = v->delta_y};
+    bristle.slips = fc_side_of_slip(bristle); // a host's integrator may move it to its other side
+    return bristle;
 }
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {

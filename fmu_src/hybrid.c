@@ -65,6 +65,36 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
 
 static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
 
+// The inputs in the order of FcInput.
+static void copy_inputs(const FcVariables* v, double inputs[FC_INPUT_COUNT]) {
+    inputs[FC_INPUT_V] = v->V;
+    inputs[FC_INPUT_D] = v->d;
+    inputs[FC_INPUT_E] = v->E;
+    inputs[FC_INPUT_LOAD] = v->load;
+    inputs[FC_INPUT_V_Y] = v->V_y;
+}
+
+// The speeds of the inputs since the last step, or those in it if the time since then is too short. Returns
+// whether it is long enough.
+static bool find_speeds(const FcFrictionContact* contact, double speed[FC_INPUT_COUNT]) {
+    const FcHybrid* hybrid = &contact->state.hybrid;
+    double inputs[FC_INPUT_COUNT];
+    copy_inputs(&contact->state.variables, inputs);
+    const double passed = contact->state.time - hybrid->seen_time;
+    const bool is_long = passed > SHORTEST_LOOK * fabs(contact->state.time);
+    for (int i = 0; i < FC_INPUT_COUNT; i++) {
+        const double now = is_long ? (inputs[i] - hybrid->seen[i]) / passed : hybrid->speed[i];
+        speed[i] = isfinite(now) ? now : 0.0;
+    }
+    return is_long;
+}
+
+static void see_inputs(FcFrictionContact* contact) {
+    FcHybrid* hybrid = &contact->state.hybrid;
+    hybrid->seen_time = contact->state.time;
+    copy_inputs(&contact->state.variables, hybrid->seen);
+}
+
 // The contact with its present inputs and their estimated speeds, and its bristle's bound.
 typedef struct {
     FcScene scene;
@@ -74,9 +104,10 @@ typedef struct {
 } View;
 
 static void look(FcFrictionContact* contact, View* view) {
-    const int slips = contact->state.slips;
-    assert(slips >= -1 && slips <= 1);
-    view->scene = fc_friction_contact_scene_moving(contact, contact->state.hybrid.speed);
+    const int slips = fc_friction_contact_bristle(contact).slips;
+    double speed[FC_INPUT_COUNT];
+    find_speeds(contact, speed);
+    view->scene = fc_friction_contact_scene_moving(contact, speed);
     view->bound = fc_scene_of_bound(&view->scene, slips, &view->bound_law);
     view->side = slips != 0 ? slips : (int)regime_of(contact);
 }
@@ -158,29 +189,10 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     return true;
 }
 
-// The inputs in the order of FcInput.
-static void copy_inputs(const FcVariables* v, double inputs[FC_INPUT_COUNT]) {
-    inputs[FC_INPUT_V] = v->V;
-    inputs[FC_INPUT_D] = v->d;
-    inputs[FC_INPUT_E] = v->E;
-    inputs[FC_INPUT_LOAD] = v->load;
-    inputs[FC_INPUT_V_Y] = v->V_y;
-}
-
 static void look_at_inputs(FcFrictionContact* contact) {
-    FcHybrid* hybrid = &contact->state.hybrid;
-    double inputs[FC_INPUT_COUNT];
-    copy_inputs(&contact->state.variables, inputs);
-    const double passed = contact->state.time - hybrid->seen_time;
-    if (!(passed > SHORTEST_LOOK * fabs(contact->state.time))) {
-        return;
+    if (find_speeds(contact, contact->state.hybrid.speed)) {
+        see_inputs(contact);
     }
-    for (int i = 0; i < FC_INPUT_COUNT; i++) {
-        const double speed = (inputs[i] - hybrid->seen[i]) / passed;
-        hybrid->speed[i] = isfinite(speed) ? speed : 0.0;
-    }
-    memcpy(hybrid->seen, inputs, sizeof inputs);
-    hybrid->seen_time = contact->state.time;
 }
 
 // A slipping bristle: the lag of delta behind the bound, its deflection without the lag, and its force there.
@@ -377,11 +389,9 @@ bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
 }
 
 void fc_hybrid_event_ends(FcFrictionContact* contact) {
-    FcHybrid* hybrid = &contact->state.hybrid;
-    hybrid->seen_time = contact->state.time;
-    copy_inputs(&contact->state.variables, hybrid->seen);
+    see_inputs(contact);
     look_at_lag(contact);
-    hybrid->lag_heat = 0.0; // its start
+    contact->state.hybrid.lag_heat = 0.0; // its start
 }
 
 // The separation [m] whose force is the nominal one of an open contact until it has closed: the surfaces just

@@ -9,8 +9,8 @@
 // steps of co-simulation (solver/jump.h).
 //
 // The push also depends on the speed at which the inputs move the bound. That speed is estimated from the
-// inputs at the end of the last two steps of the integrator. An error of it enters the moment of sticking,
-// and delta and the force by its square. The rates of a bristle that slips do not contain the heat of that
+// inputs now and at the end of the integrator's last step. An error of it enters the moment of sticking, and
+// delta and the force by its square. The rates of a bristle that slips do not contain the heat of that
 // motion. It is summed from step to step, and the next event adds it to Q_f.
 #ifndef FC_HYBRID_H
 #define FC_HYBRID_H

@@ -568,6 +568,11 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         World ramp = ramp_between(&past, w);
         const At after = scene_at(w, 0.0L);
         ramp.pushed = outward(w, &after, state->delta) > 0.0L;
+        const At begin = scene_at(&ramp, 0.0L), end = scene_at(&ramp, 1.0L);
+        const Real D = bound(&ramp, &begin, false);
+        // The bound rises again before the bristle has caught up: it is faster than the bristle.
+        state->broke = state->broke && !(length_of(state->delta) < (1.0L - ON_BOUND) * D &&
+                                         bound(&ramp, &end, false) > (1.0L + ON_BOUND) * D);
         const March march = march_from(&ramp, *state);
         *state = (State){march.state.delta, march.state.broke && has_static(w)};
         return march.sums.heat;

@@ -133,11 +133,6 @@ FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle) {
     return moved_onto(&of, bristle);
 }
 
-// The part of its bound by which a slipping bristle may lie inside it. Chosen empirically: rounding of the
-// phase may take the bristle off its bound at the end of a step. A larger value would move a bristle that
-// catches up onto its bound.
-static const double INSIDE_BOUND = 1e-10;
-
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
     if (!fc_is_bounded(scene->friction) || fc_scene_is_loose(scene) ||
         (fc_has_static_friction(scene->friction) && bristle.slips == 0)) {
@@ -146,7 +141,7 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
     AtBound of;
     find_bound(&of, scene, bristle);
     const FcVector delta = {bristle.delta, bristle.delta_y};
-    const bool on_bound = fc_product(of.n, delta) >= (1.0 - INSIDE_BOUND) * of.bound.D;
+    const bool on_bound = fc_product(of.n, delta) >= (1.0 - FC_INSIDE_BOUND) * of.bound.D;
     return on_bound && push(&of) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
 }
 

@@ -52,6 +52,11 @@ double fc_push_at(void* context, double t);
 // break-away.
 #define FC_ROUNDING_OF_BOUND 1e-12
 
+// The part of its bound by which a slipping bristle may lie inside it. Chosen empirically: rounding of the
+// phase may take the bristle off its bound at the end of a step. A larger value would move a bristle that
+// catches up onto its bound.
+#define FC_INSIDE_BOUND 1e-10
+
 // The state at the start of the scene: a bristle beyond its bound is moved onto it, a bristle without contact
 // becomes 0, and a slipping bristle that is not pushed sticks.
 FcBristle fc_reach(const FcScene* scene, FcBristle bristle);

@@ -236,6 +236,14 @@ static bool sticks_between(const Ramp* ramp, double s, double next, double delta
     return delta < (1.0 - FC_ROUNDING_OF_BOUND) * D || !(at_place(ramp, next).D < D);
 }
 
+// Whether the ramp raises the bound of a slipping bristle that has not reached it since an earlier jump. The
+// steps then sample a bound that rises faster than the bristle moves, so that it sticks.
+static bool lags_behind(const Ramp* ramp, double delta) {
+    const double D = at_place(ramp, 0.0).D;
+    return drops(ramp) && delta < (1.0 - FC_INSIDE_BOUND) * D &&
+           at_place(ramp, 1.0).D > (1.0 + FC_INSIDE_BOUND) * D;
+}
+
 // Takes a bristle that slips to the end of the ramp or to the place at which it sticks, which is returned.
 static double slip_from(Ramp* ramp, double s, double* delta, double* heat) {
     const double step = step_from(ramp, s);
@@ -309,6 +317,7 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
         bristle.slips = slips;
         ramp.pushed = fc_push_in_plane(scene, bristle) > 0.0;
     }
+    ramp.slips = ramp.slips && !lags_behind(&ramp, delta);
     double reached = delta;
     for (double s = 0.0; s < 1.0;) {
         s = drops(&ramp) && !ramp.slips ? stick_from(&ramp, s, &reached, heat)

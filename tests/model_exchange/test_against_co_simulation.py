@@ -165,6 +165,47 @@ def test_inputs_that_jump_at_an_event(fmu: FrictionFmu) -> None:
     assert sum(heat > 0.0 for heat in heats) > 30
 
 
+@pytest.mark.parametrize(("load", "rate"), [(50.0, 0.0), (500.0, -25e3)])
+def test_inputs_whose_speed_changes_at_an_event(fmu: FrictionFmu, load: float, rate: float) -> None:
+    """A falling load lets a bristle slip against V. Held, it sticks; raised, it moves to its other bound."""
+    start: dict[str, Value] = {
+        "friction.model": "ElasticPlastic",
+        "friction.limit": "Load",
+        "friction.mu": 0.1,
+        "friction.staticRatio": 1.02,
+        "friction.V_S": 1.0,
+        "contact.model": "Constant",
+        "contact.sigma": 1e6,
+        "contact.input": "Load",
+        "V": -0.002,
+        "load": 100.0,
+    }
+    event, end = 1e-3, 20e-3
+    start["delta_0"] = 10.2e-6
+    now = [100.0, -50e3, 0.0]
+    with (
+        fmu.session(start) as session,
+        Host(
+            fmu,
+            start,
+            lambda t, own: {"V": -0.002, "load": now[0] + now[1] * (t - now[2])},
+            tolerance=1e-8,
+            longest_step=1e-3,
+        ) as host,
+    ):
+        session.set_rates(load=-50e3)
+        session.step(event)
+        host.advance(event)
+        now[:] = load, rate, event
+        host.event()
+        for time in np.linspace(event, end, 20)[1:]:
+            session.set("load", load + rate * (session.time - event))
+            session.set_rates(load=rate)
+            session.step(time - session.time)
+            host.advance(time)
+            assert host.get("F_t")[0] == pytest.approx(session.get("F_t"), abs=1e-5 * load)
+
+
 def test_no_slip_is_stepped_over(fmu: FrictionFmu) -> None:
     """A vibration that exceeds the bound by 1e-4 to 3 % slips for a while that a host may step over."""
     worst = []

@@ -135,6 +135,11 @@ class _Ramp:
             sigma = self._power("sigma", at(begin)).value
             heat += sigma * (size - kinetic) * (size + kinetic) / 2
             size = kinetic
+        elif self.after.drops:
+            # behind a bound that rises again it sticks
+            low, high = (self.bound(REAL(place)).value for place in (0, 1))
+            if size < low * (1 - 1e-10) and high > low * (1 + 1e-10):
+                return self.follow(delta, 0)
         released = self._released(side, begin)
         rule = gauss_arrays(EXTENDED.nodes, EXTENDED)
         for low, high in self._falls(size, begin):
@@ -153,10 +158,7 @@ class _Ramp:
         return side * size, slips if self.after.drops else 0, heat
 
     def _released(self, side: int, begin: Any) -> Any:
-        """The place from which nothing pushes a bristle that has broken away.
-
-        It sticks as soon as it does not slip.
-        """
+        """The place from which nothing pushes a bristle that has broken away: it sticks unless it slips."""
         drive = Drive(self.after, self.t, JETS)
         now = at(REAL(0))
         if not self.after.drops or side * drive.V(now).value > drive.bound(now).first:

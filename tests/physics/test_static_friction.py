@@ -114,6 +114,25 @@ def test_the_settled_mean_is_that_of_the_whole_cycle(fmu: FrictionFmu, change: d
         assert session.get("F_t_settled") == pytest.approx(mean, abs=1e-8 * F_S)
 
 
+@pytest.mark.parametrize(("duration", "peak"), [(1e-5, 100.0), (1e-2, 50.0 * (1 + math.exp(-0.16)))])
+def test_held_samples_come_to_the_ramp_that_they_sample(
+    fmu: FrictionFmu, duration: float, peak: float
+) -> None:
+    """V falls from 50 to 20 mm/s. If its bound rises faster than the bristle moves, the bristle sticks."""
+    start: dict[str, Value] = {"F_C": 50.0, "contact.sigma": 5e6, "friction.V_S": 0.05}
+    with fmu.session({**SPRING, **start, "friction.staticRatio": 2.0, "V": 0.05}) as session:
+        session.step(0.1)
+        largest = 0.0
+        for k in range(100):
+            session.set("V", 0.05 - 0.03 * (k + 1) / 100)
+            session.step(duration / 100)
+            largest = max(largest, session.get("F_t"))
+        for _ in range(1000):
+            session.step(1e-6)
+            largest = max(largest, session.get("F_t"))
+        assert largest == pytest.approx(peak, abs=0.11)
+
+
 STEPS = [
     ({"V": 0.2}, {}, 1e-4),
     ({"V": 0.2}, {"V": -4e3}, 1e-4),
