@@ -184,6 +184,29 @@ def test_long_steps_lead_there(fmu: FrictionFmu, law: str) -> None:
         assert session.get("F_t_settled") == pytest.approx(session.get("F_t_mean"), abs=2e-6 * F_C)
 
 
+def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
+    """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
+    values: dict[str, Value] = {
+        "friction.model": "ElasticPlastic",
+        "friction.staticRatio": 1.065,
+        "friction.V_S": 0.43,
+        "contact.model": "Constant",
+        "contact.sigma": 321.0,
+        "vibration.f": 1.0,
+        "vibration.V_1": 0.327,
+        "vibration.V_2": 0.114,
+        "vibration.phase_2": 1.9,
+        "V": -0.0007,
+        "V_y": -0.00105,
+    }
+    with fmu.session(values) as session:
+        session.step(3000.0)
+        session.step(2.0)
+        for axis in "ty":
+            settled = session.get(f"F_{axis}_settled")
+            assert settled == pytest.approx(session.get(f"F_{axis}_mean"), abs=2e-6 * 1.065 * F_C)
+
+
 def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, periods: int) -> np.ndarray:
     """V [m/s] of a mass that a force pulls over Dahl's bristle, vibration and all, after each period: RK4."""
     h, V, delta, after = 1 / f / 100, 0.0, 0.0, []

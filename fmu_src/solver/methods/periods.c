@@ -242,31 +242,53 @@ static bool repeats(Walk* walk) {
 // 143 drawn scenes settles elsewhere, at half of it errors grow.
 static const double MOST_OF_NEWTON = 1.0;
 
-// The largest change of what a period moves the deflection by, over that, with static friction. Then periods
-// may repeat in cycles, and what they move by differs by as much as it is long. Chosen empirically: half or
-// twice of it decides when the steps begin.
-static const double SAME_WAY = 0.01;
+// The largest change of what a cycle of periods moves the deflection by, over that. Derived: a cycle that forgets
+// more of its start repeats in MOST_MEETINGS - ALONE periods, to SAME_END LEAST_PART. Twice of it takes other
+// motions for cycles.
+static const double SAME_WAY = 0.05;
+
+// A period that met its bound: the end of the one before [m], and the derivatives of its own end by its start.
+typedef struct {
+    FcVector from, by_start[2];
+} Met;
+
+// The number of the last periods that move the deflection as those before them did; 0 if there is none.
+static int last_cycle(const Met* met, int count, const FcStepResult* end) {
+    for (int n = 1; 2 * n <= count; n++) {
+        const FcVector a = met[count - 2 * n].from;
+        const FcVector b = met[count - n].from;
+        const FcVector c = {end->delta, end->delta_y};
+        if (hypot(c.x - 2.0 * b.x + a.x, c.y - 2.0 * b.y + a.y) < SAME_WAY * hypot(c.x - b.x, c.y - b.y)) {
+            return n;
+        }
+    }
+    return 0;
+}
 
 // In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that
-// of periods that repeat, by a step of Newton. The period has moved by `moved`, the one before it by `last`.
-static bool take_newton_step(const FcScene* scene, const FcStepResult* before, FcVector moved, FcVector last,
+// of periods that repeat, by a step of Newton over n of them. They must move by less than *least [m], as those
+// before the last step did: at a kink steps may lead to and fro.
+static bool take_newton_step(const FcScene* scene, const Met* met, int n, double* least,
                              FcStepResult* total) {
-    const FcVector* x = &total->by_start[0];
-    const FcVector* y = &total->by_start[1];
-    if (fc_has_static_friction(scene->friction) &&
-        !(hypot(moved.x - last.x, moved.y - last.y) < SAME_WAY * hypot(moved.x, moved.y))) {
-        return false;
+    const FcVector moved = {total->delta - met->from.x, total->delta_y - met->from.y};
+    FcVector x = {1.0, 0.0}; // derivatives of the end by the start
+    FcVector y = {0.0, 1.0};
+    for (int i = 0; i < n; i++) {
+        const FcVector* by = met[i].by_start;
+        x = (FcVector){by[0].x * x.x + by[1].x * x.y, by[0].y * x.x + by[1].y * x.y};
+        y = (FcVector){by[0].x * y.x + by[1].x * y.y, by[0].y * y.x + by[1].y * y.y};
     }
-    const double all = (1.0 - x->x) * (1.0 - y->y) - x->y * y->x;
-    const FcVector start = {((1.0 - y->y) * moved.x + y->x * moved.y) / all,
-                            ((1.0 - x->x) * moved.y + x->y * moved.x) / all}; // what the start is to move by
+    const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
+    const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
+                            ((1.0 - x.x) * moved.y + x.y * moved.x) / all}; // what the start is to move by
     const double length = hypot(start.x, start.y);
-    if (!isfinite(length)) {
+    if (!isfinite(length) || hypot(moved.x, moved.y) >= *least) {
         return false;
     }
+    *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
     const double part = fmin(1.0, MOST_OF_NEWTON * size_of(total) / length);
-    const FcBristle reached = fc_reach(scene, (FcBristle){.delta = before->delta + part * start.x,
-                                                          .delta_y = before->delta_y + part * start.y,
+    const FcBristle reached = fc_reach(scene, (FcBristle){.delta = met->from.x + part * start.x,
+                                                          .delta_y = met->from.y + part * start.y,
                                                           .slips = total->slips});
     total->delta = reached.delta;
     total->delta_y = reached.delta_y;
@@ -281,15 +303,17 @@ static void walk_to_repetition(Walk* walk, double periods) {
     walk->met_at = -1.0;
     walk->least.delta = INFINITY;
     int meetings = 0;
-    FcVector last = {0.0, 0.0}; // m, what the last period that met its bound has moved by
-    double keep = 1.0;          // the number of the next meeting that is kept
-    const int alone = fc_has_static_friction(walk->scene->friction) ? ALONE : 0;
+    const bool has_cycles = fc_has_static_friction(walk->scene->friction);
+    Met met[MOST_MEETINGS / 2]; // since the last step of Newton
+    int count = 0;
+    FcVector from = {total->delta, total->delta_y};
+    double least = INFINITY;
+    double keep = 1.0; // the number of the next meeting that is kept
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
         const FcStepResult before = *total;
         total->meetings = 0;
         walk->law.step(walk->scene, walk->options, walk->period, total);
         walk->done += 1.0;
-        const FcVector moved = {total->delta - before.delta, total->delta_y - before.delta_y};
         const bool was_free = total->meetings == 0 && total->slips == 0;
         if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
             walk->met_at = -1.0;
@@ -298,6 +322,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
         const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
         if (n == 0.0) { // it has met its bound, or will in the next period
             meetings++;
+            if (count < MOST_MEETINGS / 2) {
+                met[count++] = (Met){from, {total->by_start[0], total->by_start[1]}};
+            }
             if (!was_free && (isinf(walk->least.delta) || size_of(total) < fc_size(walk->least))) {
                 walk->least = fc_bristle_of(total);
             }
@@ -313,13 +340,15 @@ static void walk_to_repetition(Walk* walk, double periods) {
                 walk->met = *total;
                 walk->met_at = walk->done;
                 walk->least.delta = INFINITY;
-            } else if (walk->law.is_planar && isinf(periods) && meetings > alone &&
-                       meetings < MOST_MEETINGS / 2 &&
-                       !was_free && // the mean over the last third must be one
-                       take_newton_step(walk->scene, &before, moved, last, total)) {
-                walk->met_at = -1.0; // periods repeat only if no step lies between them
+            } else if (walk->law.is_planar && isinf(periods) && !was_free &&
+                       meetings < MOST_MEETINGS / 2) { // the mean over the last third must be one
+                const int cycle = !has_cycles ? 1 : meetings > ALONE ? last_cycle(met, count, total) : 0;
+                if (cycle > 0 && take_newton_step(walk->scene, &met[count - cycle], cycle, &least, total)) {
+                    walk->met_at = -1.0; // periods repeat only if no step lies between them
+                    count = 0;
+                }
             }
-            last = moved;
+            from = (FcVector){total->delta, total->delta_y};
             continue;
         }
         if (isinf(n)) {

@@ -373,16 +373,17 @@ static double end_of_push(const March* march, const double push[POINTS]) {
 // of the panel's motion. Twice of it is less by four times as much.
 static const double BESIDE_TOP = 1e-6;
 
-// The place in a panel, over its length, at which a stuck bristle is nearest to its bound; 2 if |delta| is
-// below 0.7 D at all points. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there: with static
+// The place in a panel, over its length, at which a free bristle is nearest to its bound; 2 if |delta| is below 0.7
+// D at all points. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there: with static
 // friction it decides a break-away, and in a settled state the slips are as small as the drift in a period.
 static double top_at_bound(const March* march, const FcPlaneNodes* nodes, const FcPlanePanel* panel) {
     double recedes[POINTS];
     bool is_near = false;
-    for (int i = 0; i < POINTS && is_stuck(march); i++) {
+    for (int i = 0; i < POINTS; i++) {
         const FcPlaneBound held =
             fc_plane_bound(march->plane, &nodes->at[i], march->slips, nodes->t[i], nodes->phase[i]);
-        recedes[i] = held.rate - fc_product(panel->delta[i], nodes->at[i].V) / held.D;
+        const FcVector n = {panel->delta[i].x / held.D, panel->delta[i].y / held.D};
+        recedes[i] = -fc_plane_push(march->plane, &nodes->at[i], &held, n);
         is_near = is_near || panel->to_bound[i] > -0.5 * held.D * held.D;
     }
     const double top = is_near ? fc_first_rise(recedes, ROUNDING_OF_PUSH * largest_push(march)) : 2.0;
