@@ -45,9 +45,21 @@ double fc_first_rise(const double* f, double over) {
     }
     bool is_below = f[STAGES] <= over;
     double a = 0.0; // the last place at which it was below 0
+    double before = f[STAGES];
+    double last = f[STAGES];
     for (int k = 1; k <= SAMPLES; k++) {
-        const double x = (double)k / SAMPLES;
-        const double value = value_at(&through, x);
+        double x = (double)k / SAMPLES;
+        const double sample = value_at(&through, x);
+        double value = sample;
+        const double bend = 2.0 * last - before - sample;
+        if (last > before && last > sample && last <= over && last + 0.25 * bend > over) {
+            // Between three samples it has a top, at that of a parabola.
+            x += (0.5 * (sample - before) / bend - 1.0) / SAMPLES;
+            value = value_at(&through, x);
+            a = fmin(a, (k - 2.0) / SAMPLES);
+        }
+        before = last;
+        last = sample;
         if (value <= over || !is_below) {
             is_below = is_below || value <= over;
             a = value <= 0.0 ? x : a;
