@@ -5,6 +5,7 @@
 
 #include "model/constants.h"
 #include "model/regime.h"
+#include "model/root.h"
 #include "solver/budget.h"
 #include "solver/interval.h"
 #include "solver/panels/judge.h"
@@ -249,15 +250,18 @@ static void append(March* march, FcPlanePanel* panel, double h) {
     march->u = end;
 }
 
+// delta [m] at the time t of a bristle that has stuck since t_0.
+static FcVector stuck_delta(const March* march, double t_0, double t) {
+    const FcVector from = from_of(march).delta;
+    return (FcVector){from.x + fc_drive_displacement(&march->interval->scene->drive, t_0, t),
+                      from.y + fc_drive_displacement(&march->across_drive, t_0, t)};
+}
+
 // |delta|^2 - D^2 at the points of a free panel; that of a stuck bristle is exact.
 static void find_to_bound(const March* march, const FcPlaneNodes* nodes, FcPlanePanel* panel) {
-    const FcDrive* drive = &march->interval->scene->drive;
-    const FcVector from = from_of(march).delta;
-    const double* t = nodes->t;
     for (int i = 0; i < POINTS; i++) {
         if (is_stuck(march)) {
-            panel->delta[i].x = from.x + fc_drive_displacement(drive, t[STAGES], t[i]);
-            panel->delta[i].y = from.y + fc_drive_displacement(&march->across_drive, t[STAGES], t[i]);
+            panel->delta[i] = stuck_delta(march, nodes->t[STAGES], nodes->t[i]);
         }
         const double D = fc_plane_radius(march->plane, &nodes->at[i], march->slips);
         panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
@@ -412,6 +416,35 @@ static bool catches_up(March* march, FcPlaneNodes* nodes, FcPlanePanel* panel, d
     }
 }
 
+// |delta|^2 - D^2 of a stuck bristle at a place of the part.
+static double stuck_to_bound(void* context, double u) {
+    const March* march = context;
+    const double t = fc_part_time(&march->part, u);
+    const FcVector delta = stuck_delta(march, fc_part_time(&march->part, march->u), t);
+    const FcPlaneCoefficients at = coefficients_at(march, t);
+    const double D = fc_plane_radius(march->plane, &at, march->slips);
+    return fc_product(delta, delta) - D * D;
+}
+
+// The place in a panel of the length h, over it, at which it is cut: where it meets its bound. That of a stuck
+// bristle is exact, if a point of the panel lies beyond the bound.
+static double place_of_meeting(March* march, const FcPlanePanel* panel, double h, double meets, double over) {
+    const double* f = panel->to_bound;
+    double a = 0.0;
+    double at_a = f[STAGES];
+    for (int i = 0; i < STAGES && is_stuck(march) && at_a < 0.0; i++) {
+        const double b = 0.5 + FC_RADAU_9.node[i];
+        if (b >= meets && f[i] > over) {
+            const double root = fc_root_between(stuck_to_bound, march, march->u + a * h, at_a,
+                                                march->u + b * h, f[i], over, 0.0, &march->evaluations);
+            return (root - march->u) / h;
+        }
+        a = b;
+        at_a = f[i];
+    }
+    return fmax(meets, SHORTENED_BY);
+}
+
 static void free_panel(March* march, double h) {
     if (march->touches && begins_to_slip(march)) {
         return;
@@ -438,7 +471,7 @@ static void free_panel(March* march, double h) {
             break;
         }
         is_cut = is_cut || meets <= 1.0;
-        h *= meets > 1.0 ? top : fmax(meets, SHORTENED_BY);
+        h *= meets > 1.0 ? top : place_of_meeting(march, &panel, h, meets, over);
         take_again(march, h, &nodes, &panel);
     }
     append(march, &panel, h);
@@ -470,7 +503,8 @@ static void slip_panel(March* march, double h) {
         return;
     }
     double ends = end_of_push(march, panel.to_bound);
-    bool is_over = ends < 1.0;
+    const bool is_cut = ends < 1.0;
+    bool is_over = is_cut;
     for (int cuts = 0; cuts < MOST_TRIES && ends > 0.0 && ends < 1.0; cuts++) {
         h *= ends;
         take_again(march, h, &nodes, &panel);
@@ -480,12 +514,12 @@ static void slip_panel(March* march, double h) {
         turn_derivatives(march, panel.delta[STAGES], panel.delta[STAGES - 1]);
         append(march, &panel, h);
         const double rest = panel.to_bound[STAGES - 1] / largest_push(march);
-        is_over = rest < (is_over ? LITTLE_PUSH : ROUNDING_OF_PUSH); // also if V is just 0 at the end
+        is_over = rest < (is_cut ? LITTLE_PUSH : ROUNDING_OF_PUSH); // also if V is just 0 at the end
     }
     if (is_over) {
         march->motion = FREE;
         march->slips = 0;
-        march->touches = !fc_has_static_friction(march->plane->scene->friction);
+        march->touches = !is_cut && !fc_has_static_friction(march->plane->scene->friction);
     }
 }
 
