@@ -570,6 +570,10 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         ramp.pushed = outward(w, &after, state->delta) > 0.0L;
         const At begin = scene_at(&ramp, 0.0L), end = scene_at(&ramp, 1.0L);
         const Real D = bound(&ramp, &begin, false);
+        // Without static friction no state tells that it slips.
+        const bool slid =
+            length_of(state->delta) >= (1.0L - ON_BOUND) * D && dot(state->delta, begin.input) > 0.0L;
+        state->broke = past.excess == 0.0L ? slid && has_static(&ramp) : state->broke;
         // The bound rises again before the bristle has caught up: it is faster than the bristle.
         state->broke = state->broke && !(length_of(state->delta) < (1.0L - ON_BOUND) * D &&
                                          bound(&ramp, &end, false) > (1.0L + ON_BOUND) * D);

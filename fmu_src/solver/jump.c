@@ -29,6 +29,7 @@ typedef struct {
     double d, V, V_y, E;                             // by which they change
     double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
     double along, along_change;                      // m2/s, V times delta, and by which it changes
+    double start;                                    // m, |delta| at the begin
     bool pushed;                                     // after the ramp, if the bristle slips
     bool slips;                                      // the bristle, which chooses the bound
 } Ramp;
@@ -110,6 +111,7 @@ static Ramp ramp_from(const FcScene* scene, const FcPast* past, const FcBristle*
     ramp.log_sigma = log(start.sigma / past->sigma);
     ramp.along = past->V * bristle->delta + past->V_y * bristle->delta_y;
     ramp.along_change = ramp.V * bristle->delta + ramp.V_y * bristle->delta_y;
+    ramp.start = fc_size(*bristle);
     ramp.slips = bristle->slips != 0;
     return ramp;
 }
@@ -155,6 +157,7 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
 // V_S on Stribeck's curve. Half of them doubles the steps; twice of them leaves twice the change to the 8
 // nodes of a step.
 static const double STEP_OF_LOG = 0.5;
+static const double FACTOR_OF_STEP = 1.65; // its exponential
 // The largest number of steps: more than there are from the smallest number to the largest.
 static const double MOST_STEPS = 1e4;
 static const double STEP_OF_CURVE = 0.5;
@@ -163,14 +166,14 @@ static const double END_OF_CURVE = 7.0;
 
 // The next place to stop at after s.
 static double next_place(const Ramp* ramp, double s, double step) {
-    const double V_S = ramp->scene->friction->V_S;
-    const double least = fmin(V_S, ramp->past.V_S);
-    const double most = fmax(V_S, ramp->past.V_S);
+    const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S);
     const double V = hypot(ramp->past.V + s * ramp->V, ramp->past.V_y + s * ramp->V_y);
     const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
     if (ramp->slips && drops(ramp) && change != 0.0) {
-        next = fmin(next, s + fmax(STEP_OF_CURVE * least, V - END_OF_CURVE * most) / change);
+        next = fmin(next,
+                    s + fmax(STEP_OF_CURVE * V_S / FACTOR_OF_STEP, V - END_OF_CURVE * FACTOR_OF_STEP * V_S) /
+                            change);
         const double reversal = -ramp->along / ramp->along_change;
         next = reversal > s && reversal < next ? reversal : next;
     }
@@ -197,8 +200,8 @@ static int parts_between(const Ramp* ramp, double s, double next) {
     if (!ramp->slips || !drops(ramp)) {
         return 1;
     }
-    const double least = fmin(ramp->scene->friction->V_S, ramp->past.V_S);
-    const double moves = hypot(ramp->V, ramp->V_y) / least + fabs(ramp->log_V_S);
+    const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S) / FACTOR_OF_STEP;
+    const double moves = hypot(ramp->V, ramp->V_y) / V_S + fabs(ramp->log_V_S);
     return (int)ceil(PARTS * fmin(1.0, (next - s) * moves / STEP_OF_CURVE) + 1e-3);
 }
 
@@ -226,14 +229,16 @@ static double next_stop(const Ramp* ramp, double s, double step) {
 }
 
 // Whether a bristle that has broken away sticks between two stops: neither V nor the motion after the ramp
-// pushes it outward, and it lies inside its bound, or its bound rises. A bristle that is pushed does not stick,
-// so that held steps come to the ramp that they sample.
+// pushes it outward, and it lies inside its bound, or its bound rises, or V has reversed before it slipped. A
+// bristle that is pushed does not stick, so that held steps come to the ramp that they sample.
 static bool sticks_between(const Ramp* ramp, double s, double next, double delta) {
     if (!drops(ramp) || ramp->pushed || ramp->along + 0.5 * (s + next) * ramp->along_change > 0.0) {
         return false;
     }
     const double D = at_place(ramp, s).D;
-    return delta < (1.0 - FC_ROUNDING_OF_BOUND) * D || !(at_place(ramp, next).D < D);
+    const bool has_slipped = delta < (1.0 - FC_ROUNDING_OF_BOUND) * ramp->start;
+    return (ramp->along > 0.0 && !has_slipped) || delta < (1.0 - FC_ROUNDING_OF_BOUND) * D ||
+           !(at_place(ramp, next).D < D);
 }
 
 // Whether the ramp raises the bound of a slipping bristle that has not reached it since an earlier jump. The
@@ -316,6 +321,9 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     if (drops(&ramp)) {
         bristle.slips = slips;
         ramp.pushed = fc_push_in_plane(scene, bristle) > 0.0;
+    }
+    if (past->ratio == 1.0) { // then no state tells whether it slips
+        ramp.slips = ramp.along > 0.0 && delta >= (1.0 - FC_INSIDE_BOUND) * at_place(&ramp, 0.0).D;
     }
     ramp.slips = ramp.slips && !lags_behind(&ramp, delta);
     double reached = delta;

@@ -126,6 +126,8 @@ class _Ramp:
         side, size, heat, begin = int(np.sign(delta)), abs(delta), REAL(0), REAL(begin)
         if side == 0:
             return delta, slips, heat
+        if begin == 0 and self.drives[0].excess == 0 and side * self.V[0] > 0:
+            slips = side if size >= self.bound(begin).value * (1 - 1e-10) else 0
         if self.after.drops and slips == 0:
             meets = [low for low, _ in self._falls(size, begin, static=True)]
             if not meets:
