@@ -574,9 +574,14 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
         const bool slid =
             length_of(state->delta) >= (1.0L - ON_BOUND) * D && dot(state->delta, begin.input) > 0.0L;
         state->broke = past.excess == 0.0L ? slid && has_static(&ramp) : state->broke;
+        const Real D_end = bound(&ramp, &end, false);
+        if (state->broke && dot(state->delta, begin.input) <= 0.0L && fabsl(D_end - D) <= ON_BOUND * D) {
+            state->broke = has_static(w);
+            return 0.0L; // nothing but rounding: the next motion decides whether it slips
+        }
         // The bound rises again before the bristle has caught up: it is faster than the bristle.
-        state->broke = state->broke && !(length_of(state->delta) < (1.0L - ON_BOUND) * D &&
-                                         bound(&ramp, &end, false) > (1.0L + ON_BOUND) * D);
+        state->broke = state->broke &&
+                       !(length_of(state->delta) < (1.0L - ON_BOUND) * D && D_end > (1.0L + ON_BOUND) * D);
         const March march = march_from(&ramp, *state);
         *state = (State){march.state.delta, march.state.broke && has_static(w)};
         return march.sums.heat;

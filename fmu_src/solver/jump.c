@@ -237,8 +237,8 @@ static bool sticks_between(const Ramp* ramp, double s, double next, double delta
     }
     const double D = at_place(ramp, s).D;
     const bool has_slipped = delta < (1.0 - FC_ROUNDING_OF_BOUND) * ramp->start;
-    return (ramp->along > 0.0 && !has_slipped) || delta < (1.0 - FC_ROUNDING_OF_BOUND) * D ||
-           !(at_place(ramp, next).D < D);
+    return (ramp->along > 0.0 && !has_slipped) || delta < (1.0 - FC_INSIDE_BOUND) * D ||
+           at_place(ramp, next).D > (1.0 + FC_INSIDE_BOUND) * D;
 }
 
 // Whether the ramp raises the bound of a slipping bristle that has not reached it since an earlier jump. The

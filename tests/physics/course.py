@@ -138,8 +138,10 @@ class _Ramp:
             heat += sigma * (size - kinetic) * (size + kinetic) / 2
             size = kinetic
         elif self.after.drops:
-            # behind a bound that rises again it sticks
             low, high = (self.bound(REAL(place)).value for place in (0, 1))
+            if side * self.V[0] <= 0 and abs(high - low) <= 1e-10 * low:
+                return delta, slips, heat  # nothing but rounding
+            # behind a bound that rises again it sticks
             if size < low * (1 - 1e-10) and high > low * (1 + 1e-10):
                 return self.follow(delta, 0)
         released = self._released(side, begin)
