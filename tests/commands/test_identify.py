@@ -183,7 +183,7 @@ def test_profile_is_the_hull_of_the_region_on_a_grid(fmu: FrictionFmu) -> None:
     assert math.log(result.profiles[0][1]) == pytest.approx(scales[-1], abs=1.5 * (scale[1] - scale[0]))
     assert result.profiles[1] == pytest.approx((phases[0], phases[-1]), abs=math.radians(3.0))
     most, (low, high) = 1e-6 * STIFFNESS_PRINTED * result.profiles[0][1], np.degrees(result.profiles[1])
-    assert f"only from above, by {most:.0f} MN/m, and the phase hardly, from {low:.0f}° to {high:.0f}°" in (
+    assert f"only from above ({most:.0f} MN/m) and hardly bounds the phase ({low:.0f}° to {high:.0f}°)" in (
         " ".join(GUIDE.split())
     )
 
