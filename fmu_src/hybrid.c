@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <float.h>
 #include <math.h>
-#include <string.h>
+#include <stddef.h>
 
 #include "model/constants.h"
 #include "model/plane.h"

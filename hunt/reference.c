@@ -438,10 +438,8 @@ static void begin(March* march, Real a, Real b) {
     const Real rounding = ROUNDING * (w->top + fabsl(bound_rate(w, &at, false)));
     const bool pushed =
         push > rounding || (push >= -rounding && outward(w, &later, march->state.delta) > 0.0L);
-    const bool lies = length_of(march->state.delta) >= (1.0L - (!w->ramp             ? AS_DOUBLE
-                                                                : march->state.broke ? ON_BOUND
-                                                                                     : 0.0L)) *
-                                                           bound(w, &at, false);
+    const Real slack = !w->ramp ? AS_DOUBLE : march->state.broke ? ON_BOUND : 0.0L;
+    const bool lies = length_of(march->state.delta) >= (1.0L - slack) * bound(w, &at, false);
     if (pushed && lies && (march->state.broke || !has_static(w))) {
         march->motion = SLIPS;
     } else if (march->state.broke && catches(w, &at, march->state.delta, pushed)) {
@@ -477,8 +475,7 @@ static void change_motion(March* march) {
         slips = outward(w, &at, march->state.delta) > 0.0L;
         march->slipped = true;
     }
-    march->state.broke =
-        march->state.broke && (slips || (w->ramp && catches(w, &at, march->state.delta, false)));
+    march->state.broke = march->state.broke && (slips || catches(w, &at, march->state.delta, false));
     march->motion = slips ? SLIPS : march->state.broke ? CATCHES : STICKS;
 }
 

@@ -245,8 +245,7 @@ static bool sticks_between(const Ramp* ramp, double s, double next, double delta
 // steps then sample a bound that rises faster than the bristle moves, so that it sticks.
 static bool lags_behind(const Ramp* ramp, double delta) {
     const double D = at_place(ramp, 0.0).D;
-    return drops(ramp) && delta < (1.0 - FC_INSIDE_BOUND) * D &&
-           at_place(ramp, 1.0).D > (1.0 + FC_INSIDE_BOUND) * D;
+    return delta < (1.0 - FC_INSIDE_BOUND) * D && at_place(ramp, 1.0).D > (1.0 + FC_INSIDE_BOUND) * D;
 }
 
 // Takes a bristle that slips to the end of the ramp or to the place at which it sticks, which is returned.
@@ -264,9 +263,10 @@ static double slip_from(Ramp* ramp, double s, double* delta, double* heat) {
     return s;
 }
 
-// The first place from s on at which the static bound falls below |delta|; 1 for none.
-static double where_it_breaks(const Ramp* ramp, double s, double delta) {
-    AboveBound of = {ramp, (1.0 - FC_ROUNDING_OF_BOUND) * delta};
+// Takes a bristle that sticks to the end of the ramp or to the place at which its static bound falls below |delta|
+// and it breaks away, which is returned.
+static double stick_from(Ramp* ramp, double s, double* delta, double* heat) {
+    AboveBound of = {ramp, (1.0 - FC_ROUNDING_OF_BOUND) * *delta};
     double none = 0.0;
     double at_s = above_bound(&of, s);
     const double step = step_from(ramp, s);
@@ -274,18 +274,12 @@ static double where_it_breaks(const Ramp* ramp, double s, double delta) {
         const double next = next_stop(ramp, s, step);
         const double at_next = above_bound(&of, next);
         if (at_next > 0.0) {
-            return at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, 0.0, &none)
-                              : s;
+            s = at_s < 0.0 ? fc_root_between(above_bound, &of, s, at_s, next, at_next, 0.0, 0.0, &none) : s;
+            break;
         }
         s = next;
         at_s = at_next;
     }
-    return s;
-}
-
-// Takes a bristle that sticks to the end of the ramp or to the place at which it breaks away, which is returned.
-static double stick_from(Ramp* ramp, double s, double* delta, double* heat) {
-    s = where_it_breaks(ramp, s, *delta);
     if (s < 1.0) {
         ramp->slips = true;
         const Place at = at_place(ramp, s);
@@ -321,11 +315,11 @@ FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, d
     if (drops(&ramp)) {
         bristle.slips = slips;
         ramp.pushed = fc_push_in_plane(scene, bristle) > 0.0;
+        if (past->ratio == 1.0) { // then no state tells whether it slips
+            ramp.slips = ramp.along > 0.0 && delta >= (1.0 - FC_INSIDE_BOUND) * at_place(&ramp, 0.0).D;
+        }
+        ramp.slips = ramp.slips && !lags_behind(&ramp, delta);
     }
-    if (past->ratio == 1.0) { // then no state tells whether it slips
-        ramp.slips = ramp.along > 0.0 && delta >= (1.0 - FC_INSIDE_BOUND) * at_place(&ramp, 0.0).D;
-    }
-    ramp.slips = ramp.slips && !lags_behind(&ramp, delta);
     double reached = delta;
     for (double s = 0.0; s < 1.0;) {
         s = drops(&ramp) && !ramp.slips ? stick_from(&ramp, s, &reached, heat)

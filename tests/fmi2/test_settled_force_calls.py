@@ -43,7 +43,7 @@ def test_asking_leaves_no_trace(
     assert asked.fingerprint() == other.fingerprint()
     for each in (asked, other):
         assert each.call("fmi2ExitInitializationMode") == OK
-    assert ask(asked, ["V"]) == first[:4]
+    assert ask(asked) == first
     for k in range(2):
         for each in (asked, other):
             assert each.set({"V": 0.5 - 0.2 * k}) == OK
