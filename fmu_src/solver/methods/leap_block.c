@@ -314,8 +314,8 @@ static double distance_less_way(const Block* block, double k) {
            fabs(fc_drive_displacement(&scene.drive, first.time, second.time));
 }
 
-// Whether the block also foretells the period in which a slip along the other bound is most likely to begin and
-// end, or to cease and return, between its points: that with an extreme distance less way.
+// Whether the block also foretells the period in which a slip along the other bound is most likely to begin or to
+// cease between its points: that in which the distance less way passes 0, or else an extreme one.
 static bool foretells_slips(const Block* block) {
     const double stride = periods_of_part(block);
     double before[2] = {distance_less_way(block, 0.0), distance_less_way(block, stride)};
@@ -325,7 +325,10 @@ static bool foretells_slips(const Block* block) {
         const double now = distance_less_way(block, k);
         const double falls = before[0] - before[1];
         const double rises = now - before[1];
-        if (falls * rises > 0.0 && fabs(before[1]) < least) { // the vertex of a parabola
+        if (before[1] * now < 0.0) {
+            least = 0.0;
+            at = rint(k + stride * now / (before[1] - now));
+        } else if (falls * rises > 0.0 && fabs(before[1]) < least) { // the vertex of a parabola
             least = fabs(before[1]);
             at = rint(k - stride + 0.5 * stride * (falls - rises) / (falls + rises));
         }
