@@ -18,6 +18,9 @@ With a = H^2 sigma / m and b = H sigma_1 / m the eigenvalues x are the roots of
     Jacobi, linear  x^2 - (2 - a - b + b^2 / 2) x + D        D = 1,  b = 2 + a / 2
                     D = 1 + a^2 / 4 - b - a b / 2 + b^2 / 2
     Gauss-Seidel    x^2 - (2 - a - b) x + 1 - b              b = 0,  b = 2 - a / 2
+
+F_t_mean of the last step is sigma delta + (sigma_1 - H sigma / 2) V, so it adds a / 2 to b at both edges of Jacobi and
+Gauss-Seidel.
 """
 
 import math
@@ -72,7 +75,7 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
         return "\n".join(lines), {}
     lines.append(f"At a step of {H:g} s it is stable from {span[0]:.6g} to {span[1]:.6g} N s/m.")
     if damping == 0.0:
-        lines.append("No damping is needed. friction.sigma_1 = 0 has the smallest error.")
+        lines.append("F_t needs no damping. friction.sigma_1 = 0 has its smallest error.")
     else:
         lines += [
             f"Set {damping:.6g} N s/m, the smallest stable value plus 10 %.",
@@ -80,6 +83,8 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
             "It adds sigma_1 der(delta) to F_t. Under a vibration F_t may then swing by many times F_C,",
             "though its mean stays. Set it only if the mass sticks.",
             f"At break-away F_t exceeds the static friction by sigma_1 V, {damping:.6g} N for each m/s.",
-            "If that matters, take Gauss-Seidel, which needs no damping.",
+            "If that matters, take Gauss-Seidel, which needs no damping for F_t.",
         ]
+    if master in (JACOBI, GAUSS_SEIDEL):
+        lines.append(f"If you read F_t_mean, add H sigma / 2 = {H * sigma / 2:.6g} N s/m to each of these values.")
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}

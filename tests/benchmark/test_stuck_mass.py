@@ -39,7 +39,9 @@ TITLES = {  # of the rows in docs/tools.md
 }
 
 
-def exchange(fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0) -> np.ndarray:
+def exchange(
+    fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0, output: str = "F_t"
+) -> np.ndarray:
     """Velocities [m/s] of the mass, which starts at 1 um/s from rest of the contact; c damps it outside.
 
     The law is ElasticPlastic far below its limit, which sticks truly; the mass is integrated exactly.
@@ -62,7 +64,7 @@ def exchange(fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float =
         while len(speeds) < COUNT and abs(v) < 1e-2:  # far below where the bristle slips
             if master != JACOBI:
                 session.set("V", v)
-            force, rate = session.get("F_t"), 0.0
+            force, rate = session.get(output), 0.0
             session.set("V", v)
             if master == LINEAR:
                 session.set_rates(V=-force / M)
@@ -75,9 +77,11 @@ def exchange(fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float =
     return np.array(speeds)
 
 
-def grows(fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0) -> bool:
+def grows(
+    fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0, output: str = "F_t"
+) -> bool:
     """By more than 1 % in 200 steps; an undamped swing's samples miss its peak by less."""
-    speeds = np.abs(exchange(fmu, master, H, sigma_1, c))
+    speeds = np.abs(exchange(fmu, master, H, sigma_1, c, output))
     return len(speeds) < COUNT or bool(speeds[500:].max() > 1.01 * speeds[300:400].max())
 
 
@@ -105,6 +109,19 @@ def test_the_fmu_turns_unstable_at_the_edges_of_the_table(
     assert not grows(fmu, master, H, 0.97 * high)
     assert not grows(fmu, master, H, 1.03 * low)
     assert low == 0.0 or grows(fmu, master, H, 0.97 * low)
+
+
+@pytest.mark.parametrize("fraction", [0.3, 0.7])
+@pytest.mark.parametrize("master", [JACOBI, GAUSS_SEIDEL])
+def test_the_edges_of_the_mean_force(fmu: FrictionFmu, master: str, fraction: float) -> None:
+    """They lie H sigma / 2 higher, as docs/tools.md and the advice say."""
+    H = fraction * LARGEST_STEP[master] * TIME
+    low, high = (edge + H * SIGMA / 2 for edge in promised(master, H))
+    assert grows(fmu, master, H, 1.03 * high, output="F_t_mean")
+    assert not grows(fmu, master, H, 0.97 * high, output="F_t_mean")
+    assert not grows(fmu, master, H, 1.03 * low, output="F_t_mean")
+    assert grows(fmu, master, H, 0.97 * low, output="F_t_mean")
+    assert f"F_t_mean, add H sigma / 2 = {H * SIGMA / 2:.6g} N s/m" in advice(M, SIGMA, master, H)[0]
 
 
 @pytest.mark.parametrize("master", MASTERS)

@@ -119,7 +119,7 @@ def test_recovery_is_what_the_documents_say(
     noisy = from_kind("V_1 uncertain")
     said = re.search(
         r"for (\d+), (\d+) and (\d+) of 20 seeds\. .* for (\d+), (\d+) and (\d+) of 20 seeds.*"
-        r"for (\d+) and (\d+) of 20 seeds.*contain the phase for (\d+) of the 20",
+        r"for (\d+) and (\d+) of 20 seeds.*contain the phase for (\d+) of 20",
         " ".join(PHYSICS.split()),
     )
     recovered = (from_kind("scatter estimated"), noisy, from_law("Dahl"))
