@@ -19,8 +19,8 @@ With a = H^2 sigma / m and b = H sigma_1 / m the eigenvalues x are the roots of
                     D = 1 + a^2 / 4 - b - a b / 2 + b^2 / 2
     Gauss-Seidel    x^2 - (2 - a - b) x + 1 - b              b = 0,  b = 2 - a / 2
 
-F_t_mean of the last step is sigma delta + (sigma_1 - H sigma / 2) V, so it adds a / 2 to b at both edges of Jacobi and
-Gauss-Seidel.
+F_t_mean of the last step is sigma delta + (sigma_1 - H sigma / 2) V. So it adds a / 2 to b at both edges of
+Jacobi and Gauss-Seidel.
 """
 
 import math
@@ -86,5 +86,7 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
             "If that matters, take Gauss-Seidel, which needs no damping for F_t.",
         ]
     if master in (JACOBI, GAUSS_SEIDEL):
-        lines.append(f"If you read F_t_mean, add H sigma / 2 = {H * sigma / 2:.6g} N s/m to each of these values.")
+        lines.append(
+            f"If you read F_t_mean, add H sigma / 2 = {H * sigma / 2:.6g} N s/m to each of these values."
+        )
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}
