@@ -43,12 +43,15 @@ double fc_panel_end(double t, double h, double end) {
 }
 
 bool fc_refine_panel(double* h, int* rule, int tries) {
+    if (tries >= MOST_TRIES) {
+        return false;
+    }
     if (*rule < FC_RULES - 1) {
         ++*rule;
     } else {
         *h *= 0.5;
     }
-    return tries < MOST_TRIES;
+    return true;
 }
 
 static void set_point(const FcScene* scene, double t, int i, FcPoints* at) {
