@@ -1,8 +1,8 @@
 // Time derivatives in co-simulation: of inputs, given, and of F_t and F_y. Directional derivatives of outputs
 // and rates: by the inputs from initialization mode on, in model exchange by the states too. All are formulas
 // except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of a bound for a
-// slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f). These are
-// central differences (model/derivatives.c).
+// slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f)
+// (model/derivatives.c), and the deflection after a jump of inputs. These are central differences.
 #include <math.h>
 
 #include "fmi2/instance.h"
@@ -177,6 +177,44 @@ static double log_along(const Direction* along, double by_d, double by_E, double
            scaled(by_load, along->input[FC_INPUT_LOAD]);
 }
 
+// The part of their sizes by which inputs are moved for a difference: its error is some 1e-9, by the square of the
+// part and by rounding over it. Half or twice of it multiplies one of them by two or four.
+static const double MOVED_PART = 3e-5;
+
+// The derivative along the direction of the deflection that inputs leave which have jumped: by a central difference,
+// since it may be the least bound on the way.
+static FcVector reached_along(const FcFrictionContact* contact, const Direction* along) {
+    const FcVariables* v = &contact->state.variables;
+    const double size[FC_INPUT_COUNT] = {[FC_INPUT_V] = v->friction.V_S,
+                                         [FC_INPUT_D] = v->d,
+                                         [FC_INPUT_E] = v->E,
+                                         [FC_INPUT_LOAD] = v->load,
+                                         [FC_INPUT_V_Y] = v->friction.V_S};
+    double part = 0.0;
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        part = size[input] > 0.0 ? fmax(part, fabs(along->input[input]) / size[input]) : part;
+    }
+    if (part == 0.0) {
+        return (FcVector){0.0, 0.0};
+    }
+    const double change = MOVED_PART / part;
+    FcBristle end[2];
+    for (int i = 0; i < 2; i++) {
+        FcFrictionContact moved = *contact;
+        FcVariables* to = &moved.state.variables;
+        const double by = i == 0 ? -change : change;
+        to->V += by * along->input[FC_INPUT_V];
+        to->d += by * along->input[FC_INPUT_D];
+        to->E += by * along->input[FC_INPUT_E];
+        to->load += by * along->input[FC_INPUT_LOAD];
+        to->V_y += by * along->input[FC_INPUT_V_Y];
+        const FcScene scene = fc_friction_contact_scene(&moved);
+        end[i] = fc_friction_contact_reached(&moved, &scene);
+    }
+    return (FcVector){(end[1].delta - end[0].delta) / (2.0 * change),
+                      (end[1].delta_y - end[0].delta_y) / (2.0 * change)};
+}
+
 static Tangent tangent(FcInstance* instance, const Direction* along) {
     FcFrictionContact* contact = &instance->contact;
     const bool hybrid = fc_instance_is_hybrid(instance);
@@ -192,8 +230,8 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
                              .V_y = along->input[FC_INPUT_V_Y],
                              .delta_y = along->state.delta_y};
     if ((reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) &&
-        !fc_scene_is_loose(&scene)) { // an input has pushed it onto its bound
-        const FcVector moves = fc_bound_along(&scene, reached, &direction);
+        !fc_scene_is_loose(&scene)) { // an input has jumped and moved it
+        const FcVector moves = reached_along(contact, along);
         direction.delta = moves.x;
         direction.delta_y = moves.y;
     }

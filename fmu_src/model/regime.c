@@ -392,16 +392,6 @@ FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristl
                                 .delta_y = change.state_rate.y}};
 }
 
-FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along) {
-    FcFriction friction;
-    const FcScene bound = fc_scene_of_bound(scene, bristle.slips, &friction);
-    const ContactAlong contact = contact_along(scene, along);
-    const FcContactResponse now = fc_scene_contact(scene, 0.0);
-    const FcVector V = moment(scene, &now).V;
-    return times(log_limit_along(&bound, V, contact.log_F_n, along) - contact.log_sigma,
-                 (FcVector){bristle.delta, bristle.delta_y});
-}
-
 // Second time derivative of the bound [m/s2], by a central difference of its rate, which is exact. The
 // difference is taken over the fastest change of an input, and away from surfaces that would touch.
 static double bound_acceleration(const FcScene* bound) {

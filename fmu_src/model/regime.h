@@ -114,9 +114,6 @@ typedef struct {
 // difference.
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along);
 
-// The derivative of the deflection along the direction if the bristle is kept on its bound.
-FcVector fc_bound_along(const FcScene* scene, FcBristle bristle, const FcDirection* along);
-
 // Time derivative of (F_t, F_y) [N/s] of a bristle that is within its bound, with the rates of the inputs in
 // the drive.
 FcVector fc_force_rate(const FcScene* scene, FcBristle bristle);

@@ -128,6 +128,39 @@ def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], sc
         assert exact == pytest.approx(2.0 * slopes[0] - slopes[1], rel=1e-5, abs=1e-6 * size), name
 
 
+JUMPS = {  # a sliding contact, and values that jump after a step
+    "onto the kinetic bound, as V reverses": ({}, {"contact.sigma": 2e6}, {"contact.sigma": 4e6}),
+    "inside both bounds, as V reverses": ({}, {"contact.sigma": 2e6}, {"contact.sigma": 2.6e6}),
+    "the limit falls, as V reverses": ({}, {"contact.sigma": 2e6}, {"F_C": 30.0}),
+    "the surfaces approach, as V reverses": (
+        {"contact.model": 1}, {"contact.stiffnessScale": 4.4e-7}, {"d": 13.8e-6},
+    ),
+    "past a least bound, Dahl": (
+        {"friction.model": 1, "contact.model": 1, **PRESSED},
+        {"contact.stiffnessScale": 4.4e-7, "load": 312.44}, {"load": 468.0, "E": 35.134e9, "V": 0.2},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("jump", JUMPS)
+def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instance], jump: str) -> None:
+    choices, before, after = JUMPS[jump]
+    instance = new_instance()
+    assert instance.choose({**ELASTIC_PLASTIC, "contact.model": 2, **choices}) == OK
+    assert instance.set({"friction.staticRatio": 1.5, "friction.V_S": 0.1, "V": 0.2, **before}) == OK
+    instance.initialize()
+    assert instance.step(0.0, 1e-3) == OK
+    assert instance.set({"V": -0.15, **after}) == OK
+    for name in ("V", "d", "E", "load"):
+        status, derivatives = instance.directional(OUTPUTS, {name: 1.0})
+        assert status == OK
+        for output, exact, difference, scale in zip(
+            OUTPUTS, derivatives, differences(instance, name), scales(instance, name), strict=True
+        ):
+            if not output.endswith("_mean"):  # of the step before
+                assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
+
+
 def test_a_direction_is_the_sum_of_its_parts(new_instance: Callable[..., Instance]) -> None:
     instance = new_instance()
     assert instance.set({"delta_0": 2e-9}) == OK
