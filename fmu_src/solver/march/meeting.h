@@ -12,6 +12,10 @@
 
 #include "solver/march/points.h"
 
+// The largest distance from its bound that counts as rounding, over the bound: 450 eps. Twice of it would move a
+// bristle by as much more.
+static const double FC_ROUNDING_AT_BOUND = 1e-13;
+
 // A bristle and its bound at the points of a panel.
 typedef struct {
     const FcScene* scene; // the law's
