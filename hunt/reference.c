@@ -874,7 +874,7 @@ static bool advance(World* w, State* state, Sums* sums) {
 void reference_step(const ReferenceScene* before, const ReferenceScene* scene, int fineness,
                     ReferenceStep* result) {
     World w = make_world(scene, scene->h, fineness);
-    State state = start_of(scene);
+    State state = start_of(scene), seen = state; // before the rates of the inputs are known
     w.S = largest_force(&w, state.delta);
     World held = held_world(&w, 1.0L / scene->f);
     *result = (ReferenceStep){.S = (double)w.S, .known = true};
@@ -883,10 +883,12 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
         Vector mean;
         jump(NULL, &held, &state);
         result->known = settle(&held, &state, &mean);
+        seen = state;
     } else if (scene->law != LAW_COULOMB) {
+        jump(before, &held, &seen);
         sums.heat = jump(before, &w, &state);
     }
-    const Vector start = force_at(&held, 0.0L, state);
+    const Vector start = force_at(&held, 0.0L, seen);
     result->known = advance(&w, &state, &sums) && result->known;
     const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
     const Real results[RESULTS] = {
