@@ -220,6 +220,14 @@ FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const Fc
     return fc_jump(scene, &contact->state.past, fc_friction_contact_bristle(contact), &heat);
 }
 
+double* fc_input_of(FcVariables* v, FcInput input) {
+    double* const inputs[FC_INPUT_COUNT] = {
+        [FC_INPUT_V] = &v->V,       [FC_INPUT_D] = &v->d,     [FC_INPUT_E] = &v->E,
+        [FC_INPUT_LOAD] = &v->load, [FC_INPUT_V_Y] = &v->V_y,
+    };
+    return inputs[input];
+}
+
 static const double HELD[FC_INPUT_COUNT] = {0}; // rates of inputs that stand still
 
 // The time t [s] must determine the phase of the vibration.

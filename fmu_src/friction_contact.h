@@ -52,6 +52,7 @@ typedef struct {
 } FcVariables;
 
 typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_V_Y, FC_INPUT_COUNT } FcInput;
+double* fc_input_of(FcVariables* v, FcInput input);
 
 // The state of model exchange besides the variables (hybrid.h).
 typedef struct {

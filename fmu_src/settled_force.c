@@ -82,14 +82,6 @@ bool fc_settled_force(const FcFrictionContact* contact, FcVector* force, FcMessa
     return is_finite(*force, "", message);
 }
 
-static double* input_of(FcVariables* v, FcInput input) {
-    double* const inputs[FC_INPUT_COUNT] = {
-        [FC_INPUT_V] = &v->V,       [FC_INPUT_D] = &v->d,     [FC_INPUT_E] = &v->E,
-        [FC_INPUT_LOAD] = &v->load, [FC_INPUT_V_Y] = &v->V_y,
-    };
-    return inputs[input];
-}
-
 static const double PART_OF_SCALE = 0.25; // for the first range
 
 // For a velocity, along or transverse, with its amplitude.
@@ -132,7 +124,7 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, F
 enum { POINTS = 8 };
 static bool slope_over(FcFrictionContact* held, FcInput input, double range, FcVector* slope, double* error,
                        double* evaluations, FcMessage* message) {
-    double* const x = input_of(&held->state.variables, input);
+    double* const x = fc_input_of(&held->state.variables, input);
     const double start = *x;
     FcVector force[POINTS];
     for (int j = 0; j < POINTS; j++) {

@@ -184,15 +184,12 @@ static const double MOVED_PART = 3e-5;
 // The derivative along the direction of the deflection that inputs leave which have jumped: by a central difference,
 // since it may be the least bound on the way.
 static FcVector reached_along(const FcFrictionContact* contact, const Direction* along) {
-    const FcVariables* v = &contact->state.variables;
-    const double size[FC_INPUT_COUNT] = {[FC_INPUT_V] = v->friction.V_S,
-                                         [FC_INPUT_D] = v->d,
-                                         [FC_INPUT_E] = v->E,
-                                         [FC_INPUT_LOAD] = v->load,
-                                         [FC_INPUT_V_Y] = v->friction.V_S};
+    FcVariables now = contact->state.variables;
     double part = 0.0;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        part = size[input] > 0.0 ? fmax(part, fabs(along->input[input]) / size[input]) : part;
+        const bool is_velocity = input == FC_INPUT_V || input == FC_INPUT_V_Y;
+        const double size = is_velocity ? now.friction.V_S : *fc_input_of(&now, (FcInput)input);
+        part = size > 0.0 ? fmax(part, fabs(along->input[input]) / size) : part;
     }
     if (part == 0.0) {
         return (FcVector){0.0, 0.0};
@@ -201,13 +198,10 @@ static FcVector reached_along(const FcFrictionContact* contact, const Direction*
     FcBristle end[2];
     for (int i = 0; i < 2; i++) {
         FcFrictionContact moved = *contact;
-        FcVariables* to = &moved.state.variables;
-        const double by = i == 0 ? -change : change;
-        to->V += by * along->input[FC_INPUT_V];
-        to->d += by * along->input[FC_INPUT_D];
-        to->E += by * along->input[FC_INPUT_E];
-        to->load += by * along->input[FC_INPUT_LOAD];
-        to->V_y += by * along->input[FC_INPUT_V_Y];
+        for (int input = 0; input < FC_INPUT_COUNT; input++) {
+            *fc_input_of(&moved.state.variables, (FcInput)input) +=
+                (i == 0 ? -change : change) * along->input[input];
+        }
         const FcScene scene = fc_friction_contact_scene(&moved);
         end[i] = fc_friction_contact_reached(&moved, &scene);
     }

@@ -197,7 +197,7 @@ static void slip_points(March* m, double h, int rule, int side, Slip* slip) {
 // smaller distance may decide whether the bristle breaks away, so only rounding is ignored.
 static double unseen(const March* m, double sigma, double D) {
     if (fc_has_static_friction(m->scene->friction)) {
-        return FC_ROUNDING_AT_BOUND * D;
+        return FC_ROUNDING_OF_MEETING * D;
     }
     return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
 }
@@ -323,7 +323,7 @@ static bool is_slip_accurate(const March* m, const Slip* slip) {
     }
     // The heat g (V - D') may err by its part of the path of surfaces and bristle alone, since D' may be fast
     // for a short time.
-    const double path = m->speed * m->duration + (most - least) + FC_ROUNDING_AT_BOUND * most;
+    const double path = m->speed * m->duration + (most - least) + FC_ROUNDING_OF_MEETING * most;
     const double of_path = fastest > 0.0 ? fmin(1.0, path / (fastest * m->duration)) : 1.0;
     return fc_error_at_points(&slip->at, f) * slip->at.h <=
            FC_SHARE_OF_FORMULA * allowed(m) * of_path * m->duration;
@@ -655,7 +655,7 @@ static void stick(March* m, double end) {
     fc_points(bound, m->t, h, rule, &at, &m->result->evaluations);
     displacements(m, &at, x);
     const FcCourse course = course_of(m, bound, &at, x);
-    FcMeeting met = fc_first_meeting(&course, FC_ROUNDING_AT_BOUND * course.D[0],
+    FcMeeting met = fc_first_meeting(&course, FC_ROUNDING_OF_MEETING * course.D[0],
                                      unseen(m, at.sigma[0], course.D[0]), &m->result->evaluations);
     double until = met.side != 0 ? met.t : fc_panel_end(m->t, h, m->cut);
     bool sticks = false; // at that time
@@ -761,7 +761,7 @@ static void march_between_reversals(March* m, double D) {
         m->result->evaluations += 1.0;
         const double way = fmax(0.0, D - side * delta); // below 0 by rounding
         bool goes_on = !(side * x > way);
-        if (!goes_on && end < m->duration && way <= FC_ROUNDING_AT_BOUND * D &&
+        if (!goes_on && end < m->duration && way <= FC_ROUNDING_OF_MEETING * D &&
             side * x <= ROUNDING_AT_REVERSAL * D && fc_has_static_friction(scene->friction)) {
             // It sticks at the static bound if V reverses before the bristle could slip. The remaining
             // distance is rounding.
@@ -810,7 +810,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     const bool has_memory = fc_has_static_friction(scene->friction);
     const double D = fc_bound(has_memory && result->slips != 0 ? scene : &m.bound, 0.0);
     result->evaluations += 1.0;
-    const bool on_bound = fabs(result->delta) >= D * (1.0 - FC_ROUNDING_AT_BOUND);
+    const bool on_bound = fabs(result->delta) >= D * (1.0 - FC_ROUNDING_OF_MEETING);
     if (on_bound && (!has_memory || result->slips == (result->delta < 0.0 ? -1 : 1))) {
         m.side = result->delta < 0.0 ? -1 : 1; // it leaves at once if it is not pushed
         result->meetings++;

@@ -14,7 +14,7 @@
 
 // The largest distance from its bound that counts as rounding, over the bound: 450 eps. Twice of it would move a
 // bristle by as much more.
-static const double FC_ROUNDING_AT_BOUND = 1e-13;
+static const double FC_ROUNDING_OF_MEETING = 1e-13;
 
 // A bristle and its bound at the points of a panel.
 typedef struct {

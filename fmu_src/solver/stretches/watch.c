@@ -126,10 +126,10 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
     const double may = fc_allowed_force(interval) / sigma * fc_least(1.0, watch->reach / course.D[last]); // m
     const double missed = missed_between(at, &course) * course.D[last];
     if (nearest(&course) * course.D[last] > course.D[last] - NEAR_BOUND * missed &&
-        missed > fc_most(FC_ROUNDING_AT_BOUND * course.D[last], FC_SHARE_OF_GRAZE * may)) {
+        missed > fc_most(FC_ROUNDING_OF_MEETING * course.D[last], FC_SHARE_OF_GRAZE * may)) {
         return FC_UNRESOLVED;
     }
-    const double over = fc_most(FC_ROUNDING_AT_BOUND * course.D[last], FC_SHARE_OF_EVENT * may);
+    const double over = fc_most(FC_ROUNDING_OF_MEETING * course.D[last], FC_SHARE_OF_EVENT * may);
     const FcMeeting met = fc_first_meeting(&course, over, 0.0, evaluations);
     if (met.side == 0) {
         return FC_MEETS_NONE;
@@ -142,7 +142,7 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
         set_end(watch, at->scene, at->t + cut, deflection(&panel->map, from->delta_0), last, &course);
         *evaluations += 1.0;
         const double beyond = met.side * course.delta[last] - course.D[last];
-        if (fabs(beyond) <= fc_most(FC_ROUNDING_AT_BOUND * course.D[last], FC_SHARE_OF_CUT * may) ||
+        if (fabs(beyond) <= fc_most(FC_ROUNDING_OF_MEETING * course.D[last], FC_SHARE_OF_CUT * may) ||
             (tries >= MOST_CUTS && beyond > 0.0)) {
             break;
         }
