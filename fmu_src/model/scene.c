@@ -63,6 +63,25 @@ double fc_scene_closed_by(const FcScene* scene) {
 // panels, a smaller one more pieces.
 static const double LOAD_OF_PIECE = 4.0;
 
+// The contact at the modulus of the time t.
+static FcContactAtModulus contact_at(const FcScene* scene, double t) {
+    return scene->drive.E.rate == 0.0 ? scene->at_E
+                                      : fc_contact_at_modulus(scene->contact, fc_drive_E(&scene->drive, t));
+}
+
+// Time [s] until d has reached the separation at which F_n or sigma counts as 0, which E moves: by iteration, since
+// a modulus that moves tenfold moves it by a hundredth.
+static double time_to_edge(const FcScene* scene, double rest) {
+    const FcLinearInput d = scene->drive.d;
+    const int most = scene->drive.E.rate == 0.0 ? 1 : 8;
+    double time = 0.0;
+    for (int i = 0; i < most; i++) {
+        const FcContactAtModulus at_E = contact_at(scene, fmin(fmax(time, 0.0), rest));
+        time = (open_separation(&at_E) - d.value) / d.rate;
+    }
+    return time;
+}
+
 double fc_scene_piece(FcScene* scene, double rest, double whole) {
     const FcDrive* drive = &scene->drive;
     const bool by_load = follows_load(scene);
@@ -75,7 +94,7 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     const bool is_far = by_load || scene->is_open ||
                         scene->at_E.decay * fmax(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
     const double to_edge = by_load  ? -drive->load.value / rate
-                           : is_far ? (open_separation(&scene->at_E) - drive->d.value) / rate
+                           : is_far ? time_to_edge(scene, rest)
                                     : HUGE_VAL;
     const double room = FC_NEARLY_OPEN * whole;
     scene->is_open = scene->is_open || (opens && to_edge <= room);
@@ -101,12 +120,6 @@ FcScene fc_scene_from(const FcScene* scene, double t) {
     FcScene from = fc_scene_later(scene, t);
     from.drive.theta_0 += from.drive.omega * t;
     return from;
-}
-
-// The contact at the modulus of the time t.
-static FcContactAtModulus contact_at(const FcScene* scene, double t) {
-    return scene->drive.E.rate == 0.0 ? scene->at_E
-                                      : fc_contact_at_modulus(scene->contact, fc_drive_E(&scene->drive, t));
 }
 
 // The separation at t; driven is the drive's part.

@@ -24,8 +24,9 @@ static const double ROUNDING_AT_REVERSAL = 1e-9;
 // from one bound to the other it is 2. Half of it costs panels; twice of it makes panels that are cut early.
 static const double SOON = 3.0;
 
-// The number of regimes of next to no duration in a row, beyond which a panel slips whatever its push.
-// Chosen empirically, for a bristle that rounding sends back and forth. Twice as many would cost time alone.
+// The number of regimes in a row, with next to no duration of each or of the one before, beyond which a panel slips
+// whatever its push. Chosen empirically, for a bristle that rounding sends back and forth. Twice as many would cost
+// time alone.
 enum { MOST_IDLE = 4 };
 // The length of the first such panel, and the longest of such regimes, over the interval. The next panels are
 // four times as long each, since a push of rounding soon becomes another. Rounding: 4500 eps. Twice of it
@@ -824,9 +825,12 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
         return;
     }
     double before = -1.0;
+    double last = duration; // of the regime before
     double nudge = FIRST_NUDGE * duration;
     for (int idle = 0; m.t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
-        idle = m.t - before > fmax(FIRST_NUDGE * duration, IDLE_BESIDE_NUDGE * nudge) ? 0 : idle + 1;
+        const double shorter = fmin(m.t - before, last);
+        idle = shorter > fmax(FIRST_NUDGE * duration, IDLE_BESIDE_NUDGE * nudge) ? 0 : idle + 1;
+        last = m.t - before;
         before = m.t;
         if (m.side != 0) {
             if (idle > MOST_IDLE) {
