@@ -185,6 +185,10 @@ static ReferenceScene contact_drawn(Draw* draw, bool plane) {
 // Steps at random
 // ---------------------------------------------------------------------------------------------------------------------
 
+static double rate_of_E(Draw* draw, const ReferenceScene* s) {
+    return s->E * (log_between(draw, 0.11, 9.0) - 1.0) / s->h;
+}
+
 static void rates(Draw* draw, ReferenceScene* s) {
     const double top = top_speed(s);
     if (chance(draw, 0.6)) {
@@ -202,7 +206,7 @@ static void rates(Draw* draw, ReferenceScene* s) {
         s->d_rate = (to - room) / s->h;
     }
     if (chance(draw, 0.3)) {
-        s->E_rate = s->E * (log_between(draw, 0.11, 9.0) - 1.0) / s->h;
+        s->E_rate = rate_of_E(draw, s);
     }
     if (chance(draw, 0.6)) {
         const double share = chance(draw, 0.5)   ? between(draw, 0.5, 2.0)
@@ -308,6 +312,7 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
         s->V_y_rate = (full->V_y * share(signal->V, k) - s->V_y) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;
+        s->E_rate = chance(draw, 0.1) ? rate_of_E(draw, s) : 0.0;
     } else {
         s->d = d;
         s->load = load;

@@ -122,11 +122,15 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
     const ReferenceScene* scene = &taken->scene;
     const double digits = DIGITS + (vibrates(scene) ? 4.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
     const double force = (tolerance + ROUNDING) * S, energy = force * path + LEAST_S + digits * S * lengths;
+    const double mean = force + digits * scene->sigma_1 * lengths / scene->h;
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k <= SLIPS_AT_END; k++) {
         const double found = step->result[k];
         const double off = found - fmin(fmax(found, range[0].result[k]), range[1].result[k]);
-        const double allowed = k == SLIPS_AT_END ? 0.0 : k == W_F || k == Q_F ? energy : force;
+        const double allowed = k == SLIPS_AT_END                ? 0.0
+                               : k == W_F || k == Q_F           ? energy
+                               : k == F_T_MEAN || k == F_Y_MEAN ? mean
+                                                                : force;
         const double ratio = off == 0.0 ? 0.0 : over(off, allowed);
         worst = ratio > worst.ratio ? (Verdict){ratio, k} : worst;
     }
