@@ -200,7 +200,9 @@ static double unseen(const March* m, double sigma, double D) {
     if (fc_has_static_friction(m->scene->friction)) {
         return FC_ROUNDING_OF_MEETING * D;
     }
-    return FC_SHARE_OF_EVENT * allowed(m) / sigma * fmin(1.0, m->speed * m->duration / D);
+    // The tolerance of the bound's own force: the load may rise later in the step.
+    const double may = fmin(allowed(m) / sigma, m->options.tolerance * D);
+    return FC_SHARE_OF_EVENT * may * fmin(1.0, m->speed * m->duration / D);
 }
 
 // The push between two points at which it is above 0, with a second derivative of at most `bend`.

@@ -347,7 +347,8 @@ static double close_to_bound(const March* march, double D) {
     const FcInterval* interval = march->interval;
     // An excess over the bound costs heat, whose tolerance goes with the path.
     const double share = is_stuck(march) ? 0.0 : FC_SHARE_OF_EVENT;
-    const double allowed = share * fc_allowed_force(interval) / interval->stiffness *
+    const double allowed = share *
+                           fmin(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time = fabs(march->u) * fc_straight_pace(&march->part.in, march->u) + interval->duration;
     const double rounding = 1e-14 * D + 4e-16 * largest_push(march) * of_time;

@@ -123,7 +123,9 @@ FcWatched fc_watch_panel(FcWatch* watch, const FcInterval* interval, const FcPan
     const int last = course.count - 1;
     assert(at->h > 0.0 && course.count <= FC_MOST_POINTS);
     const double sigma = interval->stiffness;
-    const double may = fc_allowed_force(interval) / sigma * fc_least(1.0, watch->reach / course.D[last]); // m
+    // In a light piece of a step whose load rises, the tolerance of the bound's own force counts.
+    const double may = fc_least(fc_allowed_force(interval) / sigma, interval->tolerance * course.D[last]) *
+                       fc_least(1.0, watch->reach / course.D[last]); // m
     const double missed = missed_between(at, &course) * course.D[last];
     if (nearest(&course) * course.D[last] > course.D[last] - NEAR_BOUND * missed &&
         missed > fc_most(FC_ROUNDING_OF_MEETING * course.D[last], FC_SHARE_OF_GRAZE * may)) {
