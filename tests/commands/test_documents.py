@@ -106,7 +106,7 @@ def test_static_friction_under_vibration_is_what_the_page_says(fmu: FrictionFmu)
     """77 N and a swing of sigma V_1 / omega break away at 82.5 N; so does a constant V, whatever it is."""
     page = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
     (left,) = laws.bound_with_total_velocity(np.array([0.02]))
-    assert f"would leave {left:.1f} N at V₁ = 20 mm/s" in page
+    assert f"only {left:.1f} N would remain at V₁ = 20 mm/s" in page
     breaks = 5.5 * 2.0 * np.pi * 20e3 / 2.5e6  # m/s
     assert laws.vibrated(fmu, 0.999 * breaks) == pytest.approx(77.0)
     assert laws.vibrated(fmu, 1.001 * breaks) < 60.0

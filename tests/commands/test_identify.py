@@ -394,6 +394,19 @@ def test_dry_rows_are_the_validation_s(fmu: FrictionFmu) -> None:
     assert f"{1e-6 * result.values[0]:.2f} MN/m ({low:.2f} to {high:.2f})" in GUIDE
 
 
+def test_the_stated_uncertainty_decides_whether_the_dry_rows_reject_the_law() -> None:
+    """As page 2 of the tutorial says of ElasticPlastic."""
+    page = " ".join((ROOT / "docs" / "tutorial" / "your-surface.md").read_text(encoding="utf-8").split())
+    assumed, smaller = 0.05, 0.03  # N
+    assert f"we assume {assumed} N." in page and f"is not rejected. At {smaller} N it would be." in page
+    law = {"friction.model": "ElasticPlastic", "contact.model": "Constant"}
+    for uncertainty, faults in ((assumed, 0), (smaller, 1)):
+        found = fc.identify(
+            ROOT / "data" / "dry.csv", "contact.sigma", start=law, uncertain={"F_t_mean": uncertainty}
+        )
+        assert len(found.misfits) == faults
+
+
 def test_a_measured_loop(fmu: FrictionFmu) -> None:
     """Dahl's force after a path x at a held limit L: s L + (F - s L) exp(-sigma |x| / L), s its sign."""
     constants = {"contact.model": "Constant"}

@@ -92,7 +92,7 @@ def test_normal_vibration(fmu_path: Path, law: str) -> None:
         assert row(["-" if p is None else percent(p) for p in predicted]) in PAGE
 
 
-def test_a_formula_without_physics_stands_beside_the_normal_vibration() -> None:
+def test_an_empirical_formula_stands_beside_the_normal_vibration() -> None:
     at_second, between = normal.hyperbola(measurements.normal_vibration())
     assert f"gives {percent(at_second)} at 87 mm/s and {percent(between)} at 40.6 mm/s" in PAGE
 
@@ -110,8 +110,8 @@ def test_the_record_is_what_its_page_says() -> None:
     ratio = record.work(same.friction, later) / record.work(later.friction, later)
     assert f"the mean of the two cycles | | | | {percent(error)} | {ratio:.3f} |" in PAGE
     assert f"within {1e6 * measurements.rms(same.position - later.position):.2f} µm (rms)" in PAGE
-    creep = np.ptp(data.between(*record.UNLOADING).position)
-    assert f"creeps by {1e6 * creep:.1f} µm" in PAGE
+    path = np.ptp(data.between(*record.UNLOADING).position)
+    assert f"moves by {1e6 * path:.1f} µm" in PAGE
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import i0
 
 from frictioncontact.fmu import FrictionFmu, Value
+from frictioncontact.parameters import COULOMB_FORCE
 from workshop.fmu_docs.directions import AMPLITUDE, DIRECTIONS, HEIGHT, mean, scene
 from workshop.project import ROOT
 
@@ -92,3 +93,31 @@ def test_what_the_stiffness_does_under_a_normal_vibration(fmu: FrictionFmu) -> N
 def test_the_directions_are_those_of_the_page() -> None:
     for direction, amplitude in DIRECTIONS.items():
         assert re.search(rf"\| {direction} \|[^|]*\|[^|]*`{next(iter(amplitude))}`", PAGE)
+
+
+def test_yielded_asperities_would_lose_their_load_over_a_small_part_of_the_amplitude(
+    fmu: FrictionFmu,
+) -> None:
+    """Mindlin's normal stiffness is (2 - nu)/(2 (1 - nu)) times his tangential one."""
+    nu = 0.33
+    with fmu.session({"contact.model": "Mindlin"}) as session:
+        retreat = session.get("F_n") / (session.get("sigma") * (2.0 - nu) / (2.0 * (1.0 - nu)))
+    assert f"within {1e6 * retreat:.2f} µm of retreat" in PAGE
+    assert f"a_d is {1e6 * HEIGHT:.1f} µm" in PAGE
+
+
+@pytest.mark.parametrize("direction", ["along", "transverse"])
+@pytest.mark.parametrize("ratio", [1.0, 1.5])
+def test_the_force_at_which_a_vibrated_contact_breaks_away(
+    fmu: FrictionFmu, direction: str, ratio: float
+) -> None:
+    """The formulas of the page: just below them the contact carries its force through every period."""
+    kappa = 0.5
+    bound = {"along": ratio - kappa, "transverse": math.sqrt(ratio**2 - kappa**2)}[direction]
+    start = scene("ElasticPlastic", kappa, direction) | {"friction.staticRatio": ratio}
+    deflection = COULOMB_FORCE / float(start["contact.sigma"])
+    below = one(fmu, 0.0, start | {"delta_0": 0.999 * bound * deflection})
+    above = one(fmu, 0.0, start | {"delta_0": 1.001 * bound * deflection})
+    assert below == pytest.approx(0.999 * bound, rel=1e-5)
+    assert above < 1.0005 * bound  # it has slipped
+    assert "With R > 1 it breaks away at R - κ and √(R² - κ²)" in PAGE

@@ -36,12 +36,12 @@ def hardness_coefficient(contact: Contact) -> Any:
 
 
 def hardness(contact: Contact) -> Any:
-    """p_m [Pa], the mean contact pressure at which a contact yields, Eq. 13."""
+    """p_m [Pa], the mean contact pressure at which a contact yields, Eq. 12."""
     return hardness_coefficient(contact) * (1 - MP.mpf(contact.nu) ** 2) * MP.mpf(contact.Y)
 
 
 def critical_interference(contact: Contact, E: Any) -> Any:
-    """omega_c [m], Eq. 12-13."""
+    """omega_c [m], Eq. 13."""
     return (MP.pi * hardness(contact) / (2 * MP.mpf(E))) ** 2 * MP.mpf(contact.R)
 
 

@@ -77,7 +77,7 @@ def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) ->
     ratio = record.work(same.friction, later) / record.work(later.friction, later)
     return as_table(
         ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"],
-        [*rows, ["no physics: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"]],
+        [*rows, ["empirical: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"]],
         "The cycles: fitted on two, 47 predicted. Misfit over the measured friction",
     )
 
@@ -127,7 +127,7 @@ def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.Norma
             found = [f"{1e6 * fit.yielding:.3g}", f"{fit.between:.1%}", f"{fit.predicted:.1%}"]
         rows.append([fit.law, f"{fit.swing:g}", *found])
     at_second, between = normal.hyperbola(data)
-    rows.append(["no physics: 1 / (1 + V / V_0)", "", "", f"{between:.1%}", f"{at_second:.1%}"])
+    rows.append(["empirical: 1 / (1 + V / V_0)", "", "", f"{between:.1%}", f"{at_second:.1%}"])
     title = (
         f"Normal vibration: fitted to {data.reduction[0]:.0%} at 20.3 mm/s; measured at 87 mm/s: "
         f"{data.reduction[1]:.0%}. A constant limit gives 0"

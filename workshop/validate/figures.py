@@ -95,15 +95,19 @@ def normal(fmu: Path, data: NormalVibration, fits: Sequence[NormalFit]) -> Figur
     figure, axes = style.subplots(size=(7.0, 4.2))
     V = np.geomspace(3e-3, 0.3, 60)
     for law in ("Dahl", "ElasticPlastic"):
-        chosen = [fit for fit in fits if fit.law == law and fit.yielding is not None and fit.swing >= 2.0]
+        chosen = [fit for fit in fits if fit.law == law and fit.yielding is not None]
         curves = [reduction(fmu, law, data.f, V, fit.swing, np.array([fit.yielding])) for fit in chosen]
-        low, high = np.min(curves, axis=0), np.max(curves, axis=0)
-        axes.fill_between(1e3 * V, 100 * low, 100 * high, color=LAW[law], alpha=0.35, lw=0)
-        axes.plot(
-            [], [], lw=6, color=LAW[law], alpha=0.45, label=f"{law}, limit μ F_n, fitted to the left point"
-        )
+        lines = axes.plot(1e3 * V, 100 * np.transpose(curves), color=LAW[law], lw=1.0)
+        swings = ", ".join(f"{fit.swing:g}" for fit in chosen)
+        lines[0].set_label(f"{law}, limit μ F_n; at the right,\nfrom above, α = {swings}")
     axes.plot(1e3 * V, 0 * V, color=style.GREY, ls="--", label="every law with a constant limit")
-    axes.semilogx(1e3 * data.V, 100 * data.reduction, "o", color=style.BLACK, label="measured")
+    axes.semilogx(
+        1e3 * data.V,
+        100 * data.reduction,
+        "o",
+        color=style.BLACK,
+        label="measured; the laws are fitted to the left one",
+    )
     axes.axvline(1e3 * data.between, ymax=0.55, color=style.GREY, lw=0.8)
     style.note(
         axes,

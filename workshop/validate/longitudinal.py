@@ -34,12 +34,12 @@ class Fit:
 
 
 def constant_ratio(data: Sliding) -> Fit:
-    """A baseline without physics: vibration multiplies friction by a number."""
+    """An empirical baseline: vibration multiplies friction by a number."""
     return _straight("a constant ratio", data, data.without[:, None])
 
 
 def logarithm(data: Sliding) -> Fit:
-    """A baseline without physics: a + b ln V, two numbers."""
+    """An empirical baseline: a + b ln V, two numbers."""
     return _straight("a + b ln V", data, np.column_stack([np.ones(len(data.V)), np.log(data.V)]))
 
 

@@ -30,7 +30,7 @@ class NormalFit:
 
 
 def hyperbola(data: NormalVibration) -> tuple[float, float]:
-    """A baseline without physics, 1 / (1 + V / V_0) with V_0 from the first row: second row, between."""
+    """An empirical baseline, 1 / (1 + V / V_0) with V_0 from the first row: second row, between."""
     V_0 = data.V[0] * data.reduction[0] / (1.0 - data.reduction[0])
     return float(1.0 / (1.0 + data.V[1] / V_0)), float(1.0 / (1.0 + data.between / V_0))
 

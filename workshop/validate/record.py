@@ -82,7 +82,7 @@ def scatter(record: Record) -> tuple[float, float, float]:
 
 
 def repeated(record: Record) -> Record:
-    """A baseline without physics: the mean of the fitted cycles, repeated over the predicted ones."""
+    """An empirical baseline: the mean of the fitted cycles, repeated over the predicted ones."""
     phase = np.arange(0.0, CYCLE, 0.02)
     later = predicted_cycles(record)
 
