@@ -32,6 +32,10 @@ static const double MOST_FORGOTTEN = 0.5;
 // the last third of the meetings counts. Half as many would give a mean over fewer periods; twice as many
 // would cost twice the time.
 enum { MOST_MEETINGS = 1000 };
+// The same in the plane, over that, while the mean still drifts by more than the tolerance: a bristle that slips
+// little in each period turns slowly. Chosen empirically: half of it left a found scene 3e-5 of the force away,
+// twice of it costs twice the time of a chaotic motion.
+enum { LONGER_IF_DRIFTING = 4 };
 // The number of those without a step of Newton in the plane, with static friction. A step may lead to
 // another cycle, so a cycle must be near. Chosen empirically: a quarter of it led a found scene to another
 // cycle, twice of it left one unsettled.
@@ -295,6 +299,15 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
     return true;
 }
 
+// Whether the mean since the kept period differs from *mean, which it becomes.
+static bool still_drifts(const Walk* walk, FcVector* mean) {
+    const double periods = walk->done - walk->met_at;
+    const FcVector before = *mean;
+    *mean = (FcVector){walk->total.impulse / periods, walk->total.impulse_y / periods};
+    const double allowed = walk->options->tolerance * walk->options->force * walk->period;
+    return !(hypot(mean->x - before.x, mean->y - before.y) <= allowed);
+}
+
 // Takes `periods`, which may be infinitely many, and stops if periods repeat. Those since met_at do, or a
 // single free one if met_at is negative. If too many meetings do not repeat, met_at is up to a third of
 // them ago.
@@ -308,8 +321,10 @@ static void walk_to_repetition(Walk* walk, double periods) {
     int count = 0;
     FcVector from = {total->delta, total->delta_y};
     double least = INFINITY;
-    double keep = 1.0; // the number of the next meeting that is kept
-    while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < MOST_MEETINGS) {
+    double keep = 1.0;                    // the number of the next meeting that is kept
+    FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
+    const int most = (walk->law.is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
+    while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < most) {
         const FcStepResult before = *total;
         total->meetings = 0;
         walk->law.step(walk->scene, walk->options, walk->period, total);
@@ -334,6 +349,9 @@ static void walk_to_repetition(Walk* walk, double periods) {
             // Each is kept half as long again as the last, so that a cycle of any length returns to it.
             if (meetings >= keep) {
                 keep = ceil(1.5 * meetings);
+                if (!still_drifts(walk, &mean) && meetings > MOST_MEETINGS) {
+                    return;
+                }
                 if (isinf(periods)) { // the sums of free periods would take digits from the cycle's
                     *total = fc_result_from(fc_bristle_of(total), total->evaluations);
                 }
