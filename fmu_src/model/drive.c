@@ -358,21 +358,6 @@ static double angle_of_reversal(double V, double V_1) {
     return fabs(V) < AWAY_FROM_GRAZING * fabs(V_1) ? acos(-V / V_1) : 2.0 * atan(sqrt((V_1 + V) / (V_1 - V)));
 }
 
-// At angle_of_reversal (sign 1) or its negative (-1): there V_1 cos is -V.
-static FcDriveEvent reversal_of_held(const FcDrive* drive, double time, double root, double sign) {
-    const double V_1 = drive->vibration.V_1;
-    const double cosine = -drive->V.value / V_1;
-    FcDriveEvent event = {.time = time, .reversal = true};
-    if (fabs(cosine) < AWAY_FROM_GRAZING) {
-        event.phase = (FcPhase){sign * sqrt(1.0 - cosine * cosine), cosine};
-        event.ahead = sign > 0.0 ? FC_TWO_PI - 2.0 * root : 2.0 * root;
-        event.then_ahead = FC_TWO_PI - event.ahead;
-    } else {
-        event.phase = fc_drive_phase(drive, time);
-    }
-    return event;
-}
-
 static FcDriveEvent none_before(double end) { return (FcDriveEvent){.time = end}; }
 
 static FcDriveEvent event_at(const FcDrive* drive, double time, bool reversal) {
@@ -386,11 +371,9 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     const double least = t > 0.0 ? least_ahead(now) : 0.0; // at t = 0 any root ahead counts
     if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
-        const double to_root = angle_ahead(now, root, least);
-        const double to_other = angle_ahead(now, -root, least);
-        const double time = t + fmin(to_root, to_other) / drive->omega;
-        return time < end ? reversal_of_held(drive, time, root, to_root < to_other ? 1.0 : -1.0)
-                          : none_before(end);
+        const double time =
+            t + fmin(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
+        return time < end ? event_at(drive, time, true) : none_before(end);
     }
     const double time = t + angle_ahead(now, (V > 0.0) == (V_1 > 0.0) ? FC_PI : 0.0, least) / drive->omega;
     return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
@@ -445,17 +428,4 @@ FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
                                 : first_of_linear_vibration(drive, t, end);
-}
-
-FcDriveEvent fc_drive_event_after(const FcDrive* drive, const FcDriveEvent* event, double end) {
-    if (event->ahead == 0.0) {
-        return fc_drive_next_event(drive, event->time, end);
-    }
-    const double time = event->time + event->ahead / drive->omega;
-    return time < end ? (FcDriveEvent){.time = time,
-                                       .reversal = true,
-                                       .phase = {-event->phase.sine, event->phase.cosine},
-                                       .ahead = event->then_ahead,
-                                       .then_ahead = event->ahead}
-                      : none_before(end);
 }

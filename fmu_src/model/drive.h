@@ -130,16 +130,11 @@ typedef struct {
     double time;   // s
     bool reversal; // V changes sign here
     FcPhase phase; // there
-    double ahead,
-        then_ahead; // rad, to the next reversal and the one after it, by turns; 0 if not found yet
 } FcDriveEvent;
 
 // The first event after t and before end; if there is none, the time end and no phase. An event exactly at t
 // does not count. At t = 0, the start of a scene, an event counts at any distance ahead. For t > 0 an event
 // that is ahead by no more than the rounding of the phase or of V is t itself.
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
-
-// The first event after *event and before end.
-FcDriveEvent fc_drive_event_after(const FcDrive* drive, const FcDriveEvent* event, double end);
 
 #endif

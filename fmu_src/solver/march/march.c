@@ -341,7 +341,7 @@ static double latest_end(March* m, double end) {
     }
     FcDriveEvent event = fc_drive_next_event(drive, m->t, end);
     while (!event.reversal && event.time < end) {
-        event = fc_drive_event_after(drive, &event, end);
+        event = fc_drive_next_event(drive, event.time, end);
     }
     if (!(event.time < end) || bound_stands(&m->bound)) {
         return event.time;

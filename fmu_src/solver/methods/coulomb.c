@@ -57,13 +57,10 @@ void fc_coulomb_step(const FcScene* scene, const FcSolverOptions* options, doubl
                      FcStepResult* result) {
     const FcDrive* drive = &scene->drive;
     const double before = result->work;
-    FcDriveEvent event = fc_drive_next_event(drive, 0.0, duration);
     for (double t = 0.0; t < duration && result->evaluations <= FC_MOST_EVALUATIONS;) {
-        add_limit(scene, options, duration, t, event.time, result);
-        t = event.time;
-        if (t < duration) {
-            event = fc_drive_event_after(drive, &event, duration);
-        }
+        const double end = fc_drive_next_event(drive, t, duration).time;
+        add_limit(scene, options, duration, t, end, result);
+        t = end;
     }
     result->heat += result->work - before;
 }

@@ -308,10 +308,10 @@ static double distance_less_way(const Block* block, double k) {
     const FcScene scene = scene_at(block, k);
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
-    const FcDriveEvent first = fc_drive_next_event(&scene.drive, 0.0, 2.0 * block->period);
-    const FcDriveEvent second = fc_drive_event_after(&scene.drive, &first, 2.0 * block->period);
-    return fc_bound(&bound, first.time) + fc_bound(&bound, second.time) -
-           fabs(fc_drive_displacement(&scene.drive, first.time, second.time));
+    const double first = fc_drive_next_event(&scene.drive, 0.0, 2.0 * block->period).time;
+    const double second = fc_drive_next_event(&scene.drive, first, 2.0 * block->period).time;
+    return fc_bound(&bound, first) + fc_bound(&bound, second) -
+           fabs(fc_drive_displacement(&scene.drive, first, second));
 }
 
 // Whether the block also foretells the period in which a slip along the other bound is most likely to begin or to

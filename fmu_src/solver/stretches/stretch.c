@@ -98,7 +98,7 @@ bool fc_stretches_next(FcStretches* stretches, double deflection, FcStretch* str
     stretch->at_start = before.at_end;
     stretch->relaxes = 0.0;
     if (stretch->end < interval->duration) {
-        stretches->event = fc_drive_event_after(&scene->drive, &event, horizon(interval, stretch->end));
+        stretches->event = fc_drive_next_event(&scene->drive, event.time, horizon(interval, stretch->end));
         look_ahead(stretches, stretch->end, stretch->end_phase);
         stretch->path_after = fabs(stretches->displacement);
     }
