@@ -185,7 +185,7 @@ static void random_courses(void) {
         Case one;
         const double omega = TWO_PI * F;
         const int rule = (int)(FC_RULES * random_01());
-        const double h = fc_rule_nodes(rule) * random_log(0.05, 0.7) / omega;
+        const double h = (rule == 0 ? 6.0 : rule == 1 ? 8.0 : 12.0) * random_log(0.05, 0.7) / omega;
         make(&one, 0.9 * D * (2.0 * random_01() - 1.0), 2.0 * D / h * (2.0 * random_01() - 1.0),
              random_log(0.05, 3.0) * D, TWO_PI * random_01(),
              random_01() < 0.5 ? 0.0 : 0.9 * D / h * (2.0 * random_01() - 1.0));

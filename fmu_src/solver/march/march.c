@@ -102,13 +102,10 @@ static void begin(March* m, const FcScene* scene, const FcSolverOptions* options
     m->speed = fc_drive_largest_speed(&scene->drive, duration);
 }
 
-static bool stands_still(const FcScene* scene) {
-    return fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
-}
-
 // Whether D is constant; also if sigma and g fall alike.
 static bool bound_stands(const FcScene* bound) {
-    return (stands_still(bound) || (fc_scene_ratio_is_constant(bound) && bound->drive.E.rate == 0.0)) &&
+    const bool stands_still = fc_scene_stiffness_is_constant(bound) && fc_scene_limit_is_constant(bound);
+    return (stands_still || (fc_scene_ratio_is_constant(bound) && bound->drive.E.rate == 0.0)) &&
            (!fc_has_stribeck_curve(bound->friction) || fc_drive_V_is_constant(&bound->drive));
 }
 
@@ -141,8 +138,6 @@ static double smooth_time_of_slip(const March* m) {
     return fabs(ahead) < FC_END_OF_PEAK * friction->V_S ? 1.0 / (1.0 / m->smooth_time + 1.0 / time)
                                                         : m->smooth_time;
 }
-
-static void advance(March* m, double h) { m->t = fc_panel_end(m->t, h, m->cut); }
 
 // Moves the bristle at once to delta. The energy that it loses is heat.
 static void move_to(March* m, double delta, double sigma) {
@@ -352,8 +347,8 @@ static double latest_end(March* m, double end) {
                : event.time; // V is 0, so the kinetic bound is the static one
 }
 
-// Slips along the bound for a panel, up to `end` at most, which lies before the bristle leaves the bound.
-static void slip_panel(March* m, double end) {
+// The next panel of a slip, up to `end` at most.
+static Slip next_slip(March* m, double end) {
     Slip panel;
     int rule;
     plan(m);
@@ -362,11 +357,16 @@ static void slip_panel(March* m, double end) {
     for (int tries = 0;; tries++) {
         slip_points(m, h, rule, m->side, &panel);
         if (is_slip_accurate(m, &panel) || !fc_refine_panel(&h, &rule, tries)) {
-            break;
+            return panel;
         }
     }
+}
+
+// Slips along the bound for a panel, up to `end` at most, which lies before the bristle leaves the bound.
+static void slip_panel(March* m, double end) {
+    const Slip panel = next_slip(m, end);
     add_slip(m, &panel);
-    advance(m, h);
+    m->t = fc_panel_end(m->t, panel.at.h, m->cut);
 }
 
 // Slips along the bound to the time `end`, before which the bristle does not leave the bound.
@@ -407,16 +407,17 @@ static double sure_end(const March* m, double end) {
 
 static void stick_until(March* m, const FcScene* bound, double end);
 
+// A bristle that sticks from the march's time on, and the side of the bound to which it goes.
 typedef struct {
     const March* march;
-    double from, delta; // s, m
     int side;
 } Stuck;
 
 static double beyond_bound(void* context, double t) {
     const Stuck* of = context;
-    const double x = fc_drive_displacement(&of->march->scene->drive, of->from, t);
-    return of->side * (of->delta + x) - fc_bound(&of->march->bound, t);
+    const March* m = of->march;
+    const double x = fc_drive_displacement(&m->scene->drive, m->t, t);
+    return of->side * (m->result->delta + x) - fc_bound(&m->bound, t);
 }
 
 // Slips on, leaves the bound as V turns after `sure`, and sticks until it meets the other bound or V comes near to 0
@@ -450,10 +451,10 @@ static bool turn_to_other_bound(March* m, double sure, double end) {
     slip_to(m, fc_root_between(fc_push_at, &push, sure, before, turned, after, 0.0, seen,
                                &m->result->evaluations));
     end_slip(m);
-    Stuck stuck = {m, m->t, m->result->delta, -side};
-    const double way = 2.0 * fabs(stuck.delta);
+    Stuck stuck = {m, -side};
+    const double D = fabs(m->result->delta);
     const FcVelocity now = fc_drive_velocity(drive, m->t);
-    double b = fmin(until, m->t + fc_time_to_move(fabs(now.V), fabs(now.rate), SOON * fabs(stuck.delta)));
+    double b = fmin(until, m->t + fc_time_to_move(fabs(now.V), fabs(now.rate), SOON * D));
     double beyond = beyond_bound(&stuck, b);
     m->result->evaluations += 1.0;
     if (!(beyond > 0.0) && b < until) {
@@ -463,7 +464,7 @@ static bool turn_to_other_bound(March* m, double sure, double end) {
     }
     const bool meets = beyond > 0.0;
     stick_until(m, &m->bound,
-                meets ? fc_root_between(beyond_bound, &stuck, m->t, -way, b, beyond, seen, 0.0,
+                meets ? fc_root_between(beyond_bound, &stuck, m->t, -2.0 * D, b, beyond, seen, 0.0,
                                         &m->result->evaluations)
                       : until);
     if (meets) {
@@ -492,28 +493,17 @@ static void slip(March* m, double end) {
         return;
     }
     const double slip_end = latest_end(m, end);
-    find_cut(m, slip_end);
-    int rule;
-    double h = fc_plan_panel(&m->planner, m->cut - m->t, smooth_time_of_slip(m), &rule);
-    for (int tries = 0;; tries++) {
-        Slip panel;
-        slip_points(m, h, rule, m->side, &panel);
-        const bool accurate = is_slip_accurate(m, &panel);
-        if (!accurate && fc_refine_panel(&h, &rule, tries)) {
-            continue;
-        }
-        const double leaves = end_of_push(m, m->side, &panel);
-        if (leaves > m->t + h) {
-            add_slip(m, &panel);
-            advance(m, h);
-            if (slip_end < end && m->t >= slip_end) {
-                end_slip(m);
-            }
-            return;
-        }
+    const Slip panel = next_slip(m, slip_end);
+    const double leaves = end_of_push(m, m->side, &panel);
+    if (leaves <= m->t + panel.at.h) {
         slip_to(m, leaves);
         end_slip(m);
         return;
+    }
+    add_slip(m, &panel);
+    m->t = fc_panel_end(m->t, panel.at.h, m->cut);
+    if (slip_end < end && m->t >= slip_end) {
+        end_slip(m);
     }
 }
 
@@ -793,17 +783,6 @@ static void march_between_reversals(March* m, double D) {
 
 // ---- the march ----
 
-// Whether the bristle stays away from every bound over the interval.
-static bool stays_clear(const March* m) {
-    const FcDrive* drive = &m->scene->drive;
-    double reach =
-        fmax(fabs(drive->V.value), fabs(drive->V.value + drive->V.rate * m->duration)) * m->duration;
-    if (drive->vibration.V_1 != 0.0) {
-        reach += drive->vibration.V_1 * fmin(m->duration, 2.0 / drive->omega);
-    }
-    return fabs(m->result->delta) + reach < 0.999 * fc_scene_smallest_saturation(&m->bound, m->duration);
-}
-
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result) {
     assert(duration >= 0.0 && fc_is_bounded(scene->friction));
@@ -820,10 +799,6 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     }
     if (!relaxes(scene) && bound_stands(&m.bound)) {
         march_between_reversals(&m, fc_bound(&m.bound, 0.0));
-        return;
-    }
-    if (!relaxes(scene) && result->slips == 0 && m.side == 0 && stays_clear(&m)) {
-        stick_until(&m, &m.bound, duration);
         return;
     }
     double before = -1.0;

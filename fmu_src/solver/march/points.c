@@ -18,10 +18,6 @@ static const double LONGEST_OF_12 = 0.75;
 // at which rounding limits it. Twice as many would cost time alone.
 enum { MOST_TRIES = 25 };
 
-const FcGaussRule* fc_rule(int rule) { return RULE[rule]; }
-
-int fc_rule_nodes(int rule) { return NODES[rule]; }
-
 FcPlanner fc_planner(double tolerance) {
     const double of_12 = fmin(LONGEST_OF_12, pow(tolerance, 1.0 / 24.0)); // 10^(-digits / 2 n)
     return (FcPlanner){.longest = {6.0 * of_12 * of_12, 8.0 * of_12 * sqrt(of_12), 12.0 * of_12}};

@@ -24,9 +24,6 @@ double fc_plan_panel(const FcPlanner* planner, double left, double smooth_time, 
 // The end of a panel [t, t + h] on the way to `end`: `end` itself, if only rounding remains.
 double fc_panel_end(double t, double h, double end);
 
-const FcGaussRule* fc_rule(int rule);
-int fc_rule_nodes(int rule);
-
 // Refines a panel that is not accurate: more nodes, or half the length. False after too many refusals.
 bool fc_refine_panel(double* h, int* rule, int tries);
 

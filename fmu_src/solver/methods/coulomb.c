@@ -29,23 +29,19 @@ static void add_limit(const FcScene* scene, const FcSolverOptions* options, doub
     while (t < end && result->evaluations <= FC_MOST_EVALUATIONS) {
         int rule;
         double h = fc_plan_panel(&planner, end - t, fc_smooth_time(&pace), &rule);
-        FcNodeCoefficients at;
-        const FcGaussRule* gauss;
+        FcPoints at;
         for (int tries = 0;; tries++) {
-            double FC_PAIRED f[FC_GAUSS_MOST_NODES];
-            gauss = fc_rule(rule);
-            const int n = fc_rule_nodes(rule);
-            fc_node_coefficients(scene, t, h, gauss->node, n, &at);
-            result->evaluations += n;
-            for (int i = 0; i < n; i++) {
+            double f[FC_MOST_POINTS];
+            fc_points(scene, t, h, rule, &at, &result->evaluations);
+            for (int i = 0; i < at.count; i++) {
                 f[i] = at.limit[i] * (1.0 + side * at.V[i] / speed);
             }
-            if (fc_gauss_error(gauss, n, f) * h <= allowed || !fc_refine_panel(&h, &rule, tries)) {
+            if (fc_error_at_points(&at, f) * h <= allowed || !fc_refine_panel(&h, &rule, tries)) {
                 break;
             }
         }
-        for (int i = 0; i < fc_rule_nodes(rule); i++) {
-            const double force = side * gauss->weight[i] * h * at.limit[i];
+        for (int i = 1; i <= at.n; i++) {
+            const double force = side * at.rule->weight[i - 1] * h * at.limit[i];
             result->impulse += force;
             result->work += force * at.V[i];
         }
