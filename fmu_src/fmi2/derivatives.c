@@ -101,80 +101,13 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-// A direction of the knowns, and the knowns.
-typedef struct {
-    double input[FC_INPUT_COUNT];
-    FcStateRates state; // of the states themselves
-} Direction;
-
-static double* state_of(FcStateRates* states, const FcVariableInfo* info) {
-    switch (info->offset) {
-    case offsetof(FcVariables, delta):
-    case offsetof(FcVariables, der.delta):
-        return &states->delta;
-    case offsetof(FcVariables, W_f):
-    case offsetof(FcVariables, der.W_f):
-        return &states->W_f;
-    case offsetof(FcVariables, Q_f):
-    case offsetof(FcVariables, der.Q_f):
-        return &states->Q_f;
-    case offsetof(FcVariables, delta_y):
-    case offsetof(FcVariables, der.delta_y):
-        return &states->delta_y;
-    default:
-        return NULL;
-    }
-}
-
-// Derivatives of the outputs along a direction.
-typedef struct {
-    double F_t, F_n, sigma, A_r, F_y;
-    FcVector settled_force;
-} Slopes;
-
-// The derivative of the output in the slopes; 0 for an output that does not depend on the present inputs.
-// Before the first step F_t_mean is F_t, and F_y_mean F_y.
-static double slope_of(const Slopes* slopes, const FcVariableInfo* output, bool mean_is_force) {
-    switch (output->offset) {
-    case offsetof(FcVariables, F_t):
-        return slopes->F_t;
-    case offsetof(FcVariables, F_n):
-        return slopes->F_n;
-    case offsetof(FcVariables, sigma):
-        return slopes->sigma;
-    case offsetof(FcVariables, A_r):
-        return slopes->A_r;
-    case offsetof(FcVariables, F_t_mean):
-        return mean_is_force ? slopes->F_t : 0.0;
-    case offsetof(FcVariables, F_y):
-        return slopes->F_y;
-    case offsetof(FcVariables, F_y_mean):
-        return mean_is_force ? slopes->F_y : 0.0;
-    case offsetof(FcVariables, F_t_settled):
-        return slopes->settled_force.x;
-    case offsetof(FcVariables, F_y_settled):
-        return slopes->settled_force.y;
-    default:
-        return 0.0;
-    }
-}
-
-// All derivatives along a direction.
-typedef struct {
-    Slopes outputs;
-    FcStateRates states;
-    FcStateRates rates;
-    bool mean_is_force; // F_t_mean is F_t
-} Tangent;
-
 static double scaled(double slope, double change) {
     return slope != 0.0 && change != 0.0 ? slope * change : 0.0;
 }
 
 // The derivative of a logarithm along the direction, from its slopes by d, E and load.
-static double log_along(const Direction* along, double by_d, double by_E, double by_load) {
-    return scaled(by_d, along->input[FC_INPUT_D]) + scaled(by_E, along->input[FC_INPUT_E]) +
-           scaled(by_load, along->input[FC_INPUT_LOAD]);
+static double log_along(const FcVariables* along, double by_d, double by_E, double by_load) {
+    return scaled(by_d, along->d) + scaled(by_E, along->E) + scaled(by_load, along->load);
 }
 
 // The part of their sizes by which inputs are moved for a difference: its error is some 1e-9, by the square of the
@@ -183,13 +116,13 @@ static const double MOVED_PART = 3e-5;
 
 // The derivative along the direction of the deflection that inputs leave which have jumped: by a central difference,
 // since it may be the least bound on the way.
-static FcVector reached_along(const FcFrictionContact* contact, const Direction* along) {
+static FcVector reached_along(const FcFrictionContact* contact, FcVariables along) {
     FcVariables now = contact->state.variables;
     double part = 0.0;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
         const bool is_velocity = input == FC_INPUT_V || input == FC_INPUT_V_Y;
         const double size = is_velocity ? now.friction.V_S : *fc_input_of(&now, (FcInput)input);
-        part = size > 0.0 ? fmax(part, fabs(along->input[input]) / size) : part;
+        part = size > 0.0 ? fmax(part, fabs(*fc_input_of(&along, (FcInput)input)) / size) : part;
     }
     if (part == 0.0) {
         return (FcVector){0.0, 0.0};
@@ -200,7 +133,7 @@ static FcVector reached_along(const FcFrictionContact* contact, const Direction*
         FcFrictionContact moved = *contact;
         for (int input = 0; input < FC_INPUT_COUNT; input++) {
             *fc_input_of(&moved.state.variables, (FcInput)input) +=
-                (i == 0 ? -change : change) * along->input[input];
+                (i == 0 ? -change : change) * *fc_input_of(&along, (FcInput)input);
         }
         const FcScene scene = fc_friction_contact_scene(&moved);
         end[i] = fc_friction_contact_reached(&moved, &scene);
@@ -209,23 +142,25 @@ static FcVector reached_along(const FcFrictionContact* contact, const Direction*
                       (end[1].delta_y - end[0].delta_y) / (2.0 * change)};
 }
 
-static Tangent tangent(FcInstance* instance, const Direction* along) {
+// All derivatives along a direction of inputs and states, at the places of the variables; those of F_t_settled and
+// F_y_settled stay 0. So do those of outputs that do not depend on the present inputs.
+static FcVariables derivatives_along(FcInstance* instance, const FcVariables* along) {
     FcFrictionContact* contact = &instance->contact;
     const bool hybrid = fc_instance_is_hybrid(instance);
     const FcScene scene =
         hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
-    FcDirection direction = {.V = along->input[FC_INPUT_V],
-                             .d = along->input[FC_INPUT_D],
-                             .E = along->input[FC_INPUT_E],
-                             .load = along->input[FC_INPUT_LOAD],
-                             .delta = along->state.delta,
-                             .V_y = along->input[FC_INPUT_V_Y],
-                             .delta_y = along->state.delta_y};
+    FcDirection direction = {.V = along->V,
+                             .d = along->d,
+                             .E = along->E,
+                             .load = along->load,
+                             .delta = along->delta,
+                             .V_y = along->V_y,
+                             .delta_y = along->delta_y};
     if ((reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) &&
         !fc_scene_is_loose(&scene)) { // an input has jumped and moved it
-        const FcVector moves = reached_along(contact, along);
+        const FcVector moves = reached_along(contact, *along);
         direction.delta = moves.x;
         direction.delta_y = moves.y;
     }
@@ -233,53 +168,50 @@ static Tangent tangent(FcInstance* instance, const Direction* along) {
     const FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
     const FcLogSlopes by = fc_log_slopes(&scene);
-    return (Tangent){
-        .outputs = {.F_t = motion.force.x,
-                    .F_y = motion.force.y,
-                    .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
-                    .sigma =
-                        scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
-                    .A_r = scaled(now.A_r, log_along(along, by.by_d.A_r, by.by_E.A_r, by.by_load.A_r))},
-        .states = along->state,
-        .rates = motion.rates,
-        .mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE,
+    // Before the first step F_t_mean is F_t, and F_y_mean F_y.
+    const bool mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE;
+    return (FcVariables){
+        .F_t = motion.force.x,
+        .F_y = motion.force.y,
+        .F_t_mean = mean_is_force ? motion.force.x : 0.0,
+        .F_y_mean = mean_is_force ? motion.force.y : 0.0,
+        .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
+        .sigma = scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
+        .A_r = scaled(now.A_r, log_along(along, by.by_d.A_r, by.by_E.A_r, by.by_load.A_r)),
+        .delta = along->delta,
+        .W_f = along->W_f,
+        .Q_f = along->Q_f,
+        .delta_y = along->delta_y,
+        .der = motion.rates,
     };
 }
 
 // The derivatives of F_t_settled and F_y_settled along the direction, which cost many periods of the
 // vibration.
-static bool settled_force_along(const FcFrictionContact* contact, const Direction* along,
-                                FcVector* derivative, FcMessage* message) {
+static bool settled_force_along(const FcFrictionContact* contact, FcVariables along, FcVector* derivative,
+                                FcMessage* message) {
     *derivative = (FcVector){0.0, 0.0};
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        const double change = *fc_input_of(&along, (FcInput)input);
         FcVector slope = {0.0, 0.0};
-        if (along->input[input] != 0.0 && !fc_settled_force_slope(contact, (FcInput)input, &slope, message)) {
+        if (change != 0.0 && !fc_settled_force_slope(contact, (FcInput)input, &slope, message)) {
             return false;
         }
-        derivative->x += scaled(slope.x, along->input[input]);
-        derivative->y += scaled(slope.y, along->input[input]);
+        derivative->x += scaled(slope.x, change);
+        derivative->y += scaled(slope.y, change);
     }
     return true;
 }
 
-static double derivative_of(Tangent* tangent, const FcVariableInfo* unknown) {
-    const double slope = slope_of(&tangent->outputs, unknown, tangent->mean_is_force);
-    double* state = state_of(fc_variable_is_rate(unknown) ? &tangent->rates : &tangent->states, unknown);
-    return state ? *state : slope;
-}
-
 // Reads the direction; false after logging the fault.
-static bool read_direction(FcInstance* instance, const fmi2ValueReference vr[], size_t n,
-                           const fmi2Real change[], Direction* direction) {
+static bool read_direction(const FcInstance* instance, const fmi2ValueReference vr[], size_t n,
+                           const fmi2Real change[], FcVariables* direction) {
     const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
     for (size_t k = 0; k < n; k++) {
-        const bool is_known = vr[k] < fc_variables_count;
-        double* state =
-            is_known && fc_instance_is_hybrid(instance) && !fc_variable_is_rate(&fc_variables[vr[k]])
-                ? state_of(&direction->state, &fc_variables[vr[k]])
-                : NULL;
+        const bool is_state = fc_instance_is_hybrid(instance) && vr[k] < fc_variables_count &&
+                              fc_variable_is_state(&fc_variables[vr[k]]);
         const FcVariableInfo* info =
-            state ? &fc_variables[vr[k]] : expect(instance, call, vr[k], FC_CAUSALITY_INPUT);
+            is_state ? &fc_variables[vr[k]] : expect(instance, call, vr[k], FC_CAUSALITY_INPUT);
         if (!info) {
             return false;
         }
@@ -288,7 +220,7 @@ static bool read_direction(FcInstance* instance, const fmi2ValueReference vr[], 
                       fc_quantity_text(change[k], info->unit).text);
             return false;
         }
-        *(state ? state : &direction->input[fc_variable_input(info)]) += change[k];
+        *fc_variable_real(direction, info) += change[k];
     }
     return true;
 }
@@ -304,7 +236,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if ((nUnknown > 0 && (!vUnknown_ref || !dvUnknown)) || (nKnown > 0 && (!vKnown_ref || !dvKnown))) {
         return fc_refuse(instance, call, "vUnknown_ref, vKnown_ref, dvKnown or dvUnknown is NULL");
     }
-    Direction direction = {.input = {0.0}};
+    FcVariables direction = {.V = 0.0};
     if (!read_direction(instance, vKnown_ref, nKnown, dvKnown, &direction)) {
         return fmi2Error;
     }
@@ -320,19 +252,20 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     FcMessage message;
     FcVector of_settled = {0.0, 0.0};
     if (!fc_instance_refresh_outputs(instance, &message) ||
-        (asks_settled && !settled_force_along(&instance->contact, &direction, &of_settled, &message))) {
+        (asks_settled && !settled_force_along(&instance->contact, direction, &of_settled, &message))) {
         return fc_refuse(instance, call, "the outputs can't be computed: %s", message.text);
     }
-    Tangent along = tangent(instance, &direction);
-    along.outputs.settled_force = of_settled;
+    FcVariables slopes = derivatives_along(instance, &direction);
+    slopes.F_t_settled = of_settled.x;
+    slopes.F_y_settled = of_settled.y;
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
-        if (!isfinite(derivative_of(&along, info))) {
+        if (!isfinite(fc_variable_value(&slopes, info))) {
             return fc_refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
         }
     }
     for (size_t u = 0; u < nUnknown; u++) {
-        dvUnknown[u] = derivative_of(&along, &fc_variables[vUnknown_ref[u]]);
+        dvUnknown[u] = fc_variable_value(&slopes, &fc_variables[vUnknown_ref[u]]);
     }
     return fmi2OK;
 }
