@@ -59,7 +59,16 @@ typedef struct {
     Direction direction;
     unsigned char* bytes;
     size_t at;
+    const char* part; // of the state that is transferred
+    const char* flaw; // the first part with an impossible value
 } Cursor;
+
+// Notes whether a value of the present part is possible.
+static void expect(Cursor* cursor, bool is_possible) {
+    if (!is_possible && !cursor->flaw) {
+        cursor->flaw = cursor->part;
+    }
+}
 
 static void transfer_bits(Cursor* cursor, uint64_t* bits, size_t size) {
     if (cursor->direction == WRITE) {
@@ -90,6 +99,12 @@ static void transfer_real(Cursor* cursor, double* value) {
     memcpy(&bits, value, sizeof bits);
     transfer_bits(cursor, &bits, 8);
     memcpy(value, &bits, sizeof bits);
+    expect(cursor, isfinite(*value));
+}
+
+static void transfer_flag(Cursor* cursor, int* value) {
+    transfer_integer(cursor, value);
+    expect(cursor, *value == 0 || *value == 1);
 }
 
 static void transfer_inputs(Cursor* cursor, double of[FC_INPUT_COUNT]) {
@@ -111,7 +126,7 @@ static void transfer_past(Cursor* cursor, FcPast* past) {
 
 static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
     transfer_integer(cursor, &hybrid->regime);
-    transfer_integer(cursor, &hybrid->changed);
+    transfer_flag(cursor, &hybrid->changed);
     transfer_real(cursor, &hybrid->seen_time);
     transfer_inputs(cursor, hybrid->seen);
     transfer_inputs(cursor, hybrid->speed);
@@ -122,45 +137,77 @@ static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
     transfer_real(cursor, &hybrid->lag_heat);
 }
 
+static bool mode_is_sound(const FcExperiment* experiment) {
+    switch (experiment->mode) {
+    case FC_INSTANTIATED:
+    case FC_INITIALIZATION_MODE:
+    case FC_TERMINATED:
+        return experiment->interface == FC_MODEL_EXCHANGE || experiment->interface == FC_CO_SIMULATION;
+    case FC_STEP_COMPLETE:
+        return experiment->interface == FC_CO_SIMULATION;
+    case FC_EVENT_MODE:
+    case FC_CONTINUOUS_TIME_MODE:
+        return experiment->interface == FC_MODEL_EXCHANGE;
+    default:
+        return false;
+    }
+}
+
+// Only a bounded bristle slips.
+static bool regime_is_sound(const FcFrictionState* state) {
+    const int regime = state->hybrid.regime;
+    const bool slips = regime == FC_SLIPS_FORWARD || regime == FC_SLIPS_BACK;
+    return regime == FC_FREE || (slips && fc_is_bounded(&state->variables.friction));
+}
+
 static void transfer_state(Cursor* cursor, FcSavedState* saved) {
     FcFrictionState* friction = &saved->friction;
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
+        cursor->part = info->name;
         if (info->type == FC_TYPE_REAL) {
             transfer_real(cursor, fc_variable_real(&friction->variables, info));
         } else {
             transfer_integer(cursor, fc_variable_integer(&friction->variables, info));
         }
+        expect(cursor, fc_variable_allows(info, fc_variable_value(&friction->variables, info)));
     }
+    cursor->part = "the time or a rate of an input";
     transfer_real(cursor, &friction->time);
     transfer_real(cursor, &friction->time_rest);
     transfer_real(cursor, &friction->W_f_rest);
     transfer_real(cursor, &friction->Q_f_rest);
     transfer_inputs(cursor, friction->rate);
     transfer_inputs(cursor, friction->next_rate);
-    transfer_integer(cursor, &friction->next_rate_set);
+    transfer_flag(cursor, &friction->next_rate_set);
+    cursor->part = "what the last step left";
     transfer_integer(cursor, &friction->slips);
+    expect(cursor, friction->slips >= -1 && friction->slips <= 1);
     transfer_past(cursor, &friction->past);
+    cursor->part = "what model exchange keeps";
     transfer_hybrid(cursor, &friction->hybrid);
+    expect(cursor, regime_is_sound(friction));
+    cursor->part = "the state of the instance";
     FcExperiment* experiment = &saved->experiment;
     transfer_integer(cursor, &experiment->interface);
     transfer_integer(cursor, &experiment->mode);
-    transfer_integer(cursor, &experiment->outputs_stale);
-    transfer_integer(cursor, &experiment->tolerance_is_set);
-    transfer_integer(cursor, &experiment->has_stop_time);
+    expect(cursor, mode_is_sound(experiment));
+    transfer_flag(cursor, &experiment->outputs_stale);
+    transfer_flag(cursor, &experiment->tolerance_is_set);
+    transfer_flag(cursor, &experiment->has_stop_time);
     transfer_real(cursor, &experiment->start_time);
     transfer_real(cursor, &experiment->stop_time);
 }
 
 static size_t serialized_size(void) {
-    Cursor cursor = {MEASURE, NULL, HEADER_SIZE};
+    Cursor cursor = {.direction = MEASURE, .at = HEADER_SIZE};
     FcSavedState none = {0};
     transfer_state(&cursor, &none);
     return cursor.at + HASH_SIZE;
 }
 
 static void write_header(unsigned char* bytes, size_t size) {
-    Cursor cursor = {WRITE, bytes, MAGIC_SIZE};
+    Cursor cursor = {.direction = WRITE, .bytes = bytes, .at = MAGIC_SIZE};
     uint64_t version = LAYOUT_VERSION;
     uint64_t whole = size;
     memcpy(bytes, magic, MAGIC_SIZE);
@@ -202,7 +249,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byt
     }
     unsigned char* bytes = (unsigned char*)serializedState;
     FcSavedState copy = *saved;
-    Cursor cursor = {WRITE, bytes, HEADER_SIZE};
+    Cursor cursor = {.direction = WRITE, .bytes = bytes, .at = HEADER_SIZE};
     write_header(bytes, needed);
     transfer_state(&cursor, &copy);
     uint64_t hash = fnv1a(bytes, cursor.at);
@@ -230,82 +277,10 @@ static const char* flaw_of_bytes(const unsigned char* bytes, size_t size) {
     if (size != expected || memcmp(bytes + MAGIC_SIZE + 4, header + MAGIC_SIZE + 4, 4) != 0) {
         return "the bytes are cut off or too many";
     }
-    Cursor cursor = {READ, (unsigned char*)bytes, expected - HASH_SIZE};
+    Cursor cursor = {.direction = READ, .bytes = (unsigned char*)bytes, .at = expected - HASH_SIZE};
     uint64_t hash;
     transfer_bits(&cursor, &hash, HASH_SIZE);
     return hash == fnv1a(bytes, expected - HASH_SIZE) ? NULL : "the bytes are damaged: the checksum differs";
-}
-
-static bool all_finite(const double* values, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        if (!isfinite(values[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool is_flag(int value) { return value == 0 || value == 1; }
-
-static bool mode_is_sound(const FcExperiment* experiment) {
-    switch (experiment->mode) {
-    case FC_INSTANTIATED:
-    case FC_INITIALIZATION_MODE:
-    case FC_TERMINATED:
-        return experiment->interface == FC_MODEL_EXCHANGE || experiment->interface == FC_CO_SIMULATION;
-    case FC_STEP_COMPLETE:
-        return experiment->interface == FC_CO_SIMULATION;
-    case FC_EVENT_MODE:
-    case FC_CONTINUOUS_TIME_MODE:
-        return experiment->interface == FC_MODEL_EXCHANGE;
-    default:
-        return false;
-    }
-}
-
-static bool experiment_is_sound(const FcExperiment* experiment) {
-    return mode_is_sound(experiment) && is_flag(experiment->outputs_stale) &&
-           is_flag(experiment->tolerance_is_set) && is_flag(experiment->has_stop_time) &&
-           isfinite(experiment->start_time) && isfinite(experiment->stop_time);
-}
-
-// Only a bounded bristle slips.
-static bool hybrid_is_sound(const FcFrictionState* state) {
-    const FcHybrid* hybrid = &state->hybrid;
-    const bool slips = hybrid->regime == FC_SLIPS_FORWARD || hybrid->regime == FC_SLIPS_BACK;
-    const bool regime = hybrid->regime == FC_FREE || (slips && fc_is_bounded(&state->variables.friction));
-    return regime && is_flag(hybrid->changed) && isfinite(hybrid->seen_time) &&
-           all_finite(hybrid->seen, FC_INPUT_COUNT) && all_finite(hybrid->speed, FC_INPUT_COUNT) &&
-           isfinite(hybrid->nominal_delta) && isfinite(hybrid->nominal_energy) && isfinite(hybrid->lag) &&
-           isfinite(hybrid->lag_force) && isfinite(hybrid->lag_heat);
-}
-
-// The name of the first part of the state with an impossible value; NULL if there is none.
-static const char* unsound_part(FcSavedState* saved) {
-    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
-        const FcVariableInfo* info = &fc_variables[vr];
-        const double value = fc_variable_value(&saved->friction.variables, info);
-        if (!fc_variable_allows(info, value)) {
-            return info->name;
-        }
-    }
-    const FcFrictionState* friction = &saved->friction;
-    if (!isfinite(friction->time) || !isfinite(friction->time_rest) || !isfinite(friction->W_f_rest) ||
-        !isfinite(friction->Q_f_rest) || !all_finite(friction->rate, FC_INPUT_COUNT) ||
-        !all_finite(friction->next_rate, FC_INPUT_COUNT) || !is_flag(friction->next_rate_set)) {
-        return "the time or a rate of an input";
-    }
-    const FcPast* past = &friction->past;
-    if (friction->slips < -1 || friction->slips > 1 ||
-        !all_finite((double[]){past->d, past->V, past->V_y, past->E, past->limit, past->ratio, past->V_S,
-                               past->sigma},
-                    8)) {
-        return "what the last step left";
-    }
-    if (!hybrid_is_sound(friction)) {
-        return "what model exchange keeps";
-    }
-    return experiment_is_sound(&saved->experiment) ? NULL : "the state of the instance";
 }
 
 // Outputs that are not stale were computed of values that go together.
@@ -333,11 +308,10 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
         return fc_refuse(instance, call, "%s (%" PRIu64 " bytes)", flaw, (uint64_t)size);
     }
     FcSavedState read = {.mark = FC_SAVED_STATE_MARK};
-    Cursor cursor = {READ, bytes, HEADER_SIZE};
+    Cursor cursor = {.direction = READ, .bytes = bytes, .at = HEADER_SIZE};
     transfer_state(&cursor, &read);
-    const char* part = unsound_part(&read);
-    if (part) {
-        return fc_refuse(instance, call, "the bytes hold an impossible value of %s", part);
+    if (cursor.flaw) {
+        return fc_refuse(instance, call, "the bytes hold an impossible value of %s", cursor.flaw);
     }
     FcMessage message;
     if (!goes_together(&read, &message)) {
