@@ -44,16 +44,16 @@ bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
                      "jumps with the sign of V, so that a mass could not stick; take ElasticPlastic (3), or "
                      "co-simulation");
     }
-    FcStates nominals = {{0.0}};
-    return fc_hybrid_nominals(contact, &nominals, message);
+    double nominals[FC_STATE_COUNT];
+    return fc_hybrid_nominals(contact, nominals, message);
 }
 
 void fc_hybrid_start(FcFrictionContact* contact) {
-    FcStates nominals = {{0.0}};
+    double nominals[FC_STATE_COUNT];
     FcMessage unheard;
-    if (fc_hybrid_nominals(contact, &nominals, &unheard)) {
-        contact->state.hybrid.nominal_delta = nominals.of[0];
-        contact->state.hybrid.nominal_energy = nominals.of[1];
+    if (fc_hybrid_nominals(contact, nominals, &unheard)) {
+        contact->state.hybrid.nominal_delta = nominals[0];
+        contact->state.hybrid.nominal_energy = nominals[1];
     }
     fc_hybrid_event_ends(contact);
 }
@@ -65,25 +65,15 @@ void fc_hybrid_set_time(FcFrictionContact* contact, double time) {
 
 static FcRegime regime_of(const FcFrictionContact* contact) { return (FcRegime)contact->state.hybrid.regime; }
 
-// The inputs in the order of FcInput.
-static void copy_inputs(const FcVariables* v, double inputs[FC_INPUT_COUNT]) {
-    inputs[FC_INPUT_V] = v->V;
-    inputs[FC_INPUT_D] = v->d;
-    inputs[FC_INPUT_E] = v->E;
-    inputs[FC_INPUT_LOAD] = v->load;
-    inputs[FC_INPUT_V_Y] = v->V_y;
-}
-
 // The speeds of the inputs since the last step, or those in it if the time since then is too short. Returns
 // whether it is long enough.
-static bool find_speeds(const FcFrictionContact* contact, double speed[FC_INPUT_COUNT]) {
+static bool find_speeds(FcFrictionContact* contact, double speed[FC_INPUT_COUNT]) {
     const FcHybrid* hybrid = &contact->state.hybrid;
-    double inputs[FC_INPUT_COUNT];
-    copy_inputs(&contact->state.variables, inputs);
     const double passed = contact->state.time - hybrid->seen_time;
     const bool is_long = passed > SHORTEST_LOOK * fabs(contact->state.time);
     for (int i = 0; i < FC_INPUT_COUNT; i++) {
-        const double now = is_long ? (inputs[i] - hybrid->seen[i]) / passed : hybrid->speed[i];
+        const double input = *fc_input_of(&contact->state.variables, (FcInput)i);
+        const double now = is_long ? (input - hybrid->seen[i]) / passed : hybrid->speed[i];
         speed[i] = isfinite(now) ? now : 0.0;
     }
     return is_long;
@@ -92,7 +82,9 @@ static bool find_speeds(const FcFrictionContact* contact, double speed[FC_INPUT_
 static void see_inputs(FcFrictionContact* contact) {
     FcHybrid* hybrid = &contact->state.hybrid;
     hybrid->seen_time = contact->state.time;
-    copy_inputs(&contact->state.variables, hybrid->seen);
+    for (int i = 0; i < FC_INPUT_COUNT; i++) {
+        hybrid->seen[i] = *fc_input_of(&contact->state.variables, (FcInput)i);
+    }
 }
 
 // The contact with its present inputs and their estimated speeds, and its bristle's bound.
@@ -158,7 +150,8 @@ static void find_indicators_of_bound(const View* view, FcRegime regime, FcBristl
     }
 }
 
-bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message) {
+bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT],
+                          FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
@@ -166,7 +159,6 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicat
     View now;
     look(contact, &now);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
-    double* z = indicators->of;
     z[0] = z[1] = z[2] = z[3] = 1.0;
     if (fc_scene_depends_on_d(&now.scene)) {
         const double closed_by = fc_scene_closed_by(&now.scene);
@@ -238,10 +230,9 @@ static void look_at_lag(FcFrictionContact* contact) {
 bool fc_hybrid_step_completed(FcFrictionContact* contact) {
     look_at_inputs(contact);
     look_at_lag(contact);
-    FcEventIndicators z;
+    double z[FC_EVENT_INDICATOR_COUNT];
     FcMessage unheard;
-    return fc_hybrid_indicators(contact, &z, &unheard) &&
-           (z.of[1] <= 0.0 || z.of[2] <= 0.0 || z.of[3] <= 0.0);
+    return fc_hybrid_indicators(contact, z, &unheard) && (z[1] <= 0.0 || z[2] <= 0.0 || z[3] <= 0.0);
 }
 
 // Moves delta and adds heat [J], if both stay finite.
@@ -311,17 +302,17 @@ void fc_hybrid_event_begins(FcFrictionContact* contact) {
 }
 
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
-    FcStates nominals = {{0.0}};
-    if (!fc_hybrid_nominals(contact, &nominals, message)) {
+    double nominals[FC_STATE_COUNT];
+    if (!fc_hybrid_nominals(contact, nominals, message)) {
         return false;
     }
     FcHybrid* hybrid = &contact->state.hybrid;
     begin_regime(contact);
     *changed = hybrid->changed;
-    *nominals_changed = nominals.of[0] != hybrid->nominal_delta || nominals.of[1] != hybrid->nominal_energy;
+    *nominals_changed = nominals[0] != hybrid->nominal_delta || nominals[1] != hybrid->nominal_energy;
     hybrid->changed = 0;
-    hybrid->nominal_delta = nominals.of[0];
-    hybrid->nominal_energy = nominals.of[1];
+    hybrid->nominal_delta = nominals[0];
+    hybrid->nominal_energy = nominals[1];
     return true;
 }
 
@@ -398,7 +389,12 @@ void fc_hybrid_event_ends(FcFrictionContact* contact) {
 // touch, with e^-10 of the largest force. At half of it the nominal force would be e^5 times as large.
 static double touching(const FcScene* scene) { return 10.0 / scene->at_E.decay; }
 
-bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message) {
+static void set_nominals(double nominals[FC_STATE_COUNT], double delta, double energy) {
+    nominals[0] = nominals[3] = delta;
+    nominals[1] = nominals[2] = energy;
+}
+
+bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COUNT], FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
         return false;
     }
@@ -406,8 +402,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
     const FcHybrid* hybrid = &contact->state.hybrid;
     const bool open = fc_scene_is_loose(&scene);
     if (open && hybrid->nominal_delta > 0.0) {
-        *nominals = (FcStates){.of = {hybrid->nominal_delta, hybrid->nominal_energy, hybrid->nominal_energy,
-                                      hybrid->nominal_delta}};
+        set_nominals(nominals, hybrid->nominal_delta, hybrid->nominal_energy);
         return true;
     }
     const double d = open ? touching(&scene) : scene.drive.d.value;
@@ -425,6 +420,6 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessag
                               "the force is %.9g N, sigma = %.9g N/m",
                               force, at.sigma);
     }
-    *nominals = (FcStates){.of = {length, energy, energy, length}};
+    set_nominals(nominals, length, energy);
     return true;
 }

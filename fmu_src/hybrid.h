@@ -20,14 +20,6 @@
 // Their numbers in modelDescription.xml.
 enum { FC_STATE_COUNT = 4, FC_EVENT_INDICATOR_COUNT = 4 };
 
-typedef struct {
-    double of[FC_STATE_COUNT]; // delta [m], W_f [J], Q_f [J], delta_y [m]
-} FcStates;
-
-typedef struct {
-    double of[FC_EVENT_INDICATOR_COUNT];
-} FcEventIndicators;
-
 // False with *message filled for a law without a state, and if the nominal values are not finite numbers
 // above 0.
 bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message);
@@ -50,7 +42,7 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message);
 //   3   the distance of a closed contact from opening, or of an open one from closing: in the load [N], or in d [m]; 1 if
 //       neither has an effect
 // The first may have either sign. False as fc_hybrid_refresh.
-bool fc_hybrid_indicators(FcFrictionContact* contact, FcEventIndicators* indicators, FcMessage* message);
+bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT], FcMessage* message);
 
 // Call after each completed step of the integrator: stores the inputs. True if the regime has ended. False
 // also if the inputs are not a valid combination; the next evaluation reports this.
@@ -75,7 +67,8 @@ void fc_hybrid_event_ends(FcFrictionContact* contact);
 
 // Nominal values at the present inputs. With the limit F of the force, that of delta is the bound or
 // saturation length F / sigma without vibration. That of the energies is F times the larger of this length
-// and the vibration's amplitude V_1 / (2 pi f).
-bool fc_hybrid_nominals(FcFrictionContact* contact, FcStates* nominals, FcMessage* message);
+// and the vibration's amplitude V_1 / (2 pi f). In the order delta [m], W_f [J], Q_f [J], delta_y [m]. False as
+// fc_hybrid_refresh, with the nominals unchanged.
+bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COUNT], FcMessage* message);
 
 #endif

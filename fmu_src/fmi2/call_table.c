@@ -70,34 +70,19 @@ const FcCallRule fc_call_table[FC_CALL_COUNT] = {
 };
 // clang-format on
 
+// In the order of FcMode.
+static const char* const MODE_NAME[] = {
+    "start/end",   "instantiated",         "initialization mode", "step complete", "step in progress",
+    "step failed", "step canceled",        "terminated",          "error",         "fatal",
+    "event mode",  "continuous-time mode",
+};
+
 const char* fc_mode_name(FcMode state) {
-    switch (state) {
-    case FC_START_END:
-        return "start/end";
-    case FC_INSTANTIATED:
-        return "instantiated";
-    case FC_INITIALIZATION_MODE:
-        return "initialization mode";
-    case FC_STEP_COMPLETE:
-        return "step complete";
-    case FC_STEP_IN_PROGRESS:
-        return "step in progress";
-    case FC_STEP_FAILED:
-        return "step failed";
-    case FC_STEP_CANCELED:
-        return "step canceled";
-    case FC_TERMINATED:
-        return "terminated";
-    case FC_FAILED:
-        return "error";
-    case FC_FATAL:
-        return "fatal";
-    case FC_EVENT_MODE:
-        return "event mode";
-    case FC_CONTINUOUS_TIME_MODE:
-        return "continuous-time mode";
+    int i = 0;
+    while ((unsigned)state >> i > 1) {
+        i++;
     }
-    return "unknown";
+    return MODE_NAME[i];
 }
 
 const char* fc_interface_name(FcInterface of) {

@@ -28,9 +28,9 @@ static double after_stop(const FcInstance* instance, double time) {
     return experiment->has_stop_time ? time - stop - rounding : 0.0;
 }
 
-static void refuse_time(const FcInstance* instance, FcCall call, double time) {
-    fc_refuse(instance, call, "time = %s is after the stop time %s", fc_quantity_text(time, "s").text,
-              fc_quantity_text(instance->experiment.stop_time, "s").text);
+static fmi2Status refuse_time(const FcInstance* instance, FcCall call, double time) {
+    return fc_refuse(instance, call, "time = %s is after the stop time %s", fc_quantity_text(time, "s").text,
+                     fc_quantity_text(instance->experiment.stop_time, "s").text);
 }
 
 static bool is_before_stop(const FcInstance* instance, FcCall call) {
@@ -131,8 +131,7 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
                          fc_quantity_text(time, "s").text);
     }
     if (!may_look_at(instance, time)) {
-        refuse_time(instance, FC_CALL_SET_TIME, time);
-        return fmi2Error;
+        return refuse_time(instance, FC_CALL_SET_TIME, time);
     }
     fc_hybrid_set_time(&instance->contact, time);
     instance->experiment.outputs_stale = 1;
@@ -194,13 +193,9 @@ fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], s
         return fmi2Error;
     }
     FcMessage message;
-    FcEventIndicators indicators;
     if (!fc_instance_refresh_outputs(instance, &message) ||
-        !fc_hybrid_indicators(&instance->contact, &indicators, &message)) {
+        !fc_hybrid_indicators(&instance->contact, eventIndicators, &message)) {
         return fc_refuse(instance, call, "%s", message.text);
-    }
-    for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
-        eventIndicators[i] = indicators.of[i];
     }
     return fmi2OK;
 }
@@ -229,12 +224,8 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x_nominal
         return fmi2Error;
     }
     FcMessage message;
-    FcStates nominals;
-    if (!fc_hybrid_nominals(&instance->contact, &nominals, &message)) {
+    if (!fc_hybrid_nominals(&instance->contact, x_nominal, &message)) {
         return fc_refuse(instance, call, "%s", message.text);
-    }
-    for (int i = 0; i < FC_STATE_COUNT; i++) {
-        x_nominal[i] = nominals.of[i];
     }
     return fmi2OK;
 }

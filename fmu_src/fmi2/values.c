@@ -9,21 +9,12 @@
 #include "fmi2/log.h"
 #include "settled_force.h"
 
-static const char* type_name(FcVariableType type) {
-    switch (type) {
-    case FC_TYPE_REAL:
-        return "Real";
-    case FC_TYPE_INTEGER:
-        return "Integer";
-    case FC_TYPE_BOOLEAN:
-        return "Boolean";
-    case FC_TYPE_STRING:
-        return "String";
-    case FC_TYPE_ENUMERATION:
-        return "Enumeration";
-    }
-    return "unknown";
-}
+static const char* const TYPE_NAME[] = {
+    [FC_TYPE_REAL] = "Real",
+    [FC_TYPE_INTEGER] = "Integer",
+    [FC_TYPE_BOOLEAN] = "Boolean",
+    [FC_TYPE_STRING] = "String",
+};
 
 static fmi2Status refuse_reference(const FcInstance* instance, FcCall call, fmi2ValueReference vr,
                                    FcVariableType wanted) {
@@ -38,11 +29,24 @@ static fmi2Status refuse_reference(const FcInstance* instance, FcCall call, fmi2
                          vr);
     }
     return fc_refuse(instance, call, "%s (value reference %u) is a %s, not a%s %s", info->name, vr,
-                     type_name(info->type), wanted == FC_TYPE_INTEGER ? "n" : "", type_name(wanted));
+                     TYPE_NAME[info->type], wanted == FC_TYPE_INTEGER ? "n" : "", TYPE_NAME[wanted]);
 }
 
-static bool is_variable_of_type(fmi2ValueReference vr, FcVariableType type) {
-    return vr < fc_variables_count && fc_variables[vr].type == type;
+// Whether the arrays exist and all references are variables of the type. The functions for Integer serve
+// enumerations. Logs the reason if not.
+static bool are_variables(const FcInstance* instance, FcCall call, const fmi2ValueReference vr[], size_t nvr,
+                          const void* value, FcVariableType type) {
+    if (nvr > 0 && (!vr || !value)) {
+        fc_refuse(instance, call, "vr or value is NULL");
+        return false;
+    }
+    for (size_t i = 0; i < nvr; i++) {
+        if (vr[i] >= fc_variables_count || fc_variables[vr[i]].type != type) {
+            refuse_reference(instance, call, vr[i], type == FC_TYPE_ENUMERATION ? FC_TYPE_INTEGER : type);
+            return false;
+        }
+    }
+    return true;
 }
 
 static fmi2Status refuse_real(const FcInstance* instance, const FcVariableInfo* info, double value) {
@@ -128,23 +132,13 @@ static bool settled_force(FcInstance* instance, FcVector* force, FcMessage* mess
     return true;
 }
 
-static bool arrays_are_missing(const void* vr, size_t nvr, const void* value) {
-    return nvr > 0 && (!vr || !value);
-}
-
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
     FcInstance* instance = fc_instance_enter(c, FC_CALL_GET_REAL);
-    if (!instance) {
+    if (!instance || !are_variables(instance, FC_CALL_GET_REAL, vr, nvr, value, FC_TYPE_REAL)) {
         return fmi2Error;
-    }
-    if (arrays_are_missing(vr, nvr, value)) {
-        return fc_refuse(instance, FC_CALL_GET_REAL, "vr or value is NULL");
     }
     bool computed = false, rates = false, settled = false;
     for (size_t i = 0; i < nvr; i++) {
-        if (!is_variable_of_type(vr[i], FC_TYPE_REAL)) {
-            return refuse_reference(instance, FC_CALL_GET_REAL, vr[i], FC_TYPE_REAL);
-        }
         computed |= is_computed(&fc_variables[vr[i]]);
         rates |= fc_variable_is_rate(&fc_variables[vr[i]]);
         settled |= fc_variable_is_settled_force(&fc_variables[vr[i]]);
@@ -168,16 +162,10 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
     FcInstance* instance = fc_instance_enter(c, FC_CALL_SET_REAL);
-    if (!instance) {
+    if (!instance || !are_variables(instance, FC_CALL_SET_REAL, vr, nvr, value, FC_TYPE_REAL)) {
         return fmi2Error;
     }
-    if (arrays_are_missing(vr, nvr, value)) {
-        return fc_refuse(instance, FC_CALL_SET_REAL, "vr or value is NULL");
-    }
     for (size_t i = 0; i < nvr; i++) {
-        if (!is_variable_of_type(vr[i], FC_TYPE_REAL)) {
-            return refuse_reference(instance, FC_CALL_SET_REAL, vr[i], FC_TYPE_REAL);
-        }
         const FcVariableInfo* info = &fc_variables[vr[i]];
         if (!is_settable(instance, info)) {
             return refuse_setting(instance, FC_CALL_SET_REAL, info);
@@ -199,16 +187,8 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
     FcInstance* instance = fc_instance_enter(c, FC_CALL_GET_INTEGER);
-    if (!instance) {
+    if (!instance || !are_variables(instance, FC_CALL_GET_INTEGER, vr, nvr, value, FC_TYPE_ENUMERATION)) {
         return fmi2Error;
-    }
-    if (arrays_are_missing(vr, nvr, value)) {
-        return fc_refuse(instance, FC_CALL_GET_INTEGER, "vr or value is NULL");
-    }
-    for (size_t i = 0; i < nvr; i++) {
-        if (!is_variable_of_type(vr[i], FC_TYPE_ENUMERATION)) {
-            return refuse_reference(instance, FC_CALL_GET_INTEGER, vr[i], FC_TYPE_INTEGER);
-        }
     }
     for (size_t i = 0; i < nvr; i++) {
         value[i] = *fc_variable_integer(&instance->contact.state.variables, &fc_variables[vr[i]]);
@@ -219,16 +199,10 @@ fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           const fmi2Integer value[]) {
     FcInstance* instance = fc_instance_enter(c, FC_CALL_SET_INTEGER);
-    if (!instance) {
+    if (!instance || !are_variables(instance, FC_CALL_SET_INTEGER, vr, nvr, value, FC_TYPE_ENUMERATION)) {
         return fmi2Error;
     }
-    if (arrays_are_missing(vr, nvr, value)) {
-        return fc_refuse(instance, FC_CALL_SET_INTEGER, "vr or value is NULL");
-    }
     for (size_t i = 0; i < nvr; i++) {
-        if (!is_variable_of_type(vr[i], FC_TYPE_ENUMERATION)) {
-            return refuse_reference(instance, FC_CALL_SET_INTEGER, vr[i], FC_TYPE_INTEGER);
-        }
         const FcVariableInfo* info = &fc_variables[vr[i]];
         if (!is_settable(instance, info)) {
             return refuse_setting(instance, FC_CALL_SET_INTEGER, info);

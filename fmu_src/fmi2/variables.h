@@ -114,20 +114,12 @@ static inline bool fc_variable_is_settled_force(const FcVariableInfo* info) {
 
 // The place of an input variable in the arrays of friction_contact.h; FC_INPUT_COUNT for any other variable.
 static inline FcInput fc_variable_input(const FcVariableInfo* info) {
-    switch (info->offset) {
-    case offsetof(FcVariables, V):
-        return FC_INPUT_V;
-    case offsetof(FcVariables, d):
-        return FC_INPUT_D;
-    case offsetof(FcVariables, E):
-        return FC_INPUT_E;
-    case offsetof(FcVariables, load):
-        return FC_INPUT_LOAD;
-    case offsetof(FcVariables, V_y):
-        return FC_INPUT_V_Y;
-    default:
-        return FC_INPUT_COUNT;
+    FcVariables any;
+    int input = 0;
+    while (input < FC_INPUT_COUNT && fc_input_of(&any, (FcInput)input) != fc_variable_real(&any, info)) {
+        input++;
     }
+    return (FcInput)input;
 }
 
 #endif
