@@ -44,12 +44,12 @@ bool fc_hybrid_allows(FcFrictionContact* contact, FcMessage* message) {
                      "jumps with the sign of V, so that a mass could not stick; take ElasticPlastic (3), or "
                      "co-simulation");
     }
-    double nominals[FC_STATE_COUNT];
+    double nominals[FC_STATE_COUNT] = {0.0};
     return fc_hybrid_nominals(contact, nominals, message);
 }
 
 void fc_hybrid_start(FcFrictionContact* contact) {
-    double nominals[FC_STATE_COUNT];
+    double nominals[FC_STATE_COUNT] = {0.0};
     FcMessage unheard;
     if (fc_hybrid_nominals(contact, nominals, &unheard)) {
         contact->state.hybrid.nominal_delta = nominals[0];
@@ -302,7 +302,7 @@ void fc_hybrid_event_begins(FcFrictionContact* contact) {
 }
 
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message) {
-    double nominals[FC_STATE_COUNT];
+    double nominals[FC_STATE_COUNT] = {0.0};
     if (!fc_hybrid_nominals(contact, nominals, message)) {
         return false;
     }
