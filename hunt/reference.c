@@ -426,7 +426,7 @@ static bool catches(const World* w, const At* at, Vector delta, bool pushed) {
 }
 
 // The motion at the begin of a part. If the push is 0, the later push decides: the bristle slips if V or its bound moves so
-// that it is pushed then, and sticks if not.
+// that it is pushed then, and sticks if not. On a ramp from V = 0 the later V decides.
 static void begin(March* march, Real a, Real b) {
     World* w = march->w;
     march->motion = STICKS;
@@ -438,11 +438,12 @@ static void begin(March* march, Real a, Real b) {
     const Real rounding = ROUNDING * (w->top + fabsl(bound_rate(w, &at, false)));
     const bool pushed =
         push > rounding || (push >= -rounding && outward(w, &later, march->state.delta) > 0.0L);
+    const bool no_V = w->ramp && dot(march->state.delta, at.input) == 0.0L;
     const Real slack = !w->ramp ? AS_DOUBLE : march->state.broke ? ON_BOUND : 0.0L;
     const bool lies = length_of(march->state.delta) >= (1.0L - slack) * bound(w, &at, false);
     if (pushed && lies && (march->state.broke || !has_static(w))) {
         march->motion = SLIPS;
-    } else if (march->state.broke && catches(w, &at, march->state.delta, pushed)) {
+    } else if (march->state.broke && catches(w, no_V ? &later : &at, march->state.delta, pushed)) {
         march->motion = CATCHES;
     }
     march->state.broke = march->state.broke && march->motion != STICKS;
