@@ -103,13 +103,19 @@ static FcBristle warmed_up(const Block* block, double k, int periods) {
     return bristle;
 }
 
-// The result of period k, if its start does not depend on the earlier start.
+static double apart(FcBristle a, FcBristle b) { return hypot(a.delta - b.delta, a.delta_y - b.delta_y); }
+
+// The result of period k, if its start does not depend on the earlier start. Of starts after one period more each the
+// differences fall like powers: all the later ones together must be within the share.
 static bool sample_of_slips(const Block* block, const FcScene* scene, double k, Numbers* numbers) {
-    const FcBristle start = warmed_up(block, k, block->of->warm_up);
-    const FcBristle other = warmed_up(block, k, block->of->warm_up - 1);
+    const int most = block->of->warm_up;
+    const FcBristle start = warmed_up(block, k, most);
+    const FcBristle other = warmed_up(block, k, most - 1);
+    const double last = apart(start, other);
+    const double before = apart(other, warmed_up(block, k, most - 2));
+    const double close = allowed(block) / fc_scene_stiffness(scene, 0.0);
     if (start.slips != block->start.slips || other.slips != start.slips ||
-        !(hypot(start.delta - other.delta, start.delta_y - other.delta_y) * fc_scene_stiffness(scene, 0.0) <=
-          allowed(block))) {
+        !(last <= close && last * last <= close * (before - last))) {
         return false;
     }
     const FcStepResult result = take_period(block, scene, start);
