@@ -76,6 +76,7 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     step->delta_start = v->delta;
     step->delta_y_start = v->delta_y;
     step->slips_start = state->slips;
+    step->force_before = v->sigma * hypot(v->delta, v->delta_y);
     set_variables(v, scene);
     state->next_rate_set = 1; // all 0
     if (!run->started || !fc_friction_contact_refresh(&run->contact, &run->message)) {
@@ -121,7 +122,8 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
         hypot(step->delta_start, step->delta_y_start) + hypot(step->result[DELTA], step->result[DELTA_Y]);
     const ReferenceScene* scene = &taken->scene;
     const double digits = DIGITS + (vibrates(scene) ? 4.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
-    const double force = (tolerance + ROUNDING) * S, energy = force * path + LEAST_S + digits * S * lengths;
+    const double force = (tolerance + ROUNDING) * S,
+                 energy = force * path + LEAST_S + digits * fmax(S, step->force_before) * lengths;
     const double mean = force + digits * scene->sigma_1 * lengths / scene->h;
     Verdict worst = {.ratio = -1.0};
     for (int k = 0; k <= SLIPS_AT_END; k++) {

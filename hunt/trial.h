@@ -8,8 +8,8 @@
 // - F_t_settled, at the first step, is within tolerance S if the reference finds periods that repeat.
 // The allowances are for rounding alone:
 // - 1e-11 S, or S path.
-// - 1e-13 |delta| of both ends, times S for W_f and Q_f and times sigma_1 over the step for F_t_mean, since a bristle so
-//   near to its bound lies on it; and 4 eps more in each period.
+// - 1e-13 |delta| of both ends, times S, or the elastic force before a jump of inputs, for W_f and Q_f and times sigma_1 over
+//   the step for F_t_mean, since a bristle so near to its bound lies on it; and 4 eps more in each period.
 // - The change of the reference if the step's own start and length move by two units in their last place.
 // - The same if the deflection before the step moves by 2e-10 of itself: at its static bound a bristle may have broken
 //   away or not. If the motion may be chaotic (scene_gain above 2), the deflection moves by the tolerance.
@@ -34,6 +34,7 @@ typedef struct {
     double result[RESULTS]; // as of the reference; the heat of the first step includes that of the start
     double delta_start, delta_y_start; // m, before the step and its inputs
     int slips_start;
+    double force_before; // N, sigma |delta| before its inputs
 } FmuStep;
 
 typedef struct {

@@ -26,9 +26,10 @@
 static const double FC_SHARE_OF_BOUNDED_PANEL = 0.5;
 
 // The largest estimate of a judged Gauss panel that is accepted, over the allowed error: most estimates are
-// 10 to 1e5 times too large. In a Stribeck peak the excess is smaller, and some estimates are too small.
+// 10 to 1e5 times too large. In a Stribeck peak the excess is smaller, and some estimates are up to 2.5 times too
+// small.
 static const double FC_SHARE_OF_GAUSS_PANEL = 10.0;
-static const double FC_SHARE_OF_GAUSS_PANEL_IN_PEAK = 1.0;
+static const double FC_SHARE_OF_GAUSS_PANEL_IN_PEAK = 0.4;
 
 // The errors for which a Radau panel is planned.
 static const double FC_PLAN_FOR_MEAN = 0.003;
