@@ -370,7 +370,7 @@ static void cut_at_zeros(Cuts* cuts, const Square* of, bool keep) {
         if (before * after < 0.0L) {
             cuts->time[cuts->count++] = crossing(square, of, old.time[k - 1], old.time[k]);
         }
-        if (keep || k == old.count - 1) {
+        if (keep || after == 0.0L || k == old.count - 1) {
             cuts->time[cuts->count++] = old.time[k];
         }
         before = after;

@@ -8,7 +8,8 @@ static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the seq
 // The domain of docs/numerics.md.
 static const double MOST_KAPPA = 1e8;
 static const double LEAST_PLANAR_KAPPA = 1e-2, MOST_PLANAR_KAPPA = 1e6;
-static const double MOST_PLANAR = 30.0;   // periods of a step
+static const double MOST_PLANAR = 30.0;   // periods of a step,
+static const double LONG_PLANAR = 150.0;  // and of some
 static const double SHORTEST = 1e-9;      // s, of a step
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
@@ -61,7 +62,17 @@ static void velocity(Draw* draw, const ReferenceScene* s, double* V, double* V_y
         *V_y = 0.0;
         return;
     }
-    const double size = fmax(s->V_1, s->V_2) * log_between(draw, 1e-4, 10.0);
+    const double most = fmax(s->V_1, s->V_2);
+    if (chance(draw, 0.2)) { // V passes or touches 0 in each period, or nearly
+        const bool on_line = s->V_1 == 0.0 || s->phase_2 == 0.0;
+        const double phase = on_line ? TURN / 2.0 * pick(draw, 2) : between(draw, 0.0, TURN);
+        const double nearly = 1.0 + sign(draw) * log_between(draw, 1e-10, 0.1);
+        *V = -nearly * s->V_1 * cos(phase) + most * sign(draw) * log_between(draw, 1e-7, 0.1);
+        *V_y = -nearly * s->V_2 * cos(phase + s->phase_2) +
+               (on_line ? 0.0 : most * log_between(draw, 1e-7, 0.1));
+        return;
+    }
+    const double size = most * log_between(draw, 1e-4, 10.0);
     const double angle = chance(draw, 0.5) ? TURN / 4.0 * pick(draw, 4) : between(draw, 0.0, TURN);
     *V = size * cos(angle) * (fabs(cos(angle)) > 1e-9);
     *V_y = size * sin(angle) * (fabs(sin(angle)) > 1e-9);
@@ -341,7 +352,7 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
     const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
-    const double most = plane     ? MOST_PLANAR
+    const double most = plane     ? (!of_user && chance(&draw, 0.05) ? LONG_PLANAR : MOST_PLANAR)
                         : !linear ? MOST_PERIODS
                         : of_user ? MOST_MOVING / MOST_STEPS
                                   : MOST_MOVING;

@@ -26,6 +26,7 @@ double fc_straight_place(const FcStraight* in, double t) {
 // Half of |V|^2 at a time, its rate, the rate of that, and so on.
 typedef struct {
     double t, half, rate, bend, twist; // s, m2/s2 and so on
+    double curvature;                  // m/s3, |V''|
 } Sample;
 
 static Sample sample_at(const FcDrive* drive, double t) {
@@ -38,7 +39,8 @@ static Sample sample_at(const FcDrive* drive, double t) {
                     .bend = (x.rate * x.rate + y.rate * y.rate) + (x.V * x.curvature + y.V * y.curvature),
                     .twist = 3.0 * (x.rate * x.curvature + y.rate * y.curvature) -
                              drive->omega * drive->omega *
-                                 (x.V * (x.rate - drive->V.rate) + y.V * (y.rate - drive->V_y.rate))};
+                                 (x.V * (x.rate - drive->V.rate) + y.V * (y.rate - drive->V_y.rate)),
+                    .curvature = hypot(x.curvature, y.curvature)};
 }
 
 static double rate_of_square(void* drive, double t) { return sample_at(drive, t).rate; }
@@ -103,18 +105,34 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     return count;
 }
 
-// L of a center with that |V|; infinite if the dip is too flat to matter.
-static double length_of(const FcPlane* plane, Sample least, double eps, double h, double tolerance) {
-    const FcDrive* drive = &plane->scene->drive;
-    if (!(least.bend > 0.0) || eps * drive->omega > 3.0) {
+// A minimum of |V|: the distance of its branch points, and the time in which a bristle relaxes by 1 there.
+typedef struct {
+    double eps, layer; // s
+} Dip;
+
+// At a minimum V passes near 0, |V|^2 = c^2 (x^2 + eps^2), or it touches 0 nearly: |V|^2 = |V''|^2 (x^4 + eps^4) / 4. `bend`
+// is c^2, and rounding if V touches 0.
+static Dip dip_of(const FcPlane* plane, Sample least, double h) {
+    const double t = fmin(fmax(least.t, 0.0), h);
+    const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(&plane->scene->drive, t));
+    const double per_path = near.sigma / near.limit;
+    const double c = sqrt(fmax(0.0, least.bend));
+    const double passing = sqrt(2.0 * least.half) / c;
+    const double touching = sqrt(2.0 * sqrt(2.0 * least.half) / least.curvature);
+    if (!(touching >= passing) && touching * plane->scene->drive.omega < 1.0) {
+        return (Dip){touching, cbrt(6.0 / (per_path * least.curvature))};
+    }
+    return (Dip){passing, sqrt(2.0 / (per_path * c))};
+}
+
+// L of a dip; infinite if it is too flat to matter.
+static double length_of(const FcPlane* plane, Dip dip, double center, double h, double tolerance) {
+    if (!(dip.eps * plane->scene->drive.omega <= 3.0)) {
         return INFINITY;
     }
-    const double t = fmin(fmax(least.t, 0.0), h);
-    const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
-    const double layer = sqrt(2.0 * near.limit / (near.sigma * sqrt(least.bend)));
     const bool has_layer = plane->scene->friction->model != FC_COULOMB;
-    const double least_length = has_layer ? sqrt(tolerance) * fmin(layer, h) : 0.0;
-    return fmax(fmax(eps, least_length), 0x1p-40 * fmax(h, fabs(least.t)));
+    const double least_length = has_layer ? sqrt(tolerance) * fmin(dip.layer, h) : 0.0;
+    return fmax(fmax(dip.eps, least_length), 0x1p-40 * fmax(h, fabs(center)));
 }
 
 // The part of the interval that is not worth a panel. Rounding of the middles: 4500 eps.
@@ -132,14 +150,13 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
             continue;
         }
         const double center = centers[i];
-        const Sample least = sample_at(&plane->scene->drive, center);
-        const double eps = sqrt(2.0 * least.half / least.bend); // bend is c^2
+        const Dip dip = dip_of(plane, sample_at(&plane->scene->drive, center), h);
         // If the near-zero is farther away than the part lasts, |V| is smooth in t, and u would round the
         // times.
         const bool is_far = fmax(start - center, center - end) > end - start;
         const FcStraight in = is_far ? (FcStraight){0.0, INFINITY}
-                                     : (FcStraight){center, length_of(plane, least, eps, h, tolerance)};
-        if (isfinite(in.length) && in.length > eps && center > start && center < end) { // a kink
+                                     : (FcStraight){center, length_of(plane, dip, center, h, tolerance)};
+        if (isfinite(in.length) && in.length > dip.eps && center > start && center < end) { // a kink
             parts[count++] = (FcPart){start, center, in};
             start = center;
         }
