@@ -284,7 +284,9 @@ static bool interpolate(Block* block) {
             block->point[j].of[i] = error.of[i] / product;
         }
         block->points++;
-        if (j >= FEWEST_POINTS && last <= may && before_last <= MOST_BEFORE * may) {
+        // The errors of a kink fall slowly, and one may be small by chance.
+        const double most_before = block->of->warm_up > 0 ? 1.0 : MOST_BEFORE;
+        if (j >= FEWEST_POINTS && last <= may && before_last <= most_before * may) {
             return true;
         }
         before_last = last;
