@@ -131,10 +131,6 @@ FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase a
                            .d = linear(drive->d, t) + drive->vibration.a_d * by_cosine};
 }
 
-FcDriveValues fc_drive_values(const FcDrive* drive, double t) {
-    return fc_drive_values_at_phase(drive, t, fc_drive_phase(drive, t));
-}
-
 double fc_drive_V(const FcDrive* drive, double t) {
     return drive->vibration.V_1 == 0.0 ? linear(drive->V, t)
                                        : fc_drive_V_at_phase(drive, t, fc_drive_phase(drive, t));
@@ -145,7 +141,8 @@ double fc_drive_V_y(const FcDrive* drive, double t) {
 }
 
 double fc_drive_d(const FcDrive* drive, double t) {
-    return drive->vibration.a_d == 0.0 ? linear(drive->d, t) : fc_drive_values(drive, t).d;
+    return drive->vibration.a_d == 0.0 ? linear(drive->d, t)
+                                       : fc_drive_values_at_phase(drive, t, fc_drive_phase(drive, t)).d;
 }
 
 double fc_drive_E(const FcDrive* drive, double t) { return fc_input_after(drive->E, t); }

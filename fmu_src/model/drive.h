@@ -70,7 +70,6 @@ typedef struct {
     double V; // m/s
     double d; // m
 } FcDriveValues;
-FcDriveValues fc_drive_values(const FcDrive* drive, double t);
 FcDriveValues fc_drive_values_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 
 double fc_drive_V_at_phase(const FcDrive* drive, double t, FcPhase at_t);   // m/s

@@ -38,7 +38,8 @@ double fc_push(const FcScene* scene, const FcScene* bound, double t, int side) {
     const FcCoefficients of = bound == scene ? at : fc_scene_coefficients_at_phase(bound, t, phase);
     const double D = of.limit / of.sigma;
     const double rate = D * fc_scene_log_rates_at_phase(bound, t, phase).ratio;
-    return side * fc_free_rate(scene, &at, side * D) - rate;
+    const double back = scene->friction->model == FC_ELASTIC_PLASTIC ? 0.0 : fc_relaxation_rate(&at) * D;
+    return side * at.V - back - rate;
 }
 
 double fc_push_at(void* context, double t) {

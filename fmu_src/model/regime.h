@@ -30,11 +30,6 @@ FcScene fc_scene_of_bound(const FcScene* scene, int slips, FcFriction* friction)
 double fc_bound(const FcScene* bound, double t);      // m
 double fc_bound_rate(const FcScene* bound, double t); // m/s
 
-// delta' [m/s] of a bristle that touches no bound.
-static inline double fc_free_rate(const FcScene* scene, const FcCoefficients* at, double delta) {
-    return scene->friction->model == FC_ELASTIC_PLASTIC ? at->V : at->V - fc_relaxation_rate(at) * delta;
-}
-
 // The push: the velocity [m/s] at which a bristle on the bound D of that side (1 or -1) would leave the bound
 // if it were free, relative to the bound. The bristle slips while the push is positive.
 double fc_push(const FcScene* scene, const FcScene* bound, double t, int side);
