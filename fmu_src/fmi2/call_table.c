@@ -70,7 +70,7 @@ const FcCallRule fc_call_table[FC_CALL_COUNT] = {
 };
 // clang-format on
 
-// In the order of FcMode.
+// In the order of the bits of FcMode.
 static const char* const MODE_NAME[] = {
     "start/end",   "instantiated",         "initialization mode", "step complete", "step in progress",
     "step failed", "step canceled",        "terminated",          "error",         "fatal",

@@ -127,7 +127,7 @@ static double separation(const FcScene* scene, const FcContactAtModulus* at_E, d
     return scene->floats ? driven + rest_separation(scene, at_E, t) : driven;
 }
 
-double fc_scene_d_at_phase(const FcScene* scene, double t, FcPhase at_t) {
+static double d_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const double driven = fc_drive_values_at_phase(&scene->drive, t, at_t).d;
     if (!scene->floats) {
         return driven;
@@ -137,10 +137,10 @@ double fc_scene_d_at_phase(const FcScene* scene, double t, FcPhase at_t) {
 }
 
 double fc_scene_d(const FcScene* scene, double t) {
-    return fc_scene_d_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
+    return d_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
-double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t) {
+static double d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t) {
     const FcDrive* drive = &scene->drive;
     double rate = fc_drive_d_rate_at_phase(drive, at_t);
     if (scene->floats) {
@@ -152,7 +152,7 @@ double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t) {
 }
 
 double fc_scene_d_rate(const FcScene* scene, double t) {
-    return fc_scene_d_rate_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
+    return d_rate_at_phase(scene, t, fc_drive_phase(&scene->drive, t));
 }
 
 FcContactResponse fc_scene_contact(const FcScene* scene, double t) {
@@ -198,9 +198,8 @@ FcLogRates fc_scene_log_rates_at_phase(const FcScene* scene, double t, FcPhase a
     const FcDrive* drive = &scene->drive;
     FcLogRates rates = {0.0, 0.0, 0.0};
     if (fc_scene_depends_on_d(scene)) {
-        const double d_rate = fc_scene_d_rate_at_phase(scene, t, at_t);
-        const FcContactLogSlope by_d =
-            fc_contact_slope_by_d(&scene->at_E, fc_scene_d_at_phase(scene, t, at_t));
+        const double d_rate = d_rate_at_phase(scene, t, at_t);
+        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, d_at_phase(scene, t, at_t));
         rates.sigma = by_d.sigma * d_rate;
         rates.limit = by_d.F_n * d_rate;
         rates.ratio = (by_d.F_n - by_d.sigma) * d_rate;

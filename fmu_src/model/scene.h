@@ -72,10 +72,8 @@ static inline bool fc_scene_ratio_is_constant(const FcScene* scene) {
 }
 
 // At the local time t [s].
-double fc_scene_d(const FcScene* scene, double t);      // m
-double fc_scene_d_rate(const FcScene* scene, double t); // m/s
-double fc_scene_d_at_phase(const FcScene* scene, double t, FcPhase at_t);
-double fc_scene_d_rate_at_phase(const FcScene* scene, double t, FcPhase at_t);
+double fc_scene_d(const FcScene* scene, double t);                  // m
+double fc_scene_d_rate(const FcScene* scene, double t);             // m/s
 FcContactResponse fc_scene_contact(const FcScene* scene, double t); // also of one that is open
 double fc_scene_stiffness(const FcScene* scene, double t);          // N/m
 

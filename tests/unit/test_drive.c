@@ -165,6 +165,9 @@ static void events_tell_what_follows(void) {
                 const FcPhase phase = fc_drive_phase(&drive, event->time);
                 CHECK_WITHIN(event->phase.cosine, phase.cosine, 1e-14);
                 CHECK_WITHIN(event->phase.sine, phase.sine, 1e-14);
+                if (event->reversal) { // but for the rounding of the time
+                    CHECK_WITHIN(fc_drive_V_at_phase(&drive, event->time, event->phase), 0.0, 5e-15);
+                }
                 const FcDriveEvent after = fc_drive_next_event(&drive, event->time, end);
                 const bool is_last = k + 1 == all.count;
                 CHECK(after.reversal == (!is_last && all.event[k + 1].reversal));
@@ -232,6 +235,8 @@ static void V_keeps_its_digits_where_it_touches_zero(void) {
                 const double expected = (double)(turned ? dips : -dips);
                 const double rounding = 2e-15 * x + 1e-15 * fabs(expected);
                 CHECK_WITHIN(fc_drive_V(&drive, t), expected, rounding);
+                const FcDriveValues both = fc_drive_values_at_phase(&drive, t, fc_drive_phase(&drive, t));
+                CHECK_WITHIN(both.V, expected, rounding);
                 CHECK_WITHIN(fc_drive_velocity(&drive, t).V, expected, rounding);
                 // and the path over as much on either side: -2 (gap x + x - sin x)
                 const double h = x / drive.omega;

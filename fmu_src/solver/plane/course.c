@@ -105,34 +105,36 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     return count;
 }
 
-// A minimum of |V|: the distance of its branch points, and the time in which a bristle relaxes by 1 there.
+// A minimum of |V|. V passes near 0, |V|^2 = c^2 (x^2 + eps^2), or it touches 0 nearly: |V|^2 = |V''|^2 (x^4 + eps^4) / 4.
 typedef struct {
-    double eps, layer; // s
+    double eps; // s, the distance of the branch points
+    bool touches;
 } Dip;
 
-// At a minimum V passes near 0, |V|^2 = c^2 (x^2 + eps^2), or it touches 0 nearly: |V|^2 = |V''|^2 (x^4 + eps^4) / 4. `bend`
-// is c^2, and rounding if V touches 0.
-static Dip dip_of(const FcPlane* plane, Sample least, double h) {
-    const double t = fmin(fmax(least.t, 0.0), h);
-    const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(&plane->scene->drive, t));
-    const double per_path = near.sigma / near.limit;
-    const double c = sqrt(fmax(0.0, least.bend));
-    const double passing = sqrt(2.0 * least.half) / c;
+// `bend` is c^2, and rounding if V touches 0.
+static Dip dip_of(const FcDrive* drive, Sample least) {
+    const double passing = sqrt(2.0 * least.half / fmax(0.0, least.bend));
     const double touching = sqrt(2.0 * sqrt(2.0 * least.half) / least.curvature);
-    if (!(touching >= passing) && touching * plane->scene->drive.omega < 1.0) {
-        return (Dip){touching, cbrt(6.0 / (per_path * least.curvature))};
-    }
-    return (Dip){passing, sqrt(2.0 / (per_path * c))};
+    const bool touches = !(touching >= passing) && touching * drive->omega < 1.0;
+    return (Dip){touches ? touching : passing, touches};
 }
 
 // L of a dip; infinite if it is too flat to matter.
-static double length_of(const FcPlane* plane, Dip dip, double center, double h, double tolerance) {
-    if (!(dip.eps * plane->scene->drive.omega <= 3.0)) {
+static double length_of(const FcPlane* plane, Sample least, Dip dip, double h, double tolerance) {
+    const FcDrive* drive = &plane->scene->drive;
+    if (!(dip.eps * drive->omega <= 3.0)) {
         return INFINITY;
     }
-    const bool has_layer = plane->scene->friction->model != FC_COULOMB;
-    const double least_length = has_layer ? sqrt(tolerance) * fmin(dip.layer, h) : 0.0;
-    return fmax(fmax(dip.eps, least_length), 0x1p-40 * fmax(h, fabs(center)));
+    double least_length = 0.0;
+    if (plane->scene->friction->model != FC_COULOMB) { // the time in which a bristle relaxes by 1
+        const double t = fmin(fmax(least.t, 0.0), h);
+        const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
+        const double path = near.limit / near.sigma;
+        const double layer =
+            dip.touches ? cbrt(6.0 * path / least.curvature) : sqrt(2.0 * path / sqrt(least.bend));
+        least_length = sqrt(tolerance) * fmin(layer, h);
+    }
+    return fmax(fmax(dip.eps, least_length), 0x1p-40 * fmax(h, fabs(least.t)));
 }
 
 // The part of the interval that is not worth a panel. Rounding of the middles: 4500 eps.
@@ -150,12 +152,13 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
             continue;
         }
         const double center = centers[i];
-        const Dip dip = dip_of(plane, sample_at(&plane->scene->drive, center), h);
+        const Sample least = sample_at(&plane->scene->drive, center);
+        const Dip dip = dip_of(&plane->scene->drive, least);
         // If the near-zero is farther away than the part lasts, |V| is smooth in t, and u would round the
         // times.
         const bool is_far = fmax(start - center, center - end) > end - start;
         const FcStraight in = is_far ? (FcStraight){0.0, INFINITY}
-                                     : (FcStraight){center, length_of(plane, dip, center, h, tolerance)};
+                                     : (FcStraight){center, length_of(plane, least, dip, h, tolerance)};
         if (isfinite(in.length) && in.length > dip.eps && center > start && center < end) { // a kink
             parts[count++] = (FcPart){start, center, in};
             start = center;
