@@ -217,7 +217,8 @@ FcBristle fc_friction_contact_bristle(const FcFrictionContact* contact) {
 
 FcBristle fc_friction_contact_reached(const FcFrictionContact* contact, const FcScene* scene) {
     double heat;
-    return fc_jump(scene, &contact->state.past, fc_friction_contact_bristle(contact), &heat);
+    return fc_jump(scene, contact->state.time, &contact->state.past, fc_friction_contact_bristle(contact),
+                   &heat);
 }
 
 double* fc_input_of(FcVariables* v, FcInput input) {
@@ -484,7 +485,7 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcVariables* v = &before->variables;
     double heat;
-    const FcBristle start = fc_jump(&scene, &before->past, fc_friction_contact_bristle(contact), &heat);
+    const FcBristle start = fc_jump(&scene, t, &before->past, fc_friction_contact_bristle(contact), &heat);
     FcStepResult result;
     const FcMethod method = (FcMethod)v->solver.method;
     const bool moves = !fc_drive_is_constant(&scene.drive);

@@ -1,6 +1,7 @@
 #include "solver/jump.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 #include "model/plane.h"
@@ -97,15 +98,15 @@ static Place at_place(const Ramp* ramp, double s) {
     return at;
 }
 
-static Ramp ramp_from(const FcScene* scene, const FcPast* past, const FcBristle* bristle) {
-    const FcPast now = fc_past(scene);
+static Ramp ramp_between(const FcScene* scene, const FcPast* past, const FcPast* now,
+                         const FcBristle* bristle) {
     Ramp ramp = {.scene = scene, .past = *past};
-    ramp.d = now.d - past->d;
-    ramp.V = now.V - past->V;
-    ramp.V_y = now.V_y - past->V_y;
-    ramp.E = now.E - past->E;
-    ramp.log_ratio = log(now.ratio / past->ratio);
-    ramp.log_V_S = log(now.V_S / past->V_S);
+    ramp.d = now->d - past->d;
+    ramp.V = now->V - past->V;
+    ramp.V_y = now->V_y - past->V_y;
+    ramp.E = now->E - past->E;
+    ramp.log_ratio = log(now->ratio / past->ratio);
+    ramp.log_V_S = log(now->V_S / past->V_S);
     const Place start = at_place(&ramp, 0.0); // with the other parameters of now
     ramp.log_limit = log(start.limit / (past->ratio * past->limit));
     ramp.log_sigma = log(start.sigma / past->sigma);
@@ -289,28 +290,39 @@ static double stick_from(Ramp* ramp, double s, double* delta, double* heat) {
     return s;
 }
 
-FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat) {
+// The rounding of a phase over 1 + omega t: 16 eps. Half of it takes ramps of rounding, twice of it ignores jumps
+// of as much.
+static const double ROUNDING_OF_PHASE = 16.0 * DBL_EPSILON;
+
+// Whether nothing jumps at the time t, apart from the rounding of the vibration's phase.
+static bool is_same(const FcScene* scene, double t, const FcPast* now, const FcPast* past) {
+    const FcVibration* v = &scene->drive.vibration;
+    const double angle = ROUNDING_OF_PHASE * (1.0 + scene->drive.omega * fabs(t));
+    const double of_V = angle * (now->V_S + v->V_1 + v->V_2);
+    const double of_d =
+        angle * (4.0 + 2.0 * scene->at_E.decay * v->a_d); // ln sigma by d: 2 decay + 3 / d; a_d < d
+    return now->E == past->E && now->ratio == past->ratio && now->V_S == past->V_S &&
+           fabs(now->V - past->V) <= of_V && fabs(now->V_y - past->V_y) <= of_V &&
+           fabs(now->sigma - past->sigma) <= of_d * now->sigma &&
+           fabs(now->limit - past->limit) <= of_d * now->limit;
+}
+
+FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, FcBristle bristle, double* heat) {
     const double delta = fc_size(bristle);
     *heat = 0.0;
     if (!fc_is_bounded(scene->friction) && !fc_scene_is_loose(scene)) {
         return bristle;
     }
-    if (past->sigma == 0.0 ||
-        fc_scene_is_loose(scene)) { // an open contact has no stiffness, or a constant one
+    const FcPast now = fc_past(scene);
+    if (past->sigma == 0.0 || now.sigma == 0.0 || is_same(scene, t, &now, past)) {
         const FcBristle reached = fc_reach(scene, bristle);
-        const double sigma = fc_scene_contact(scene, 0.0).sigma;
         const double end = fc_size(reached);
-        *heat = 0.5 * sigma * (delta - end) * (delta + end);
+        // An open contact has no stiffness, or a constant one.
+        *heat = end < delta ? 0.5 * fc_scene_contact(scene, 0.0).sigma * (delta - end) * (delta + end) : 0.0;
         return reached;
     }
-    const FcPast now = fc_past(scene);
-    if (now.d == past->d && now.V == past->V && now.V_y == past->V_y && now.E == past->E &&
-        now.sigma == past->sigma && now.limit == past->limit && now.ratio == past->ratio &&
-        now.V_S == past->V_S) {
-        return fc_reach(scene, bristle);
-    }
     const int side = bristle.delta < 0.0 ? -1 : 1;
-    Ramp ramp = ramp_from(scene, past, &bristle);
+    Ramp ramp = ramp_between(scene, past, &now, &bristle);
     const int slips = fc_is_planar(scene, bristle) ? 1 : side;
     if (drops(&ramp)) {
         bristle.slips = slips;

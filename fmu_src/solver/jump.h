@@ -29,8 +29,8 @@ typedef struct {
 // The past that a scene leaves at its start.
 FcPast fc_past(const FcScene* scene);
 
-// The state at the start of the scene: fc_reach of the bristle, unless the bound was lower on the way. *heat
-// [J] is the heat of the ramp. Without a past, sigma has always had its present value.
-FcBristle fc_jump(const FcScene* scene, const FcPast* past, FcBristle bristle, double* heat);
+// The state at the start of the scene, the time t [s]: fc_reach of the bristle, unless the bound was lower on the
+// way. *heat [J] is the heat of the ramp. Without a past, sigma has always had its present value.
+FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, FcBristle bristle, double* heat);
 
 #endif

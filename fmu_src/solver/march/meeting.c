@@ -4,6 +4,7 @@
 
 #include "model/regime.h"
 #include "model/root.h"
+#include "solver/panels/panel.h"
 
 // The largest rise of p between two points, over its change from point to point nearby. Chosen empirically:
 // for a sine whose points are a radian apart an eighth suffices. Half of it may miss a meeting, twice of it
@@ -89,7 +90,7 @@ static double crossing(const FcCourse* course, int side, int i, double over, dou
 static double moves(const FcCourse* course, int side, int i) {
     double most = 0.0;
     for (int k = i > 0 ? i - 1 : 0; k <= i + 1 && k + 1 < course->count; k++) {
-        most = fmax(most, fabs(beyond_at(course, side, k + 1) - beyond_at(course, side, k)));
+        most = fc_most(most, fabs(beyond_at(course, side, k + 1) - beyond_at(course, side, k)));
     }
     return most;
 }

@@ -15,7 +15,7 @@ static const double MOST_CHANGING_PERIODS = 1e6;
 // The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
 // costs a part of a period; twice of it accepts ends that still change by twice as much. If a bristle relaxes
 // by a small part in each period, the remaining distance is many times the change over a period. LEAST_PART
-// is for ElasticPlastic, whose ends differ by rounding alone.
+// is a change by rounding, and all that counts in ElasticPlastic.
 static const double SAME_END = 1e-10;
 static const double LEAST_PART = 1e-4;
 
@@ -238,8 +238,8 @@ static bool repeats(Walk* walk) {
     if (walk->met_at < 0.0 || total->slips != walk->met.slips || !(changed <= SAME_END * size)) {
         return false;
     }
-    const double part = fmax(LEAST_PART, fmin(1.0, free_map_of(walk).relaxation));
-    return changed <= SAME_END * part * size;
+    return changed <= SAME_END * LEAST_PART * size ||
+           changed <= SAME_END * fmin(1.0, free_map_of(walk).relaxation) * size;
 }
 
 // The farthest that a step of Newton moves the deflection, over it. Chosen empirically: without a limit one of
