@@ -312,4 +312,6 @@ def test_18_eq_3_is_no_sum_over_contacts(fmu: FrictionFmu) -> None:
     assert mindlin_doubled / mindlin == pytest.approx(2.0, rel=1e-12)
     s = SURFACES
     stated(18, f"factor of {doubled / eq_3:.2f}", f"{mindlin:.4e} N/m", f"gives {eq_3 / mindlin:.0f} times")
-    stated(18, f"λ = {1e6 * s.R_q / s.lambda_:.1f} µm", f"β = {s.eta * s.R * s.R_q:.3f}")
+    interference = s.R_q / s.lambda_
+    plastic = math.sqrt(2.0 * s.R * interference)  # Eq. 15: the area 2 pi R omega
+    stated(18, f"λ = {1e6 * interference:.1f} µm", f"a radius of {1e6 * plastic:.1f} µm")

@@ -34,7 +34,7 @@ def test_a_rigid_contact(fmu: FrictionFmu) -> None:
     """The table, the crossing and the gain in slow sliding."""
     places, *rows = (
         [float(cell) for cell in re.search(rf"^\| {name} \|([ .\d|]+)\|$", TEXT, re.MULTILINE)[1].split("|")]
-        for name in ("ζ", "along", "transverse")
+        for name in ("⟨F_t⟩/F_C at ζ =", "along", "transverse")
     )
     for direction, formula, row in zip(("along", "transverse"), (along, coulomb_across), rows, strict=True):
         truth = [formula(zeta) for zeta in places]
@@ -85,7 +85,7 @@ def test_what_the_stiffness_does_under_a_normal_vibration(fmu: FrictionFmu) -> N
         normal = scene(law, 3.0, "normal") | {"contact.stiffnessScale": scale}
         assert one(fmu, 0.01, normal | {"contact.model": "Mindlin"}) == pytest.approx(1.0, abs=1e-5)
         left = one(fmu, SLOW, normal | {"contact.model": "Asperities"})
-        assert f"paper's Eq. 3 they keep {left:.3f} in slow sliding" in PAGE
+        assert f"paper's Eq. 3 both laws keep {left:.3f} F_C in slow sliding" in PAGE
         constant = normal | {"friction.limit": "Constant"}
         assert one(fmu, 0.01, constant) == pytest.approx(1.0, abs=1e-6)
 
