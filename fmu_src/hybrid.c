@@ -255,7 +255,8 @@ static void begin_regime(FcFrictionContact* contact) {
     View now;
     look(contact, &now);
     double heat;
-    FcBristle bristle = fc_jump(&now.scene, state->time, &state->past, fc_friction_contact_bristle(contact), &heat);
+    FcBristle bristle =
+        fc_jump(&now.scene, state->time, &state->past, fc_friction_contact_bristle(contact), &heat);
     if (bristle.slips != 0 && !(fc_push_in_plane(&now.scene, bristle) > 0.0)) { // the event of a push of 0
         bristle.slips = 0;
     }
