@@ -163,9 +163,11 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcV
     double range = first_range(&held, &scene, input);
     const double usual = force / fabs(range);
     double least = DBL_MAX;
-    *slope = (FcVector){NAN, NAN};
+    const bool is_flat =
+        range == 0.0 || fc_scene_is_loose(&scene); // an input that counts for nothing, or no contact
+    *slope = is_flat ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};
     double evaluations = 0.0;
-    for (int tried = 0; tried < MOST_RANGES; tried++) {
+    for (int tried = 0; tried < MOST_RANGES && !is_flat; tried++) {
         FcVector found;
         double error;
         if (!slope_over(&held, input, range, &found, &error, &evaluations, message)) {

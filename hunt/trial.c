@@ -121,7 +121,7 @@ static Verdict verdict_outside(const TrialStep* taken, const ReferenceStep range
     const double lengths =
         hypot(step->delta_start, step->delta_y_start) + hypot(step->result[DELTA], step->result[DELTA_Y]);
     const ReferenceScene* scene = &taken->scene;
-    const double digits = DIGITS + (vibrates(scene) ? 4.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
+    const double digits = DIGITS + (vibrates(scene) ? 20.0 * DBL_EPSILON * scene->h * scene->f : 0.0);
     const double force = (tolerance + ROUNDING) * S,
                  energy = force * path + LEAST_S + digits * fmax(S, step->force_before) * lengths;
     const double mean = force + digits * scene->sigma_1 * lengths / scene->h;

@@ -9,7 +9,8 @@
 // The allowances are for rounding alone:
 // - 1e-11 S, or S path.
 // - 1e-13 |delta| of both ends, times S, or the elastic force before a jump of inputs, for W_f and Q_f and times sigma_1 over
-//   the step for F_t_mean, since a bristle so near to its bound lies on it; and 4 eps more in each period.
+//   the step for F_t_mean, since a bristle so near to its bound lies on it; and 20 eps more in each period: of two
+//   meetings, each with the rounding of D, whose exponent may be 10.
 // - The change of the reference if the step's own start and length move by two units in their last place.
 // - The same if the deflection before the step moves by 2e-10 of itself: at its static bound a bristle may have broken
 //   away or not. If the motion may be chaotic (scene_gain above 2), the deflection moves by the tolerance.

@@ -114,10 +114,22 @@ static double log_along(const FcVariables* along, double by_d, double by_E, doub
 // part and by rounding over it. Half or twice of it multiplies one of them by two or four.
 static const double MOVED_PART = 3e-5;
 
-// The derivative along the direction of the deflection that inputs leave which have jumped: by a central difference,
-// since it may be the least bound on the way.
+// The deflection that inputs leave which have jumped, and by `change` of the direction more.
+static FcVector reached_after(FcFrictionContact moved, const FcVariables* along, double change) {
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        FcVariables by = *along;
+        *fc_input_of(&moved.state.variables, (FcInput)input) += change * *fc_input_of(&by, (FcInput)input);
+    }
+    const FcScene scene = fc_friction_contact_scene(&moved);
+    const FcBristle end = fc_friction_contact_reached(&moved, &scene);
+    return (FcVector){end.delta, end.delta_y};
+}
+
+// Its derivative along the direction, by a difference, since it may be the least bound on the way: a central one, or
+// one to the side on which the bristle moves, if it does not on the other.
 static FcVector reached_along(const FcFrictionContact* contact, FcVariables along) {
     FcVariables now = contact->state.variables;
+
     double part = 0.0;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
         const bool is_velocity = input == FC_INPUT_V || input == FC_INPUT_V_Y;
@@ -127,19 +139,19 @@ static FcVector reached_along(const FcFrictionContact* contact, FcVariables alon
     if (part == 0.0) {
         return (FcVector){0.0, 0.0};
     }
-    const double change = MOVED_PART / part;
-    FcBristle end[2];
-    for (int i = 0; i < 2; i++) {
-        FcFrictionContact moved = *contact;
-        for (int input = 0; input < FC_INPUT_COUNT; input++) {
-            *fc_input_of(&moved.state.variables, (FcInput)input) +=
-                (i == 0 ? -change : change) * *fc_input_of(&along, (FcInput)input);
-        }
-        const FcScene scene = fc_friction_contact_scene(&moved);
-        end[i] = fc_friction_contact_reached(&moved, &scene);
+    double change = MOVED_PART / part;
+    FcVector before = reached_after(*contact, &along, -change);
+    FcVector after = reached_after(*contact, &along, change);
+    const bool moves_before = before.x != now.delta || before.y != now.delta_y;
+    if (moves_before && (after.x != now.delta || after.y != now.delta_y)) {
+        return (FcVector){(after.x - before.x) / (2.0 * change), (after.y - before.y) / (2.0 * change)};
     }
-    return (FcVector){(end[1].delta - end[0].delta) / (2.0 * change),
-                      (end[1].delta_y - end[0].delta_y) / (2.0 * change)};
+    const FcVector here = reached_after(*contact, &along, 0.0);
+    change = moves_before ? -change : change;
+    const FcVector near = moves_before ? before : after;
+    const FcVector far = reached_after(*contact, &along, 2.0 * change);
+    return (FcVector){(4.0 * near.x - far.x - 3.0 * here.x) / (2.0 * change),
+                      (4.0 * near.y - far.y - 3.0 * here.y) / (2.0 * change)};
 }
 
 // All derivatives along a direction of inputs and states, at the places of the variables; those of F_t_settled and

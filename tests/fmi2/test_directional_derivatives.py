@@ -177,3 +177,17 @@ def test_no_known_variable_gives_zero(new_instance: Callable[..., Instance]) -> 
     instance.initialize()
     assert instance.directional(OUTPUTS, {}) == (OK, [0.0] * len(OUTPUTS))
     assert instance.directional([], {"V": 1.0}) == (OK, [])
+
+
+@pytest.mark.parametrize("d", [1e-11, 1e-10, 3e-10])
+def test_a_jump_that_moves_the_bristle_a_little(new_instance: Callable[..., Instance], d: float) -> None:
+    """On the bound F_t is mu F_n, and F_n goes with exp(-lambda d / R_q), also if less d would not move it."""
+    instance = new_instance()
+    assert instance.choose({"friction.model": 1, "friction.limit": 2, "contact.model": 2}) == OK
+    assert instance.set({"V": 0.1}) == OK
+    instance.initialize()
+    assert instance.step(0.0, 1e-2) == OK
+    assert instance.set({"d": 14e-6 + d}) == OK
+    status, (slope,) = instance.directional(["F_t"], {"d": 1.0})
+    assert status == OK
+    assert slope == pytest.approx(-0.176 * instance.get("F_n")[0] * 3.0 / 6e-6, rel=1e-7)

@@ -249,3 +249,24 @@ def test_a_mass_follows_it_but_for_ripple_and_transient(
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
     assert least * ripple < error < most * ripple
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        {"contact.input": "Load", "load": 0.0, "friction.limit": "Load"},
+        {"contact.input": "Load", "load": -3.0, "friction.limit": "Load", "vibration.V_1": 0.3},
+        {"d": 1e-2, "friction.limit": "Load", "vibration.V_1": 0.3},
+    ],
+)
+def test_an_open_contact_has_derivatives(fmu: FrictionFmu, scene: dict[str, Value]) -> None:
+    """Of sigma_2 V alone."""
+    with fmu.session(scene | {"V": 0.1, "friction.sigma_2": 7.0}) as session:
+        assert session.get("F_t_settled") == pytest.approx(0.7)
+        slopes = {name: session.slope("F_t_settled", name) for name in ("V", "V_y", "d", "E", "load")}
+    assert slopes == pytest.approx({"V": 7.0, "V_y": 0.0, "d": 0.0, "E": 0.0, "load": 0.0})
+
+
+def test_a_load_that_does_not_count_has_a_derivative_of_0(fmu: FrictionFmu) -> None:
+    with fmu.session(SOFT | VIBRATING | {"load": 0.0}) as session:
+        assert session.slope("F_t_settled", "load") == 0.0
