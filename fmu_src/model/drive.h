@@ -104,13 +104,14 @@ static inline double fc_time_to_move(double rate, double curvature, double chang
 typedef struct {
     double V;         // m/s
     double rate;      // m/s2
-    double curvature; // m/s3
+        double curvature; // m/s3
+    double third;     // m/s4
 } FcVelocity;
 FcVelocity fc_drive_velocity(const FcDrive* drive, double t);
 FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at_t);
 FcVelocity fc_drive_velocity_y_at_phase(const FcDrive* drive, double t, FcPhase at_t); // of V_y
 
-// Time [s] in which V moves by change [m/s], fc_time_to_move of |V'| and |V''|.
+// Time [s] in which V moves by change [m/s]: fc_time_to_move of |V'| and |V''|, or by the third derivative alone.
 double fc_velocity_time_of_change(const FcVelocity* at, double change);
 
 // integral of V over [t0, t1] [m], exact.

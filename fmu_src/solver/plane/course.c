@@ -26,7 +26,7 @@ double fc_straight_place(const FcStraight* in, double t) {
 // Half of |V|^2 at a time, its rate, the rate of that, and so on.
 typedef struct {
     double t, half, rate, bend, twist; // s, m2/s2 and so on
-    double curvature;                  // m/s3, |V''|
+        double curvature, third;           // m/s3, m/s4: |V''| and |V'''|
 } Sample;
 
 static Sample sample_at(const FcDrive* drive, double t) {
@@ -40,7 +40,8 @@ static Sample sample_at(const FcDrive* drive, double t) {
                     .twist = 3.0 * (x.rate * x.curvature + y.rate * y.curvature) -
                              drive->omega * drive->omega *
                                  (x.V * (x.rate - drive->V.rate) + y.V * (y.rate - drive->V_y.rate)),
-                    .curvature = hypot(x.curvature, y.curvature)};
+                                        .curvature = hypot(x.curvature, y.curvature),
+                    .third = hypot(x.third, y.third)};
 }
 
 static double rate_of_square(void* drive, double t) { return sample_at(drive, t).rate; }
@@ -105,19 +106,29 @@ static int find_centers(const FcDrive* of, double h, double centers[MOST_CENTERS
     return count;
 }
 
-// A minimum of |V|. V passes near 0, |V|^2 = c^2 (x^2 + eps^2), or it touches 0 nearly: |V|^2 = |V''|^2 (x^4 + eps^4) / 4.
+// A minimum of |V| near 0. With a = |d^n V/dt^n| / n!, |V|^2 = a^2 (x^2n + eps^2n): V passes 0 nearly (n = 1), touches it
+// or passes it in a saddle.
 typedef struct {
-    double eps; // s, the distance of the branch points
-    bool touches;
+    double eps;  // s, the distance of the branch points
+    int order;   // n
+    double rate; // m/s^(n + 1), a
 } Dip;
 
-// `bend` is c^2, and rounding if V touches 0.
+// `bend` is a^2 for n = 1, and rounding for a larger n.
 static Dip dip_of(const FcDrive* drive, Sample least) {
-    const double passing = sqrt(2.0 * least.half / fmax(0.0, least.bend));
-    const double touching = sqrt(2.0 * sqrt(2.0 * least.half) / least.curvature);
-    const bool touches = !(touching >= passing) && touching * drive->omega < 1.0;
-    return (Dip){touches ? touching : passing, touches};
+    const double speed = sqrt(2.0 * least.half);
+    const double rate = sqrt(fmax(0.0, least.bend));
+    Dip dip = {speed / rate, 1, rate};
+    const double higher[] = {least.curvature / 2.0, least.third / 6.0};
+    for (int n = 2; n <= 3; n++) {
+        const double eps = pow(speed / higher[n - 2], 1.0 / n);
+        if (!(eps >= dip.eps) && eps * drive->omega < 1.0) {
+            dip = (Dip){eps, n, higher[n - 2]};
+        }
+    }
+    return dip;
 }
+
 
 // L of a dip; infinite if it is too flat to matter.
 static double length_of(const FcPlane* plane, Sample least, Dip dip, double h, double tolerance) {
@@ -130,8 +141,8 @@ static double length_of(const FcPlane* plane, Sample least, Dip dip, double h, d
         const double t = fmin(fmax(least.t, 0.0), h);
         const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
         const double path = near.limit / near.sigma;
-        const double layer =
-            dip.touches ? cbrt(6.0 * path / least.curvature) : sqrt(2.0 * path / sqrt(least.bend));
+                const double layer = pow((dip.order + 1) * path / dip.rate, 1.0 / (dip.order + 1));
+
         least_length = sqrt(tolerance) * fmin(layer, h);
     }
     return fmax(fmax(dip.eps, least_length), 0x1p-40 * fmax(h, fabs(least.t)));
