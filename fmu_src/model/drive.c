@@ -108,7 +108,7 @@ FcVelocity fc_drive_velocity_y_at_phase(const FcDrive* drive, double t, FcPhase 
     const double V_2 = drive->vibration.V_2;
     const double omega = drive->omega;
     return (FcVelocity){.V = fc_drive_V_y_at_phase(drive, t, at_t),
-                                                .rate = drive->V_y.rate - V_2 * omega * across.sine,
+                        .rate = drive->V_y.rate - V_2 * omega * across.sine,
                         .curvature = -V_2 * omega * omega * across.cosine,
                         .third = V_2 * omega * omega * omega * across.sine};
 }
@@ -166,7 +166,7 @@ FcVelocity fc_drive_velocity_at_phase(const FcDrive* drive, double t, FcPhase at
     const double V_1 = drive->vibration.V_1;
     const double omega = drive->omega;
     return (FcVelocity){.V = fc_drive_V_at_phase(drive, t, at_t),
-                                                .rate = drive->V.rate - V_1 * omega * at_t.sine,
+                        .rate = drive->V.rate - V_1 * omega * at_t.sine,
                         .curvature = -V_1 * omega * omega * at_t.cosine,
                         .third = V_1 * omega * omega * omega * at_t.sine};
 }
@@ -177,7 +177,7 @@ FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
 }
 
 double fc_velocity_time_of_change(const FcVelocity* at, double change) {
-        const double time = fc_time_to_move(fabs(at->rate), fabs(at->curvature), change);
+    const double time = fc_time_to_move(fabs(at->rate), fabs(at->curvature), change);
     const double third = fabs(at->third);
     return third * time * time * time <= 6.0 * change ? time : cbrt(6.0 * change / third);
 }

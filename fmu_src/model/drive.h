@@ -104,7 +104,7 @@ static inline double fc_time_to_move(double rate, double curvature, double chang
 typedef struct {
     double V;         // m/s
     double rate;      // m/s2
-        double curvature; // m/s3
+    double curvature; // m/s3
     double third;     // m/s4
 } FcVelocity;
 FcVelocity fc_drive_velocity(const FcDrive* drive, double t);

@@ -148,6 +148,22 @@ static void move_to(March* m, double delta, double sigma) {
     result->delta = delta;
 }
 
+// The time after which a push that is 0 decides, over the time in which the scene moves by 1. Half or twice of it is as
+// far from rounding and from the motion.
+static const double JUST_AFTER = 1e-6;
+
+// Whether the bristle slips on along that bound: the push is not below 0 or, if it is 0, not just after.
+static bool slips_on(March* m, const FcScene* bound, int side) {
+    const double push = fc_push(m->scene, bound, m->t, side);
+    m->result->evaluations += 1.0;
+    if (push != 0.0) {
+        return push > 0.0;
+    }
+    const double after = fmin(JUST_AFTER * m->smooth_time, m->duration - m->t);
+    m->result->evaluations += 1.0;
+    return !(fc_push(m->scene, bound, m->t + after, side) < 0.0);
+}
+
 static void begin_slip(March* m, int side) {
     const FcCoefficients at = fc_scene_coefficients(bound_of_slip(m), m->t);
     move_to(m, side * at.limit / at.sigma, at.sigma);
@@ -486,9 +502,7 @@ static void slip(March* m, double end) {
             return;
         }
     }
-    m->result->evaluations += 1.0;
-    // If V is 0, the push is 0: the panel decides.
-    if (!(fc_push(m->scene, bound_of_slip(m), m->t, m->side) >= 0.0)) {
+    if (!slips_on(m, bound_of_slip(m), m->side)) {
         end_slip(m);
         return;
     }
@@ -626,8 +640,7 @@ static void stick(March* m, double end) {
     const FcScene* bound = slips != 0 ? m->scene : &m->bound;
     double slip_end = end;
     if (slips != 0) {
-        m->result->evaluations += 1.0;
-        if (!(fc_push(m->scene, m->scene, m->t, slips) >= 0.0)) { // if it is 0, the panel decides
+        if (!slips_on(m, m->scene, slips)) {
             end_slip(m);
             return;
         }

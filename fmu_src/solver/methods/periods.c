@@ -168,7 +168,7 @@ static double free_periods_by_steps(Walk* walk, double left) {
                                walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
-    if (moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0)) {
+    if (map.relaxation == 0.0 ? moved == 0.0 : moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0)) {
         return map.relaxation > 0.0 && meets_after(walk, 0.0) ? 0.0 : left;
     }
     if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {

@@ -26,7 +26,7 @@ double fc_straight_place(const FcStraight* in, double t) {
 // Half of |V|^2 at a time, its rate, the rate of that, and so on.
 typedef struct {
     double t, half, rate, bend, twist; // s, m2/s2 and so on
-        double curvature, third;           // m/s3, m/s4: |V''| and |V'''|
+    double curvature, third;           // m/s3, m/s4: |V''| and |V'''|
 } Sample;
 
 static Sample sample_at(const FcDrive* drive, double t) {
@@ -40,7 +40,7 @@ static Sample sample_at(const FcDrive* drive, double t) {
                     .twist = 3.0 * (x.rate * x.curvature + y.rate * y.curvature) -
                              drive->omega * drive->omega *
                                  (x.V * (x.rate - drive->V.rate) + y.V * (y.rate - drive->V_y.rate)),
-                                        .curvature = hypot(x.curvature, y.curvature),
+                    .curvature = hypot(x.curvature, y.curvature),
                     .third = hypot(x.third, y.third)};
 }
 
@@ -129,7 +129,6 @@ static Dip dip_of(const FcDrive* drive, Sample least) {
     return dip;
 }
 
-
 // L of a dip; infinite if it is too flat to matter.
 static double length_of(const FcPlane* plane, Sample least, Dip dip, double h, double tolerance) {
     const FcDrive* drive = &plane->scene->drive;
@@ -141,7 +140,7 @@ static double length_of(const FcPlane* plane, Sample least, Dip dip, double h, d
         const double t = fmin(fmax(least.t, 0.0), h);
         const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
         const double path = near.limit / near.sigma;
-                const double layer = pow((dip.order + 1) * path / dip.rate, 1.0 / (dip.order + 1));
+        const double layer = pow((dip.order + 1) * path / dip.rate, 1.0 / (dip.order + 1));
 
         least_length = sqrt(tolerance) * fmin(layer, h);
     }

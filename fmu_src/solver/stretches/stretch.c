@@ -10,10 +10,9 @@ double fc_layer(const FcVelocity* at, double per_path) {
     const double r_curvature = per_path * fabs(at->curvature);
     assert(!(per_path < 0.0));
     const double root = fc_time_to_move(r, r_rate, 1.0);
-        const double w = r_curvature * root * root * root <= 6.0 ? root : cbrt(6.0 / r_curvature);
+    const double w = r_curvature * root * root * root <= 6.0 ? root : cbrt(6.0 / r_curvature);
     const double r_third = per_path * fabs(at->third);
     return r_third * w * w * w * w <= 24.0 ? w : sqrt(sqrt(24.0 / r_third));
-
 }
 
 // The width of a dip of |V| that does not reach zero: that of the parabola, or the time to relax by 1 in it.
