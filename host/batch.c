@@ -185,7 +185,7 @@ static bool initialize(Worker* w, size_t scenario) {
             w->real[reals++] = value;
         }
     }
-    return accepted(fmu->SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0)) &&
+    return accepted(fmu->SetupExperiment(c, fmi2False, 0.0, plan->begin, fmi2False, 0.0)) &&
            accepted(fmu->SetReal(c, w->reference, reals, w->real)) &&
            accepted(fmu->SetInteger(c, w->reference + reals, integers, w->integer)) &&
            accepted(fmu->EnterInitializationMode(c)) && accepted(fmu->ExitInitializationMode(c));
@@ -197,10 +197,18 @@ static bool read_variables(const Worker* w, double* value) {
 }
 
 static bool move_inputs(const Worker* w, size_t sample) {
+    const Fmi2Library* fmu = w->batch->fmu;
     const BatchPlan* plan = &w->batch->plan;
-    return plan->inputs == 0 ||
-           accepted(w->batch->fmu->SetReal(w->instance.component, plan->input, plan->inputs,
-                                           plan->moves + sample * plan->inputs));
+    fmi2Component c = w->instance.component;
+    const fmi2Integer first = 1;
+    const size_t at = sample * plan->inputs;
+    bool is_moved =
+        plan->inputs == 0 || accepted(fmu->SetReal(c, plan->input, plan->inputs, plan->moves + at));
+    for (size_t i = 0; is_moved && plan->rates && i < plan->inputs; i++) {
+        is_moved =
+            accepted(fmu->SetRealInputDerivatives(c, &plan->input[i], 1, &first, &plan->rates[at + i]));
+    }
+    return is_moved;
 }
 
 static bool simulate(Worker* w, size_t scenario) {
@@ -217,7 +225,7 @@ static bool simulate(Worker* w, size_t scenario) {
     }
     const double settle = of(&plan->settle, scenario) * unit;
     const double h = of(&plan->duration, scenario) * unit / (double)plan->samples;
-    double t = 0.0;
+    double t = plan->begin;
     if (settle > 0.0) {
         if (!accepted(fmu->DoStep(c, t, settle, fmi2True))) {
             return false;

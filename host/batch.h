@@ -5,7 +5,7 @@
 //
 //     0 --- settle --- | h | h | h | ... | h |     h = duration / samples
 //
-// or steps of given lengths, with inputs that are set before each of them.
+// or steps of given lengths, with inputs that are set before each of them and move at given rates.
 //
 // Settle and duration are seconds, or periods 1/f where the plan names the frequency f.
 //
@@ -66,12 +66,14 @@ typedef struct {
     size_t results;
     const BatchResult* result;
     const fmi2ValueReference* frequency; // of the vibration, Hz: times are its periods; NULL: seconds
+    double begin;                        // time at which every scenario starts, s
     BatchColumn settle;
     BatchColumn duration;
     size_t samples;
     size_t inputs; // that move, alike in all scenarios
     const fmi2ValueReference* input;
     const double* moves;  // samples by inputs: what they are set to before each step
+    const double* rates;  // samples by inputs: their time derivatives over each step; NULL: they are held
     const double* step;   // length of each step; NULL: all are duration / samples
     int stops_at_refusal; // then no scenario after the first one that is refused need be run
 } BatchPlan;

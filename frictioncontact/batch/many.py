@@ -45,7 +45,9 @@ def simulate_many(
     unit: Unit = "period",
     settled: bool = False,
     inputs: Mapping[str, npt.ArrayLike] | None = None,
+    rates: Mapping[str, npt.ArrayLike] | None = None,
     steps: npt.ArrayLike | None = None,
+    begin: float = 0.0,
     errors: Literal["raise", "keep"] = "raise",
     threads: int | None = None,
     progress: bool | Progress = False,
@@ -66,7 +68,9 @@ def simulate_many(
     unit      of settle and duration: a period of the vibration, 1 / vibration.f, or a second
     settled   start in the settled state: initialState = Settled
     inputs    inputs to set before each step, the same in all scenarios: name -> a value for every step
+    rates     of these inputs over each step, SI units per second: name -> a value for every step; else held
     steps     lengths of the steps, in the unit, instead of duration and samples
+    begin     time at which all scenarios start, s: the vibration's phase refers to time 0
     errors    "raise": BatchError with the message of the first scenario that the FMU refuses;
               "keep": its results are NaN and "reason", one result more, holds the message (else None)
     threads   number of threads, up to 1024; by default one for each processor that this process may use
@@ -93,7 +97,9 @@ def simulate_many(
         check_whole(threads, MOST_THREADS, "threads =")
     try:
         loaded = loaded_fmu(resources.fmu() if fmu is None else fmu, runner(resources.batch_host()))
-        batch = prepared(loaded, values, outputs, settle, duration, samples, unit, settled, inputs, steps)
+        batch = prepared(
+            loaded, values, outputs, settle, duration, samples, unit, settled, inputs, rates, steps, begin
+        )
     except UserError as error:
         raise BatchError(str(error)) from None
     warn_of(loaded.variables, batch.starts | (inputs or {}), is_over_period=unit == "period")

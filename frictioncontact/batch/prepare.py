@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import BatchError, shown
-from ..values import numbers_of, pairs
+from ..values import numbers_of, pairs, real
 from .columns import common_shape, flat, lengths_of
 from .run import Batch
 from .runner import STATISTICS
@@ -36,7 +36,9 @@ def prepared(
     unit: Unit,
     settled: bool,
     inputs: Mapping[str, npt.ArrayLike] | None,
+    rates: Mapping[str, npt.ArrayLike] | None,
     steps: npt.ArrayLike | None,
+    begin: float,
 ) -> Batch:
     """The batch of `simulate_many`, checked."""
     lengths = None
@@ -67,22 +69,37 @@ def prepared(
         int(samples),
         _read(fmu, outputs),
         fmu.variables.all["vibration.f"].valueReference if unit == "period" else None,
-        *_moving(fmu, pairs(inputs, "inputs"), int(samples)),
+        *_moving(fmu, pairs(inputs, "inputs"), pairs(rates, "rates"), int(samples)),
         lengths,
+        real(begin, "begin"),
     )
 
 
 def _moving(
-    fmu: LoadedFmu, inputs: Mapping[str, npt.ArrayLike], samples: int
-) -> tuple[tuple[int, ...], np.ndarray | None]:
-    """Value references, and values before each step."""
-    references, columns = [], []
+    fmu: LoadedFmu, inputs: Mapping[str, npt.ArrayLike], rates: Mapping[str, npt.ArrayLike], samples: int
+) -> tuple[tuple[int, ...], np.ndarray | None, np.ndarray | None]:
+    """Value references, values before each step, and rates over it; no rate is 0."""
+    for name in rates:
+        if name not in inputs:
+            raise BatchError(f"rate of {name}: inputs has no values of {name}")
+    references, columns, slopes = [], [], []
     for name, values in inputs.items():
         references.append(fmu.variables.find(name, f"input {name}", ("input",)).valueReference)
-        columns.append(_row(numbers_of(values, f"input {name}"), f"input {name}"))
-        if len(columns[-1]) != samples:
-            raise BatchError(f"input {name}: {len(columns[-1])} values for {samples} steps")
-    return tuple(references), np.column_stack(columns) if columns else None
+        columns.append(_of_steps(values, f"input {name}", samples))
+        slopes.append(_of_steps(rates.get(name, np.zeros(samples)), f"rate of {name}", samples))
+    return (
+        tuple(references),
+        np.column_stack(columns) if columns else None,
+        np.column_stack(slopes) if rates else None,
+    )
+
+
+def _of_steps(values: npt.ArrayLike, where: str, samples: int) -> np.ndarray:
+    """A value for each step."""
+    row = _row(numbers_of(values, where), where)
+    if len(row) != samples:
+        raise BatchError(f"{where}: {len(row)} values for {samples} steps")
+    return row
 
 
 def _row(array: np.ndarray, where: str) -> np.ndarray:

@@ -33,7 +33,9 @@ class Batch:
     frequency: int | None  # value reference; None: settle and duration are seconds
     inputs: tuple[int, ...] = ()  # value references of what is set before each step
     moves: np.ndarray | None = None  # [sample, input], of all scenarios
+    rates: np.ndarray | None = None  # [sample, input], their time derivatives; None: held
     steps: np.ndarray | None = None  # lengths of the steps; None: all are duration / samples
+    begin: float = 0.0  # s, when every scenario starts
 
     @property
     def scenarios(self) -> int:
@@ -93,12 +95,14 @@ class _Running:
             variable=_array(ctypes.c_uint, references),
             results=len(results),
             result=_array(Result, results),
+            begin=batch.begin,
             settle=_column(batch.settle),
             duration=_column(batch.duration),
             samples=batch.samples,
             inputs=len(batch.inputs),
             input=_array(ctypes.c_uint, list(batch.inputs)),
             moves=None if batch.moves is None else batch.moves.ctypes.data,
+            rates=None if batch.rates is None else batch.rates.ctypes.data,
             step=None if batch.steps is None else batch.steps.ctypes.data,
             stops_at_refusal=self.raises,
         )

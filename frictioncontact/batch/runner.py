@@ -2,7 +2,7 @@
 
 import ctypes
 import tempfile
-from ctypes import POINTER, c_char_p, c_int, c_size_t, c_uint, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 from functools import cache
 from pathlib import Path
 
@@ -34,9 +34,10 @@ class Plan(ctypes.Structure):
         ("starts", c_size_t), ("start", POINTER(Start)),
         ("variables", c_size_t), ("variable", POINTER(c_uint)),
         ("results", c_size_t), ("result", POINTER(Result)),
-        ("frequency", POINTER(c_uint)), ("settle", Column), ("duration", Column), ("samples", c_size_t),
-        ("inputs", c_size_t), ("input", POINTER(c_uint)), ("moves", DOUBLES), ("step", DOUBLES),
-        ("stops_at_refusal", c_int),
+        ("frequency", POINTER(c_uint)), ("begin", c_double),
+        ("settle", Column), ("duration", Column), ("samples", c_size_t),
+        ("inputs", c_size_t), ("input", POINTER(c_uint)), ("moves", DOUBLES), ("rates", DOUBLES),
+        ("step", DOUBLES), ("stops_at_refusal", c_int),
     )  # fmt: skip
 
 

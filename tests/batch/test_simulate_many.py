@@ -85,19 +85,21 @@ class TestNumbers:
         assert got["delta"] == pytest.approx(expected[:, -1] / sigma, rel=1e-9)
 
     def test_inputs_and_steps_are_those_of_single_sessions(self, fmu: FrictionFmu, fmu_path: Path) -> None:
-        """To the bit; a first step of no length reads the start."""
+        """To the bit, with a vibration that has begun before; a first step of no length reads the start."""
         random = np.random.default_rng(5)
         steps = np.concatenate([[0.0], random.uniform(1e-6, 1e-3, 12)])
         V, d = random.uniform(-0.5, 0.5, 13), random.uniform(13e-6, 15e-6, 13)
+        rates = random.uniform(-500.0, 500.0, 13)
         scale = np.array([1e-7, 1e-5, 1e-3])
         got = simulate_many(
-            {"contact.stiffnessScale": scale}, {"force": ("F_t", "samples")}, unit="s",
-            inputs={"V": V, "d": d}, steps=steps, fmu=fmu_path)  # fmt: skip
+            {"contact.stiffnessScale": scale, "vibration.V_1": 0.3}, {"force": ("F_t", "samples")}, unit="s",
+            inputs={"V": V, "d": d}, rates={"V": rates}, steps=steps, begin=1.3e-5, fmu=fmu_path)  # fmt: skip
         for row, value in zip(got["force"], scale, strict=True):
-            with fmu.session({"contact.stiffnessScale": value}) as session:
+            with fmu.session({"contact.stiffnessScale": value, "vibration.V_1": 0.3}, 1.3e-5) as session:
                 for k, h in enumerate(steps):
                     session.set("V", V[k])
                     session.set("d", d[k])
+                    session.set_rates(V=rates[k])
                     session.step(h)
                     assert row[k] == session.get("F_t")
 
@@ -267,6 +269,9 @@ class TestRefusals:
             ({"inputs": {"V": [0.1]}, "steps": [1.0, 1.0]}, "input V: 1 values for 2 steps"),
             ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is a parameter of the FMU, not one of V, d, E"),
             ({"inputs": {"V": [math.nan]}}, "input V, row 0: nan is not a finite number"),
+            ({"rates": {"V": [0.1]}}, "rate of V: inputs has no values of V"),
+            ({"inputs": {"V": [0.1]}, "rates": {"V": [0.1, 0.2]}}, "rate of V: 2 values for 1 steps"),
+            ({"begin": "now"}, "begin = 'now' is not a number"),
         ],
     )
     def test_wrong_arguments(self, fmu_path: Path, arguments: dict, message: str) -> None:
