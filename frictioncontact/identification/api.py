@@ -96,8 +96,9 @@ def identify(
     """Least squares of any parameters of the FMU to measured friction, with 95 % intervals.
 
     data       a CSV file, or a frame with the same headings, NAME in SI units or "NAME [UNIT]": a row a
-               steady mean, F_t_mean with V and any other input or parameter; or a series in time, F_t with
-               position or V. NAME.uncertainty is the standard uncertainty of a column
+               steady mean, F_t_mean with V and any other input or parameter; or a series in time (that
+               the vibration's phase refers to), F_t with position or V. NAME.uncertainty is the standard
+               uncertainty of a column
     fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
     start      start values that all rows share, SI units; of an enumeration an item or its number
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")

@@ -53,7 +53,7 @@ class Series:
     """One record in time. Arrays are of the samples, in SI units."""
 
     time: np.ndarray
-    V: np.ndarray  # m/s, mean over the step that follows the sample; one fewer than samples
+    V: np.ndarray  # m/s; of a position its central differences
     inputs: dict[str, np.ndarray]  # the other columns: load, d, E
     force: np.ndarray  # N
     constants: dict[str, Any]
@@ -197,7 +197,7 @@ def _series(
             raise UserError(f"the uncertainty of {FORCE}: give it in N, since the force passes zero")
     position = columns.pop(POSITION, None)
     given = columns.pop("V", None)
-    V = np.diff(position) / np.diff(time) if given is None else 0.5 * (given[1:] + given[:-1])
+    V = np.gradient(position, time, edge_order=2) if given is None else given
     for name in columns:
         if name.endswith(SUFFIX) or fmu.variables[name].causality != "input":
             raise UserError(

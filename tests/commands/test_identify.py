@@ -64,7 +64,7 @@ def from_loops(fmu: FrictionFmu, seeds: int, law: str, stated: bool = True) -> R
     position = 60e-6 * np.sin(2.0 * np.pi * time) * (0.3 + 0.5 * time)
     constants = {"contact.model": "Constant", "friction.model": law}
     series = Series(
-        time, np.diff(position) / np.diff(time), {}, np.zeros(len(time)), constants,
+        time, np.gradient(position, time), {}, np.zeros(len(time)), constants,
         np.full(len(time), LOOP_NOISE) if stated else None, position,
     )  # fmt: skip
     named = [
@@ -436,6 +436,36 @@ def test_a_measured_loop(fmu: FrictionFmu) -> None:
     page = " ".join(GUIDE.split())
     assert f"{1e-6 * result.values[0]:.4f} MN/m and {result.values[1]:.3f}" in page
     assert f"a misfit of {rms:.2f} N, {times:.0f} times the scatter" in page
+
+
+STUCK = {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.5, "friction.V_S": 0.01}
+DAMPED = {"friction.model": "ElasticPlastic", "friction.sigma_1": 500.0, "friction.sigma_2": 300.0}
+
+
+@pytest.mark.parametrize(
+    ("scene", "V", "f", "first", "fitted", "column"),
+    [
+        pytest.param(STUCK | {"delta_0": 65.0 / 4e6}, 0.02, 1e3, 0, (), "V", id="stuck above F_C"),
+        pytest.param({"vibration.V_1": 0.3, "vibration.f": 2e4}, 0.1, 1e3, 13, (), "V", id="vibration"),
+        pytest.param(DAMPED, 0.05, 100.0, 0, ("friction.sigma_1", "friction.sigma_2"), "V", id="damping"),
+        pytest.param(DAMPED, 0.05, 100.0, 9, ("friction.sigma_1",), "position", id="position"),
+    ],
+)
+def test_what_simulate_writes_gives_the_truth(
+    fmu_path: Path, scene: dict, V: float, f: float, first: int, fitted: tuple[str, ...], column: str
+) -> None:
+    """V sin(2 pi f t), 80 samples a period; a position is the integral of V."""
+    scene = {"contact.model": "Constant", "F_C": 50.0, "contact.sigma": 4e6} | scene
+    time = np.arange(161) / (80.0 * f)
+    drive = {"time": time, "V": V * np.sin(2.0 * np.pi * f * time)}
+    data = fc.simulate(scene, stop=time[-1], step=time[1], inputs=drive, outputs=["V", "F_t"], fmu=fmu_path)
+    if column == "position":
+        data["V"] = V * (1.0 - np.cos(2.0 * np.pi * f * time)) / (2.0 * np.pi * f)
+        data = data.rename(columns={"V": "position"})
+    fit = ("contact.sigma", *fitted)
+    start = {name: value for name, value in scene.items() if name not in (*fit, "delta_0")}
+    found = fc.identify(data[first:], fit, start=start, fmu=fmu_path)
+    assert list(found.values.values()) == pytest.approx([scene[name] for name in fit], rel=0.002)
 
 
 @pytest.mark.parametrize(
