@@ -127,7 +127,9 @@ def identify(
     stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
     rows = read(path_of(data, "data") if isinstance(data, (str, Path)) else data, loaded, constants, stated)
     asked = fit.items() if isinstance(fit, Mapping) else ((name, None) for name in _names(fit))
-    largest = float(np.max(np.abs(rows.force))) or 1.0
+    largest = float(np.max(np.abs(rows.force)))
+    if largest == 0.0:
+        raise UserError("every measured force is 0 N, and tells nothing about any parameter")
     usual = {"F_C": largest, **constants}  # a limit of another size than the forces has no slope towards them
     parameters = [_parameter(loaded, name, value, usual) for name, value in asked]
     if not parameters:

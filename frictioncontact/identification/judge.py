@@ -49,11 +49,11 @@ def _misfits(experiment: Experiment, result: Fit) -> list[str]:
             )
     elif experiment.word == "sample":
         scatter = float(np.std(np.diff(experiment.force, 2)) / math.sqrt(6.0))
-        if rms > 2.0 * scatter:
+        if rms > max(2.0 * scatter, SMALL * np.abs(experiment.force).max()):
+            times = f"{rms / scatter:.3g} times" if scatter > 0.0 else "more than"
             found.append(
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / scatter:.3g} times the "
-                f"scatter of neighbouring samples, {scatter:.2g} N. "
-                f"The intervals count {result.correlated:.3g} samples as one"
+                f"the law does not fit: the misfit, {rms:.3g} N rms, is {times} the scatter of neighbouring "
+                f"samples, {scatter:.2g} N. The intervals count {result.correlated:.3g} samples as one"
             )
     elif result.degrees > 0:
         size = float(np.sqrt(np.mean(experiment.force**2)))

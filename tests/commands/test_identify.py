@@ -504,6 +504,26 @@ def test_a_part_of_nothing_is_no_uncertainty(fmu_path: Path, tmp_path: Path) -> 
         main(identify, [str(path), "--fmu", str(fmu_path), "--fit", "F_C", "--uncertain", "F_t_mean=5%"])
 
 
+@pytest.mark.parametrize("table", ["V,F_t_mean\n0.1,0\n0.2,0\n", "time,V,F_t\n0,1,0\n1,1,0\n2,1,0\n"])
+def test_no_force_at_all_is_refused(fmu_path: Path, tmp_path: Path, table: str) -> None:
+    path = tmp_path / "zero.csv"
+    path.write_text(table)
+    with pytest.raises(UserError, match="every measured force is 0 N"):
+        fc.identify(path, "F_C", fmu=fmu_path)
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.25])
+def test_a_record_without_scatter_is_judged(fmu_path: Path, rise: float) -> None:
+    """Steady sliding, F_t = F_C; a force that rises by 1/4 N from sample to sample is another law."""
+    k = np.arange(41)
+    data = pd.DataFrame({"time": 1e-4 * k, "V": 0.1, "F_t": 40.0 + rise * k})
+    start = {"contact.model": "Constant", "contact.sigma": 1e9}
+    found = fc.identify(data, "F_C", start=start, fmu=fmu_path)
+    assert found.values["F_C"] == pytest.approx(np.mean(data.F_t), rel=1e-6 if rise == 0.0 else 0.01)
+    assert len(found.misfits) == (rise > 0.0)
+    assert all("is more than the scatter of neighbouring samples, 0 N" in text for text in found.misfits)
+
+
 LUGRE_FIT = """\
 V [m/s],vibration.V_1 [m/s],F_t_mean [N]
 0.05,0.3,11.55820
