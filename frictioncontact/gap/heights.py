@@ -1,8 +1,8 @@
 """Height statistics of the asperities: contact area, stiffness and normal load against the separation.
 
-Three contacts over the same two surfaces, all by quadrature of the same integrals (paper, Eq. 6-19):
+Three contacts over the same two surfaces, by the same integrals (paper, Eq. 6-19):
 
-    exponential   density c exp(-lambda s), elastic-plastic asperities: the paper's, and the FMU's closed form
+    exponential   density c exp(-lambda s), elastic-plastic asperities: the paper's, in closed form the FMU's
     gaussian      normal density, elastic-plastic asperities (Chang, Etsion, Bogy 1987)
     elastic       normal density, elastic asperities only (Greenwood, Williamson 1966)
 
@@ -14,14 +14,13 @@ from collections.abc import Callable
 
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from scipy.special import gamma, gammainc
 
 from frictioncontact.errors import UserError
 from frictioncontact.parameters import E_FULL, Surfaces
 
-Density = Callable[[float], float]
 MODELS = ("exponential", "gaussian", "elastic")
-# Where both densities have fallen below 1e-17 of the integrals' values at the separation.
-TAIL = 14.0
+TAIL = 14.0  # from a height on: beyond, the normal density is below 1e-17 of the integrals from there
 SMALLEST_SEPARATION = 1e-3  # in units of R_q: below, mean planes touch and no asperity theory holds
 
 
@@ -29,18 +28,13 @@ def gaussian(s: float) -> float:
     return math.exp(-0.5 * s * s) / math.sqrt(2.0 * math.pi)
 
 
-def exponential(c: float, decay: float) -> Density:
-    """c exp(-decay s), Eq. 17 with s = z / R_q."""
-    return lambda s: c * math.exp(-decay * s)
+def height_integral(h: float, n: float, width: float = TAIL) -> float:
+    """F_n(h): the integral of (s - h)^n gaussian(s) over a width of heights s from h on."""
+    return _integral(lambda s: (s - h) ** n * gaussian(s), h, h + min(width, TAIL))
 
 
-def height_integral(h: float, n: float, density: Density = gaussian) -> float:
-    """F_n(h): the integral of (s - h)^n density(s) over s from h on."""
-    return _integral(lambda s: (s - h) ** n * density(s), h, h + TAIL)
-
-
-def _integral(function: Density, left: float, right: float) -> float:
-    """Adaptive quadrature, in pieces that grow away from the left end: densities fall off from there."""
+def _integral(function: Callable[[float], float], left: float, right: float) -> float:
+    """Adaptive quadrature, in pieces that grow away from the left end: the density falls off from there."""
     corners, width = [left], 0.5
     while corners[-1] + 1.5 * width < right:
         corners.append(corners[-1] + width)
@@ -56,11 +50,14 @@ def _integral(function: Density, left: float, right: float) -> float:
 def _parts(surfaces: Surfaces, d: float, E: float, model: str, power: float) -> tuple[float, float]:
     """Over the heights: (s - h)^power of what is elastic, and 2 (s - h) - w of what has yielded."""
     h, w = d / surfaces.R_q, surfaces.critical_interference(E) / surfaces.R_q
-    density = exponential(surfaces.c, surfaces.lambda_) if model == "exponential" else gaussian
     if model == "elastic":
-        return height_integral(h, power, density), 0.0
-    elastic = quad(lambda s: (s - h) ** power * density(s), h, h + w, epsabs=0.0, epsrel=1e-12)[0]
-    return elastic, _integral(lambda s: (2.0 * (s - h) - w) * density(s), h + w, h + w + TAIL)
+        return height_integral(h, power), 0.0
+    if model == "gaussian":
+        plastic = _integral(lambda s: (2.0 * (s - h) - w) * gaussian(s), h + w, h + w + TAIL)
+        return height_integral(h, power, w), plastic
+    decay, n = surfaces.lambda_, power + 1.0
+    x, front = decay * w, surfaces.c * math.exp(-decay * h)
+    return front * gamma(n) * gammainc(n, x) / decay**n, front * (2.0 + x) * math.exp(-x) / decay**2
 
 
 def area(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponential") -> float:
@@ -84,12 +81,13 @@ def load(surfaces: Surfaces, d: float, E: float = E_FULL, model: str = "exponent
 
 def separation(surfaces: Surfaces, wanted: float, E: float = E_FULL, model: str = "exponential") -> float:
     """d [m] at which the surfaces carry the wanted load [N]."""
-    nearest, farthest = SMALLEST_SEPARATION * surfaces.R_q, 12.0 * surfaces.R_q
+    most_R_q = 36.0 / surfaces.lambda_ if model == "exponential" else 12.0
+    nearest, farthest = SMALLEST_SEPARATION * surfaces.R_q, most_R_q * surfaces.R_q
     most, least = load(surfaces, nearest, E, model), load(surfaces, farthest, E, model)
     if not least <= wanted <= most:
         raise UserError(
-            f"load = {wanted:g} N is out of reach: these surfaces carry {least:.3g} N at d = 12 R_q "
-            f"and {most:.5g} N at d = {SMALLEST_SEPARATION:g} R_q"
+            f"load = {wanted:g} N is out of reach: these surfaces carry {least:.3g} N "
+            f"at d = {most_R_q:g} R_q and {most:.5g} N at d = {SMALLEST_SEPARATION:g} R_q"
         )
     return brentq(
         lambda d: math.log(load(surfaces, d, E, model) / wanted), nearest, farthest, xtol=1e-18, rtol=1e-12
