@@ -59,13 +59,14 @@ def run(options: argparse.Namespace) -> None:
     for name, value in {"E": E, **given}.items():
         if name not in ("E", *SURFACES):
             raise UserError(f"--set {name}: must be one of E, {', '.join(SURFACES)}")
-        positive(f"--set {name}", float(value))
+        if name != "contact.nu":
+            positive(f"--set {name}", float(value))
     for option in ("load", "separation"):
         for value in getattr(options, option) or []:
             positive(f"--{option}", value)
     surfaces = Surfaces(**{SURFACES[name]: float(value) for name, value in given.items()})
-    if surfaces.nu > 0.5:
-        raise UserError(f"--set contact.nu={surfaces.nu:g}: must be at most 0.5")
+    if not 0.0 <= surfaces.nu <= 0.5:
+        raise UserError(f"--set contact.nu={surfaces.nu:g}: must be from 0 to 0.5")
     try:
         if options.load:
             gaps = [separation(surfaces, wanted, E, options.heights) for wanted in options.load]
@@ -83,7 +84,10 @@ def run(options: argparse.Namespace) -> None:
             "A_n: the asperities, which are summed one by one, would overlap"
         )
     if options.load and len(options.load) == 1:
-        print(f"start values: d {gaps[0]:.9g}  E {E:.9g}")
+        start = {"d": gaps[0], "E": E, **given}
+        values = "  ".join(f"{name} {value:.9g}" for name, value in start.items())
+        others = "no start values: the FMU's heights are exponential"
+        print(f"start values: {values}" if options.heights == "exponential" else others)
 
 
 def as_text(surfaces: Surfaces, gaps: Sequence[float], E: float, model: str) -> Table:

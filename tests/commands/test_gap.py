@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,15 +9,32 @@ from pathlib import Path
 import pytest
 
 from frictioncontact.command import main
+from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import command as gap
 from frictioncontact.gap.heights import load
 from frictioncontact.parameters import Surfaces
 
 
-def test_load_gives_start_values_that_carry_it(capsys: pytest.CaptureFixture[str]) -> None:
-    main(gap, ["--load", "100"])
-    d, E = re.search(r"start values: d (\S+)  E (\S+)", capsys.readouterr().out).groups()
-    assert load(Surfaces(), float(d), float(E)) == pytest.approx(100.0, rel=1e-6)
+@pytest.mark.parametrize("given", [[], ["contact.R_q=4e-6", "contact.nu=0", "E=4e10"]])
+def test_load_gives_start_values_that_carry_it(
+    fmu: FrictionFmu, capsys: pytest.CaptureFixture[str], given: list[str]
+) -> None:
+    main(gap, ["--load", "100", *(word for one in given for word in ("--set", one))])
+    words = capsys.readouterr().out.split("start values: ")[1].split()
+    with fmu.session({name: float(value) for name, value in zip(words[::2], words[1::2], strict=True)}) as it:
+        assert it.get("F_n") == pytest.approx(100.0, rel=1e-6)
+
+
+def test_other_heights_give_no_start_values(capsys: pytest.CaptureFixture[str]) -> None:
+    """The FMU carries 57.96 N where Gaussian heights carry 100 N."""
+    main(gap, ["--load", "100", "--heights", "gaussian"])
+    assert "\nno start values: the FMU's heights are exponential" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("nu", ["-0.1", "0.6"])
+def test_no_ratio_of_poisson_is_refused(nu: str) -> None:
+    with pytest.raises(SystemExit, match=f"error: --set contact.nu={nu}: must be from 0 to 0.5"):
+        main(gap, ["--load", "1", "--set", f"contact.nu={nu}"])
 
 
 def test_separation_gives_load(capsys: pytest.CaptureFixture[str]) -> None:
