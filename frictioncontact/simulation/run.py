@@ -37,7 +37,7 @@ def simulate(
     start     name of an input or parameter -> its value at the start, SI units; of an enumeration an item or
               its number
     stop      s; the last step is shorter if stop is not a multiple of step
-    step      s between two rows; F_t_mean is the mean over the time since the row before
+    step      s between two rows; F_t_mean and F_y_mean are means over the time since the row before
     inputs    a table (mapping or frame) with time [s] and any inputs: linear between the samples, held before
               the first and after the last; two samples at one time are a jump. Samples need not coincide
               with steps
@@ -68,10 +68,9 @@ def simulate(
     warn_of(loaded.known, values | moving.values, log)
     kept = np.concatenate([[0], np.searchsorted(times, ends) + 1])
     found = rows[kept]
-    if "F_t_mean" in outputs:
-        k = list(outputs).index("F_t_mean")
-        impulse = np.concatenate([[0.0], np.cumsum(rows[1:, k] * lengths)])
-        found[1:, k] = np.diff(impulse[kept]) / np.diff(ends, prepend=0.0)
+    means = [k for k, name in enumerate(outputs) if name in ("F_t_mean", "F_y_mean")]
+    impulse = np.cumsum(rows[:, means] * np.concatenate([[0.0], lengths])[:, None], axis=0)
+    found[1:, means] = np.diff(impulse[kept], axis=0) / np.diff(ends, prepend=0.0)[:, None]
     return pd.DataFrame({"time": np.concatenate([[0.0], ends]), **dict(zip(outputs, found.T, strict=True))})
 
 
