@@ -63,7 +63,7 @@ def simulate(
     lengths = times - begins
     log: list[str] = []
     rows = run(loaded, values, lengths, *moving.over(begins, times), outputs=outputs, warnings=log)
-    if "F_t" not in outputs:  # the sample that an undersampled vibration makes of it is not read
+    if not {"F_t", "F_y"} & {*outputs}:  # the sample that an undersampled vibration makes of it is not read
         log = [text for text in log if "F_t is then one sample" not in text]
     warn_of(loaded.known, values | moving.values, log)
     kept = np.concatenate([[0], np.searchsorted(times, ends) + 1])

@@ -155,9 +155,10 @@ class TestWarnings:
             assert warned(lambda contact=contact: fc.friction_law(contact.start)) == []
 
     def test_of_the_fmu_s_log(self) -> None:
-        """A step of a period: F_t is a sample. Who does not read it needs no warning."""
-        (text,) = warned(lambda: fc.simulate(SOFT, stop=1e-4, step=5e-5))
-        assert "exceeds half a period" in text
+        """A step of a period: F_t and F_y are samples. Who reads neither needs no warning."""
+        for outputs in (["F_t", "W_f"], ["F_y"]):
+            (text,) = warned(lambda outputs=outputs: fc.simulate(SOFT, stop=1e-4, step=5e-5, outputs=outputs))
+            assert "exceeds half a period" in text
         assert warned(lambda: fc.simulate(SOFT, stop=1e-4, step=5e-5, outputs=["F_t_mean"])) == []
 
     @pytest.mark.parametrize("law", ["Dahl", "LuGre", "ElasticPlastic"])
