@@ -19,10 +19,17 @@ SETTABLE = ("input", "parameter")
 LARGEST = 1e50  # of a table: differences and squares are finite; and of a value without a bound
 
 
+def _plain(text: str) -> float:
+    """A number without what Python alone takes for digits; ValueError if it is none."""
+    if "_" in text or not text.isascii():
+        raise ValueError(text)
+    return float(text)
+
+
 def number(text: str, where: str) -> float:
     """A finite number."""
     try:
-        value = float(text)
+        value = _plain(text)
     except ValueError:
         raise UserError(f"{where}: {shown(text)} is not a number{_hint(text)}") from None
     if not math.isfinite(value):
@@ -235,7 +242,7 @@ class Variables:
     def text(self, name: str, text: str, where: str) -> Value:
         """The value that a text stands for."""
         try:
-            number: Value = float(text)
+            number: Value = _plain(text)
         except ValueError:
             number = text
         return self.value(name, number, where)

@@ -5,6 +5,7 @@ an enumeration by name. A row depends on its number alone, and is made where it 
 """
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -146,9 +147,8 @@ def _values(
 
 
 def _count(text: str, name: str) -> int:
-    try:
-        count = int(text)
-    except ValueError:
-        raise UserError(f"--vary {name}: the count {shown(text)} is not a whole number") from None
+    if not re.fullmatch("[-+]?[0-9]{1,20}", text):
+        raise UserError(f"--vary {name}: the count {shown(text)} is not a whole number")
+    count = int(text)
     check_whole(count, MOST_VALUES, f"--vary {name}: the count")
     return count

@@ -164,12 +164,14 @@ def test_the_command_prints_or_writes_the_same_table(
     ("text", "message"),
     [
         ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
+        ("time,V\n0,0.1\n1e-5,1_0\n", "row 2 (line 3), column 'V': '1_0' is not a number"),
+        ("time,V\n0,\uff11\uff10\n", "row 1 (line 2), column 'V': '\uff11\uff10' is not a number"),
         ("time [s],V [km/h]\n0,0.1\n", "line 1, column 2: V is in m/s or mm/s"),
     ],
 )
 def test_wrong_files_of_inputs(fmu_path: Path, tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "drive.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(SystemExit, match=re.escape(message)):
         main(command, ["--stop", "1", "--step", "1", "--inputs", str(path), "--fmu", str(fmu_path)])
 

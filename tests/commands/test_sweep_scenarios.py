@@ -99,6 +99,8 @@ def test_malformed_csv_names_row_and_column(
         (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
         (["--vary", "V=0:1:3:log"], "must begin above 0"),
         (["--vary", f"V=0:1:{'9' * 5000}"], "is not a whole number"),
+        (["--vary", "V=0:1:1_0"], "--vary V: the count '1_0' is not a whole number"),
+        (["--vary", "V=0.1,1_0"], "--vary V: '1_0' is not a number"),
         (
             ["--vary", "V=1", "--samples", "100000000000"],
             "--samples 100000000000: must be a whole number from 1 to 1000000",
