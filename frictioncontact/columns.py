@@ -1,14 +1,16 @@
 """Tables with headings: "NAME [UNIT]", with the factor of the unit to SI, or "NAME" in SI units."""
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
+from fmpy.model_description import ScalarVariable
+
 from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.values import LARGEST, number
+from frictioncontact.values import LARGEST, Variables, number
 
 HEADING = re.compile(r"\s*([^\[\]]+?)\s*(?:\[\s*([^\[\]]*?)\s*\]\s*)?")
 FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
@@ -40,12 +42,27 @@ def accepted(fmu: FrictionFmu) -> list[str]:
     ]
 
 
-def units(fmu: FrictionFmu, name: str) -> dict[str, float]:
+def units(variable: ScalarVariable, known: Variables) -> dict[str, float]:
     """The units that a variable may be given in, each with its factor to SI."""
-    variable = fmu.variables[name]
-    factors = fmu.known.factors.items()
-    known = {display: 1.0 / factor for (unit, display), factor in factors if unit == variable.unit}
-    return {variable.unit: 1.0} | known | (FORCES if variable.unit == "N" else {})
+    factors = known.factors.items()
+    displayed = {display: 1.0 / factor for (unit, display), factor in factors if unit == variable.unit}
+    return {variable.unit or "1": 1.0} | displayed | (FORCES if variable.unit == "N" else {})
+
+
+def heading(cell: str, where: str) -> tuple[str, str | None]:
+    """Name and unit of a column; UserError if it is of another form."""
+    match = HEADING.fullmatch(cell)
+    if not match:
+        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]' or 'name'")
+    name, unit = match.groups()
+    return name, unit
+
+
+def factor(name: str, unit: str | None, known: Mapping[str, float], where: str) -> float:
+    """From a column's unit to SI; UserError if it is none of the known."""
+    if unit is not None and unit not in known:
+        raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
+    return 1.0 if unit is None else known[unit]
 
 
 def columns_of(fmu: FrictionFmu, path: Path, lines: Sequence[tuple[int, list[str]]]) -> list[Column]:
@@ -90,21 +107,16 @@ def numbers_below(
 
 
 def _column(fmu: FrictionFmu, where: str, cell: str) -> Column:
-    match = HEADING.fullmatch(cell)
-    if not match:
-        raise UserError(f"{where}: heading {cell!r} is not of the form 'name [unit]' or 'name'")
-    name, unit = match.groups()
+    name, unit = heading(cell, where)
     plain = name.removesuffix(".uncertainty")
     if plain in OWN:
         known = OWN[plain]
     elif plain in accepted(fmu):
-        known = units(fmu, plain)
+        known = units(fmu.variables[plain], fmu.known)
     else:
         others = [*OWN, *accepted(fmu)]
         raise UserError(
             f"{where}: there is no variable {name!r}{did_you_mean(plain, others) or ';'} columns may be "
             f"{', '.join(others)}, and NAME.uncertainty of each"
         )
-    if unit is not None and unit not in known:
-        raise UserError(f"{where}: {name} is in {' or '.join(known)}, not in {unit!r}")
-    return Column(cell.strip(), name, known[unit] if unit is not None else 1.0)
+    return Column(cell.strip(), name, factor(name, unit, known, where))

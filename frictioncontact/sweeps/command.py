@@ -18,8 +18,8 @@ Runs the FMU over a settled period of the vibration in many scenarios and writes
 results.parquet, a folder of files that pandas.read_parquet reads as one.
 
 Scenarios: every combination of the --vary values (a grid); --random N rows drawn from the --vary ranges;
-or the rows of a --csv file whose header names variables. Values are in SI units; those of enumerations
-items or their numbers.
+or the rows of a --csv file whose header names variables. Values are in SI units, in a file also in those of
+a heading "V [mm/s]"; those of enumerations are items or their numbers.
 
   %(prog)s --vary V=0.005:0.5:20:log --vary vibration.V_1=0:1.5:16
   %(prog)s --random 10000 --seed 1 --vary V=1e-3:1:log --vary d=10e-6:18e-6 --set vibration.V_1=1.44

@@ -84,7 +84,8 @@ def sweep(
               a grid of all combinations, "low:high[:log]" of a random sweep; SI units, of an enumeration
               items or their numbers
     random    this many scenarios, drawn from `vary`: row k depends on seed and k alone
-    csv       a file whose header names variables and whose rows are scenarios, in place of `vary`
+    csv       a file whose header names variables, or also their units, "V [mm/s]", and whose rows are
+              scenarios, in place of `vary`
     set       name -> value, the same in all scenarios
     workers   threads here; one for each processor that this process may use
     cluster   address of a Dask scheduler, whose workers have this package, in place of threads here

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from frictioncontact.batch.prepare import check_whole
+from frictioncontact.columns import factor, heading, units
 from frictioncontact.errors import UserError, shown
 from frictioncontact.values import Value, Variables, csv_rows, number
 
@@ -90,15 +91,20 @@ def _drawn_rows(
 
 
 def from_csv(variables: Variables, path: Path) -> Scenarios:
-    """A header with names of variables, then a scenario a row. Errors name row, from 1, and column."""
+    """A header as in columns.py, then a scenario a row. Errors name row, from 1, and column."""
     rows = csv_rows(path)
-    _, names = next(rows, (1, []))
-    if not names:
+    _, header = next(rows, (1, []))
+    if not header:
         raise UserError(f"{path}: is empty; row 1 must name the variables")
-    for place, name in enumerate(names, 1):
-        variables.find(name, f"{path}: row 1, column {place}")
-        if name in names[: place - 1]:
-            raise UserError(f"{path}: row 1, column {place}: {name} is there twice")
+    names, factors = [], []
+    for place, cell in enumerate(header, 1):
+        where = f"{path}: row 1, column {place}"
+        name, unit = heading(cell, where)
+        variable = variables.find(name, where)
+        if name in names:
+            raise UserError(f"{where}: {name} is there twice")
+        names.append(name)
+        factors.append(factor(name, unit, units(variable, variables), where))
     table = []
     for row, cells in rows:
         if len(cells) != len(names):
@@ -108,7 +114,10 @@ def from_csv(variables: Variables, path: Path) -> Scenarios:
         table.append([variables.text(n, cell, f"{where} {n}") for n, cell in zip(names, cells, strict=True)])
     if not table:
         raise UserError(f"{path}: has no row below the header")
-    columns = dict(zip(names, map(np.array, zip(*table, strict=True)), strict=True))
+    columns = {
+        name: np.array(cells) if variables.items[name] else np.array(cells) * to_SI
+        for name, to_SI, cells in zip(names, factors, zip(*table, strict=True), strict=True)
+    }
     return Scenarios(len(table), partial(_csv_rows, columns), columns)
 
 

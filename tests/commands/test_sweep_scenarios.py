@@ -67,12 +67,22 @@ def test_csv(fmu_path: Path, tmp_path: Path) -> None:
     assert made.to_dict("list") == {"V": [0.1, 0.2], "friction.model": ["LuGre", "Dahl"]}
 
 
+def test_csv_with_units(fmu_path: Path, tmp_path: Path) -> None:
+    path = tmp_path / "scenarios.csv"
+    path.write_text("V [mm/s],vibration.phase_d [deg],friction.model,vibration.a_d\n100,180,LuGre,1e-7\n")
+    made = table(fmu_path, tmp_path / "out", "--csv", str(path)).iloc[0]
+    assert (made["friction.model"], made["vibration.a_d"]) == ("LuGre", 1e-7)
+    assert [made["V"], made["vibration.phase_d"]] == pytest.approx([0.1, np.pi], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
+        ("V [km/h]\n1\n", "row 1, column 1: V is in m/s or mm/s, not in 'km/h'"),
+        ("friction.model [mm]\n1\n", "row 1, column 1: friction.model is in 1, not in 'mm'"),
+        ("V [mm/s],V\n1,2\n", "row 1, column 2: V is there twice"),
         ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
         ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
-        ("V,V\n1,2\n", "row 1, column 2: V is there twice"),
         ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
         (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
         ("V\n", "has no row below the header"),
