@@ -1,4 +1,4 @@
-"""What is read from an FMU in its periodic state, in which initialState = Settled starts it."""
+"""What is read from an FMU in its periodic state."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,10 +8,9 @@ from .fmu import SETTLED, FrictionFmu, Value, simulate
 
 
 def periodic_mean(fmu: FrictionFmu, start_values: Mapping[str, Value]) -> float:
-    """Time mean of F_t [N] over one period of the periodic state of a scene."""
-    with fmu.session({**start_values, **SETTLED}) as session:
-        session.step(1.0 / session.get("vibration.f"))
-        return session.get("F_t_mean")
+    """Time mean of F_t [N] in the periodic state of a scene, over the several periods of static friction."""
+    with fmu.session(start_values) as session:
+        return session.get("F_t_settled")
 
 
 def periodic_waves(

@@ -119,7 +119,7 @@ def advise(
 
 
 def mean_friction(fmu: FrictionFmu, asked: Question) -> float:
-    """Mean of F_t [N]: over the inputs, or over a period once settled."""
+    """Mean of F_t [N]: over the inputs, or once settled."""
     if asked.inputs:
         count = len(next(iter(asked.inputs.values()))) - 1
         rows = simulate(fmu, asked.given, asked.step, count, asked.inputs, asked.linear, asked.start)

@@ -60,7 +60,8 @@ def simulate_many(
     outputs   names of variables to be read; or name of a result -> variable, or (variable, statistic)
               with a statistic of "end" (after the last step, the default), "change" (since the settling),
               "mean", "min", "max" (of the samples), "samples" (all of them: one axis more; in a frame the
-              columns NAME[0], NAME[1], ...)
+              columns NAME[0], NAME[1], ...). F_t_mean is over the last step alone: with static friction a
+              settled state may last several periods, and F_t_settled is the mean over all
     fmu       another .fmu file of this model with a binary for this platform, or its bytes
     settle    length of a first step that is not read. Without it scenarios start settled, if the unit is
               the period and the values do not contain initialState

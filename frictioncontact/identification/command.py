@@ -26,8 +26,8 @@ fits at all; then the values with 95 % intervals, linear and by profile likeliho
 what the data can't tell. Draws identify.png."""
 
 EPILOG = """\
-The CSV has one row per steady state, and every model value is the FMU's own F_t_mean over one vibration
-period of the periodic state. Each column is a variable of the FMU, with a unit that it may have in brackets
+The CSV has one row per steady state, and every model value is the FMU's own F_t_settled, the mean over the
+periodic state. Each column is a variable of the FMU, with a unit that it may have in brackets
 or else in SI units; lines that begin with # are skipped:
 
   V [mm/s],vibration.V_1 [m/s],load [N],F_t_mean [N],F_t_mean.uncertainty [N]

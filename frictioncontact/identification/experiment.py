@@ -154,7 +154,7 @@ class Experiment(ABC):
 
 
 class Rows(Experiment):
-    """Rows of means, each in its periodic state: F_t_mean of initialState = Settled."""
+    """Rows of means, each in its periodic state: F_t_settled."""
 
     def __init__(self, fmu: FrictionFmu, rows: Measurements, parameters: Sequence[Parameter]) -> None:
         self.rows = rows
@@ -180,12 +180,14 @@ class Rows(Experiment):
 
     def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
         values = {**self._values(points), "solver.tolerance": tolerance}
-        found = simulate_many(values, ("F_t_mean",), settled=True, errors="keep", fmu=self.fmu.path)
-        refused = np.argwhere(np.isnan(found["F_t_mean"]))
+        found = simulate_many(
+            values, ("F_t_settled",), settle=0.0, duration=0.0, errors="keep", fmu=self.fmu.path
+        )
+        refused = np.argwhere(np.isnan(found["F_t_settled"]))
         if len(refused):
             k, row = refused[0]
             self.problem = f"row {row + 1}: {found['reason'][k, row]}"
-        return found["F_t_mean"]
+        return found["F_t_settled"]
 
     def kappa(self, point: np.ndarray) -> np.ndarray:
         values = {**self._values(point[None, :]), "vibration.a_d": 0.0}

@@ -15,7 +15,8 @@ from frictioncontact.values import assignments
 
 DESCRIPTION = """\
 Runs the FMU over a settled period of the vibration in many scenarios and writes one row for each to
-results.parquet, a folder of files that pandas.read_parquet reads as one.
+results.parquet, a folder of files that pandas.read_parquet reads as one. With static friction the settled
+state may last several periods: F_mean and reduction are over all of them, the other columns over the first.
 
 Scenarios: every combination of the --vary values (a grid); --random N rows drawn from the --vary ranges;
 or the rows of a --csv file whose header names variables. Values are in SI units, in a file also in those of

@@ -23,7 +23,7 @@ Group = tuple[int, int]  # first scenario, and the one after the last
 
 # Column of the results -> what is read, unit and meaning.
 RESULTS: dict[str, tuple[Output, str]] = {
-    "F_mean": (("F_t_mean", "mean"), "N, time mean of F_t over a period of the vibration"),
+    "F_mean": ("F_t_settled", "N, time mean of F_t in the settled state, over all periods that it lasts"),
     "reduction": ("F_C", "percent, how far F_mean lies below F_C"),
     "F_min": (("F_t", "min"), "N, least sample of F_t in the period"),
     "F_max": (("F_t", "max"), "N, greatest sample of F_t in the period"),

@@ -37,7 +37,7 @@ def results(fmu: FrictionFmu) -> Iterator[Result]:
 
 
 def mean_force(fmu: FrictionFmu, row: Row, parameters: ParameterSet) -> float:
-    """F_t_mean [N] of one period in the periodic state."""
+    """Time mean of F_t [N] in the periodic state."""
     return periodic_mean(fmu, start_values(row, parameters))
 
 

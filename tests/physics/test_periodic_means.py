@@ -1,6 +1,6 @@
 """Mean friction of the periodic state, by the FMU, against closed forms and the reference.
 
-The FMU starts settled and takes one step over a single period, whose F_t_mean is read.
+By `periodic_mean`, and by one step over a period from a settled start.
 """
 
 from __future__ import annotations
