@@ -3,8 +3,17 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from .fmu import SETTLED, FrictionFmu, Value, simulate
+
+STILL = {"vibration.V_1": 0.0, "vibration.V_2": 0.0, "vibration.a_d": 0.0}  # start values: no vibration
+
+
+def reduction(mean: npt.ArrayLike, without: npt.ArrayLike) -> np.ndarray:
+    """Percent by which mean forces lie below those without vibration; nan if there is none of these."""
+    without = np.where(without, without, np.nan)
+    return 100.0 * (without - mean) / without
 
 
 def periodic_mean(fmu: FrictionFmu, start_values: Mapping[str, Value]) -> float:

@@ -20,7 +20,8 @@ from frictioncontact.command import (
 )
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.parameters import IDENTIFIED, PRINTED, STIFFNESS_PRINTED, TABLE_2
-from frictioncontact.table2.rows import Result, csv_rows, reduction, results
+from frictioncontact.periodic import reduction
+from frictioncontact.table2.rows import Result, csv_rows, results
 
 DESCRIPTION = """\
 Simulates the six rows of the paper's Table 2 with the FMU through fmpy, and prints the mean friction force

@@ -18,7 +18,7 @@ from frictioncontact.parameters import (
     Row,
     start_values,
 )
-from frictioncontact.periodic import periodic_mean
+from frictioncontact.periodic import periodic_mean, reduction
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,6 @@ def results(fmu: FrictionFmu) -> Iterator[Result]:
 def mean_force(fmu: FrictionFmu, row: Row, parameters: ParameterSet) -> float:
     """Time mean of F_t [N] in the periodic state."""
     return periodic_mean(fmu, start_values(row, parameters))
-
-
-def reduction(mean: float, without: float) -> float:
-    """Percent by which the mean force lies below the one without vibration."""
-    return 100.0 * (without - mean) / without
 
 
 def csv_rows(table: Sequence[Result]) -> list[dict[str, float]]:

@@ -148,6 +148,20 @@ class TestScenario:
         # Sliding dissipates F_C times the path, but for the two reversals.
         assert row["W_period"] == pytest.approx(55.0 * path[0] / 20e3, rel=1e-3)
 
+    @pytest.mark.parametrize("V", [0.5, -0.5])
+    def test_reduction_is_against_the_law_s_own_friction(
+        self, fmu_path: Path, tmp_path: Path, V: float
+    ) -> None:
+        """The limit is mu times the load, and viscous friction adds sigma_2 V to both."""
+        values = {"V": V, "vibration.V_1": 1.44, "load": 300.0, "friction.mu": 0.2, "friction.sigma_2": 8.0}
+        values |= {"contact.input": "Load", "friction.limit": "Load", "friction.model": "Coulomb"}
+        row = evaluate(fmu_path, tmp_path, values, 1)
+        reduced = 60.0 * (1 - 2 / np.pi * np.arcsin(0.5 / 1.44))
+        assert row["reduction"] == pytest.approx(100 * reduced / (60.0 + 8.0 * 0.5), rel=1e-9)
+
+    def test_without_friction_there_is_no_reduction(self, fmu_path: Path, tmp_path: Path) -> None:
+        assert np.isnan(evaluate(fmu_path, tmp_path, {"V": 0.0, "vibration.V_1": 1.44}, 1)["reduction"])
+
 
 class TestRuns:
     def test_refused_scenarios_are_kept_apart(self, ran: Ran, tmp_path: Path) -> None:

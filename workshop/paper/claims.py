@@ -6,8 +6,8 @@ import numpy as np
 
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2
-from frictioncontact.periodic import periodic_waves
-from frictioncontact.table2.rows import mean_force, reduction
+from frictioncontact.periodic import periodic_waves, reduction
+from frictioncontact.table2.rows import mean_force
 from workshop.paper.figures import (
     A_D,
     PRINTED_AREA,

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from markdown_it import MarkdownIt
 
 from frictioncontact.parameters import IDENTIFIED
-from frictioncontact.table2.rows import Result, conditions, reduction
+from frictioncontact.periodic import reduction
+from frictioncontact.table2.rows import Result, conditions
 from workshop.figure import Figure
 from workshop.paper.claims import Claim
 from workshop.project import ROOT
