@@ -106,6 +106,8 @@ def advise(
     loaded = opened(fmu)
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)
     mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
+    if scale == 0.0:
+        raise UserError("friction.mu F_n = 0 N: must be above 0 N, since the accuracy is relative to it")
     advice = Advice(asked, {}, "", mean, scale, 0.0)
     goal = accuracy * (min(1.0, abs(mean) / scale) if advice.knows_the_mean else 1.0)
     settings, why = settings_for(loaded, asked, goal)

@@ -99,6 +99,8 @@ def coupling(
         raise UserError("--mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
     with fmu.session(values) as session:
         sigma = stiffest(session)
+    if sigma == 0.0:
+        raise UserError("--mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
     return advice(options.mass, sigma, options.master, options.step)
 
 

@@ -25,9 +25,9 @@ def coulomb_errors(values: Mapping[str, Value], sigma: float, step: float) -> tu
     """Bounds, over F_C, of Coulomb's errors of F_t and of F_t_mean over steps of `step` [s]; inputs held.
 
     values: of every variable of the scene; sigma: its stiffness [N/m]. inf where nothing is proven: where d
-    vibrates, the law is another, V stands still, or the contact moves across it.
+    vibrates, the contact is open, the law is another, V stands still, or the contact moves across it.
     """
-    if values["friction.model"] != "Dahl" or values["friction.limit"] != "Constant":
+    if values["friction.model"] != "Dahl" or values["friction.limit"] != "Constant" or sigma == 0.0:
         return math.inf, math.inf
     V, V_1, f = (float(values[name]) for name in ("V", "vibration.V_1", "vibration.f"))
     if any(values[name] != 0.0 for name in ("vibration.a_d", "friction.sigma_1", "V_y", "vibration.V_2")):
