@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
-from frictioncontact.periodic import periodic_mean
+from frictioncontact.periodic import periodic_mean, periodic_waves
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,6 +36,7 @@ class Advice:
     why: str
     mean: float  # N, mean friction
     scale: float  # N, F_C: what errors are over
+    largest: float  # N, S: what solver.tolerance is over
     error: float  # N, largest that was found
 
     @property
@@ -46,7 +47,7 @@ class Advice:
     @property
     def knows_the_mean(self) -> bool:
         """Whether some tolerance gives the accuracy for the mean friction."""
-        return self.asked.accuracy * abs(self.mean) >= LEAST * self.scale
+        return self.asked.accuracy * abs(self.mean) >= LEAST * self.largest
 
     def __repr__(self) -> str:
         settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
@@ -108,16 +109,16 @@ def advise(
     mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
     if scale == 0.0:
         raise UserError("friction.mu F_n = 0 N: must be above 0 N, since the accuracy is relative to it")
-    advice = Advice(asked, {}, "", mean, scale, 0.0)
+    advice = Advice(asked, {}, "", mean, scale, largest_force(loaded, asked, scale), 0.0)
     goal = accuracy * (min(1.0, abs(mean) / scale) if advice.knows_the_mean else 1.0)
-    settings, why = settings_for(loaded, asked, goal)
+    settings, why = settings_for(loaded, asked, goal, goal * scale / advice.largest)
     errors = largest_errors(loaded, asked, settings, phases)
     error = {"both": max(errors), "F_t": errors[0], "F_t_mean": errors[1]}[output]
     if error > goal * scale:
         raise UserError(
             f"{why} It misses by {error / scale:.1e} F_C here, which is a fault: please report it"
         )
-    return Advice(asked, settings, why, mean, scale, error)
+    return replace(advice, settings=settings, why=why, error=error)
 
 
 def mean_friction(fmu: FrictionFmu, asked: Question) -> float:
@@ -144,8 +145,32 @@ def mean_limit(fmu: FrictionFmu, asked: Question) -> float:
         return session.get("F_t_mean")
 
 
-def settings_for(fmu: FrictionFmu, asked: Question, goal: float) -> tuple[dict[str, Value], str]:
-    """Start values that hold an error of goal over F_C, and why they do."""
+def largest_force(fmu: FrictionFmu, asked: Question, limit: float) -> float:
+    """S [N] of docs/physics.md, over the inputs, or over a period once settled."""
+    values, names = asked.values, ("sigma", "delta", "delta_y", "F_n")
+    if asked.inputs:
+        count = len(next(iter(asked.inputs.values()))) - 1
+        rows = simulate(fmu, asked.given, asked.step, count, asked.inputs, asked.linear, asked.start, names)
+        if values["friction.limit"] == "Load":
+            limit = max(limit, float(values["friction.mu"]) * rows["F_n"].max())
+    else:
+        rows = periodic_waves(fmu, asked.given, names, periods=1, samples=64)
+    speed = math.hypot(
+        *(
+            np.abs(asked.inputs.get(name, values[name])).max() + abs(values[amplitude])
+            for name, amplitude in (("V", "vibration.V_1"), ("V_y", "vibration.V_2"))
+        )
+    )
+    ratio = values["friction.staticRatio"] if values["friction.model"] in ("LuGre", "ElasticPlastic") else 1.0
+    damping = values["friction.sigma_1"] + values["friction.sigma_2"]
+    stored = (rows["sigma"] * np.hypot(rows["delta"], rows["delta_y"])).max()
+    return float(max(ratio * limit, stored, damping * speed))
+
+
+def settings_for(
+    fmu: FrictionFmu, asked: Question, goal: float, of_largest: float
+) -> tuple[dict[str, Value], str]:
+    """Start values that hold an error of goal over F_C, which is of_largest over S, and why they do."""
     if not asked.inputs:
         with fmu.session(asked.given) as session:
             sigma = session.get("sigma")
@@ -153,8 +178,14 @@ def settings_for(fmu: FrictionFmu, asked: Question, goal: float) -> tuple[dict[s
         bound = {"both": max(of_F, of_mean), "F_t": of_F, "F_t_mean": of_mean}[asked.output]
         if bound <= goal:
             return {"friction.model": "Coulomb"}, f"Coulomb friction, which is within {bound:.1e} F_C here."
-    # A power of ten, a little below so that an exponent is not lost to rounding.
-    tolerance = min(max(10.0 ** math.floor(math.log10(goal) + 1e-9), LEAST), MOST)
+    of_largest *= 1.01  # an exponent is not lost to a force that exceeds F_C by a hair
+    if of_largest < LEAST:
+        least = asked.accuracy * LEAST / of_largest
+        raise UserError(
+            f"accuracy {asked.accuracy:g}: must be at least {least:.3g} here, "
+            f"since solver.tolerance promises {LEAST:g} of the largest force, not of F_C"
+        )
+    tolerance = min(10.0 ** math.floor(math.log10(of_largest)), MOST)
     return {
         "solver.tolerance": float(f"{tolerance:.0e}")
     }, f"The default at solver.tolerance {tolerance:.0e}."

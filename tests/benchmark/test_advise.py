@@ -45,11 +45,15 @@ def draw(seed: int) -> tuple[dict[str, Value], float, float]:
 
 
 def missed(
-    fmu: FrictionFmu, scene: Mapping[str, Value], settings: Mapping[str, Value], step: float
+    fmu: FrictionFmu,
+    scene: Mapping[str, Value],
+    settings: Mapping[str, Value],
+    step: float,
+    phases: tuple[float, ...] = (0.0, 0.5),
 ) -> np.ndarray:
-    """The largest errors of OUTPUTS [N] in some steps from two phases, from rest and settled."""
+    """The largest errors of OUTPUTS [N] in some steps from some phases, from rest and settled."""
     case = Case("drawn", "drawn", scene, step)
-    return largest_errors(fmu, case, settings, runs_of(case, (0.0, 0.5)))
+    return largest_errors(fmu, case, settings, runs_of(case, phases))
 
 
 def allowed(scene: Mapping[str, Value], accuracy: float) -> float:
@@ -97,6 +101,20 @@ def test_coulomb_is_advised_where_it_is_close_enough(
     scene = {k: v for k, v in settings.items() if k != "friction.model"}
     errors = missed(fmu, scene, settings, 1e-3)
     assert max(errors[OUTPUTS.index(name)] for name in outputs) <= allowed(scene, 1e-2)
+
+
+def test_the_promise_is_of_F_C_if_viscous_friction_is_far_larger(
+    fmu: FrictionFmu, fmu_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """solver.tolerance is relative to sigma_2 |V|, 100 F_C here."""
+    scene: dict[str, Value] = {"V": 0.4652, "vibration.V_1": 0.3, "friction.model": "LuGre"}
+    scene |= {"contact.model": "Constant", "contact.sigma": 1.034e8}
+    scene |= {"friction.sigma_1": 18.17, "friction.sigma_2": 7369.0}
+    words = [f"{name}={value}" for name, value in scene.items()]
+    settings = advised(fmu_path, capsys, "--accuracy", "1e-3", "--step", "1.3e-5", *words)
+    assert missed(fmu, scene, settings, 1.3e-5, (0.6, 0.8)).max() <= 1e-3 * F_C
+    with pytest.raises(SystemExit, match=r"accuracy 1e-08: must be at least 1\.02e-06 here"):
+        advised(fmu_path, capsys, "--accuracy", "1e-8", *words)
 
 
 @pytest.mark.parametrize("seed", range(30))
