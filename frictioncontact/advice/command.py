@@ -4,7 +4,10 @@ import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from frictioncontact.advice.answer import PHASES, advise
+import numpy as np
+from fmpy.util import read_csv
+
+from frictioncontact.advice.answer import PHASES, Advice, advise
 from frictioncontact.advice.question import OUTPUTS, STEP_LENGTHS, between, scene_values
 from frictioncontact.advice.stuck_mass import MASTERS, advice
 from frictioncontact.command import add_fmu, add_set, command_line, progress_bar, shown
@@ -56,6 +59,7 @@ def run(options: argparse.Namespace) -> None:
         said, settings = coupling(fmu, known, options)
         print(said, start_values(fmu, known | settings), sep="\n\n")
         return
+    inputs = read_inputs(options.inputs, fmu) if options.inputs else None
     with progress_bar() as progress:
         progress.add_task("Grading", total=None)
         found = advise(
@@ -63,15 +67,38 @@ def run(options: argparse.Namespace) -> None:
             accuracy=options.accuracy,
             step=options.step,
             output=options.output_of,
-            inputs=read_inputs(options.inputs, fmu) if options.inputs else None,
+            inputs=inputs,
             linear=options.linear,
             phases=PHASES[:2] if options.quick else PHASES,
             fmu=options.fmu,
         )
-    words = ["fmpy simulate", shown(fmu.path), f"--output-interval {found.asked.step:.6g}"]
-    if options.inputs:
-        words.append(f"--input-file {options.inputs}")
-    print(found, " ".join([*words, start_values(fmu, found.start_values)]).rstrip(), sep="\n\n")
+    print(found, command_for(fmu, found, options.inputs, inputs), sep="\n\n")
+
+
+def command_for(
+    fmu: FrictionFmu, found: Advice, path: Path | None, inputs: Mapping[str, Sequence[float]] | None
+) -> str:
+    """What runs the scene with its inputs as graded: fmpy holds them, simulate moves them from time 0 on."""
+    asked, values = found.asked, start_values(fmu, found.start_values)
+    fmpy = f"fmpy simulate {shown(fmu.path)} --output-interval {asked.step:.10g}"
+    if inputs is None:
+        return f"{fmpy} {values}".rstrip()
+    stop = f"{inputs['time'][-1]:.10g}"
+    if asked.linear and asked.start == 0.0:
+        settings = " ".join(f"--set {name}={value}" for name, value in found.start_values.items())
+        return f"frictioncontact simulate --inputs {path} --stop {stop} --step {asked.step:.10g} {settings}"
+    if asked.linear or not fmpy_reads(path, inputs):
+        return f"Neither fmpy nor simulate runs these inputs as they were graded: {values}"
+    return f"{fmpy} --start-time {asked.start:.10g} --stop-time {stop} --input-file {path} {values}"
+
+
+def fmpy_reads(path: Path | None, inputs: Mapping[str, Sequence[float]]) -> bool:
+    """Whether FMPy makes the same numbers of the file, under the same names."""
+    try:
+        table = read_csv(path)
+        return table.dtype.names[0] == "time" and all(np.array_equal(table[n], inputs[n]) for n in inputs)
+    except (ValueError, IndexError, TypeError):
+        return False
 
 
 def start_values(fmu: FrictionFmu, values: Mapping[str, Value]) -> str:

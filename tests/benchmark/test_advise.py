@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
+from frictioncontact.simulation import command as simulate
 from workshop.bench.cases import Case
 from workshop.bench.levels import largest_errors, runs_of
 from workshop.reference import solution as reference
@@ -193,8 +196,53 @@ def test_bad_inputs_are_told_by_their_line(
         advised(fmu_path, capsys, "--inputs", str(path))
 
 
-def test_inputs_from_a_file(fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    path = tmp_path / "inputs.csv"
-    path.write_text("time,V\n" + "".join(f"{k * 1e-5},{0.01 * (k - 5)}\n" for k in range(11)))
-    settings = advised(fmu_path, capsys, "--inputs", str(path), "--linear", "contact.stiffnessScale=1e-6")
-    assert settings["solver.tolerance"] <= 1e-3
+TIMES, SPEEDS = 2e-5 + 1e-5 * np.arange(11), 0.01 * (np.arange(11) - 5)
+
+
+def of_inputs(
+    fmu_path: Path, capsys: pytest.CaptureFixture[str], path: Path, heading: str, begin: float, *words: str
+) -> list[str]:
+    """The words of the command that it prints for SPEEDS in a file."""
+    rows = zip(TIMES - TIMES[0] + begin, SPEEDS, strict=True)
+    path.write_text(heading + "\n" + "".join(f"{time!r},{V!r}\n" for time, V in np.array([*rows]).tolist()))
+    soft = ["--set", "contact.stiffnessScale=1e-6", "--fmu", str(fmu_path)]
+    main(advise, ["--quick", "--inputs", str(path), *soft, *words])
+    return capsys.readouterr().out.splitlines()[-1].split()
+
+
+def test_fmpy_s_command_holds_the_inputs_of_a_file(
+    fmu: FrictionFmu, fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """It gives what steps do from the first time on."""
+    words = of_inputs(fmu_path, capsys, tmp_path / "inputs.csv", "time,V", TIMES[0])
+    assert words[:2] == ["fmpy", "simulate"]
+    out = ["--output-variables", "F_t", "--output-file", str(tmp_path / "out.csv")]
+    run = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), *out, *words[3:]]
+    subprocess.run(run, check=True, capture_output=True, timeout=60)
+    found = np.loadtxt(tmp_path / "out.csv", delimiter=",", skiprows=1)
+    with fmu.session({"contact.stiffnessScale": 1e-6, "V": SPEEDS[0]}, start=TIMES[0]) as session:
+        for k, V in enumerate(SPEEDS[:-1]):
+            session.set("V", V)
+            session.step(1e-5)
+            assert found[k + 1] == pytest.approx([TIMES[k + 1], session.get("F_t")], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("heading", "begin", "options", "command"),
+    [
+        ("time,V", 0.0, ["--linear"], "frictioncontact simulate"),
+        ("time [s],V [m/s]", 0.0, ["--linear"], "frictioncontact simulate"),
+        ("time,V [mm/s]", 0.0, [], "Neither fmpy"),
+        ("time [ms],V", 0.0, [], "Neither fmpy"),
+        ("time,V", 1e-5, ["--linear"], "Neither fmpy"),
+    ],
+)
+def test_no_command_reads_a_file_otherwise(
+    fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path,
+    heading: str, begin: float, options: list[str], command: str,
+) -> None:  # fmt: skip
+    words = of_inputs(fmu_path, capsys, tmp_path / "inputs.csv", heading, begin, *options)
+    assert " ".join(words).startswith(command)
+    if words[0] == "frictioncontact":
+        main(simulate, words[2:])
+        assert len(capsys.readouterr().out.splitlines()) == len(TIMES) + 1
