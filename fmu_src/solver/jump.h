@@ -7,8 +7,10 @@
 //
 // With a constant g that is g (|delta| - D), with a constant sigma sigma (delta^2 - D^2) / 2. A bristle of
 // ElasticPlastic that sticks breaks away on the ramp when the static bound falls to |delta|, and follows the
-// kinetic bound from there. One that slips sticks on the ramp only if V has ceased to push it. The stored energy of a contact that opens is heat if its stiffness is constant,
-// and else goes to the normal drive with the stiffness.
+// kinetic bound from there. One that slips sticks on the ramp if V has ceased to push it, the motion after the ramp
+// does not push it, and it lies inside its bound; or if it lay inside at the start and the ramp raises the bound.
+// fc_reach decides at the end. The stored energy of a contact that opens is heat if its stiffness is constant, and else
+// goes to the normal drive with the stiffness.
 #ifndef FC_SOLVER_JUMP_H
 #define FC_SOLVER_JUMP_H
 

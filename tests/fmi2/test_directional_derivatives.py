@@ -181,7 +181,7 @@ def test_no_known_variable_gives_zero(new_instance: Callable[..., Instance]) -> 
 
 @pytest.mark.parametrize("d", [1e-11, 1e-10, 3e-10])
 def test_a_jump_that_moves_the_bristle_a_little(new_instance: Callable[..., Instance], d: float) -> None:
-    """On the bound F_t is mu F_n, and F_n goes with exp(-lambda d / R_q), also if less d would not move it."""
+    """On the bound F_t is mu F_n, and F_n goes with exp(-lambda d / R_q), though less d moves nothing."""
     instance = new_instance()
     assert instance.choose({"friction.model": 1, "friction.limit": 2, "contact.model": 2}) == OK
     assert instance.set({"V": 0.1}) == OK

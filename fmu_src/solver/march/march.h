@@ -6,7 +6,7 @@
 // The points of each free panel show whether the bristle meets its bound (meeting.h). The panel is cut there,
 // and the bristle slips, panel by panel, until its push has come to 0. In ElasticPlastic the deflection is a
 // formula: delta_0 + displacement while the bristle sticks, D(t) while it slips. Only roots and quadratures
-// remain. With a constant stiffness and limit the quadratures are closed forms, too.
+// remain. With a constant bound (march_between_reversals) the quadratures are closed forms, too.
 //
 // With static friction, break-away is a drop from the static bound to the kinetic one, and the energy that
 // the bristle loses is heat.

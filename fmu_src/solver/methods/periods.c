@@ -217,7 +217,7 @@ static double free_periods(Walk* walk, double left) {
     return fmin(left, floor(n) + 1.0);
 }
 
-static void repeat(Walk* walk, double times) {
+static void take_cycles(Walk* walk, double times) {
     assert(times >= 0.0 && walk->met_at >= 0.0 && walk->met_at < walk->done);
     FcStepResult* total = &walk->total;
     const FcStepResult* met = &walk->met;
@@ -401,7 +401,7 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
         walk_to_repetition(&walk, periods);
         const double cycle = walk.done - walk.met_at;
         if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
-            repeat(&walk, floor((periods - walk.done) / cycle));
+            take_cycles(&walk, floor((periods - walk.done) / cycle));
         } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
             free_map_of(&walk);
             take_free(&walk, periods - walk.done, &walk.total);
