@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from frictioncontact.fmu import FrictionFmu, Value
 
 SAMPLES = 240  # a period
@@ -27,12 +25,11 @@ def wave(fmu: FrictionFmu, values: Mapping[str, Value]) -> Wave:
     with fmu.session(values) as session:
         f = session.get("vibration.f")
         work, heat = session.read(["W_f", "Q_f"])
-        force, transverse, means = [session.get("F_t")], [session.get("F_y")], []
+        force, transverse = [session.get("F_t")], [session.get("F_y")]
         for _ in range(PERIODS * SAMPLES):
             session.step(1.0 / f / SAMPLES)
             force.append(session.get("F_t"))
             transverse.append(session.get("F_y"))
-            means.append(session.read(["F_t_mean", "F_y_mean"]))
         work, heat = (session.read(["W_f", "Q_f"]) - [work, heat]) / PERIODS
-    mean, transverse_mean = np.mean(means, axis=0)
+        mean, transverse_mean = session.read(["F_t_settled", "F_y_settled"])
     return Wave(force, transverse, mean, transverse_mean, work, heat)

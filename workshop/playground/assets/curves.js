@@ -34,13 +34,13 @@ function transverseMean(zeta) {
 }
 
 // The two periods that are shown: time [s] from their start, force and transverse force [N], velocity [m/s],
-// displacement of the vibration [m], and numbers of the whole: means [N], work and heat a period [J].
+// displacement of the vibration [m], work and heat a period [J], and the settled means [N].
 function wave(fmu, values) {
   fmu.start(values);
   const [f, V, V_1] = fmu.read(["vibration.f", "V", "vibration.V_1"]);
   const count = SAMPLES * PERIODS_SHOWN;
   const step = 1 / f / SAMPLES;
-  const outputs = ["F_t", "F_t_mean", "F_y", "F_y_mean"];
+  const outputs = ["F_t", "F_y"];
   const sums = ["W_f", "Q_f"];
   const before = fmu.read(sums);
   const time = new Float64Array(count + 1);
@@ -48,16 +48,10 @@ function wave(fmu, values) {
   const transverse = new Float64Array(count + 1);
   const velocity = new Float64Array(count + 1);
   const displacement = new Float64Array(count + 1);
-  let sum = 0;
-  let transverseSum = 0;
   fmu.choose(outputs);
   for (let k = 0; k <= count; k++) {
     if (k > 0) fmu.step(step);
-    const [F, mean, F_y, transverseOne] = fmu.again(outputs.length);
-    if (k > 0) {
-      sum += mean;
-      transverseSum += transverseOne;
-    }
+    const [F, F_y] = fmu.again(outputs.length);
     const phase = (2 * Math.PI * k) / SAMPLES;
     time[k] = k * step;
     force[k] = F;
@@ -67,8 +61,8 @@ function wave(fmu, values) {
   }
   const after = fmu.read(sums);
   const perPeriod = Object.fromEntries(sums.map((name, k) => [name, (after[k] - before[k]) / PERIODS_SHOWN]));
-  const means = { mean: sum / count, transverseMean: transverseSum / count };
-  return { time, force, transverse, velocity, displacement, ...means, ...perPeriod };
+  const [mean, transverseMean] = fmu.read(["F_t_settled", "F_y_settled"]); // with static friction of several periods
+  return { time, force, transverse, velocity, displacement, mean, transverseMean, ...perPeriod };
 }
 
 // Mean force [N] over a period of the vibration once settled: the friction law.
