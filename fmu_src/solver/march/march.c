@@ -148,8 +148,8 @@ static void move_to(March* m, double delta, double sigma) {
     result->delta = delta;
 }
 
-// The time after which a push that is 0 decides, over the time in which the scene moves by 1. Half or twice of it is as
-// far from rounding and from the motion.
+// The time after which a push that is 0 decides, over the times in which the scene moves by 1 and V by V_S. Half or
+// twice of it is as far from rounding and from the motion.
 static const double JUST_AFTER = 1e-6;
 
 // Whether the bristle slips on along that bound: the push is not below 0 or, if it is 0, not just after.
@@ -159,9 +159,10 @@ static bool slips_on(March* m, const FcScene* bound, int side) {
     if (push != 0.0) {
         return push > 0.0;
     }
-    const double after = fmin(JUST_AFTER * m->smooth_time, m->duration - m->t);
+    const FcVelocity now = fc_drive_velocity(&m->scene->drive, m->t);
+    const double time = fmin(m->smooth_time, fc_velocity_time_of_change(&now, m->scene->friction->V_S));
     m->result->evaluations += 1.0;
-    return !(fc_push(m->scene, bound, m->t + after, side) < 0.0);
+    return !(fc_push(m->scene, bound, m->t + JUST_AFTER * fmin(time, m->duration - m->t), side) < 0.0);
 }
 
 static void begin_slip(March* m, int side) {
