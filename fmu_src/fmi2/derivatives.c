@@ -115,10 +115,9 @@ static double log_along(const FcVariables* along, double by_d, double by_E, doub
 static const double MOVED_PART = 3e-5;
 
 // The deflection that inputs leave which have jumped, and by `change` of the direction more.
-static FcVector reached_after(FcFrictionContact moved, const FcVariables* along, double change) {
+static FcVector reached_after(FcFrictionContact moved, FcVariables along, double change) {
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        FcVariables by = *along;
-        *fc_input_of(&moved.state.variables, (FcInput)input) += change * *fc_input_of(&by, (FcInput)input);
+        *fc_input_of(&moved.state.variables, (FcInput)input) += change * *fc_input_of(&along, (FcInput)input);
     }
     const FcScene scene = fc_friction_contact_scene(&moved);
     const FcBristle end = fc_friction_contact_reached(&moved, &scene);
@@ -129,7 +128,6 @@ static FcVector reached_after(FcFrictionContact moved, const FcVariables* along,
 // one to the side on which the bristle moves, if it does not on the other.
 static FcVector reached_along(const FcFrictionContact* contact, FcVariables along) {
     FcVariables now = contact->state.variables;
-
     double part = 0.0;
     for (int input = 0; input < FC_INPUT_COUNT; input++) {
         const bool is_velocity = input == FC_INPUT_V || input == FC_INPUT_V_Y;
@@ -140,16 +138,16 @@ static FcVector reached_along(const FcFrictionContact* contact, FcVariables alon
         return (FcVector){0.0, 0.0};
     }
     double change = MOVED_PART / part;
-    FcVector before = reached_after(*contact, &along, -change);
-    FcVector after = reached_after(*contact, &along, change);
+    FcVector before = reached_after(*contact, along, -change);
+    FcVector after = reached_after(*contact, along, change);
     const bool moves_before = before.x != now.delta || before.y != now.delta_y;
     if (moves_before && (after.x != now.delta || after.y != now.delta_y)) {
         return (FcVector){(after.x - before.x) / (2.0 * change), (after.y - before.y) / (2.0 * change)};
     }
-    const FcVector here = reached_after(*contact, &along, 0.0);
+    const FcVector here = reached_after(*contact, along, 0.0);
     change = moves_before ? -change : change;
     const FcVector near = moves_before ? before : after;
-    const FcVector far = reached_after(*contact, &along, 2.0 * change);
+    const FcVector far = reached_after(*contact, along, 2.0 * change);
     return (FcVector){(4.0 * near.x - far.x - 3.0 * here.x) / (2.0 * change),
                       (4.0 * near.y - far.y - 3.0 * here.y) / (2.0 * change)};
 }

@@ -553,7 +553,6 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
             return false;
         }
     }
-
     result.on_bound = false;
     result.evaluations = *block->evaluations;
     if (of->side != 0) {

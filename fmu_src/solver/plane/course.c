@@ -141,7 +141,6 @@ static double length_of(const FcPlane* plane, Sample least, Dip dip, double h, d
         const FcPlaneCoefficients near = fc_plane_coefficients(plane, t, fc_drive_phase(drive, t));
         const double path = near.limit / near.sigma;
         const double layer = pow((dip.order + 1) * path / dip.rate, 1.0 / (dip.order + 1));
-
         least_length = sqrt(tolerance) * fmin(layer, h);
     }
     return fmax(fmax(dip.eps, least_length), 0x1p-40 * fmax(h, fabs(least.t)));

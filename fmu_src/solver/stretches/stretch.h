@@ -63,7 +63,7 @@ double fc_event_layer(const FcScene* scene, bool reversal, double t, FcPhase at_
                       const FcCoefficients* near);
 
 // Time [s] in which a bristle with the relaxation per_path [1/m], sigma / g, relaxes by 1 from that velocity
-// on: about the least root of r x + r' x^2 / 2 = 1, r'' x^3 / 6 = 1 and the third derivative of r times x^4 / 24 = 1. The last two count if V
+// on: about the least root of r x + r' x^2 / 2 = 1, r'' x^3 / 6 = 1 and r''' x^4 / 24 = 1. The last two count if V
 // only touches zero, or crosses it in a saddle.
 double fc_layer(const FcVelocity* at, double per_path);
 
