@@ -410,9 +410,9 @@ static bool meets(const Block* block, const Place* place) {
 
 // ---- a stuck bristle of ElasticPlastic, whose motion is known at any time ----
 
-// The number of times in a period at which its room is looked at first, and of rounds in search of the least room.
-// Chosen empirically: with half the times a narrow place is missed; a third round seldom moves on.
-enum { PHASES = 16, MOST_ROUNDS = 3 };
+// The number of times in a period at which its room is looked at. Chosen empirically: of 30 scenes made to hide a
+// meeting half of them miss none. Twice as many cost evaluations.
+enum { PHASES = 8 };
 
 // A bristle that sticks in the whole block: its first scene, and that of its bound.
 typedef struct {
@@ -450,27 +450,21 @@ static double least_room(const Stuck* of, double k, double* phase) {
     return least;
 }
 
-// The period with the least room near period k, by steps of up to `step` periods.
+// The period with the least room near period k, by steps of up to `step` periods at the phase of its least room.
 static double tightest_near(const Stuck* of, double k, double step) {
     const double last = of->block->of->count - 1.0;
-    for (int round = 0; round < MOST_ROUNDS; round++) {
-        double phase;
-        double least = least_room(of, k, &phase);
-        const double before = k;
-        for (double way = step; way >= 1.0; way = floor(0.5 * way)) {
-            for (int side = -1; side <= 1; side += 2) {
-                double next = fmin(fmax(0.0, k + side * way), last);
-                double room = room_of_stuck(of, next, phase);
-                while (room < least) {
-                    k = next;
-                    least = room;
-                    next = fmin(fmax(0.0, k + side * way), last);
-                    room = room_of_stuck(of, next, phase);
-                }
+    double phase;
+    double least = least_room(of, k, &phase);
+    for (double way = step; way >= 1.0; way = floor(0.5 * way)) {
+        for (int side = -1; side <= 1; side += 2) {
+            double next = fmin(fmax(0.0, k + side * way), last);
+            double room = room_of_stuck(of, next, phase);
+            while (room < least) {
+                k = next;
+                least = room;
+                next = fmin(fmax(0.0, k + side * way), last);
+                room = room_of_stuck(of, next, phase);
             }
-        }
-        if (k == before) {
-            break;
         }
     }
     return k;
