@@ -48,9 +48,10 @@ def zig() -> Path:
 
 
 def environment() -> dict[str, str]:
-    """This process's, which says where zig keeps what it has compiled."""
+    """This process's, with the place of what zig has compiled; lines of two compilers do not mix."""
     cache = str(ROOT / "build" / "zig-cache")
-    return {"ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache, **os.environ}
+    zig_cache = {"ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache}
+    return {**zig_cache, "MAKEFLAGS": "--output-sync=target", **os.environ}
 
 
 def build(
