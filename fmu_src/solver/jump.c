@@ -314,7 +314,8 @@ FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, FcBristle 
         return bristle;
     }
     const FcPast now = fc_past(scene);
-    const bool same = is_same(scene, t, &now, past); // an excess is then the last step's, within its tolerance
+    const bool same =
+        is_same(scene, t, &now, past); // an excess is then the last step's, within its tolerance
     if (past->sigma == 0.0 || now.sigma == 0.0 || same) {
         const FcBristle reached = fc_reach(scene, bristle);
         const double end = fc_size(reached);
