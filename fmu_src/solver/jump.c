@@ -314,15 +314,15 @@ FcBristle fc_jump(const FcScene* scene, double t, const FcPast* past, FcBristle 
         return bristle;
     }
     const FcPast now = fc_past(scene);
-    const bool same =
-        is_same(scene, t, &now, past); // an excess is then the last step's, within its tolerance
+    const bool same = is_same(scene, t, &now, past);
     if (past->sigma == 0.0 || now.sigma == 0.0 || same) {
         const FcBristle reached = fc_reach(scene, bristle);
         const double end = fc_size(reached);
-        // An open contact has no stiffness, or a constant one.
-        *heat = end < delta && !same
-                    ? 0.5 * fc_scene_contact(scene, 0.0).sigma * (delta - end) * (delta + end)
-                    : 0.0;
+        // If nothing jumps, an excess is the last step's, within its tolerance. An open contact has no stiffness, or a
+        // constant one.
+        if (end < delta && !same) {
+            *heat = 0.5 * fc_scene_contact(scene, 0.0).sigma * (delta - end) * (delta + end);
+        }
         return reached;
     }
     const int side = bristle.delta < 0.0 ? -1 : 1;

@@ -853,9 +853,6 @@ FcMap fc_march_stuck(const FcScene* scene, const FcSolverOptions* options, doubl
     FcMap map = fc_scene_stiffness_is_constant(scene)
                     ? still_map(scene, sigma, 0.0, duration, fc_drive_displacement(drive, 0.0, duration))
                     : map_until(&m, &m.bound, D, duration);
-    if (!fc_drive_is_linear(drive)) { // whole periods: to the last digit
-        map.offset = drive->V.value * duration;
-    }
     *evaluations += unused.evaluations;
     return map;
 }

@@ -419,13 +419,13 @@ typedef struct {
     const Block* block;
     FcScene first, bound;
     FcFriction bound_law;
+    FcDrive across;
 } Stuck;
 
 static FcBristle stuck_at(const Stuck* of, double t) {
-    const FcDrive across = fc_drive_across(&of->first.drive);
     FcBristle bristle = of->block->start;
     bristle.delta += fc_drive_displacement(&of->first.drive, 0.0, t);
-    bristle.delta_y += of->block->of->law->is_planar ? fc_drive_displacement(&across, 0.0, t) : 0.0;
+    bristle.delta_y += of->block->of->law->is_planar ? fc_drive_displacement(&of->across, 0.0, t) : 0.0;
     return bristle;
 }
 
@@ -459,13 +459,14 @@ static double tightest_near(const Stuck* of, double k, double step) {
     double least = least_room(of, k, &phase);
     for (double way = step; way >= 1.0; way = floor(0.5 * way)) {
         for (int side = -1; side <= 1; side += 2) {
-            double next = fmin(fmax(0.0, k + side * way), last);
-            double room = room_of_stuck(of, next, phase);
-            while (room < least) {
+            for (;;) {
+                const double next = fmin(fmax(0.0, k + side * way), last);
+                const double room = room_of_stuck(of, next, phase);
+                if (!(room < least)) {
+                    break;
+                }
                 k = next;
                 least = room;
-                next = fmin(fmax(0.0, k + side * way), last);
-                room = room_of_stuck(of, next, phase);
             }
         }
     }
@@ -477,21 +478,35 @@ static double tightest_near(const Stuck* of, double k, double step) {
 static bool meets_while_stuck(const Block* block, const Place* without_room, int places) {
     Stuck of = {.block = block, .first = scene_at(block, 0.0)};
     of.bound = fc_scene_of_bound(&of.first, 0, &of.bound_law);
+    of.across = fc_drive_across(&of.first.drive);
     const int each = 1 + places / MOST_CHECKS;
-    double room[2 * MOST_PARTS + 1];
-    int tightest = 0;
+    double least = HUGE_VAL;
+    double tightest = 0.0;
     for (int i = 0; i < places; i += each) {
         double phase;
-        room[i] = least_room(&of, without_room[i].k, &phase);
-        if (room[i] < 0.0) {
+        const double room = least_room(&of, without_room[i].k, &phase);
+        if (room < 0.0) {
             return true;
         }
-        tightest = room[i] < room[tightest] ? i : tightest;
+        tightest = room < least ? without_room[i].k : tightest;
+        least = fmin(least, room);
     }
-    const double k = tightest_near(&of, without_room[tightest].k, each * periods_of_part(block));
+    const double k = tightest_near(&of, tightest, each * periods_of_part(block));
     for (double at = fmax(0.0, k - 1.0); at < fmin(k + 2.0, block->of->count); at += 1.0) {
         const Place place = {at, 0.0, stuck_at(&of, at * block->period)};
         if (meets(block, &place)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether a bristle that relaxes would meet its bound in some of the places in which it has no room by estimate.
+static bool meets_in_some(const Block* block, const Place* without_room, int places, int nearest) {
+    const int each = 1 + places / MOST_CHECKS;
+    for (int i = 0; i < places; i++) {
+        const bool is_checked = i % each == 0 || i == nearest || i == places - 1;
+        if (is_checked && meets(block, &without_room[i])) {
             return true;
         }
     }
@@ -539,15 +554,9 @@ bool fc_block_take(const FcBlock* of, FcStepResult* total) {
         }
     }
     const bool sticks = of->scene->friction->model == FC_ELASTIC_PLASTIC;
-    if (sticks && places > 0 && meets_while_stuck(block, without_room, places)) {
+    if (places > 0 && (sticks ? meets_while_stuck(block, without_room, places)
+                              : meets_in_some(block, without_room, places, nearest))) {
         return false;
-    }
-    const int each = 1 + places / MOST_CHECKS;
-    for (int i = 0; i < places && !sticks; i++) {
-        const bool is_checked = i % each == 0 || i == nearest || i == places - 1;
-        if (is_checked && meets(block, &without_room[i])) {
-            return false;
-        }
     }
     result.on_bound = false;
     result.evaluations = *block->evaluations;

@@ -92,6 +92,10 @@ static FcMap free_map_of(Walk* walk) {
     if (!walk->has_free_map) {
         walk->free_map = walk->law.free_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
                                             &walk->free_map_across, &walk->total.evaluations);
+        if (walk->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
+            walk->free_map.offset = walk->scene->drive.V.value * walk->period;
+            walk->free_map_across.offset = walk->scene->drive.V_y.value * walk->period;
+        }
         walk->has_free_map = true;
         walk->edge[0] = walk->edge[1] = INFINITY;
     }

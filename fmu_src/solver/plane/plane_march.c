@@ -644,11 +644,5 @@ FcMap fc_plane_map(const FcScene* scene, const FcSolverOptions* options, double 
     fc_plane_make(&plane, scene);
     FcMap along;
     find_maps(&plane, options, duration, start, &along, across, evaluations);
-    const FcDrive* drive = &scene->drive;
-    if (scene->friction->model == FC_ELASTIC_PLASTIC &&
-        !fc_drive_is_linear(drive)) { // whole periods: to the last digit
-        along.offset = drive->V.value * duration;
-        across->offset = drive->V_y.value * duration;
-    }
     return along; // NOLINT(clang-analyzer-core.StackAddressEscape): numbers alone
 }
