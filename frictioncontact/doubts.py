@@ -10,6 +10,7 @@ from frictioncontact.errors import is_quiet, warn
 from frictioncontact.values import Variables
 
 BRISTLES = ("Dahl", "ElasticPlastic", "LuGre")
+WITH_STATIC_FRICTION = ("ElasticPlastic", "LuGre")
 FIXED_STEPS = ("backwardEuler", "trapezoid", "rk4", "explicitEuler")
 # A setting, the variables that decide whether it is used, and the items with which it is used; None: any
 # value but the start value, and a decider that the scene gives was switched off on purpose.
@@ -20,8 +21,8 @@ USED = (
     ("contact.stiffnessScale", "contact.model", ("Asperities", "Mindlin")),
     ("F_C", "friction.limit", ("Constant",)),
     ("friction.mu", "friction.limit", ("Load",)),
-    ("friction.staticRatio", "friction.model", ("ElasticPlastic", "LuGre")),
-    ("friction.V_S", "friction.model", ("ElasticPlastic", "LuGre")),
+    ("friction.staticRatio", "friction.model", WITH_STATIC_FRICTION),
+    ("friction.V_S", "friction.model", WITH_STATIC_FRICTION),
     ("friction.V_S", "friction.staticRatio", None),
     ("friction.sigma_1", "friction.model", BRISTLES),
     ("delta_0", "friction.model", BRISTLES),

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
+from frictioncontact.doubts import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves
@@ -161,7 +162,7 @@ def largest_force(fmu: FrictionFmu, asked: Question, limit: float) -> float:
             for name, amplitude in (("V", "vibration.V_1"), ("V_y", "vibration.V_2"))
         )
     )
-    ratio = values["friction.staticRatio"] if values["friction.model"] in ("LuGre", "ElasticPlastic") else 1.0
+    ratio = values["friction.staticRatio"] if values["friction.model"] in WITH_STATIC_FRICTION else 1.0
     damping = values["friction.sigma_1"] + values["friction.sigma_2"]
     stored = (rows["sigma"] * np.hypot(rows["delta"], rows["delta_y"])).max()
     return float(max(ratio * limit, stored, damping * speed))

@@ -7,6 +7,7 @@ import numpy as np
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.batch.prepare import Outputs
+from frictioncontact.doubts import WITH_STATIC_FRICTION
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification.data import Series
 from frictioncontact.identification.experiment import TOLERANCE, Experiment, Nuisance
@@ -73,6 +74,6 @@ class Record(Experiment):
         values = {**self._constants, **fitted, "V": np.full(len(force), self._constants["V"])}
         now = self._simulated(values, ("sigma", "F_n"), duration=0.0)
         bound = self.limit(values, now["F_n"])
-        if values.get("friction.model") in ("LuGre", "ElasticPlastic"):
+        if values.get("friction.model") in WITH_STATIC_FRICTION:
             bound = bound * self.value(values, "friction.staticRatio")
         return np.clip(force, -bound, bound) / now["sigma"]
