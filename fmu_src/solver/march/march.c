@@ -28,9 +28,8 @@ static const double SOON = 3.0;
 // whatever its push. Chosen empirically, for a bristle that rounding sends back and forth. Twice as many would cost
 // time alone.
 enum { MOST_IDLE = 4 };
-// The length of the first such panel, and the longest of such regimes, over the interval. The next panels are
-// four times as long each, since a push of rounding soon becomes another. Rounding: 4500 eps. Twice of it
-// slips twice as long without a push.
+// The length of the first such panel, a nudge, and the longest of such regimes, over the interval. Rounding: 4500
+// eps. Twice of it slips twice as long without a push.
 static const double FIRST_NUDGE = 1e-12;
 // The longest regime that is idle over the length of the next such panel. Chosen empirically: without it a regime
 // of some 1e-12 of the interval again and again costs millions of evaluations; a larger one counts more regimes.
@@ -384,6 +383,26 @@ static void slip_panel(March* m, double end) {
     const Slip panel = next_slip(m, end);
     add_slip(m, &panel);
     m->t = fc_panel_end(m->t, panel.at.h, m->cut);
+}
+
+// Slips along the bound whatever the push, for *nudge at the most. A nudge is shorter if the bristle would leave its
+// bound in it by a distance that is seen: it leaves with the push, and falls behind in Dahl and LuGre for the time
+// D / |V| at the most. The next one is four times as long, since a push of rounding soon becomes another.
+static void slip_nudge(March* m, double* nudge) {
+    const FcScene* bound = bound_of_slip(m);
+    for (;; *nudge *= 0.25) {
+        const double end = fmin(m->duration, m->t + *nudge);
+        const FcCoefficients at = fc_scene_coefficients(bound, end);
+        const double D = at.limit / at.sigma;
+        const double time = relaxes(m->scene) ? fmin(*nudge, D / fabs(at.V)) : *nudge;
+        m->result->evaluations += 2.0;
+        if (-fc_push(m->scene, bound, end, m->side) * time <= unseen(m, at.sigma, D) ||
+            *nudge <= FIRST_NUDGE * m->duration) {
+            slip_panel(m, end);
+            *nudge *= 4.0;
+            return;
+        }
+    }
 }
 
 // Slips along the bound to the time `end`, before which the bristle does not leave the bound.
@@ -825,8 +844,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
         before = m.t;
         if (m.side != 0) {
             if (idle > MOST_IDLE) {
-                slip_panel(&m, fmin(duration, m.t + nudge));
-                nudge *= 4.0;
+                slip_nudge(&m, &nudge);
                 before = m.t;
                 idle = MOST_IDLE - 2; // one more try of either regime
             } else {
