@@ -107,8 +107,6 @@ static double to_the_2n(double x, int n) {
     return n == 4 ? x_8 : n == 6 ? x_8 * x_4 : n == 8 ? x_8 * x_8 : x_8 * x_8 * x_8;
 }
 
-// Bound of the error of the force at the panel's end, over the least of 1 and z, and of the mean force, work
-// and heat in the panel, all over sigma times the deflection; h [s].
 static double bound(const FcPace* pace, int rule, double h, double z) {
     assert(rule >= 0 && rule < BOUNDED_RULES && h > 0.0 && !(z < 0.0));
     const double phi = 0.5 * pace->phase * h;
@@ -116,6 +114,14 @@ static double bound(const FcPace* pace, int rule, double h, double z) {
     const double K = BOUND[rule].one + BOUND[rule].phi * phi + BOUND[rule].mu * mu + BOUND[rule].z * z +
                      BOUND[rule].sqrt_z * sqrt(z);
     return to_the_2n(K / (2.94 * BOUND[rule].n), BOUND[rule].n);
+}
+
+double fc_gauss_bound(const FcPace* pace, int nodes, double h, double z) {
+    int rule = 0;
+    while (BOUND[rule].n != nodes) {
+        rule++;
+    }
+    return bound(pace, rule, h, z);
 }
 
 // The largest bound that is accepted. `force` is that of the largest deflection in the panel, of a bristle

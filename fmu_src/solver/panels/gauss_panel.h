@@ -21,6 +21,10 @@
 void fc_gauss_panel(const FcScene* scene, double t, double h, int count, const FcTrajectories* from,
                     FcPanel* panel);
 
+// Bound of the error of the force at the panel's end, over the least of 1 and z, and of the mean force, work and heat in
+// a panel of that many nodes, all over sigma times the deflection; h [s]. The Stribeck curve is not in it.
+double fc_gauss_bound(const FcPace* pace, int nodes, double h, double z);
+
 // The largest z of a bounded panel: the largest that workshop.constants.panel_bound measured.
 static const double FC_MOST_BOUNDED = 7.0;
 

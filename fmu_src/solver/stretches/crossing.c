@@ -24,6 +24,10 @@ enum { MOST_TRIES = 12, MOST_CAUTION = 6 };
 // resolved (RESOLVED in section.c). Half or twice of it changes the number of tries, not the accuracy.
 static const double EASY_Z_PER_NODE = 0.2;
 
+// The largest bound of the error of a judged Gauss panel, over the tolerance. Chosen empirically: the estimate of such a
+// panel may be small by chance: at a bound of 9e5 tolerances a force missed by 14. A tenth of it refuses 2 panels of 100.
+static const double MOST_OF_BOUND = 1e4;
+
 // The kinds of panel, in the order in which they are tried.
 typedef enum { BOUNDED_GAUSS, JUDGED_GAUSS, SETTLED, RADAU } PanelKind;
 
@@ -126,6 +130,8 @@ static bool take_judged_gauss(Crossing* crossing) {
         double taken;
         if (fc_gauss_panel_is_accurate(panel, crossing->nodes, share, section->in_peak, section->forgets,
                                        fc_allowed_force(crossed->interval)) &&
+            fc_gauss_bound(&crossed->interval->pace, crossing->nodes, h, panel->z) <=
+                MOST_OF_BOUND * crossed->interval->tolerance &&
             fc_may_keep_panel(crossed, &at, &from, panel, &taken)) {
             fc_map_append(crossed->map, &panel->map);
             crossing->t = taken < left ? t + taken : section->end;
