@@ -789,6 +789,9 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
     w->panels = 0.0L;
     for (int k = 0; k < 60 && w->panels <= MOST_OF_SETTLING; k++) {
         const March march = march_from(w, *state);
+        if (w->panels > MOST_PANELS) { // it did not come to the end of the period
+            return false;
+        }
         const Vector miss = plus(march.state.delta, -1.0L, state->delta);
         if (w->elastic && !march.slipped) { // it drifts until it slips
             Sums unused = {0};
