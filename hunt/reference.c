@@ -340,20 +340,28 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
 
 // Times in rising order.
 typedef struct {
-    Real time[64]; // at most 4 extremes, and 9 multiples of V_S in each of the 5 parts between them
+    Real time[80]; // at most 6 extremes, and 9 multiples of V_S in each of the 7 parts between them
     int count;
 } Cuts;
 
 typedef struct {
     const World* w;
-    int order;  // of the derivative of half of V^2; 0: V^2 less the level
+    int order;  // of the derivative of half of V^2, on a line of V from 1 for V itself; 0: V^2 less the level
     Real level; // m2/s2
 } Square;
+
+// On a ramp V is linear, and the product V V' tells its zero, too.
+static bool is_on_line(const World* w) {
+    return !w->ramp && w->start.y == 0.0L && w->rate.y == 0.0L && w->cosine.y == 0.0L && w->sine.y == 0.0L;
+}
 
 static Real square(const void* context, Real t) {
     const Square* of = context;
     Vector V[4];
     velocities(of->w, t, of->order, V);
+    if (of->order > 0 && is_on_line(of->w)) {
+        return V[of->order - 1].x;
+    }
     return of->order == 0   ? dot(V[0], V[0]) - of->level
            : of->order == 1 ? dot(V[0], V[1])
            : of->order == 2 ? dot(V[1], V[1]) + dot(V[0], V[2])
@@ -381,9 +389,10 @@ static void cut_at_zeros(Cuts* cuts, const Square* of, bool keep) {
 static Cuts cuts_between(const World* w, Real a, Real b) {
     static const Real OF_V_S[] = {0.25L, 0.5L, 1.0L, 1.5L, 2.0L, 3.0L, 4.0L, 6.0L, 9.0L};
     Cuts cuts = {{a, b}, 2};
-    for (int order = 3; order >= 1;
-         order--) { // between two zeros of one derivative lies at most one of the next
-        cut_at_zeros(&cuts, &(Square){w, order, 0.0L}, order > 1);
+    // Between two zeros of one derivative lies at most one of the next. If V, V' and V'' are nearly 0 at once, the third
+    // derivative of V^2 has three zeros in a short time. So on a line V itself is looked at.
+    for (int order = 3; order >= 1; order--) {
+        cut_at_zeros(&cuts, &(Square){w, order, 0.0L}, order > 1 || is_on_line(w));
     }
     for (size_t m = 0; w->excess != 0.0L && m < sizeof OF_V_S / sizeof *OF_V_S; m++) {
         const Real V = OF_V_S[m] * w->scene.V_S;
