@@ -42,14 +42,17 @@ FcPace fc_pace(const FcScene* scene, double h) {
 FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
                             const FcSolverOptions* options) {
     assert(duration >= 0.0 && options->tolerance > 0.0 && options->force >= 0.0);
+    const double stiffness = fc_scene_largest_stiffness(scene, duration);
+    // An error of the deflection becomes one of the force, which grows with sigma up to the step's end.
+    const double grows = fmax(1.0, options->stiffness_at_end / stiffness);
     FcInterval interval = {
         .scene = scene,
         .beyond_peaks = beyond_peaks,
         .duration = duration,
         .tolerance = options->tolerance,
         .pace = fc_pace(scene, duration),
-        .force = options->force,
-        .stiffness = fc_scene_largest_stiffness(scene, duration),
+        .force = options->force / grows,
+        .stiffness = stiffness,
         .limit = fc_scene_smallest_limit(scene, duration),
         .saturation = fc_scene_largest_saturation(scene, duration),
         .constant_sigma = fc_scene_stiffness_is_constant(scene),

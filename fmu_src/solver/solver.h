@@ -19,11 +19,12 @@ typedef enum {
 } FcMethod;
 
 typedef struct {
-    double tolerance; // 1  bound of the error of F_t and of its mean, over the force
-    double force;     // N  the scale of the tolerance for the bristle's force
-    double largest;   // N  the largest force of the step
-    double damping;   // N  sigma_1 times the largest |V|; 0 without a bristle
-    double step_size; // s  internal step of the fixed-step methods
+    double tolerance;        // 1  bound of the error of F_t and of its mean, over the force
+    double force;            // N  the scale of the tolerance for the bristle's force
+    double largest;          // N  the largest force of the step
+    double damping;          // N  sigma_1 times the largest |V|; 0 without a bristle
+    double step_size;        // s  internal step of the fixed-step methods
+    double stiffness_at_end; // N/m  largest sigma there, if that of an interval may be less; else 0
 } FcSolverOptions;
 
 // The scale [N] of the tolerance for the bristle's force, beside a damping, if no limit is smaller [N].

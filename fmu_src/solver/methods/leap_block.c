@@ -117,7 +117,8 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     const FcBristle other = warmed_up(block, k, most - 1);
     const double last = apart(start, other);
     const double before = apart(other, warmed_up(block, k, most - 2));
-    const double close = allowed(block) / fc_scene_stiffness(scene, 0.0);
+    const double close =
+        allowed(block) / fmax(block->of->options->stiffness_at_end, fc_scene_stiffness(scene, 0.0));
     if (start.slips != block->start.slips || other.slips != start.slips ||
         !(last <= close && last * last <= close * (before - last))) {
         return false;
@@ -160,7 +161,7 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene end = scene_at(block, block->of->count - 1.0);
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
     const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
-    const double sigma = fmax(at.sigma, at_end.sigma);
+    const double sigma = fmax(block->of->options->stiffness_at_end, fmax(at.sigma, at_end.sigma));
     const double delta = fmax(fc_size(block->start), fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->of->scene->friction->sigma_1;

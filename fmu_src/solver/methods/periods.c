@@ -415,6 +415,15 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
     *total = walk.total;
 }
 
+// The options of a step with several intervals whose contact may stiffen.
+static FcSolverOptions options_until_end(const FcSolverOptions* options, const FcScene* scene, double h) {
+    FcSolverOptions own = *options;
+    const FcScene end = fc_scene_from(scene, h);
+    const double stiffness = fc_scene_largest_stiffness(&end, 0.0);
+    own.stiffness_at_end = isfinite(stiffness) ? stiffness : 0.0; // open at the end
+    return own;
+}
+
 bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
                      FcStepResult* result, FcMessage* message) {
     const double f = scene->drive.vibration.f;
@@ -422,6 +431,11 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
     const double rest = periods > 0.0 ? fmax(0.0, fma(h, f, -periods) / f) : h;
     assert(h >= 0.0 && rest <= h);
+    FcSolverOptions until_end;
+    if (is_linear && (periods >= 2.0 || fc_scene_has_pieces(scene))) {
+        until_end = options_until_end(options, scene, h);
+        options = &until_end;
+    }
     if (periods > MOST_CHANGING_PERIODS && is_linear) {
         return fc_message_set(
             message,
