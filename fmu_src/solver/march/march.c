@@ -514,7 +514,7 @@ static void slip(March* m, double end) {
     plan(m);
     if (!relaxes(m->scene) && !fc_has_static_friction(m->scene->friction)) {
         const double sure = sure_end(m, end);
-        if (turn_to_other_bound(m, sure, end)) {
+        if (sure < end && turn_to_other_bound(m, sure, end)) {
             return;
         }
         if (sure > m->t) {
@@ -816,6 +816,12 @@ static void march_between_reversals(March* m, double D) {
 
 // ---- the march ----
 
+// Whether a stuck bristle with the bound D at the start cannot reach it in the step.
+static bool is_far_from_bound(const March* m, double D) {
+    const double farthest = fabs(m->result->delta) + m->speed * m->duration;
+    return farthest < D && farthest < fc_scene_smallest_saturation(&m->bound, m->duration);
+}
+
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result) {
     assert(duration >= 0.0 && fc_is_bounded(scene->friction));
@@ -829,6 +835,10 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     if (on_bound && (!has_memory || result->slips == (result->delta < 0.0 ? -1 : 1))) {
         m.side = result->delta < 0.0 ? -1 : 1; // it leaves at once if it is not pushed
         result->meetings++;
+    }
+    if (!relaxes(scene) && result->slips == 0 && is_far_from_bound(&m, D)) {
+        stick_to(&m, duration);
+        return;
     }
     if (!relaxes(scene) && bound_stands(&m.bound)) {
         march_between_reversals(&m, fc_bound(&m.bound, 0.0));
