@@ -16,8 +16,8 @@
 enum { FEWEST_POINTS = 4, MOST_POINTS = 17 };
 static const double MOST_PART = 0.7;
 // The largest accepted error at the last point but one, over that at the last. Chosen empirically: both are
-// seldom small by chance. Half of it costs points.
-static const double MOST_BEFORE = 30.0;
+// seldom small by chance. Half of it costs points; three times of it let a work miss by 1.04 tolerances.
+static const double MOST_BEFORE = 10.0;
 
 // MOST_PARTS: the number of parts of a block, or up to twice as many, between whose ends the bound is taken as
 // linear. MOST_CHECKS: the number of parts without room in which a free bristle is followed through a period,
