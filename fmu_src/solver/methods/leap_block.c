@@ -333,7 +333,7 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
 // The distance of both bounds less the way of the bristle from the one that it leaves to the other [m], in period k of
 // an ElasticPlastic bristle: below 0 it slips along both.
 static double distance_less_way(const Block* block, double k) {
-    const FcScene scene = scene_at(block, k);
+    const FcScene scene = scene_at(block, fmin(k, block->of->count - 2.0)); // it is looked at for 1.5 periods
     const int side = block->of->side;
     FcFriction friction;
     FcFriction other_friction;
