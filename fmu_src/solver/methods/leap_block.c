@@ -456,9 +456,9 @@ static FcBristle stuck_at(const Stuck* of, double t) {
     return bristle;
 }
 
-// The distance [m] to the bound, at the part `phase` of period k.
+// The distance [m] to the bound, at the part `phase` of period k, or at the next end of the block.
 static double room_of_stuck(const Stuck* of, double k, double phase) {
-    const double t = (k + phase) * of->block->period;
+    const double t = fmin(fmax(0.0, k + phase), of->block->of->count) * of->block->period;
     *of->block->evaluations += 1.0;
     return fc_bound(&of->bound, t) - fc_size(stuck_at(of, t));
 }
