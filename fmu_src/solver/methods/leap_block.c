@@ -333,12 +333,13 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
 // The distance of both bounds less the way of the bristle from the one that it leaves to the other [m], in period k of
 // an ElasticPlastic bristle: below 0 it slips along both.
 static double distance_less_way(const Block* block, double k) {
-    const FcScene scene = scene_at(block, fmin(k, block->of->count - 2.0)); // it is looked at for 1.5 periods
+    const FcScene scene = scene_at(block, fmin(k, block->of->count - 2.0)); // up to two periods are looked at
     const int side = block->of->side;
     FcFriction friction;
     FcFriction other_friction;
     const FcScene bound = fc_scene_of_bound(&scene, side, &friction);
     const FcScene other = fc_scene_of_bound(&scene, 0, &other_friction);
+    // V opposes the slip most, half a period after the start of the scene or later.
     const double half = 0.5 * block->period;
     const double opposed = half + fmod(fc_part_until_opposed(&scene.drive, side) + 0.5, 1.0) * block->period;
     const double leaves =
