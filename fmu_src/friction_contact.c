@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "solver/methods/method.h"
+#include "solver/method.h"
 
 // The number of vibration periods since time 0 beyond which the phase is refused. Chosen empirically:
 // neighbouring numbers of time are then 1/128 to 1/64 of a period apart. Twice the number would double this.

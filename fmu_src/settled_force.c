@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "model/constants.h"
-#include "solver/methods/method.h"
+#include "solver/method.h"
 
 // The tolerance of the forces whose differences make a derivative: as fine as the solver goes
 // (friction_contact.c).

@@ -6,6 +6,7 @@
 
 void fc_plane_make(FcPlane* plane, const FcScene* scene) {
     plane->scene = scene;
+    plane->on_line = !fc_drive_is_planar(&scene->drive);
     plane->of_static_limit = fc_scene_of_bound(scene, 0, &plane->static_friction);
 }
 
@@ -13,7 +14,7 @@ FcPlaneCoefficients fc_plane_coefficients(const FcPlane* plane, double t, FcPhas
     const FcFriction* friction = plane->scene->friction;
     const FcCoefficients at = fc_scene_coefficients_at_phase(&plane->of_static_limit, t, at_t);
     const FcVector V = {at.V, fc_drive_V_y_at_phase(&plane->scene->drive, t, at_t)};
-    const double speed = hypot(V.x, V.y);
+    const double speed = plane->on_line ? fabs(V.x) : hypot(V.x, V.y);
     return (FcPlaneCoefficients){.V = V,
                                  .speed = speed,
                                  .sigma = at.sigma,

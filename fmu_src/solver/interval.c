@@ -2,19 +2,10 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 // The largest rate of ln sigma over that of ln E. Derived: 2.11 by Eq. 3. A smaller factor plans panels that are
 // too long for a large change of E, a larger one panels that are too short.
 static const double BY_E = 2.2;
-
-double fc_digits(double x) {
-    assert(!(x < 0.0));
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return -0.30103 * ((int)(bits >> 52 & 0x7ff) - 1023); // log10(2) times the exponent
-}
 
 FcPace fc_pace(const FcScene* scene, double h) {
     assert(h >= 0.0);
@@ -39,29 +30,17 @@ FcPace fc_pace(const FcScene* scene, double h) {
     return pace;
 }
 
-FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
-                            const FcSolverOptions* options) {
+FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolverOptions* options) {
     assert(duration >= 0.0 && options->tolerance > 0.0 && options->force >= 0.0);
     const double stiffness = fc_scene_largest_stiffness(scene, duration);
     // An error of the deflection becomes one of the force, which grows with sigma up to the step's end.
     const double grows = fmax(1.0, options->stiffness_at_end / stiffness);
-    FcInterval interval = {
-        .scene = scene,
-        .beyond_peaks = beyond_peaks,
-        .duration = duration,
-        .tolerance = options->tolerance,
-        .pace = fc_pace(scene, duration),
-        .force = options->force / grows,
-        .stiffness = stiffness,
-        .limit = fc_scene_smallest_limit(scene, duration),
-        .saturation = fc_scene_largest_saturation(scene, duration),
-        .constant_sigma = fc_scene_stiffness_is_constant(scene),
-        .speed = fc_drive_largest_speed(&scene->drive, duration),
-        .has_peaks = beyond_peaks != scene,
-        .moving_limit = fc_limit_follows_load(scene->friction) || beyond_peaks != scene,
-    };
-    assert(!fc_scene_depends_on_d(scene) ||
-           !(interval.limit > (1.0 + 1e-9) * interval.stiffness * interval.saturation));
-    interval.forgotten = 2.0 * 2.302585 * fc_digits(options->tolerance) * interval.saturation;
-    return interval;
+    return (FcInterval){.scene = scene,
+                        .duration = duration,
+                        .tolerance = options->tolerance,
+                        .force = options->force / grows,
+                        .speed = fc_drive_largest_speed(&scene->drive, duration),
+                        .stiffness = stiffness,
+                        .saturation = fc_scene_largest_saturation(scene, duration),
+                        .pace = fc_pace(scene, duration)};
 }

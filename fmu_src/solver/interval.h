@@ -22,31 +22,21 @@ static inline double fc_smooth_time(const FcPace* pace) { return 1.0 / (pace->ph
 
 typedef struct {
     const FcScene* scene;
-    const FcScene* beyond_peaks; // the same without its Stribeck curve
-    double duration;             // s
-    double tolerance;            // 1, of F_t at the end and of its mean, over the force
-    double force;                // N, the scale of the tolerance
-    double speed;                // m/s, largest |V|
-    double stiffness;            // N/m, largest sigma
-    double limit;                // N, smallest g
-    double saturation;           // m, largest g / sigma: over this path errors fade by e at least
-    double forgotten;            // m, over this path they fade below the square of the tolerance
+    double duration;   // s
+    double tolerance;  // 1, of F_t at the end and of its mean, over the force
+    double force;      // N, the scale of the tolerance
+    double speed;      // m/s, largest |V|
+    double stiffness;  // N/m, largest sigma
+    double saturation; // m, largest g / sigma: over this path errors fade by e at least
     FcPace pace;
-    bool has_peaks;      // g has a Stribeck curve
-    bool moving_limit;   // g is not constant
-    bool constant_sigma; // sigma is
 } FcInterval;
 
-// Keeps the pointers. beyond_peaks is the scene itself if it has no Stribeck curve.
-FcInterval fc_interval_make(const FcScene* scene, const FcScene* beyond_peaks, double duration,
-                            const FcSolverOptions* options);
+// Keeps the pointer.
+FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolverOptions* options);
 
 // The allowed error of a force [N].
 static inline double fc_allowed_force(const FcInterval* interval) {
     return interval->tolerance * interval->force;
 }
-
-// About -log10(x), down to the next power of two; about 308 for 0 and the smallest numbers.
-double fc_digits(double x);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "model/plane.h"
 #include "model/root.h"
-#include "solver/panels/panel_tables.h"
+#include "solver/panel_tables.h"
 
 FcPast fc_past(const FcScene* scene) {
     if (fc_scene_is_loose(scene)) {
@@ -145,17 +145,16 @@ static double follow(const Ramp* ramp, double a, double b, double delta, double*
     const double at_a = above_bound(&of, a);
     const double from =
         at_a < 0.0 ? fc_root_between(above_bound, &of, a, at_a, b, delta - end.D, 0.0, 0.0, &none) : a;
-    const FcGaussRule* rule = &FC_GAUSS_8;
-    for (int i = 0; i < 8; i++) {
-        const Place at = at_place(ramp, from + (0.5 + rule->node[i]) * (b - from));
+    for (int i = 0; i < FC_STAGES; i++) {
+        const Place at = at_place(ramp, from + (0.5 + FC_RADAU.node[i]) * (b - from));
         // With its sign, so that a shallow rise that is not seen cancels its fall.
-        *heat -= rule->weight[i] * (b - from) * at.limit * at.rate;
+        *heat -= FC_RADAU.weight[i] * (b - from) * at.limit * at.rate;
     }
     return end.D;
 }
 
 // The largest changes over a step of the ramp: of the logarithms of D, g and sigma together, and of V over
-// V_S on Stribeck's curve. Half of them doubles the steps; twice of them leaves twice the change to the 8
+// V_S on Stribeck's curve. Half of them doubles the steps; twice of them leaves twice the change to the 9
 // nodes of a step.
 static const double STEP_OF_LOG = 0.5;
 static const double FACTOR_OF_STEP = 1.65; // its exponential

@@ -1,6 +1,7 @@
 #include "solver/pieces.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stddef.h>
 
 void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
@@ -40,4 +41,31 @@ void fc_loose_step(FcStepResult* result) {
     result->delta = result->delta_y = 0.0;
     result->slips = 0;
     result->on_bound = false;
+}
+
+// A limit that falls by decades is too small at the step's end for the scale of the whole step: a piece has
+// its own.
+static FcSolverOptions options_of_piece(const FcSolverOptions* options, const FcPieces* pieces) {
+    FcSolverOptions own = *options;
+    const double limit = pieces->h < pieces->whole && options->damping > 0.0
+                             ? fc_scene_smallest_limit(pieces->scene, pieces->h)
+                             : 0.0;
+    if (limit > 0.0) {
+        own.force = fmin(own.force, fc_force_beside_damping(options->largest, options->damping, limit));
+    }
+    return own;
+}
+
+void fc_take_pieces(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
+                     FcStepResult* total) {
+    FcPieces pieces;
+    fc_pieces_start(&pieces, scene, duration);
+    while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {
+        if (fc_scene_is_loose(pieces.scene)) {
+            fc_loose_step(total);
+        } else {
+            const FcSolverOptions own = options_of_piece(options, &pieces);
+            law.step(pieces.scene, &own, pieces.h, total);
+        }
+    }
 }

@@ -1,5 +1,5 @@
 // The error of a panel that is told beforehand, against its true one: the equation integrated in long double.
-#include "solver/panels/gauss_panel.h"
+#include "solver/gauss_panel.h"
 
 #include "check.h"
 #include "random.h"

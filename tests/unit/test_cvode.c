@@ -1,5 +1,5 @@
 // CVODE: no history outlives a step, and what it says that it evaluated.
-#include "solver/methods/methods.h"
+#include "solver/methods.h"
 
 #include "check.h"
 #include "table_1.h"

@@ -1,5 +1,5 @@
 // Where a bristle meets its bound: closed forms, and dense samples of random courses.
-#include "solver/march/meeting.h"
+#include "solver/meeting.h"
 
 #include <stddef.h>
 

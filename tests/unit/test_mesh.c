@@ -1,11 +1,11 @@
 // What is left at the interval's end of an error in the force: never told to be less than it is.
-#include "solver/stretches/mesh.h"
+#include "solver/mesh.h"
 
 #include <math.h>
 
 #include "check.h"
 #include "random.h"
-#include "solver/stretches/section.h"
+#include "solver/section.h"
 #include "table_1.h"
 
 static const double OMEGA = 6.283185307179586 * 20e3;

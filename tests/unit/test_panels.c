@@ -1,9 +1,9 @@
 // Panels: coefficients at their nodes against the scene's own, maps against the closed form, and what they say of their
 // errors against those errors.
 #include "check.h"
-#include "solver/panels/gauss_panel.h"
-#include "solver/panels/nodes.h"
-#include "solver/panels/radau_panel.h"
+#include "solver/gauss_panel.h"
+#include "solver/nodes.h"
+#include "solver/radau_panel.h"
 #include "table_1.h"
 
 static const FcFriction DAHL = {

@@ -1,13 +1,13 @@
 // Periods: which intervals a step asks for, how their maps are put together, and that many periods at once are the same as one by
 // one, whatever the law, for the price of a few.
-#include "solver/methods/periods.h"
+#include "solver/periods.h"
 
 #include <string.h>
 
 #include "check.h"
 #include "model/regime.h"
 #include "random.h"
-#include "solver/methods/method.h"
+#include "solver/method.h"
 #include "table_1.h"
 
 static const double F = 1024.0; // Hz; a period is a power of 2, so that h f has no rounding

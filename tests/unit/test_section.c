@@ -1,12 +1,12 @@
 // Into how many panels a part of a stretch is cut: hardly one of them is refused, and none is taken where Radau panels are cheaper.
-#include "solver/stretches/section.h"
+#include "solver/section.h"
 
 #include <math.h>
 
 #include "check.h"
 #include "random.h"
-#include "solver/panels/gauss_panel.h"
-#include "solver/panels/judge.h"
+#include "solver/gauss_panel.h"
+#include "solver/judge.h"
 #include "table_1.h"
 
 static const double F_C = 55.0;

@@ -1,5 +1,5 @@
 // The integral of the lag against the bristle's equation in some million steps, each exact for coefficients that stand still.
-#include "solver/stretches/settled_lag.h"
+#include "solver/settled_lag.h"
 
 #include "check.h"
 #include "random.h"

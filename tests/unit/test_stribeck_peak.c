@@ -1,6 +1,6 @@
 // The Stribeck peaks: beyond them the curve is not seen, and they are not wider than that asks for. Against
 // V at dense samples, in contacts so stiff that the force follows its limit.
-#include "solver/stretches/stribeck_peak.h"
+#include "solver/stribeck_peak.h"
 
 #include "check.h"
 #include "random.h"

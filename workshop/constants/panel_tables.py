@@ -1,38 +1,32 @@
-"""Writes the tables of the solver's panels: fmu_src/solver/panels/panel_tables.h.
+"""Writes the tables of the solver's panels: fmu_src/solver/panel_tables.h.
 
     .venv/bin/python -m workshop.constants.panel_tables
 
 They are kept with the sources, so that a build needs no mpmath. tests/solver/test_panel_tables.py has
-other formulas. All follow from the nodes c_i on [0, 1], the roots of the Legendre polynomial P_n(2 c - 1) for
-Gauss and of P_n - P_(n-1) for Radau: the integrals and slopes of the polynomials through values at the
-nodes, their Legendre coefficients, their value at 0.
+other formulas. All follow from the nodes c_i on [0, 1], the roots of P_n - P_(n-1) with the Legendre
+polynomials P_n(2 c - 1): the integrals of the polynomials through values at the nodes, their Legendre coefficients,
+their values at 0 and, with the panel's start as a tenth point, at 32 equal steps.
 """
-
-from collections.abc import Callable
 
 import numpy as np
 from mpmath import mp, mpf
-from scipy.special import roots_jacobi, roots_legendre
+from scipy.special import roots_jacobi
 
 from workshop.project import ROOT
 
 mp.dps = 60
-GAUSS, RADAU = (4, 6, 8, 12), 9
-HEADER = ROOT / "fmu_src" / "solver" / "panels" / "panel_tables.h"
-
-
-def roots(polynomial: Callable[[mpf], mpf], near: np.ndarray) -> list[mpf]:
-    """Of a polynomial on [-1, 1], each next to a number, on [0, 1]."""
-    return [(1 + mp.findroot(polynomial, (mpf(x), mpf(x) + 1e-13))) / 2 for x in near]
-
-
-def gauss_nodes(n: int) -> list[mpf]:
-    return roots(lambda x: mp.legendre(n, x), roots_legendre(n)[0])
+STAGES, SAMPLES = 9, 32
+HEADER = ROOT / "fmu_src" / "solver" / "panel_tables.h"
 
 
 def radau_nodes(n: int) -> list[mpf]:
-    inner = roots(lambda x: mp.legendre(n, x) - mp.legendre(n - 1, x), roots_jacobi(n - 1, 1, 0)[0])
-    return [*inner, mpf(1)]
+    """Of Radau IIA with n stages, on [0, 1]; the last one is 1."""
+    near: np.ndarray = roots_jacobi(n - 1, 1, 0)[0]
+
+    def polynomial(x: mpf) -> mpf:
+        return mp.legendre(n, x) - mp.legendre(n - 1, x)
+
+    return [*((1 + mp.findroot(polynomial, (mpf(x), mpf(x) + 1e-13))) / 2 for x in near), mpf(1)]
 
 
 class Rule:
@@ -43,15 +37,26 @@ class Rule:
         self.nodes = nodes
         powers = mp.matrix([[c**j for j in range(n)] for c in nodes])
         integrals = mp.matrix([[c ** (j + 1) / (j + 1) for j in range(n)] for c in nodes])
-        slopes = mp.matrix([[j * c ** (j - 1) for j in range(n)] for c in nodes])
         legendres = mp.matrix([[mp.legendre(j, 2 * c - 1) for j in range(n)] for c in nodes])
         from_values = powers**-1
         self.integral = integrals * from_values
-        self.slope = slopes * from_values
         self.weights = list(mp.matrix([[mpf(1) / (j + 1) for j in range(n)]]) * from_values)
         self.start = [from_values[0, j] for j in range(n)]  # the polynomial's value at 0
         of_degree = legendres**-1
         self.tail = [[of_degree[max(n - k, 0), j] for k in range(1, 5)] for j in range(n)]
+
+
+def barycentric_weights(points: list[mpf]) -> list[mpf]:
+    """Up to a common factor, which keeps them near 1."""
+    return [1 / mp.fprod(4 * (a - b) for b in points if b is not a) for a in points]
+
+
+def values_at(points: list[mpf], x: mpf) -> list[mpf]:
+    """The weights of the values at the points in the value at x of the polynomial through them."""
+    if x in points:
+        return [mpf(point == x) for point in points]
+    parts = [w / (x - point) for w, point in zip(barycentric_weights(points), points, strict=True)]
+    return [part / mp.fsum(parts) for part in parts]
 
 
 def row(values: list[mpf]) -> str:
@@ -62,72 +67,45 @@ def rows(values: list[list[mpf]]) -> str:
     return "{" + ",\n     ".join(row(line) for line in values) + "}"
 
 
-def header(guard: str, body: list[str]) -> str:
-    lines = ["// Made by workshop.constants.panel_tables, which describes the entries."]
-    lines += ["// clang-format off", f"#ifndef {guard}", f"#define {guard}", ""]
-    lines += ['#include "solver/panels/arithmetic.h"', "", *body, f"#endif  // {guard}"]
-    return "\n".join(lines) + "\n"
+def tables() -> str:
+    """Text of the header."""
+    rule = Rule(radau_nodes(STAGES))
+    inverse = rule.integral**-1
+    points = [*rule.nodes, mpf(0)]
+    samples = [[*values_at(points, mpf(k) / SAMPLES), mpf(0), mpf(0)] for k in range(SAMPLES + 1)]
+    return f"""// Made by workshop.constants.panel_tables, which describes the entries.
+// clang-format off
+#ifndef FC_SOLVER_PANEL_TABLES_H
+#define FC_SOLVER_PANEL_TABLES_H
 
+#include "solver/arithmetic.h"
 
-GAUSS_STRUCT = """typedef struct {
-    double node[12];         // on [-1/2, 1/2]
-    double weight[12];       // of the integral over the panel
-    double integral[12][12]; // [j][i]: weight of node j in the integral up to node i
-    double tail[12][4];      // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
-} FC_PAIRED FcGaussRule;
-"""
+// The number of stages. The points of a panel are its stages, and then its start.
+enum {{ FC_STAGES = {STAGES}, FC_POINTS = FC_STAGES + 1, FC_SAMPLES = {SAMPLES} }};
 
-RADAU_STRUCT = """// After the stages, the panel's start.
-typedef struct {
+typedef struct {{
     double node[10];       // on [-1/2, 1/2]
     double weight[10];     // of the integral over the panel
     double start[10];      // value at the start of the polynomial through the stages, less the value there
     double inverse[9][10]; // of the Runge-Kutta matrix
     double tail[10][4];    // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
-} FC_PAIRED FcRadauRule;
-"""
+    double barycentric[10];
+    double sample[{SAMPLES + 1}][12]; // [k][j]: weight of point j in the value of the polynomial after the part k / {SAMPLES}
+}} FC_PAIRED FcRadauRule;
 
-
-def columns(matrix: mp.matrix, n: int) -> list[list]:
-    return [[matrix[i, j] for i in range(n)] for j in range(n)]
-
-
-def gauss_table(n: int) -> str:
-    rule = Rule(gauss_nodes(n))
-    return f"""// Computed by workshop.constants.panel_tables: the Gauss rule of {n} nodes.
-static const FcGaussRule FC_GAUSS_{n} = {{
-    {row([c - mpf(1) / 2 for c in rule.nodes])},
-    {row(rule.weights)},
-    {rows(columns(rule.integral, n))},
-    {rows(rule.tail)},
-}};
-"""
-
-
-def slope_table(n: int) -> str:
-    return f"""// Computed so too. [j][i]: weight of node j in the slope at node i
-static const double FC_GAUSS_{n}_SLOPE[{n}][{n}] = {rows(columns(Rule(gauss_nodes(n)).slope, n))};
-"""
-
-
-def radau_table(n: int) -> str:
-    rule = Rule(radau_nodes(n))
-    inverse = rule.integral**-1
-    return f"""// Computed so too: Radau IIA of {n} stages.
-static const FcRadauRule FC_RADAU_{n} = {{
+// Radau IIA of {STAGES} stages.
+static const FcRadauRule FC_RADAU = {{
     {row([*(c - mpf(1) / 2 for c in rule.nodes), -mpf(1) / 2])},
     {row([*rule.weights, mpf(0)])},
     {row([*rule.start, -mpf(1)])},
-    {rows([[inverse[i, j] for j in range(n)] for i in range(n)])},
+    {rows([[inverse[i, j] for j in range(STAGES)] for i in range(STAGES)])},
     {rows([*rule.tail, [mpf(0)] * 4])},
+    {row(barycentric_weights(points))},
+    {rows(samples)},
 }};
+
+#endif  // FC_SOLVER_PANEL_TABLES_H
 """
-
-
-def tables() -> str:
-    """Text of the header."""
-    body = [GAUSS_STRUCT, *map(gauss_table, GAUSS), slope_table(GAUSS[-1]), RADAU_STRUCT, radau_table(RADAU)]
-    return header("FC_SOLVER_PANEL_TABLES_H", body)
 
 
 def main() -> None:

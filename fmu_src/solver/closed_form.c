@@ -1,0 +1,70 @@
+#include "solver/closed_form.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "solver/affine_map.h"
+
+static FcPlaneCoefficients at_start(const FcScene* scene) {
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    return fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
+}
+
+static void line_step(const FcScene* scene, const FcContactResponse* contact, double h,
+                      FcStepResult* result) {
+    const FcCoefficients at = fc_scene_coefficients_of(scene, contact);
+    const FcMap map = fc_map_of_constant_scene(&at, h);
+    *result = (FcStepResult){.delta = result->delta, .evaluations = 1.0};
+    fc_map_apply(&map, result);
+}
+
+// Along V as on a line, transverse to V by relaxation alone.
+static void plane_step(const FcScene* scene, double h, FcStepResult* result) {
+    const FcPlaneCoefficients at = at_start(scene);
+    const FcVector n =
+        at.speed > 0.0 ? (FcVector){at.V.x / at.speed, at.V.y / at.speed} : (FcVector){1.0, 0.0};
+    const FcMap along = fc_map_of_constant_scene(&(FcCoefficients){at.speed, at.sigma, at.limit}, h);
+    const FcMap across = {.relaxation = along.relaxation,
+                          .impulse_slope = along.impulse_slope,
+                          .heat_square = along.heat_square};
+    FcStepResult turned = {.delta = n.x * result->delta + n.y * result->delta_y,
+                           .delta_y = n.x * result->delta_y - n.y * result->delta,
+                           .evaluations = 1.0};
+    fc_map_apply(&along, &turned);
+    fc_map_apply_across(&across, &turned);
+    *result = turned;
+    result->delta = n.x * turned.delta - n.y * turned.delta_y;
+    result->delta_y = n.y * turned.delta + n.x * turned.delta_y;
+    result->impulse = n.x * turned.impulse - n.y * turned.impulse_y;
+    result->impulse_y = n.y * turned.impulse + n.x * turned.impulse_y;
+}
+
+void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h,
+                      FcStepResult* result) {
+    assert(h >= 0.0 && fc_drive_is_constant(&scene->drive));
+    if (fc_is_planar(scene, fc_bristle_of(result))) {
+        plane_step(scene, h, result);
+    } else {
+        line_step(scene, contact, h, result);
+    }
+}
+
+FcBristle fc_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* force) {
+    assert(fc_drive_is_constant(&scene->drive));
+    const FcPlaneCoefficients at = at_start(scene);
+    const bool has_bristle = scene->friction->model != FC_COULOMB;
+    if (at.speed == 0.0 || !isfinite(at.limit / at.sigma)) {
+        *force = has_bristle ? (FcVector){at.sigma * from.delta, at.sigma * from.delta_y}
+                             : fc_plane_coulomb(&at);
+        return from;
+    }
+    *force = fc_plane_coulomb(&at);
+    if (!has_bristle) {
+        return from;
+    }
+    const FcBristle end = {.delta = force->x / at.sigma, .delta_y = force->y / at.sigma};
+    const bool slips = fc_has_static_friction(scene->friction);
+    const int side = fc_is_planar(scene, from) ? 1 : fc_side(end);
+    return (FcBristle){.delta = end.delta, .slips = slips ? side : 0, .delta_y = end.delta_y};
+}

@@ -1,0 +1,229 @@
+#include "solver/control.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "model/constants.h"
+#include "solver/tuning.h"
+
+// Derived: polynomials through 9 stages err by rho^-17 for a function that is analytic in a strip of the half width pi / 2,
+// with sinh(ln rho) = pi over the panel's length.
+static const double ORDER = 17.0;
+// Derived: a Legendre tail of 1e-13 of the force is its rounding, so a transient above e^30 tolerances needs no shorter panels.
+static const double MOST_BEHIND = 30.0;
+// Rounding of a panel's force, over the limit: 900 eps. A smaller error would only shorten panels.
+static const double ROUNDING_OF_PANEL = 2e-13;
+// Derived: the effect of a curve of a thousandth of the tolerance is none.
+static const double SEEN = 1e-3;
+
+// ln(x) to 0.03 and e^x to 3 %, by the bits of x: enough for a plan, and five times as fast.
+static inline double rough_log(double x) {
+    int64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return 0.6931471805599453 / 4503599627370496.0 * (double)bits - (1023.0 - 0.043) * 0.6931471805599453;
+}
+
+static inline double rough_exp(double x) {
+    const double power = fc_most(-700.0, fc_least(700.0, x)) * 1.4426950408889634;
+    const int64_t bits = (int64_t)((power + (1023.0 - 0.043)) * 4503599627370496.0);
+    double y;
+    memcpy(&y, &bits, sizeof y);
+    return y;
+}
+
+static inline double sinh_of_small(double x) {
+    const double y = x * x;
+    return x * (1.0 + y * (1.0 / 6 + y * (1.0 / 120 + y * (1.0 / 5040))));
+}
+
+// The longest panel in u for a function entire in t, to that part of its size: the strip of sinh(u) is pi / 2.
+static double longest_for(double part) { return FC_PI / sinh_of_small(-rough_log(part) / ORDER); }
+
+void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval* interval,
+                      double transient) {
+    assert(interval->duration > 0.0 && interval->tolerance > 0.0);
+    const double allowed = fc_allowed_force(interval);
+    *control = (FcControl){.plane = plane, .interval = interval};
+    control->log_transient = transient > 0.0 ? log(transient / allowed) : -HUGE_VAL;
+    control->log_force = interval->force > 0.0 ? log(interval->force / allowed) : 0.0;
+    control->span =
+        FC_SMOOTH * exp(log(interval->tolerance) / ORDER) * fc_smooth_time(&interval->pace);
+    control->longest = longest_for(interval->tolerance);
+    control->settles = plane->on_line && fc_scene_limit_is_constant(interval->scene) &&
+                       !fc_has_stribeck_curve(interval->scene->friction);
+}
+
+// The panel whose length in u, times dt/du where that is largest, is the time `span` [s].
+static double length_of_span(const FcStraight* in, double x, double span) {
+    const double y = span / sqrt(in->length * in->length + x * x);
+    if (x < 0.0 || y < 1e-3) {
+        return y;
+    }
+    const double l = rough_log(1.0 + y) + 0.03; // y = h e^h
+    return l * (1.0 - rough_log(1.0 + l) / (2.0 + l));
+}
+
+// In the plane a slip turns as a free bristle relaxes.
+static bool is_relaxing(const FcControl* control, FcKind kind) {
+    return kind == FC_RELAXES || (kind == FC_SLIPS && !control->plane->on_line);
+}
+
+// The lag of the force behind sigma and g, over the force, if the bristle relaxes at that rate: their rate, times the time
+// of relaxation or of the layer.
+static double lag_for(const FcControl* control, const FcStraight* in, double rate) {
+    return control->interval->pace.log_sigma * (rate * in->length > 1.0 ? 1.0 / rate : in->length);
+}
+
+// The largest relaxation in a panel, while a transient is left.
+static double most_relaxation(double behind) {
+    return behind > 0.0 ? FC_RELAXATION * rough_exp(behind * (-1.0 / 7.0)) : INFINITY;
+}
+
+// ln of the transient over the allowed error: the rest of the start's, and behind a reversal that of the force, which
+// follows V while the bristle relaxes.
+static double transient_at(const FcControl* control, const FcPart* part, const FcReached* at) {
+    const double x = at->t - part->in.center;
+    double behind = control->log_transient;
+    if (isfinite(part->in.length) && part->in.center > 0.0 && x >= 0.0) {
+        behind = fc_most(behind, control->log_force - 0.5 * at->rate * x);
+    }
+    return fc_least(behind, MOST_BEHIND);
+}
+
+// The time in which a stuck bristle moves by FC_MOST_OF_BOUND radii of its bound.
+static double span_of_stuck(const FcControl* control, const FcReached* at) {
+    const FcInterval* interval = control->interval;
+    const FcDrive* drive = &interval->scene->drive;
+    const FcPhase phase = fc_drive_phase(drive, at->t);
+    const FcVelocity x = fc_drive_velocity_at_phase(drive, at->t, phase);
+    const FcVelocity y =
+        control->plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, at->t, phase);
+    const double speed = hypot(x.V, y.V);
+    const double D = at->rate > 0.0 ? speed / at->rate : interval->saturation;
+    const double bend = hypot(x.rate, y.rate);
+    const double soon = speed + bend > 0.0 ? fc_time_to_move(speed, bend, FC_MOST_OF_BOUND * D) : 0.0;
+    return soon > 0.0 ? soon : INFINITY;
+}
+
+// The part of the force that is not smooth in t, over the force: a transient, the lag behind sigma and g, and the Stribeck
+// curve; in the plane all of it, since it turns.
+static double part_not_smooth(const FcControl* control, const FcReached* at, FcKind kind, double behind,
+                              double lag, double V_end) {
+    const FcFriction* friction = control->interval->scene->friction;
+    if (!control->plane->on_line || kind == FC_NO_BRISTLE) {
+        return control->plane->on_line ? 0.0 : 1.0;
+    }
+    double part = 0.0;
+    if (kind == FC_RELAXES) {
+        part = behind > 0.0 ? fc_most(lag, rough_exp(fc_least(0.0, behind - control->log_force))) : lag;
+    }
+    if (fc_has_stribeck_curve(friction) && kind != FC_STICKS) {
+        const double V = fc_least(at->rate / at->per_path, V_end) / friction->V_S;
+        part = fc_most(part, (friction->staticRatio - 1.0) * rough_exp(-V * V));
+    }
+    return fc_least(1.0, part);
+}
+
+// The length in u up to which a graded panel is smooth, and resolves what is not smooth in t.
+static double graded_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
+                            double behind, double span, double longest, double h) {
+    const FcInterval* interval = control->interval;
+    const FcStraight* in = &part->in;
+    const double x = at->t - in->center;
+    h = fc_least(h, length_of_span(in, x, span));
+    h = fc_least(h, fc_least(FC_LONGEST, longest));
+    // The end of the panel, and |V| there at the most.
+    const double grown = 0.5 * in->length * rough_exp(at->u + h);
+    const double x_end = grown - 0.25 * in->length * in->length / grown;
+    const double V_end = fc_part_speed(part, x_end);
+    const double rate_end = at->per_path * V_end;
+    const double acts =
+        is_relaxing(control, kind) ? fc_least(1.0, 0.5 * (at->rate + rate_end) * (x_end - x)) : 1.0;
+    const double lag = lag_for(control, in, fc_least(at->rate, rate_end));
+    const double counts = FC_SAFETY * acts * part_not_smooth(control, at, kind, behind, lag, V_end) *
+                          (x_end - x) / (interval->duration * interval->tolerance);
+    const double strip = part->narrow * FC_PART_OF_STRIP * FC_PI;
+    return counts > 0.0 ? fc_least(h, strip / sinh_of_small(rough_log(1.0 + counts) / ORDER)) : h;
+}
+
+double fc_control_length(const FcControl* control, const FcPart* part, const FcReached* at, FcKind kind,
+                         double end, double proposed) {
+    const FcStraight* in = &part->in;
+    const double left = end - at->u;
+    const double x = at->t - in->center;
+    const bool relaxes = is_relaxing(control, kind);
+    assert(left > 0.0);
+    const double behind = relaxes ? transient_at(control, part, at) : 0.0;
+    const double z = relaxes ? most_relaxation(behind) : INFINITY;
+    double span = control->span;
+    double longest = control->longest;
+    if (kind == FC_STICKS && control->is_bounded) {
+        span = fc_least(span, span_of_stuck(control, at));
+    } else if (kind == FC_RELAXES && control->settles && !(behind > 0.0)) {
+        // A settled force is constant but for its lag, and the integrals of the constant are exact.
+        const double lag = lag_for(control, in, x < 0.0 ? 0.0 : at->rate);
+        const double part_of_lag = fc_most(control->interval->tolerance, fc_least(1.0, lag));
+        span *= rough_exp(-rough_log(part_of_lag) / ORDER);
+        longest = longest_for(fc_least(0.99, control->interval->tolerance / part_of_lag));
+    }
+    double h = proposed > 0.0 ? fc_least(left, proposed) : left;
+    h = isinf(in->length) ? fc_least(h, span)
+                          : graded_length(control, part, at, kind, behind, span, longest, h);
+    if (z < INFINITY && at->rate > 0.0) { // |V| may grow as e^u
+        const double straight = z / at->rate;
+        const double grows =
+            isinf(in->length) ? 0.0 : 2.0 * straight / sqrt(in->length * in->length + x * x);
+        h = fc_least(h, isinf(in->length) ? straight
+                        : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
+                                          : 0.5 * rough_log(1.0 + grows));
+    }
+    return h > 0.0 ? left / ceil(left / h * (1.0 - 1e-9)) : left;
+}
+
+// Whether the panel sees the Stribeck curve.
+static bool sees_curve(const FcControl* control, const FcNodes* nodes) {
+    const FcFriction* friction = control->interval->scene->friction;
+    if (!fc_has_stribeck_curve(friction)) {
+        return false;
+    }
+    const double V = fmin(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
+    return (friction->staticRatio - 1.0) * exp(-V * V) > SEEN * control->interval->tolerance;
+}
+
+double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
+                         const FcPanel* panel, FcKind kind, FcPathLeft path_left, void* context) {
+    const FcInterval* interval = control->interval;
+    const double end = nodes->t[FC_STAGES - 1];
+    const double allowed = fc_allowed_force(interval);
+    // An error of the end lives while the bristle does not forget it, and grows with sigma.
+    const double length = part->in.length;
+    const double forgets =
+        panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
+    const double lives = fmax(0.0, fmin(interval->duration - end, forgets)) / interval->duration;
+    const double lasts = fmin(1.0, nodes->duration / interval->duration); // the nodes' times are rounded
+    const double end_error = panel->end_error * fmax(1.0, interval->stiffness / panel->sigma);
+    const double mean_error = end_error * lives + panel->mean_error * lasts;
+    // In a curve of LuGre's law, a panel may use the share of its relaxation alone.
+    const bool in_curve = sees_curve(control, nodes);
+    const double path = interval->speed * interval->duration / interval->saturation;
+    const bool by_z = in_curve && interval->scene->friction->model == FC_LUGRE;
+    const double whole = allowed * (by_z ? fmin(1.0, fmax(panel->z, path)) : 1.0);
+    const double curve = in_curve || kind == FC_NO_BRISTLE ? FC_SHARE_IN_CURVE : 1.0;
+    const double rounding = ROUNDING_OF_PANEL * panel->limit;
+    const double of_mean = FC_SAFETY * mean_error / fmax(curve * FC_SHARE_OF_MEAN * whole, rounding);
+    double of_end = FC_SAFETY * end_error / fmax(curve * FC_SHARE_OF_END * whole, rounding);
+    if (of_end > 1.0 && of_end > of_mean) {
+        of_end *= exp(-path_left(context, end) / interval->saturation);
+    }
+    return fmax(of_mean, of_end);
+}
+
+double fc_control_shortens(double excess) {
+    return isfinite(excess) ? fmax(0.3, fmin(0.9, 0.9 * pow(excess, -1.0 / ORDER))) : 0.4;
+}
+
+double fc_control_grows(double excess) {
+    return excess > 0.0 ? fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 2.0;
+}

@@ -1,0 +1,208 @@
+#include "solver/crossing.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+
+enum { START = FC_STAGES, LAST = FC_STAGES - 1 };
+
+FcKind fc_kind(const FcCrossing* crossing) {
+    const int model = crossing->interval->scene->friction->model;
+    return model == FC_COULOMB         ? FC_NO_BRISTLE
+           : crossing->is_slipping     ? FC_SLIPS
+           : model == FC_ELASTIC_PLASTIC ? FC_STICKS
+                                         : FC_RELAXES;
+}
+
+FcVector fc_crossing_delta(const FcCrossing* crossing) {
+    return (FcVector){crossing->along.offset, crossing->across_map.offset};
+}
+
+void fc_set_delta(FcCrossing* crossing, FcVector delta) {
+    crossing->along.relaxation = crossing->across_map.relaxation = 1.0;
+    crossing->along.offset = delta.x;
+    crossing->across_map.offset = delta.y;
+}
+
+FcPlaneCoefficients fc_coefficients_at(const FcCrossing* crossing, double t) {
+    return fc_plane_coefficients(crossing->plane, t, fc_drive_phase(&crossing->interval->scene->drive, t));
+}
+
+double fc_largest_push(const FcCrossing* crossing) {
+    const FcInterval* interval = crossing->interval;
+    return interval->speed + interval->saturation * interval->pace.log_sigma;
+}
+
+static void reach(FcCrossing* crossing, double u, double t, const FcPlaneCoefficients* at) {
+    const double per_path = at->sigma / at->limit;
+    crossing->at = (FcReached){.u = u, .t = t, .rate = per_path * fabs(at->speed), .per_path = per_path};
+}
+
+void fc_crossing_start(FcCrossing* crossing, const FcPlane* plane, const FcInterval* interval,
+                       double evaluations) {
+    *crossing = (FcCrossing){.plane = plane,
+                             .interval = interval,
+                             .across = fc_drive_across(&interval->scene->drive),
+                             .is_bounded = fc_is_bounded(interval->scene->friction),
+                             .by_start = {{1.0, 0.0}, {0.0, 1.0}},
+                             .evaluations = evaluations};
+    crossing->count = fc_parts(plane, interval->duration, interval->tolerance, crossing->parts);
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, 0.0);
+    reach(crossing, 0.0, 0.0, &at);
+}
+
+// The present part in a variable.
+static void take_variable(FcCrossing* crossing, FcStraight in) {
+    crossing->part.in = in;
+    crossing->at.u = fc_straight_place(&in, crossing->at.t);
+    crossing->end = fc_straight_place(&in, crossing->part.end);
+    crossing->h = 0.0;
+}
+
+void fc_begin_part(FcCrossing* crossing, int number) {
+    assert(0 <= number && number < crossing->count);
+    crossing->number = number;
+    crossing->part = crossing->parts[number];
+    crossing->at.t = crossing->part.start;
+    take_variable(crossing, crossing->part.in);
+}
+
+void fc_choose_variable(FcCrossing* crossing) {
+    const FcStraight graded = crossing->parts[crossing->number].in;
+    const bool sticks = fc_kind(crossing) == FC_STICKS && crossing->slips == 0;
+    const FcStraight wanted = sticks ? (FcStraight){0.0, INFINITY} : graded;
+    if (wanted.length != crossing->part.in.length) {
+        take_variable(crossing, wanted);
+    }
+}
+
+bool fc_part_is_crossed(const FcCrossing* crossing) { return !(crossing->at.u < crossing->end); }
+
+static FcFrom from_of(const FcCrossing* crossing) {
+    const FcScene* scene = crossing->interval->scene;
+    const bool still = fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
+    const bool has_curve = fc_has_stribeck_curve(scene->friction);
+    return (FcFrom){.delta = fc_crossing_delta(crossing),
+                    .scale = (1.0 - crossing->along.relaxation) * crossing->scale,
+                    .speed = crossing->interval->speed + DBL_MIN,
+                    .push = fc_largest_push(crossing) + DBL_MIN,
+                    .for_any = crossing->for_any,
+                    .is_still = still && !has_curve && scene->friction->sigma_1 == 0.0,
+                    .limit_stands = fc_scene_limit_is_constant(scene) &&
+                                    (!has_curve || fc_drive_V_is_constant(&scene->drive))};
+}
+
+bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel) {
+    const FcFrom from = from_of(crossing);
+    const FcPlane* plane = crossing->plane;
+    fc_nodes_make(plane, &crossing->part, crossing->at.u, h, nodes);
+    crossing->evaluations += FC_STAGES;
+    switch (fc_kind(crossing)) {
+    case FC_SLIPS:
+        if (!plane->on_line) {
+            return fc_plane_slip_panel(plane, nodes, &from, panel);
+        }
+        fc_line_slip_panel(plane, nodes, &from, panel);
+        return true;
+    case FC_NO_BRISTLE:
+        fc_coulomb_panel(nodes, from.speed, panel);
+        return true;
+    default:
+        fc_free_panel(plane, nodes, &from, panel);
+        return true;
+    }
+}
+
+void fc_make_again(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel) {
+    if (!fc_make_panel(crossing, h, nodes, panel)) {
+        crossing->along.offset = NAN; // a part of a panel that was solved is, too
+    }
+}
+
+// A distance [m] from start to end in a part that is at most the path: straight to the center, and from there.
+static double least_path(const FcCrossing* crossing, const FcPart* part, double start, double end) {
+    const FcDrive* drive = &crossing->interval->scene->drive;
+    if (crossing->plane->on_line) {
+        return fabs(fc_drive_displacement(drive, start, end));
+    }
+    const double turn = fmin(fmax(part->in.center, start), end);
+    return hypot(fc_drive_displacement(drive, start, turn),
+                 fc_drive_displacement(&crossing->across, start, turn)) +
+           hypot(fc_drive_displacement(drive, turn, end),
+                 fc_drive_displacement(&crossing->across, turn, end));
+}
+
+// The path from t to the interval's end, at the least. The ways of the parts are found once.
+static double path_left(void* context, double t) {
+    FcCrossing* crossing = context;
+    if (!crossing->has_ways) {
+        double after = 0.0;
+        for (int i = crossing->count - 1; i >= 0; i--) {
+            const FcPart* part = &crossing->parts[i];
+            crossing->way[i] = after;
+            after += least_path(crossing, part, part->start, part->end);
+        }
+        crossing->has_ways = true;
+    }
+    return crossing->way[crossing->number] +
+           least_path(crossing, &crossing->part, t, crossing->part.end);
+}
+
+double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
+    const FcKind kind = fc_kind(crossing);
+    double h = fc_control_length(&crossing->control, &crossing->part, &crossing->at, kind, crossing->end,
+                                 crossing->h);
+    for (int tries = 0;; tries++) {
+        const bool is_solved = fc_make_panel(crossing, h, nodes, panel);
+        const double excess = is_solved ? fc_control_excess(&crossing->control, &crossing->part, nodes, panel,
+                                                            kind, path_left, crossing)
+                                        : HUGE_VAL;
+        if ((is_solved && excess <= 1.0) || tries >= FC_MOST_TRIES) {
+            if (!is_solved) {
+                crossing->along.offset = NAN;
+            }
+            const double grows = tries == 0 ? 4.0 : fc_control_grows(excess);
+            crossing->h = tries > 0 || crossing->h > 0.0 ? h * grows : 0.0;
+            return h;
+        }
+        h *= fc_control_shortens(excess);
+    }
+}
+
+void fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
+    if (fc_kind(crossing) == FC_STICKS) { // it moves with the surfaces: a drift over many periods is exact to rounding
+        const FcVector from = crossing->for_any ? (FcVector){0.0, 0.0} : fc_crossing_delta(crossing);
+        panel->along.offset = from.x + nodes->moved[LAST];
+        panel->across.offset = from.y + nodes->moved_y[LAST];
+    }
+    fc_map_append(&crossing->along, &panel->along);
+    fc_map_append(&crossing->across_map, &panel->across);
+    crossing->control.log_transient -= fmax(0.0, panel->z);
+    const double kept = crossing->plane->on_line ? 1.0 : exp(-panel->z); // of a deviation
+    for (int k = 0; k < 2; k++) {
+        crossing->by_start[k].x *= kept;
+        crossing->by_start[k].y *= kept;
+    }
+    // The rest of rounding is the part's.
+    const double next = crossing->at.u + h;
+    const bool is_end = crossing->end - next < 1e-12 * h;
+    const FcPlaneCoefficients at = fc_nodes_at(nodes, LAST);
+    reach(crossing, is_end ? crossing->end : next, is_end ? crossing->part.end : nodes->t[LAST], &at);
+}
+
+void fc_append_known(FcCrossing* crossing, const FcMap* map, double t) {
+    assert(t >= crossing->at.t && t <= crossing->part.end);
+    fc_map_append(&crossing->along, map);
+    crossing->evaluations += 1.0;
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
+    const bool is_end = t == crossing->part.end;
+    reach(crossing, is_end ? crossing->end : fc_straight_place(&crossing->part.in, t), t, &at);
+}
+
+void fc_note_slip(FcCrossing* crossing, double start, double end, int side) {
+    if (end - start > crossing->slip_length) {
+        crossing->slip_length = end - start;
+        crossing->slip_time = 0.5 * (start + end);
+        crossing->slip_side = side;
+    }
+}

@@ -1,0 +1,75 @@
+// Crossing a part of the interval, panel by panel: what all motions have in common.
+#ifndef FC_SOLVER_CROSSING_H
+#define FC_SOLVER_CROSSING_H
+
+#include "solver/control.h"
+
+typedef struct {
+    const FcPlane* plane;
+    const FcInterval* interval;
+    FcDrive across; // fc_drive_across
+    FcControl control;
+    // The parts, and the place reached.
+    FcPart parts[FC_MOST_PARTS];
+    int count, number;
+    FcPart part; // the present one, in the variable of the present motion
+    FcReached at;
+    double end;       // of the part, in u
+    double h;         // of the next panel, in u; 0 if nothing proposes one
+    double way[FC_MOST_PARTS]; // m, the path after each part, at the least
+    bool has_ways;
+    // The bristle, and the sums.
+    FcMap along, across_map;
+    bool for_any;     // the maps are for any start
+    double scale;     // m, of these starts
+    int slips;        // FcBristle
+    bool is_slipping; // along its bound
+    bool touches;     // a free bristle is at its bound
+    bool is_bounded;
+    int meetings;
+    double heat;          // J, of break-away
+    double drag;          // m2/s, of its drops
+    FcVector by_start[2]; // as in FcStepResult
+    double slip_length;   // s, of the longest slip so far, and
+    double slip_time;     // s
+    int slip_side;
+    double evaluations;
+} FcCrossing;
+
+// A crossing of the interval from its start on, with its parts; the bristle is to be set.
+void fc_crossing_start(FcCrossing* crossing, const FcPlane* plane, const FcInterval* interval,
+                       double evaluations);
+
+FcKind fc_kind(const FcCrossing* crossing);
+FcVector fc_crossing_delta(const FcCrossing* crossing); // m, now
+void fc_set_delta(FcCrossing* crossing, FcVector delta);
+FcPlaneCoefficients fc_coefficients_at(const FcCrossing* crossing, double t);
+
+// The largest velocity [m/s] of the bristle and its bound together.
+double fc_largest_push(const FcCrossing* crossing);
+
+// Begins a part, and the same part again in the variable of the present motion: a stuck bristle moves smoothly in t, one
+// that slips or relaxes in u.
+void fc_begin_part(FcCrossing* crossing, int number);
+void fc_choose_variable(FcCrossing* crossing);
+bool fc_part_is_crossed(const FcCrossing* crossing);
+
+// Makes the panel of the length h [u] at the present place, which is too long for its equation if it is false.
+bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel);
+// The same of a part of a panel that was solved.
+void fc_make_again(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel);
+
+// Makes the next panel, as long as it is accurate; returns its length in u.
+// - It is planned, made and judged, and shortened until its errors are small enough.
+// - After FC_MOST_TRIES of them it is accepted. If it could not be solved, the deflection becomes no number, for which
+//   the step is refused.
+double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel);
+
+// Adds the panel's integrals, and goes to its end.
+void fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h);
+// The same of a closed form that ends at the time t [s].
+void fc_append_known(FcCrossing* crossing, const FcMap* map, double t);
+// Notes a slip along a line, for a leap.
+void fc_note_slip(FcCrossing* crossing, double start, double end, int side);
+
+#endif

@@ -1,0 +1,446 @@
+#include "solver/events.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+
+#include "model/regime.h"
+#include "model/root.h"
+#include "solver/rise.h"
+#include "solver/tuning.h"
+
+enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
+
+// Parts of the largest push. A push below the first is rounding. Below the second a slipping bristle may be
+// released: derived, since the rest of a push acts with its square.
+static const double ROUNDING_OF_PUSH = 1e-13;
+static const double LITTLE_PUSH = 1e-9;
+
+// The number of times in which a panel is cut at the same event. Derived: each cut leaves less than a tenth of the way
+// to it, or half of it.
+enum { MOST_CUTS = 40 };
+
+static bool has_static_friction(const FcCrossing* crossing) {
+    return fc_has_static_friction(crossing->plane->scene->friction);
+}
+
+// ---- the bound at a time ----
+
+// The bristle beside its bound, at a time.
+typedef struct {
+    double t;
+    FcPlaneCoefficients at;
+    FcPlaneBound kinetic, held; // of a bristle that slips, and the present one
+    double size;                // m, |delta|
+    FcVector n;                 // its direction
+} Beside;
+
+static Beside beside_bound(const FcCrossing* crossing, FcVector delta, double t) {
+    const FcPhase phase = fc_drive_phase(&crossing->interval->scene->drive, t);
+    Beside of = {.t = t, .at = fc_plane_coefficients(crossing->plane, t, phase), .size = hypot(delta.x, delta.y)};
+    of.kinetic = fc_plane_bound(crossing->plane, &of.at, 1, t, phase);
+    of.held = has_static_friction(crossing)
+                  ? fc_plane_bound(crossing->plane, &of.at, crossing->slips, t, phase)
+                  : of.kinetic;
+    of.n = of.size > 0.0 ? (FcVector){delta.x / of.size, delta.y / of.size} : (FcVector){1.0, 0.0};
+    return of;
+}
+
+// The push at a time of a bristle that slips in the direction n.
+static double push_at(const FcCrossing* crossing, FcVector n, double t) {
+    const FcPhase phase = fc_drive_phase(&crossing->interval->scene->drive, t);
+    const FcPlaneCoefficients at = fc_plane_coefficients(crossing->plane, t, phase);
+    const FcPlaneBound bound = fc_plane_bound(crossing->plane, &at, 1, t, phase);
+    return fc_plane_push(crossing->plane, &at, &bound, n);
+}
+
+// The rounding of a push that is known at the points; the curve may move the bound faster than the limit does.
+static double rounding_of_push(const FcCrossing* crossing, const double push[POINTS]) {
+    double largest = fc_largest_push(crossing);
+    for (int i = 0; i < POINTS; i++) {
+        largest = fmax(largest, fabs(push[i]));
+    }
+    return ROUNDING_OF_PUSH * largest;
+}
+
+// Whether a bristle that slips in the direction n is not pushed now. A push of 0 decides just after.
+static bool falls_behind(const FcCrossing* crossing, FcVector n) {
+    const FcInterval* interval = crossing->interval;
+    const double t = crossing->at.t;
+    const double push = push_at(crossing, n, t);
+    if (fabs(push) > ROUNDING_OF_PUSH * fc_largest_push(crossing)) {
+        return push < 0.0;
+    }
+    const FcVelocity now = fc_drive_velocity(&interval->scene->drive, t);
+    const double time = fmin(fc_smooth_time(&interval->pace),
+                             fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
+    return push_at(crossing, n, t + 1e-6 * fmin(time, interval->duration - t)) < 0.0;
+}
+
+static FcVector direction_of(const FcCrossing* crossing) {
+    const FcVector delta = fc_crossing_delta(crossing);
+    const double size = hypot(delta.x, delta.y);
+    return size > 0.0 ? (FcVector){delta.x / size, delta.y / size} : (FcVector){1.0, 0.0};
+}
+
+// ---- the begin and the end of a slip ----
+
+// A bristle that deviates meets its bound earlier by a time, drops there, and moves on for that time.
+static void drop_derivatives(FcCrossing* crossing, const Beside* of, double push) {
+    const double V_n = fc_product(of->n, of->at.V);
+    const double V_t = fc_across(of->n, of->at.V);
+    for (int k = 0; k < 2; k++) {
+        FcVector* by = &crossing->by_start[k];
+        const double earlier = fc_product(of->n, *by) / push; // s
+        const double along = fc_across(of->n, *by);
+        const double turns = of->kinetic.D / of->held.D * (along - V_t * earlier) + V_t * earlier;
+        const double rises = (V_n - of->kinetic.rate) * earlier;
+        *by = (FcVector){rises * of->n.x - turns * of->n.y, rises * of->n.y + turns * of->n.x};
+    }
+}
+
+bool fc_begin_slip(FcCrossing* crossing, bool surely) {
+    const Beside of = beside_bound(crossing, fc_crossing_delta(crossing), crossing->at.t);
+    const double push = fc_plane_push(crossing->plane, &of.at, &of.held, of.n);
+    if (!surely && !(push > ROUNDING_OF_PUSH * fc_largest_push(crossing))) {
+        return false;
+    }
+    if (!crossing->plane->on_line) {
+        drop_derivatives(crossing, &of, push);
+    }
+    // The energy that it loses is heat, also that of its small excess over the bound.
+    const double D = of.kinetic.D;
+    crossing->heat += 0.5 * of.at.sigma * (of.size - D) * (of.size + D);
+    crossing->drag += (D - of.size) * fc_product(of.n, of.at.V);
+    fc_set_delta(crossing, (FcVector){D * of.n.x, D * of.n.y});
+    crossing->meetings++;
+    crossing->touches = crossing->slips != 0 || !has_static_friction(crossing);
+    crossing->is_slipping = surely || fc_plane_push(crossing->plane, &of.at, &of.kinetic, of.n) > 0.0;
+    crossing->slips = crossing->is_slipping;
+    crossing->h = 0.0;
+    // In the plane its direction relaxes.
+    const double turning = of.at.sigma * D * fabs(fc_across(of.n, of.at.V));
+    if (turning > 0.0) {
+        crossing->control.log_transient =
+            log(turning / (of.at.speed * fc_allowed_force(crossing->interval)));
+    }
+    return true;
+}
+
+void fc_end_slip(FcCrossing* crossing, bool touches) {
+    crossing->is_slipping = false;
+    crossing->slips = 0;
+    crossing->touches = touches && !has_static_friction(crossing);
+}
+
+// ---- a free bristle ----
+
+// |delta|^2 - D^2 at the points of a free panel.
+static void find_to_bound(const FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel) {
+    for (int i = 0; i < POINTS; i++) {
+        const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
+        const double D = fc_plane_radius(crossing->plane, &at, crossing->slips);
+        panel->to_bound[i] = fc_product(panel->delta[i], panel->delta[i]) - D * D;
+    }
+}
+
+// The distance of |delta|^2 from D^2 [m2] that counts as 0: rounding, or an error that heat and force allow if
+// the bristle is not stuck.
+static double close_to_bound(const FcCrossing* crossing, double D) {
+    const FcInterval* interval = crossing->interval;
+    // An excess over the bound costs heat, whose tolerance goes with the path.
+    const double share = fc_kind(crossing) == FC_STICKS ? 0.0 : FC_SHARE_OF_EVENT;
+    const double allowed = share *
+                           fmin(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
+                           fmin(1.0, interval->speed * interval->duration / D);
+    const double of_time =
+        fabs(crossing->at.u) * fc_straight_pace(&crossing->part.in, crossing->at.u) + interval->duration;
+    const double rounding = 1e-14 * D + 4e-16 * fc_largest_push(crossing) * of_time;
+    return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
+}
+
+// The part of a panel by which it may begin or end beside a top. Derived: |delta| is less by its square, 1e-12
+// of the panel's motion.
+static const double BESIDE_TOP = 1e-6;
+
+// The place in a panel, over its length, at which a free bristle is nearest to its bound; 2 if |delta| is below 0.7
+// D at all points. The polynomial of |delta|^2 is too coarse to say whether it touches the bound there: with static
+// friction it decides a break-away, and in a settled state the slips are as small as the drift in a period.
+static double top_at_bound(const FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel) {
+    bool is_near = false;
+    for (int i = 0; i < POINTS; i++) {
+        const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
+        const double D = fc_plane_radius(crossing->plane, &at, crossing->slips);
+        is_near = is_near || panel->to_bound[i] > -0.5 * D * D;
+    }
+    if (!is_near) {
+        return 2.0;
+    }
+    double recedes[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
+        const FcPlaneBound held =
+            fc_plane_bound(crossing->plane, &at, crossing->slips, nodes->t[i], nodes->phase[i]);
+        const FcVector n = {panel->delta[i].x / held.D, panel->delta[i].y / held.D};
+        recedes[i] = -fc_plane_push(crossing->plane, &at, &held, n);
+    }
+    const double top = fc_first_rise(recedes, ROUNDING_OF_PUSH * fc_largest_push(crossing));
+    return top > BESIDE_TOP && top < 1.0 - BESIDE_TOP ? top : 2.0;
+}
+
+// |delta|^2 - D^2 of a stuck bristle at a place of the part.
+static double stuck_to_bound(void* context, double u) {
+    const FcCrossing* crossing = context;
+    const double t = fc_part_time(&crossing->part, u);
+    FcVector delta = fc_crossing_delta(crossing);
+    delta.x += fc_drive_displacement(&crossing->interval->scene->drive, crossing->at.t, t);
+    if (!crossing->plane->on_line) {
+        delta.y += fc_drive_displacement(&crossing->across, crossing->at.t, t);
+    }
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
+    const double D = fc_plane_radius(crossing->plane, &at, crossing->slips);
+    return fc_product(delta, delta) - D * D;
+}
+
+// The same, exact, in a cell of the panel between two of its points: two steps of the secant from the polynomial's root, or
+// else a bracket.
+static double meeting_of_stuck(FcCrossing* crossing, double h, double a, double at_a, double b, double at_b,
+                               double meets, double over) {
+    const double u = crossing->at.u;
+    const double x_0 = u + fmax(meets, a) * h;
+    const double f_0 = stuck_to_bound(crossing, x_0);
+    const double x_1 = x_0 - f_0 * (b - a) * h / (at_b - at_a);
+    const double f_1 = stuck_to_bound(crossing, x_1);
+    const double x_2 = f_1 != f_0 ? x_1 - f_1 * (x_1 - x_0) / (f_1 - f_0) : x_1;
+    crossing->evaluations += 2.0;
+    const bool converges =
+        fabs(f_0) < 1e-3 * (at_b - at_a) && fabs(f_1) <= 1e-3 * fabs(f_0) + over && x_2 > u + a * h && x_2 < u + b * h;
+    return converges ? (x_2 - u) / h
+                     : (fc_root_between(stuck_to_bound, crossing, u + a * h, at_a, u + b * h, at_b, over, 0.0,
+                                        &crossing->evaluations) -
+                        u) / h;
+}
+
+// The shortest part to which a panel is cut whose points do not resolve the motion near its start.
+static const double SHORTENED_BY = 1.0 / 32.0;
+
+// The place in a panel of the length h, over it, at which it is cut: where it meets its bound. That of a stuck
+// bristle is exact, if a point of the panel lies beyond the bound.
+static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, double h, double meets, double over,
+                               bool* is_exact) {
+    const double* f = panel->to_bound;
+    double a = 0.0;
+    double at_a = f[START];
+    *is_exact = false;
+    for (int i = 0; i < STAGES && fc_kind(crossing) == FC_STICKS && at_a < 0.0; i++) {
+        const double b = 0.5 + FC_RADAU.node[i];
+        if (b >= meets && f[i] > over) {
+            *is_exact = true;
+            return meeting_of_stuck(crossing, h, a, at_a, b, f[i], meets, over);
+        }
+        a = b;
+        at_a = f[i];
+    }
+    return fmax(meets, SHORTENED_BY);
+}
+
+// The place in a panel, over its length, after which that push is negative; 0 if it is nowhere positive, 2 if
+// there is none.
+static double end_of_push(const FcCrossing* crossing, const double push[POINTS]) {
+    const double rounding = rounding_of_push(crossing, push);
+    double inwards[POINTS];
+    bool is_pushed = false;
+    for (int i = 0; i < POINTS; i++) {
+        inwards[i] = -push[i];
+        is_pushed = is_pushed || push[i] > rounding;
+    }
+    return inwards[START] > rounding || !is_pushed ? 0.0 : fc_first_rise(inwards, rounding);
+}
+
+// Whether the push of a slipping bristle that lies inside its bound, after an input has jumped, ends in the
+// panel. The panel then ends there, and the bristle sticks unless it has met its bound before.
+static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h) {
+    for (int cuts = 0;; cuts++) {
+        double push[POINTS];
+        for (int i = 0; i < POINTS; i++) {
+            const FcVector delta = panel->delta[i];
+            const double size = fmax(hypot(delta.x, delta.y), DBL_MIN);
+            const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
+            const FcPlaneBound bound =
+                fc_plane_bound(crossing->plane, &at, 1, nodes->t[i], nodes->phase[i]);
+            push[i] =
+                fc_plane_push(crossing->plane, &at, &bound, (FcVector){delta.x / size, delta.y / size});
+        }
+        const double ends = end_of_push(crossing, push);
+        if (ends > 1.0 || cuts >= 4) {
+            return cuts > 0;
+        }
+        *h *= fmax(ends, 1e-9);
+        fc_make_again(crossing, *h, nodes, panel);
+    }
+}
+
+// Cuts a free panel where the bristle meets its bound, or at a top beside it; true if it meets it. What counts as 0 in
+// to_bound at the panel's end is in *over.
+// - The panel is made again up to the event, which its own points then show more accurately.
+// - A panel that dips inside the bound between its points is shortened.
+static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h, double* over) {
+    bool is_cut = false;
+    for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
+        find_to_bound(crossing, nodes, panel);
+        const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
+        *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));
+        const double meets = fc_first_rise(panel->to_bound, *over);
+        const double top = meets > 1.0 ? top_at_bound(crossing, nodes, panel) : 2.0;
+        if (meets > 1.0 && top > 1.0) {
+            break;
+        }
+        bool is_exact = false;
+        is_cut = is_cut || meets <= 1.0;
+        *h *= meets > 1.0 ? top : place_of_meeting(crossing, panel, *h, meets, *over, &is_exact);
+        fc_make_again(crossing, *h, nodes, panel);
+        if (is_exact) {
+            find_to_bound(crossing, nodes, panel);
+            break;
+        }
+    }
+    return is_cut;
+}
+
+void fc_free_until_event(FcCrossing* crossing) {
+    assert(!crossing->is_slipping);
+    if (crossing->slips != 0 && falls_behind(crossing, direction_of(crossing))) {
+        fc_end_slip(crossing, false);
+        return;
+    }
+    if (crossing->touches && fc_begin_slip(crossing, false)) {
+        return;
+    }
+    FcNodes nodes;
+    FcPanel panel;
+    double h = fc_take_accurate(crossing, &nodes, &panel);
+    if (!crossing->is_bounded) {
+        fc_append_panel(crossing, &nodes, &panel, h);
+        return;
+    }
+    const bool gives_up = crossing->slips != 0 && catches_up(crossing, &nodes, &panel, &h);
+    double over = 0.0;
+    const bool is_cut = cut_at_meeting(crossing, &nodes, &panel, &h, &over);
+    fc_append_panel(crossing, &nodes, &panel, h);
+    crossing->touches = panel.to_bound[LAST] >= -over;
+    if (gives_up && !is_cut) {
+        fc_end_slip(crossing, false);
+    }
+    if (is_cut && !crossing->touches) {
+        crossing->h = 4.0 * h; // the panel was too long for its points
+    }
+}
+
+// ---- a slipping bristle ----
+
+// A slip from start to end keeps of a deviation the part along the circle. By D a' = V_y cos a - V sin a it
+// changes as D does, and by the panel's z.
+static void turn_derivatives(FcCrossing* crossing, FcVector start, FcVector end) {
+    for (int k = 0; k < 2; k++) {
+        FcVector* by = &crossing->by_start[k];
+        const double turned = fc_across(start, *by) / fc_product(start, start);
+        *by = (FcVector){-turned * end.y, turned * end.x};
+    }
+}
+
+typedef struct {
+    const FcCrossing* crossing;
+    FcVector n;
+} Pushed;
+
+static double push_of(void* context, double t) {
+    const Pushed* of = context;
+    return push_at(of->crossing, of->n, t);
+}
+
+// The time at which the push ends along a line, where it is known at any time: the first change of its sign between the
+// points, or in a dip of the polynomial if the push itself dips there. Not a number if there is none.
+static double end_of_known_push(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel, double h,
+                                double ends) {
+    Pushed of = {crossing, {panel->delta[0].x < 0.0 ? -1.0 : 1.0, 0.0}};
+    double t_a = nodes->t[START];
+    double at_a = panel->to_bound[START];
+    for (int i = 0; i < STAGES; i++) {
+        double t_b = nodes->t[i];
+        double at_b = panel->to_bound[i];
+        if (ends > 0.0 && ends <= 0.5 + FC_RADAU.node[i]) {
+            const double dip = fmin(fmax(fc_part_time(&crossing->part, crossing->at.u + ends * h), t_a), t_b);
+            const double at_dip = push_of(&of, dip);
+            crossing->evaluations += 1.0;
+            ends = 0.0;
+            if (at_dip < 0.0) {
+                t_b = dip;
+                at_b = at_dip;
+            }
+        }
+        if (at_a > 0.0 && at_b < 0.0) {
+            return fc_root_between(push_of, &of, t_a, at_a, t_b, at_b, 0.0, 0.0, &crossing->evaluations);
+        }
+        t_a = t_b;
+        at_a = at_b;
+    }
+    return NAN;
+}
+
+// Cuts a panel that slips where its push ends; false if it does not. Along a line the end is exact; in the plane
+// the panel's own points show it better from cut to cut.
+static bool cut_at_end_of_push(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h, double* ends) {
+    const bool on_line = crossing->plane->on_line;
+    bool is_cut = *ends < 1.0;
+    for (int cuts = 0; cuts < MOST_CUTS && *ends > 0.0 && *ends < 1.0; cuts++) {
+        const double root = on_line ? end_of_known_push(crossing, nodes, panel, *h, *ends) : NAN;
+        if (on_line && isnan(root)) { // a dip of the polynomial alone
+            *ends = 2.0;
+            return cuts > 0;
+        }
+        *h = on_line ? fc_straight_place(&crossing->part.in, root) - crossing->at.u : *h * *ends;
+        if (!(*h > 0.0)) {
+            *ends = 0.0;
+            return true;
+        }
+        fc_make_again(crossing, *h, nodes, panel);
+        if (on_line) {
+            panel->to_bound[LAST] = 0.0;
+        }
+        *ends = end_of_push(crossing, panel->to_bound);
+        *ends = on_line && *ends >= 0.999 ? 2.0 : *ends;
+    }
+    return is_cut;
+}
+
+void fc_slip_until_event(FcCrossing* crossing) {
+    assert(crossing->is_slipping);
+    const bool on_line = crossing->plane->on_line;
+    FcNodes nodes;
+    FcPanel panel;
+    double h = fc_take_accurate(crossing, &nodes, &panel);
+    if (isnan(crossing->along.offset)) {
+        return;
+    }
+    // A push of 0 at the start decides just after.
+    double ends = end_of_push(crossing, panel.to_bound);
+    if (ends > 0.0 && panel.to_bound[START] <= rounding_of_push(crossing, panel.to_bound) &&
+        falls_behind(crossing, direction_of(crossing))) {
+        ends = 0.0;
+    }
+    const bool is_cut = cut_at_end_of_push(crossing, &nodes, &panel, &h, &ends);
+    bool is_over = is_cut;
+    if (ends > 0.0) {
+        if (on_line) {
+            fc_note_slip(crossing, nodes.t[START], nodes.t[LAST], panel.delta[0].x < 0.0 ? -1 : 1);
+        } else {
+            turn_derivatives(crossing, panel.delta[START], panel.delta[LAST]);
+        }
+        const double rest = panel.to_bound[LAST] / fc_largest_push(crossing);
+        is_over = rest < (is_cut ? LITTLE_PUSH : ROUNDING_OF_PUSH); // also if V is just 0 at the end
+        fc_append_panel(crossing, &nodes, &panel, h);
+    }
+    if (is_over) {
+        fc_end_slip(crossing, !is_cut);
+    }
+}

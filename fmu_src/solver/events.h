@@ -1,0 +1,25 @@
+// The events of a bounded bristle: where it meets its bound, where its slip ends, and what happens there.
+//
+//     stuck or relaxing  --meets D, and is pushed (with static friction it drops to the kinetic bound)-->  slipping
+//     slipping           --the push has fallen to 0-->                                                     stuck or relaxing
+//     slipping inside its bound, after a jump  --the push is negative-->                                   stuck
+//
+// The push is the velocity at which the bristle would leave its bound outwards (model/regime.h). The polynomial through a
+// panel's points finds an event; functions that are known at any time place it.
+#ifndef FC_SOLVER_EVENTS_H
+#define FC_SOLVER_EVENTS_H
+
+#include "solver/crossing.h"
+
+// The next panel of a bristle that is free, up to its meeting with the bound; and of one that slips, up to the
+// end of its slip.
+void fc_free_until_event(FcCrossing* crossing);
+void fc_slip_until_event(FcCrossing* crossing);
+
+// A free bristle at its bound slips if it is pushed, or surely; one with static friction breaks away. False if it is
+// not pushed.
+bool fc_begin_slip(FcCrossing* crossing, bool surely);
+// The end of a slip; the bristle may be at its bound.
+void fc_end_slip(FcCrossing* crossing, bool touches);
+
+#endif

@@ -1,0 +1,288 @@
+// The free panel, by Radau IIA collocation of 9 stages in the variable u of the part. With A the matrix of the method and
+// z_i = r_i tau_i,
+//
+//     (A^-1 + diag(z_i)) (delta_i - delta_0) = tau_i V_i - z_i delta_0
+//
+// whose matrix differs from a constant one in the diagonal only. Right-hand sides: one along a line and two in the plane
+// for one start; for any start those of delta_0 = 0 and that of the homogeneous equation from the start 1, less this 1
+// so that a small relaxation keeps its digits.
+#include <assert.h>
+#include <math.h>
+
+#include "solver/panel_error.h"
+
+enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
+
+#ifdef __clang__
+#define UNROLL _Pragma("unroll")
+#else
+#define UNROLL _Pragma("GCC unroll 16")
+#endif
+
+// The matrix, and up to three right-hand sides, which become the solutions: the first in column 9, a pair in columns
+// 10 and 11.
+enum { FIRST = STAGES, PAIR = STAGES + 1, COLUMNS = STAGES + 3 };
+typedef double System[STAGES][COLUMNS] FC_PAIRED;
+
+// Gaussian elimination without pivoting.
+FC_INLINE void solve(System row, bool has_first, bool has_pair) {
+    const int columns = has_pair ? COLUMNS : PAIR;
+    UNROLL
+    for (int k = 0; k < STAGES; k++) {
+        const double pivot = 1.0 / row[k][k];
+        UNROLL
+        for (int i = k + 1; i < STAGES; i++) {
+            const double factor = row[i][k] * pivot;
+            UNROLL
+            for (int j = (k + 1) & ~1; j < columns; j += 2) {
+                fc_pair_put(&row[i][j], fc_pair(&row[i][j]) - factor * fc_pair(&row[k][j]));
+            }
+        }
+        row[k][k] = pivot;
+    }
+    UNROLL
+    for (int k = STAGES - 1; k >= 0; k--) {
+        if (has_pair) {
+            const FcPair solved = row[k][k] * fc_pair(&row[k][PAIR]);
+            fc_pair_put(&row[k][PAIR], solved);
+            UNROLL
+            for (int i = 0; i < k; i++) {
+                fc_pair_put(&row[i][PAIR], fc_pair(&row[i][PAIR]) - row[i][k] * solved);
+            }
+        }
+        if (has_first) {
+            const double solved = row[k][k] * row[k][FIRST];
+            row[k][FIRST] = solved;
+            UNROLL
+            for (int i = 0; i < k; i++) {
+                row[i][FIRST] -= row[i][k] * solved;
+            }
+        }
+    }
+}
+
+// delta = delta_0 + less_1 delta_0 + Q at the points for any start; for one start delta = Q.
+typedef struct {
+    double FC_PAIRED less_1[POINTS]; // P - 1
+    double FC_PAIRED Q_x[POINTS];    // m
+    double FC_PAIRED Q_y[POINTS];    // m
+} Solution;
+
+FC_INLINE void by_collocation(const FcNodes* nodes, const double* z, FcVector delta_0, bool planar,
+                              bool for_any, Solution* of) {
+    System row;
+    const int x = planar && !for_any ? PAIR : for_any ? PAIR + !planar : FIRST;
+    const int y = PAIR + 1;
+    const int homogeneous = planar ? FIRST : PAIR;
+    for (int i = 0; i < STAGES; i++) {
+        for (int j = 0; j < STAGES; j++) {
+            row[i][j] = FC_RADAU.inverse[i][j];
+        }
+        row[i][i] += z[i];
+        row[i][FIRST] = 0.0; // which pairs with column 8
+        row[i][homogeneous] = -z[i];
+        row[i][x] = nodes->tau[i] * nodes->V[i] - (for_any ? 0.0 : z[i] * delta_0.x);
+        if (planar) {
+            row[i][y] = nodes->tau[i] * nodes->V_y[i] - (for_any ? 0.0 : z[i] * delta_0.y);
+        }
+    }
+    solve(row, planar == for_any, planar || for_any);
+    for (int i = 0; i < STAGES; i++) {
+        of->less_1[i] = for_any ? row[i][homogeneous] : 0.0;
+        of->Q_x[i] = (for_any ? 0.0 : delta_0.x) + row[i][x];
+        of->Q_y[i] = planar ? (for_any ? 0.0 : delta_0.y) + row[i][y] : 0.0;
+    }
+    of->less_1[START] = 0.0;
+    of->Q_x[START] = for_any ? 0.0 : delta_0.x;
+    of->Q_y[START] = for_any ? 0.0 : delta_0.y;
+}
+
+// A stuck bristle moves with the surfaces.
+FC_INLINE void by_displacement(const FcNodes* nodes, FcVector delta_0, bool for_any, Solution* of) {
+    for (int i = 0; i < POINTS; i++) {
+        of->less_1[i] = 0.0;
+        of->Q_x[i] = (for_any ? 0.0 : delta_0.x) + nodes->moved[i];
+        of->Q_y[i] = (for_any ? 0.0 : delta_0.y) + nodes->moved_y[i];
+    }
+}
+
+// sigma and g are constant along a line: delta = D + (delta_0 - D) e^(-X / D), D with the sign of V.
+FC_INLINE void by_path(const FcNodes* nodes, double delta_0, double D, bool for_any, Solution* of) {
+    for (int i = 0; i < POINTS; i++) {
+        of->less_1[i] = expm1(-nodes->moved[i] / D);
+        of->Q_x[i] = for_any ? -D * of->less_1[i] : delta_0 + (delta_0 - D) * of->less_1[i];
+        of->Q_y[i] = 0.0;
+    }
+}
+
+// The integrals of F = sigma delta, F V, delta' V = (V - r delta) V and F (V - delta') = sigma r delta^2 with delta = P
+// delta_0 + Q. weight is over the duration, z = r times the duration.
+FC_INLINE void integrate(const double* weight, const double* P, const double* Q, const double* z,
+                         const double* V, const double* sigma, double duration, FcMap* map) {
+    FcPair impulse_slope = {0.0, 0.0};
+    FcPair impulse_offset = {0.0, 0.0};
+    FcPair work_slope = {0.0, 0.0};
+    FcPair work_offset = {0.0, 0.0};
+    FcPair drag_slope = {0.0, 0.0};
+    FcPair drag_offset = {0.0, 0.0};
+    FcPair heat_square = {0.0, 0.0};
+    FcPair heat_slope = {0.0, 0.0};
+    FcPair heat_offset = {0.0, 0.0};
+    for (int i = 0; i < POINTS; i += 2) {
+        const FcPair w = fc_pair(weight + i);
+        const FcPair F = w * fc_pair(sigma + i);
+        const FcPair FP = F * fc_pair(P + i);
+        const FcPair FQ = F * fc_pair(Q + i);
+        const FcPair zP = fc_pair(z + i) * fc_pair(P + i);
+        const FcPair zQ = fc_pair(z + i) * fc_pair(Q + i);
+        const FcPair X = duration * fc_pair(V + i);
+        const FcPair w_V = w * fc_pair(V + i);
+        impulse_slope += FP;
+        impulse_offset += FQ;
+        work_slope += FP * X;
+        work_offset += FQ * X;
+        drag_slope += w_V * zP;
+        drag_offset += w_V * (X - zQ);
+        heat_square += FP * zP;
+        heat_slope += FP * zQ;
+        heat_offset += FQ * zQ;
+    }
+    map->impulse_slope = duration * fc_pair_sum(impulse_slope);
+    map->impulse_offset = duration * fc_pair_sum(impulse_offset);
+    map->work_slope = fc_pair_sum(work_slope);
+    map->work_offset = fc_pair_sum(work_offset);
+    map->drag_slope = -fc_pair_sum(drag_slope);
+    map->drag_offset = fc_pair_sum(drag_offset);
+    map->heat_square = fc_pair_sum(heat_square);
+    map->heat_slope = 2.0 * fc_pair_sum(heat_slope);
+    map->heat_offset = fc_pair_sum(heat_offset);
+}
+
+// Work and heat of a bristle with constant sigma and g: F V = sigma D (V - delta'), less the change of sigma delta^2 / 2.
+FC_INLINE void known_energies(const FcFrom* from, double sigma, double D, double X, FcMap* map) {
+    const double start = from->for_any ? 0.0 : from->delta.x; // of the offsets
+    const double kept = from->for_any ? 1.0 - map->relaxation : 0.0;
+    map->work_slope = from->for_any ? sigma * D * map->relaxation : 0.0;
+    map->work_offset = sigma * D * (X - (map->offset - start));
+    map->heat_square = from->for_any ? 0.5 * sigma * (1.0 - kept * kept) : 0.0;
+    map->heat_slope = map->work_slope - sigma * kept * map->offset;
+    map->heat_offset = map->work_offset - 0.5 * sigma * (map->offset - start) * (map->offset + start);
+}
+
+// The integrals of the constant force `held` are those of its quadrature: replaces them by exact ones. So a settled force
+// needs no points for V and for the variable.
+FC_INLINE void exact_integrals(const FcNodes* nodes, double held, double limit, FcMap* map) {
+    const double duration = fc_dot(POINTS, FC_RADAU.weight, nodes->tau);
+    double X = 0.0;
+    for (int i = 0; i < STAGES; i++) {
+        X += FC_RADAU.weight[i] * nodes->tau[i] * nodes->V[i];
+    }
+    const double rest = nodes->moved[LAST] - X;
+    map->impulse_offset += held * (nodes->duration - duration);
+    map->work_offset += held * rest;
+    map->heat_offset += held * held / limit * nodes->side * rest;
+}
+
+FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, bool planar, bool for_any,
+                    FcPanel* panel) {
+    const bool relaxes = plane->scene->friction->model != FC_ELASTIC_PLASTIC;
+    const double over_duration = 1.0 / nodes->duration;
+    double FC_PAIRED z[POINTS];
+    double FC_PAIRED rate[POINTS]; // r times the duration
+    double FC_PAIRED weight[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        const double r =
+            relaxes ? nodes->sigma[i] * nodes->speed[i] / fc_most(nodes->limit[i], 1e-300) : 0.0;
+        z[i] = nodes->tau[i] * r;
+        rate[i] = nodes->duration * r;
+        weight[i] = FC_RADAU.weight[i] * nodes->tau[i] * over_duration;
+    }
+    panel->z = fc_dot(POINTS, FC_RADAU.weight, z);
+    panel->sigma = nodes->sigma[LAST];
+    panel->limit = nodes->limit[LAST];
+    panel->rate = rate[LAST] * over_duration;
+
+    // The deflection at the points.
+    Solution of;
+    const bool is_known = relaxes && from->is_still && !planar;
+    const double D = (nodes->side < 0 ? -1.0 : 1.0) * panel->limit / panel->sigma;
+    if (is_known) {
+        by_path(nodes, from->delta.x, D, for_any, &of);
+    } else if (!relaxes) {
+        by_displacement(nodes, from->delta, for_any, &of);
+    } else {
+        by_collocation(nodes, z, from->delta, planar, for_any, &of);
+    }
+    double FC_PAIRED P[POINTS];
+    double FC_PAIRED x[POINTS];
+    double FC_PAIRED y[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        P[i] = for_any ? 1.0 + of.less_1[i] : 0.0;
+        x[i] = for_any ? from->delta.x + (of.less_1[i] * from->delta.x + of.Q_x[i]) : of.Q_x[i];
+        y[i] = for_any ? from->delta.y + (of.less_1[i] * from->delta.y + of.Q_y[i]) : of.Q_y[i];
+    }
+    for (int i = 0; i < POINTS && fc_is_bounded(plane->scene->friction); i++) {
+        panel->delta[i] = (FcVector){x[i], y[i]};
+    }
+
+    // The maps.
+    const double relaxation = for_any ? -of.less_1[LAST] : 1.0;
+    panel->along = (FcMap){.relaxation = relaxation, .offset = of.Q_x[LAST]};
+    panel->across = (FcMap){.relaxation = relaxation, .offset = of.Q_y[LAST]};
+    integrate(weight, P, of.Q_x, rate, nodes->V, nodes->sigma, nodes->duration, &panel->along);
+    if (planar) {
+        integrate(weight, P, of.Q_y, rate, nodes->V_y, nodes->sigma, nodes->duration, &panel->across);
+    }
+
+    // The errors.
+    double F[POINTS];
+    double FC_PAIRED slope[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        F[i] = nodes->sigma[i] * x[i];
+        slope[i] = nodes->tau[i] * nodes->V[i] - z[i] * x[i];
+    }
+    double speed = from->speed;
+    double held = 0.0;
+    if (is_known) {
+        known_energies(from, panel->sigma, D, nodes->moved[LAST], &panel->along);
+        speed = INFINITY;
+    } else if (from->limit_stands && !planar && relaxes) {
+        held = F[LAST];
+        exact_integrals(nodes, for_any ? panel->sigma * of.Q_x[LAST] : held, panel->limit, &panel->along);
+    }
+    const bool has_defect = relaxes && !is_known;
+    double defect = has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
+    double quadrature = fc_error_of_force(nodes, speed, held, F, nodes->V);
+    if (planar) {
+        for (int i = 0; i < POINTS; i++) {
+            F[i] = nodes->sigma[i] * y[i];
+            slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
+        }
+        defect += has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
+        quadrature += fc_error_of_force(nodes, speed, 0.0, F, nodes->V_y);
+    }
+    if (from->scale != 0.0) {
+        for (int i = 0; i < POINTS; i++) {
+            F[i] = from->scale * nodes->sigma[i] * P[i];
+            slope[i] = -z[i] * P[i];
+        }
+        defect += has_defect ? from->scale * fc_radau_unresolved(slope, panel->z) : 0.0;
+        quadrature += fc_error_of_force(nodes, speed, 0.0, F, nodes->V);
+    }
+    // In the plane r may be less between its ends than at both.
+    fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);
+}
+
+FC_WITH_AVX void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from,
+                               FcPanel* panel) {
+    assert(nodes->duration >= 0.0 && (from->for_any || from->scale == 0.0));
+    if (plane->on_line && !from->for_any) {
+        take(plane, nodes, from, false, false, panel);
+    } else if (plane->on_line) {
+        take(plane, nodes, from, false, true, panel);
+    } else if (!from->for_any) {
+        take(plane, nodes, from, true, false, panel);
+    } else {
+        take(plane, nodes, from, true, true, panel);
+    }
+}

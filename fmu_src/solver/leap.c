@@ -1,0 +1,125 @@
+#include "solver/leap.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "solver/tuning.h"
+#include "solver/leap_block.h"
+
+// The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
+// one by one.
+static const double FEWEST = 12.0;
+// The number of periods in which a bristle that meets its bound forgets its start: in the plane its angle; on
+// a line, if it slips for no time, all of it. Chosen empirically: fewer are refused more often, more cost
+// more. Each sample costs two times as many, so fewer periods than FEWEST_OF_SLIPS are computed one by one.
+enum { WARM_UP = 3 };
+static const double FEWEST_OF_SLIPS = 60.0;
+
+// One period, or the part [from, to] of it.
+static void take_part(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double k,
+                      double from, double to, FcStepResult* total) {
+    FcScene part = fc_scene_later(scene, k / scene->drive.vibration.f);
+    if (from > 0.0) {
+        part = fc_scene_from(&part, from);
+    }
+    fc_take_pieces(law, &part, options, to - from, total);
+}
+
+// The number of periods from k to the next kink, at |V| = V_1, beyond which V begins or ends to reverse, or to the next
+// end of a Stribeck peak beside it: few points far from a peak do not see it.
+static double to_kink(const FcScene* scene, double k) {
+    const FcDrive* drive = &scene->drive;
+    const double V_1 = drive->vibration.V_1;
+    const double peak = fc_has_stribeck_curve(scene->friction) ? FC_END_OF_PEAK * scene->friction->V_S : 0.0;
+    const double kinks[] = {V_1, V_1 - peak, V_1 + peak};
+    double nearest = HUGE_VAL;
+    for (int i = 0; i < 6 && drive->V.rate != 0.0; i++) {
+        const double V = i < 3 ? kinks[i] : -kinks[i - 3];
+        const double at = (V - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
+        if (at > k) {
+            nearest = fmin(nearest, floor(at - k));
+        }
+    }
+    return nearest;
+}
+
+// The largest |V| over V_1 from which on the periods of a block begin so that no kink lies at their ends. Chosen
+// empirically: at half of it blocks far from the kink pay for a further period.
+static const double NEAR_KINK = 0.8;
+
+// The time [s] into period k at which the periods of a block begin. If |V| comes near V_1, the last reversals
+// are to lie in the middle of the periods.
+static double begin_of_periods(const FcScene* scene, double k, double count) {
+    const FcDrive* drive = &scene->drive;
+    const double period = 1.0 / drive->vibration.f;
+    const double V = drive->V.value + k * period * drive->V.rate;
+    const double V_end = V + count * period * drive->V.rate;
+    const double most = fmax(fabs(V), fabs(V_end)) / drive->vibration.V_1;
+    const double opposed = fc_part_until_opposed(drive, V + V_end);
+    return most > NEAR_KINK && most < 1.0 + 1e-6 && fabs(opposed - 0.5) > 0.25
+               ? fmod(opposed + 0.5, 1.0) * period
+               : 0.0;
+}
+
+void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double periods,
+             FcStepResult* total) {
+    const double period = 1.0 / scene->drive.vibration.f;
+    double longest = periods;
+    double tries_at = 0.0;
+    double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
+    for (double k = 0.0; k < periods && total->evaluations <= FC_MOST_EVALUATIONS;) {
+        bool slipped = false;
+        if (law.is_bounded) { // the first period says whether it slips
+            total->meetings = total->slip_side = 0;
+            take_part(law, scene, options, k, 0.0, period, total);
+            slipped = total->meetings > 0;
+            k += 1.0;
+        }
+        const double room = fmin(longest, fmin(periods - k, to_kink(scene, k)));
+        // On a line periods begin at the bound, if the bristle slips along it for any time.
+        const bool on_line = slipped && !law.is_planar && total->slip_side != 0;
+        const bool forgets = slipped && !on_line;
+        const double phase = on_line                    ? total->slip_time
+                             : forgets || law.is_planar ? 0.0
+                                                        : begin_of_periods(scene, k, room);
+        const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
+        const double count = closes ? room - 1.0 : room;
+        const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;
+        const FcBlock block = {.law = &law,
+                               .scene = scene,
+                               .options = options,
+                               .first = k,
+                               .count = floor(count),
+                               .phase = phase,
+                               .side = on_line ? total->slip_side : 0,
+                               .warm_up = forgets ? WARM_UP : 0};
+        bool taken = false;
+        if (k >= tries_at && block.count >= fewest && k >= block.warm_up && (total->slips == 0 || slipped)) {
+            FcStepResult before = *total;
+            total->meetings = 0;
+            if (phase > 0.0) {
+                take_part(law, scene, options, k, 0.0, phase, total);
+            }
+            taken = (on_line || total->meetings == 0) && fc_block_take(&block, total);
+            if (taken && closes) {
+                take_part(law, scene, options, k + block.count, phase, period, total);
+            } else if (!taken) {
+                before.evaluations = total->evaluations;
+                *total = before;
+            }
+            longest = taken ? 2.0 * room : floor(0.5 * room);
+            if (longest < fewest + 1.0) { // of one more a block on a line would have too few
+                longest = 2.0 * fewest + 2.0;
+                tries_at = k + alone;
+                alone *= 2.0;
+            }
+        }
+        if (taken) {
+            alone = FEWEST;
+            k += block.count + (closes ? 1.0 : 0.0);
+        } else if (!law.is_bounded) {
+            take_part(law, scene, options, k, 0.0, period, total);
+            k += 1.0;
+        }
+    }
+}

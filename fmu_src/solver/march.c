@@ -1,0 +1,169 @@
+#include "solver/march.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "model/regime.h"
+#include "solver/crossing.h"
+#include "solver/events.h"
+#include "solver/still.h"
+
+// The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
+// minus its change in the time 1 / r.
+static double first_transient(const FcCrossing* crossing, FcVector delta, double scale) {
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, 0.0);
+    const FcVector now = fc_plane_coulomb(&at);
+    const double r = at.sigma * at.speed / at.limit;
+    FcVector next = now;
+    if (r * crossing->interval->duration > 1.0) {
+        const FcPlaneCoefficients after = fc_coefficients_at(crossing, 1.0 / r);
+        next = fc_plane_coulomb(&after);
+    }
+    return hypot(at.sigma * delta.x - (2.0 * now.x - next.x), at.sigma * delta.y - (2.0 * now.y - next.y)) +
+           at.sigma * scale;
+}
+
+static void start_control(FcCrossing* crossing, double scale) {
+    const int model = crossing->interval->scene->friction->model;
+    const bool has_transient =
+        model == FC_DAHL || model == FC_LUGRE || (model == FC_ELASTIC_PLASTIC && !crossing->plane->on_line);
+    const double transient =
+        has_transient ? first_transient(crossing, fc_crossing_delta(crossing), scale) : 0.0;
+    fc_control_start(&crossing->control, crossing->plane, crossing->interval, transient);
+    crossing->control.is_bounded = crossing->is_bounded;
+}
+
+// Panels in a row that do not get on, at an event that rounding hides.
+static void pass_over_rounding(FcCrossing* crossing, double before) {
+    crossing->at.u =
+        fmin(crossing->end, before + 0x1p-50 * (fabs(before) + crossing->end - before));
+    crossing->at.t = fc_part_time(&crossing->part, crossing->at.u);
+}
+
+static void cross_part(FcCrossing* crossing, int number) {
+    fc_begin_part(crossing, number);
+    int stalled = 0;
+    while (crossing->evaluations <= FC_MOST_EVALUATIONS && !isnan(crossing->along.offset)) {
+        fc_choose_variable(crossing);
+        if (fc_part_is_crossed(crossing)) {
+            break;
+        }
+        const double before = crossing->at.u;
+        if (!fc_take_still(crossing)) {
+            if (crossing->is_slipping) {
+                fc_slip_until_event(crossing);
+            } else {
+                fc_free_until_event(crossing);
+            }
+        }
+        stalled = crossing->at.u > before ? 0 : stalled + 1;
+        if (stalled > FC_MOST_TRIES) {
+            pass_over_rounding(crossing, before);
+        }
+    }
+}
+
+static void cross(FcCrossing* crossing) {
+    for (int i = 0; i < crossing->count; i++) {
+        cross_part(crossing, i);
+    }
+}
+
+// Whether a bristle begins in a slip. It leaves its bound at once if it is not pushed.
+static bool begins_slipping(const FcCrossing* crossing, FcBristle bristle) {
+    const bool has_memory = fc_has_static_friction(crossing->interval->scene->friction);
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, 0.0);
+    const double D = fc_plane_radius(crossing->plane, &at, bristle.slips);
+    return crossing->is_bounded && fc_size(bristle) >= D * (1.0 - 1e-13) &&
+           (!has_memory || bristle.slips != 0);
+}
+
+static void put_result(const FcCrossing* crossing, FcStepResult* result) {
+    fc_map_apply(&crossing->along, result);
+    if (!crossing->plane->on_line) {
+        fc_map_apply_across(&crossing->across_map, result);
+    }
+    result->heat += crossing->heat;
+    result->drag += crossing->drag;
+    result->meetings += crossing->meetings;
+    const bool slips = fc_has_static_friction(crossing->interval->scene->friction) && crossing->slips != 0;
+    result->slips = !slips ? 0 : crossing->plane->on_line && result->delta < 0.0 ? -1 : 1;
+    result->on_bound = crossing->is_slipping;
+    if (crossing->slip_length > 0.0) {
+        result->slip_time = crossing->slip_time;
+        result->slip_side = crossing->slip_side;
+    }
+    result->by_start[0] = crossing->by_start[0];
+    result->by_start[1] = crossing->by_start[1];
+    result->evaluations = crossing->evaluations;
+}
+
+void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                   FcStepResult* result) {
+    if (!(duration > 0.0)) {
+        return;
+    }
+    const FcBristle bristle = fc_bristle_of(result);
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    plane.on_line = !fc_is_planar(scene, bristle);
+    const FcInterval interval = fc_interval_make(scene, duration, options);
+    FcCrossing crossing;
+    fc_crossing_start(&crossing, &plane, &interval, result->evaluations);
+    fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
+    if (scene->friction->model == FC_COULOMB) { // whose deflection stands
+        crossing.along.relaxation = crossing.across_map.relaxation = 0.0;
+        crossing.along.offset = crossing.across_map.offset = 0.0;
+    }
+    crossing.slips = bristle.slips;
+    crossing.is_slipping = begins_slipping(&crossing, bristle);
+    crossing.meetings = crossing.is_slipping;
+    start_control(&crossing, 0.0);
+    cross(&crossing);
+    put_result(&crossing, result);
+}
+
+FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
+                   FcMap* across, double* evaluations) {
+    assert(duration > 0.0 && start >= 0.0);
+    FcPlane plane;
+    fc_plane_make(&plane, scene);
+    plane.on_line = across == NULL;
+    const FcInterval interval = fc_interval_make(scene, duration, options);
+    FcCrossing crossing;
+    fc_crossing_start(&crossing, &plane, &interval, *evaluations);
+    crossing.for_any = true;
+    crossing.is_bounded = false;
+    const FcPlaneCoefficients at = fc_coefficients_at(&crossing, 0.0);
+    crossing.scale = fmax(start, at.limit / at.sigma);
+    start_control(&crossing, crossing.scale);
+    cross(&crossing);
+    *evaluations = crossing.evaluations;
+    if (across) {
+        *across = crossing.across_map;
+    }
+    return crossing.along;
+}
+
+// Whether the bound may fall.
+static bool may_fall(const FcScene* bound) {
+    const FcDrive* drive = &bound->drive;
+    const bool stands = fc_scene_stiffness_is_constant(bound) && fc_scene_limit_is_constant(bound);
+    if (stands || (fc_scene_ratio_is_constant(bound) && drive->E.rate == 0.0)) {
+        return false;
+    }
+    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {
+        return true;
+    }
+    const double apart = bound->floats ? -drive->load.rate : drive->d.rate; // the way that d goes
+    const bool rises_with_d = bound->at_E.model != FC_CONTACT_CONSTANT;     // D = g / sigma
+    return rises_with_d ? apart < 0.0 : apart > 0.0;
+}
+
+bool fc_march_may_meet(const FcScene* scene) {
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(scene, 0, &friction); // of the static limit, without a curve
+    return fc_is_bounded(scene->friction) &&
+           (scene->friction->model == FC_ELASTIC_PLASTIC || may_fall(&bound));
+}

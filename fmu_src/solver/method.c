@@ -1,0 +1,94 @@
+#include "solver/method.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "model/regime.h"
+#include "solver/closed_form.h"
+#include "solver/march.h"
+#include "solver/periods.h"
+
+// The integration of the law by the default method.
+static FcIntegration integration(const FcScene* scene, bool is_planar) {
+    return (FcIntegration){fc_march_step, fc_march_map, fc_march_may_meet(scene), is_planar};
+}
+
+// By cvode or a fixed step, piece by piece.
+static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
+                       double h, FcStepResult* result, FcMessage* message) {
+    FcPieces pieces;
+    fc_pieces_start(&pieces, scene, h);
+    while (fc_next_piece(&pieces)) {
+        if (fc_scene_is_loose(pieces.scene)) {
+            fc_loose_step(result);
+        } else if (method == FC_METHOD_CVODE
+                       ? !fc_cvode_step(cvode, pieces.scene, options, pieces.h, result, message)
+                       : !fc_fixed_step(pieces.scene, method, options, pieces.h, result, message)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool is_affine(const FcScene* scene) {
+    return scene->friction->model == FC_DAHL || scene->friction->model == FC_LUGRE;
+}
+
+// Whether the method leaves the scene to the default.
+static bool takes_default(const FcScene* scene, FcMethod method) {
+    return !is_affine(scene) || method == FC_METHOD_COLLOCATION ||
+           (method == FC_METHOD_CVODE && fc_march_may_meet(scene));
+}
+
+bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
+                       FcBristle from, FcStepResult* result) {
+    assert(fc_drive_is_constant(&scene->drive));
+    if (!is_affine(scene) || fc_scene_is_loose(scene) || !takes_default(scene, method)) {
+        return false;
+    }
+    *result = fc_result_from(from, 0.0);
+    fc_constant_step(scene, contact, h, result);
+    return true;
+}
+
+bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
+                    double h, FcBristle from, FcStepResult* result, FcMessage* message) {
+    assert(h >= 0.0 && options->tolerance > 0.0 && options->step_size > 0.0);
+    *result = fc_result_from(from, 0.0);
+    const bool is_planar = fc_is_planar(scene, from);
+    if (!takes_default(scene, method)) {
+        if (is_planar) {
+            static const char* const NAME[] = {
+                [FC_METHOD_CVODE] = "cvode",
+                [FC_METHOD_BACKWARD_EULER] = "backwardEuler",
+                [FC_METHOD_TRAPEZOID] = "trapezoid",
+                [FC_METHOD_RK4] = "rk4",
+                [FC_METHOD_EXPLICIT_EULER] = "explicitEuler",
+            };
+            return fc_message_set(
+                message,
+                "solver.method = %s knows no motion across V, and V_y = %.9g m/s, "
+                "vibration.V_2 = %.9g m/s, delta_y = %.9g m: set solver.method = collocation",
+                NAME[method], scene->drive.V_y.value, scene->drive.vibration.V_2, from.delta_y);
+        }
+        return other_step(scene, method, cvode, options, h, result, message);
+    }
+    return fc_periods_step(integration(scene, is_planar), scene, options, h, result, message);
+}
+
+FcBristle fc_method_settled(const FcScene* scene, const FcSolverOptions* options, FcBristle from,
+                            FcVector* force, double* evaluations) {
+    *force = (FcVector){0.0, 0.0};
+    assert(!fc_drive_is_linear(&scene->drive));
+    if (fc_scene_is_loose(scene)) {
+        return (FcBristle){0};
+    }
+    if (!fc_drive_vibrates(&scene->drive)) {
+        return fc_slides_for_ever(scene, from, force);
+    }
+    FcStepResult end = fc_result_from(from, *evaluations);
+    *force = fc_periods_settled(integration(scene, fc_is_planar(scene, from)), scene, options, &end);
+    *evaluations = end.evaluations;
+    // An excess over a bound by rounding would become heat of the first step.
+    return fc_reach(scene, fc_bristle_of(&end));
+}

@@ -1,0 +1,475 @@
+#include "solver/periods.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "model/regime.h"
+#include "solver/leap.h"
+
+// The largest number of periods with moving inputs. Twice as many would take twice the time, which may be
+// minutes.
+static const double MOST_CHANGING_PERIODS = 1e6;
+
+// The largest difference of the ends of two periods that count as equal, over the deflection. Half of it
+// costs a part of a period; twice of it accepts ends that still change by twice as much. If a bristle relaxes
+// by a small part in each period, the remaining distance is many times the change over a period. LEAST_PART
+// is a change by rounding, and all that counts in ElasticPlastic.
+static const double SAME_END = 1e-10;
+static const double LEAST_PART = 1e-4;
+
+// The largest distance from the edge of the free starts that counts as 0, over the edge. Rounding: 450 eps.
+// Twice of it moves the edge by as much.
+static const double ROUNDING_OF_EDGE = 1e-13;
+
+// The largest part of a start that a period may forget if its end determines its start: at one half the start
+// has twice the error of the end. More would multiply the error further.
+static const double MOST_FORGOTTEN = 0.5;
+
+// The largest number of periods that meet the bound before a repetition is given up. With static friction the
+// place of sticking may depend on the place of break-away. Then periods need not repeat, and the mean over
+// the last third of the meetings counts. Half as many would give a mean over fewer periods; twice as many
+// would cost twice the time.
+enum { MOST_MEETINGS = 1000 };
+// The same in the plane, over that, while the mean still drifts by more than the tolerance: a bristle that slips
+// little in each period turns slowly. Chosen empirically: half of it left a found scene 3e-5 of the force away,
+// twice of it costs twice the time of a chaotic motion.
+enum { LONGER_IF_DRIFTING = 4 };
+// The number of those without a step of Newton in the plane, with static friction. A step may lead to
+// another cycle, so a cycle must be near. Chosen empirically: a quarter of it led a found scene to another
+// cycle, twice of it left one unsettled.
+enum { ALONE = 250 };
+
+// Whole periods of a bounded bristle with its inputs held.
+typedef struct {
+    FcIntegration law;
+    const FcScene* scene;
+    const FcSolverOptions* options;
+    double period; // s
+    bool has_free_map;
+    FcMap free_map, free_map_across;
+    double edge[2]; // m, the highest and the lowest start that meets no bound; infinite if not known
+    FcStepResult total;
+    double done; // periods
+    // After a period that met its bound: the last one that was kept.
+    FcStepResult met;
+    double met_at; // periods; negative for none
+    FcBristle
+        least; // the one with the smallest deflection at the end of a period that met its bound since then
+} Walk;
+
+static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of(result)); }
+
+static FcMap free_map_of(Walk* walk) {
+    if (!walk->has_free_map) {
+        walk->free_map = walk->law.free_map(
+            walk->scene, walk->options, walk->period, size_of(&walk->total),
+            walk->law.is_planar ? &walk->free_map_across : NULL, &walk->total.evaluations);
+        if (walk->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
+            walk->free_map.offset = walk->scene->drive.V.value * walk->period;
+            walk->free_map_across.offset = walk->scene->drive.V_y.value * walk->period;
+        }
+        walk->has_free_map = true;
+        walk->edge[0] = walk->edge[1] = INFINITY;
+    }
+    return walk->free_map;
+}
+
+// The farthest start to that side (1 or -1) that meets no bound, from the end of the farthest start of all.
+static double edge_of(Walk* walk, int side) {
+    assert(side == 1 || side == -1);
+    double* edge = &walk->edge[side < 0];
+    if (isfinite(*edge)) {
+        return *edge;
+    }
+    const FcMap* map = &walk->free_map;
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
+    const double farthest = side * fc_bound(&bound, 0.0);
+    FcStepResult end = {.delta = farthest, .evaluations = walk->total.evaluations};
+    // With static friction the bound that is met is the one without the drop.
+    const bool drops = fc_has_static_friction(walk->scene->friction);
+    walk->law.step(drops ? &bound : walk->scene, walk->options, walk->period, &end);
+    walk->total.evaluations = end.evaluations;
+    const double kept = 1.0 - map->relaxation;
+    const double room = side * (end.delta - map->offset);
+    *edge = side * fmin(side * farthest, room / kept);
+    return *edge;
+}
+
+// Takes *total over n free periods.
+static void take_free(const Walk* walk, double n, FcStepResult* total) {
+    const FcMap map = fc_map_power(&walk->free_map, n);
+    fc_map_apply(&map, total);
+    if (walk->law.is_planar) {
+        const FcMap across = fc_map_power(&walk->free_map_across, n);
+        fc_map_apply_across(&across, total);
+    }
+}
+
+// Takes *total to the limit of infinitely many free periods.
+static void settle(const Walk* walk, FcStepResult* total) {
+    const FcMap* map = &walk->free_map;
+    const FcMap* across = &walk->free_map_across;
+    const double target = map->offset / map->relaxation;
+    const double target_y = across->offset / map->relaxation;
+    total->delta = isfinite(target) ? target : total->delta;
+    total->delta_y = walk->law.is_planar && isfinite(target_y) ? target_y : total->delta_y;
+}
+
+// Whether the period after n free ones meets the bound; n may be infinite.
+static bool meets_after(Walk* walk, double n) {
+    FcStepResult end = walk->total;
+    if (isinf(n)) {
+        settle(walk, &end);
+    } else {
+        take_free(walk, n, &end);
+    }
+    const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
+    const FcBristle reached = fc_reach(walk->scene, bristle);
+    if (reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) {
+        return true;
+    }
+    end.meetings = 0;
+    end.evaluations = walk->total.evaluations;
+    walk->law.step(walk->scene, walk->options, walk->period, &end);
+    walk->total.evaluations = end.evaluations;
+    return end.meetings > 0;
+}
+
+// free_periods by steps. The starts of free periods lie on a straight line, along which |delta| is convex at
+// each phase. So all periods up to a last one are free.
+static double free_periods_by_steps(Walk* walk, double left) {
+    const FcMap map = free_map_of(walk);
+    const double moved = hypot(map.offset - map.relaxation * walk->total.delta,
+                               walk->free_map_across.offset - map.relaxation * walk->total.delta_y);
+    FcFriction friction;
+    const FcScene bound = fc_scene_of_bound(walk->scene, 0, &friction);
+    if (map.relaxation == 0.0 ? moved == 0.0 : moved <= ROUNDING_OF_EDGE * fc_bound(&bound, 0.0)) {
+        return map.relaxation > 0.0 && meets_after(walk, 0.0) ? 0.0 : left;
+    }
+    if (map.relaxation > 0.0 && !meets_after(walk, HUGE_VAL) && !meets_after(walk, 0.0)) {
+        return left;
+    }
+    double free = 0.0; // periods that are free
+    double more = 1.0; // periods that are not all free, once they are found
+    while (free < left && !meets_after(walk, more - 1.0)) {
+        free = more;
+        more *= 2.0;
+    }
+    while (free < left && more - free > 1.0) {
+        const double middle = floor(0.5 * (free + more));
+        if (meets_after(walk, middle - 1.0)) {
+            more = middle;
+        } else {
+            free = middle;
+        }
+    }
+    return fmin(free, left);
+}
+
+// The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
+// (1 - P) in n of them, with the first shift s.
+static double free_periods(Walk* walk, double left) {
+    const FcMap map = free_map_of(walk);
+    if (walk->law.is_planar || map.relaxation > MOST_FORGOTTEN) {
+        return free_periods_by_steps(walk, left);
+    }
+    const double delta = walk->total.delta;
+    const double s = map.offset - map.relaxation * delta;
+    if (s == 0.0) {
+        return left;
+    }
+    const int side = s > 0.0 ? 1 : -1;
+    const double edge = edge_of(walk, side);
+    const double room = side * (edge - delta) / fabs(s);
+    if (!(room * map.relaxation < 1.0)) { // never
+        return left;
+    }
+    if (!(side * (edge - delta) > ROUNDING_OF_EDGE * fabs(edge))) {
+        return 0.0;
+    }
+    const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * room) / log1p(-map.relaxation) : room;
+    assert(!(n < 0.0));
+    return fmin(left, floor(n) + 1.0);
+}
+
+static void take_cycles(Walk* walk, double times) {
+    assert(times >= 0.0 && walk->met_at >= 0.0 && walk->met_at < walk->done);
+    FcStepResult* total = &walk->total;
+    const FcStepResult* met = &walk->met;
+    total->impulse += times * (total->impulse - met->impulse);
+    total->impulse_y += times * (total->impulse_y - met->impulse_y);
+    total->work += times * (total->work - met->work);
+    total->heat += times * (total->heat - met->heat);
+    total->drag += times * (total->drag - met->drag);
+    walk->done += times * (walk->done - walk->met_at);
+}
+
+// Whether the bristle has returned to its state after the kept period.
+static bool repeats(Walk* walk) {
+    const FcStepResult* total = &walk->total;
+    const double size = size_of(total);
+    const double changed =
+        fmax(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
+    if (walk->met_at < 0.0 || total->slips != walk->met.slips || !(changed <= SAME_END * size)) {
+        return false;
+    }
+    return changed <= SAME_END * LEAST_PART * size ||
+           changed <= SAME_END * fmin(1.0, free_map_of(walk).relaxation) * size;
+}
+
+// The farthest that a step of Newton moves the deflection, over it. Chosen empirically: without a limit one of
+// 143 drawn scenes settles elsewhere, at half of it errors grow.
+static const double MOST_OF_NEWTON = 1.0;
+
+// The largest change of what a cycle of periods moves the deflection by, over that. Derived: a cycle that forgets
+// more of its start repeats in MOST_MEETINGS - ALONE periods, to SAME_END LEAST_PART. Twice of it takes other
+// motions for cycles.
+static const double SAME_WAY = 0.05;
+
+// A period that met its bound: the end of the one before [m], and the derivatives of its own end by its start.
+typedef struct {
+    FcVector from, by_start[2];
+} Met;
+
+// The number of the last periods that move the deflection as those before them did; 0 if there is none.
+static int last_cycle(const Met* met, int count, const FcStepResult* end) {
+    for (int n = 1; 2 * n <= count; n++) {
+        const FcVector a = met[count - 2 * n].from;
+        const FcVector b = met[count - n].from;
+        const FcVector c = {end->delta, end->delta_y};
+        if (hypot(c.x - 2.0 * b.x + a.x, c.y - 2.0 * b.y + a.y) < SAME_WAY * hypot(c.x - b.x, c.y - b.y)) {
+            return n;
+        }
+    }
+    return 0;
+}
+
+// In the plane a bristle that slips little in each period forgets its direction slowly. Takes its end to that
+// of periods that repeat, by a step of Newton over n of them. They must move by less than *least [m], as those
+// before the last step did: at a kink steps may lead to and fro.
+static bool take_newton_step(const FcScene* scene, const Met* met, int n, double* least,
+                             FcStepResult* total) {
+    const FcVector moved = {total->delta - met->from.x, total->delta_y - met->from.y};
+    FcVector x = {1.0, 0.0}; // derivatives of the end by the start
+    FcVector y = {0.0, 1.0};
+    for (int i = 0; i < n; i++) {
+        const FcVector* by = met[i].by_start;
+        x = (FcVector){by[0].x * x.x + by[1].x * x.y, by[0].y * x.x + by[1].y * x.y};
+        y = (FcVector){by[0].x * y.x + by[1].x * y.y, by[0].y * y.x + by[1].y * y.y};
+    }
+    const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
+    const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
+                            ((1.0 - x.x) * moved.y + x.y * moved.x) / all}; // what the start is to move by
+    const double length = hypot(start.x, start.y);
+    if (!isfinite(length) || hypot(moved.x, moved.y) >= *least) {
+        return false;
+    }
+    *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
+    const double part = fmin(1.0, MOST_OF_NEWTON * size_of(total) / length);
+    const FcBristle reached = fc_reach(scene, (FcBristle){.delta = met->from.x + part * start.x,
+                                                          .delta_y = met->from.y + part * start.y,
+                                                          .slips = total->slips});
+    total->delta = reached.delta;
+    total->delta_y = reached.delta_y;
+    return true;
+}
+
+// Whether the mean since the kept period differs from *mean, which it becomes.
+static bool still_drifts(const Walk* walk, FcVector* mean) {
+    const double periods = walk->done - walk->met_at;
+    const FcVector before = *mean;
+    *mean = (FcVector){walk->total.impulse / periods, walk->total.impulse_y / periods};
+    const double allowed = walk->options->tolerance * walk->options->force * walk->period;
+    return !(hypot(mean->x - before.x, mean->y - before.y) <= allowed);
+}
+
+// Takes `periods`, which may be infinitely many, and stops if periods repeat. Those since met_at do, or a
+// single free one if met_at is negative. If too many meetings do not repeat, met_at is up to a third of
+// them ago.
+static void walk_to_repetition(Walk* walk, double periods) {
+    FcStepResult* total = &walk->total;
+    walk->met_at = -1.0;
+    walk->least.delta = INFINITY;
+    int meetings = 0;
+    const bool has_cycles = fc_has_static_friction(walk->scene->friction);
+    Met met[MOST_MEETINGS / 2]; // since the last step of Newton
+    int count = 0;
+    FcVector from = {total->delta, total->delta_y};
+    double least = INFINITY;
+    double keep = 1.0;                    // the number of the next meeting that is kept
+    FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
+    const int most = (walk->law.is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
+    while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < most) {
+        const FcStepResult before = *total;
+        total->meetings = 0;
+        walk->law.step(walk->scene, walk->options, walk->period, total);
+        walk->done += 1.0;
+        const bool was_free = total->meetings == 0 && total->slips == 0;
+        if (was_free && total->delta == before.delta && total->delta_y == before.delta_y) {
+            walk->met_at = -1.0;
+            return;
+        }
+        const double n = was_free && walk->done < periods ? free_periods(walk, periods - walk->done) : 0.0;
+        if (n == 0.0) { // it has met its bound, or will in the next period
+            meetings++;
+            if (count < MOST_MEETINGS / 2) {
+                met[count++] = (Met){from, {total->by_start[0], total->by_start[1]}};
+            }
+            if (!was_free && (isinf(walk->least.delta) || size_of(total) < fc_size(walk->least))) {
+                walk->least = fc_bristle_of(total);
+            }
+            if (repeats(walk)) {
+                return;
+            }
+            // Each is kept half as long again as the last, so that a cycle of any length returns to it.
+            if (meetings >= keep) {
+                keep = ceil(1.5 * meetings);
+                if (!still_drifts(walk, &mean) && meetings > MOST_MEETINGS) {
+                    return;
+                }
+                if (isinf(periods)) { // the sums of free periods would take digits from the cycle's
+                    *total = fc_result_from(fc_bristle_of(total), total->evaluations);
+                }
+                walk->met = *total;
+                walk->met_at = walk->done;
+                walk->least.delta = INFINITY;
+            } else if (walk->law.is_planar && isinf(periods) && !was_free &&
+                       meetings < MOST_MEETINGS / 2) { // the mean over the last third must be one
+                const int cycle = !has_cycles ? 1 : meetings > ALONE ? last_cycle(met, count, total) : 0;
+                if (cycle > 0 && take_newton_step(walk->scene, &met[count - cycle], cycle, &least, total)) {
+                    walk->met_at = -1.0; // periods repeat only if no step lies between them
+                    count = 0;
+                }
+            }
+            from = (FcVector){total->delta, total->delta_y};
+            continue;
+        }
+        if (isinf(n)) {
+            settle(walk, total);
+            walk->met_at = -1.0;
+            return;
+        }
+        take_free(walk, n, total);
+        walk->done += n;
+    }
+}
+
+static Walk walk_from(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                      const FcStepResult* start) {
+    return (Walk){.law = law,
+                  .scene = scene,
+                  .options = options,
+                  .period = 1.0 / scene->drive.vibration.f,
+                  .total = *start};
+}
+
+static void step_over_equal_periods(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                                    double periods, FcStepResult* total) {
+    Walk walk = walk_from(law, scene, options, total);
+    if (!law.is_bounded) {
+        free_map_of(&walk);
+        take_free(&walk, periods, &walk.total);
+        *total = walk.total;
+        return;
+    }
+    while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
+        walk_to_repetition(&walk, periods);
+        const double cycle = walk.done - walk.met_at;
+        if (walk.done < periods && cycle > 0.0 && repeats(&walk)) {
+            take_cycles(&walk, floor((periods - walk.done) / cycle));
+        } else if (walk.done < periods && walk.met_at < 0.0) { // each period leads back
+            free_map_of(&walk);
+            take_free(&walk, periods - walk.done, &walk.total);
+            walk.done = periods;
+        }
+    }
+    *total = walk.total;
+}
+
+// The options of a step with several intervals whose contact may stiffen.
+static FcSolverOptions options_until_end(const FcSolverOptions* options, const FcScene* scene, double h) {
+    FcSolverOptions own = *options;
+    const FcScene end = fc_scene_from(scene, h);
+    const double stiffness = fc_scene_largest_stiffness(&end, 0.0);
+    own.stiffness_at_end = isfinite(stiffness) ? stiffness : 0.0; // open at the end
+    return own;
+}
+
+bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double h,
+                     FcStepResult* result, FcMessage* message) {
+    const double f = scene->drive.vibration.f;
+    const bool is_linear = fc_drive_is_linear(&scene->drive);
+    const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
+    const double rest = periods > 0.0 ? fmax(0.0, fma(h, f, -periods) / f) : h;
+    assert(h >= 0.0 && rest <= h);
+    FcSolverOptions until_end;
+    if (is_linear && (periods >= 2.0 || fc_scene_has_pieces(scene))) {
+        until_end = options_until_end(options, scene, h);
+        options = &until_end;
+    }
+    if (periods > MOST_CHANGING_PERIODS && is_linear) {
+        return fc_message_set(
+            message,
+            "a step of %.9g s holds %.9g vibration periods while an input moves (its derivative is not 0); "
+            "at most %.9g of them are computed: the largest step is %.9g s",
+            h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
+    }
+    if (periods < 2.0) {
+        fc_take_pieces(law, scene, options, h, result);
+    } else if (is_linear) {
+        fc_leap(law, scene, options, periods, result);
+        // A rest of no more than the rounding of h could take a slip off its bound.
+        if (rest > 4.0 * DBL_EPSILON * h) {
+            const FcScene later = fc_scene_later(scene, periods / f);
+            fc_take_pieces(law, &later, options, rest, result);
+        }
+    } else if (fc_scene_is_loose(scene)) {
+        fc_loose_step(result);
+    } else {
+        step_over_equal_periods(law, scene, options, periods, result);
+        fc_take_pieces(law, scene, options, rest, result);
+    }
+    if (result->evaluations > FC_MOST_EVALUATIONS) {
+        return fc_message_set(
+            message,
+            "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves over "
+            "too many orders of magnitude in it; use smaller steps, or cut the motion",
+            h, FC_MOST_EVALUATIONS);
+    }
+    return true;
+}
+
+FcVector fc_periods_settled(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                            FcStepResult* end) {
+    const double f = scene->drive.vibration.f;
+    if (fc_scene_is_loose(scene)) {
+        fc_loose_step(end);
+        return (FcVector){0.0, 0.0};
+    }
+    Walk walk = walk_from(law, scene, options, end);
+    if (law.is_bounded) {
+        walk_to_repetition(&walk, HUGE_VAL);
+        const double cycle = walk.done - walk.met_at;
+        if (walk.met_at >= 0.0 && cycle > 0.0) {
+            *end = walk.total;
+            if (isfinite(walk.least.delta)) {
+                end->delta = walk.least.delta;
+                end->delta_y = walk.least.delta_y;
+                end->slips = walk.least.slips;
+            }
+            return (FcVector){(walk.total.impulse - walk.met.impulse) / cycle * f,
+                              (walk.total.impulse_y - walk.met.impulse_y) / cycle * f};
+        }
+        free_map_of(&walk);
+    } else {
+        free_map_of(&walk);
+        settle(&walk, &walk.total);
+    }
+    *end = walk.total;
+    FcStepResult period = {.delta = end->delta, .delta_y = end->delta_y};
+    take_free(&walk, 1.0, &period);
+    return (FcVector){period.impulse * f, period.impulse_y * f};
+}

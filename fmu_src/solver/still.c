@@ -1,0 +1,158 @@
+#include "solver/still.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "model/regime.h"
+#include "model/root.h"
+#include "solver/events.h"
+
+// A slip with a constant force [N] up to the time end, at which the bristle is delta [m].
+static void slip_with(FcCrossing* crossing, double force, double delta, double end) {
+    const double t = crossing->at.t;
+    const double work = force * fc_drive_displacement(&crossing->interval->scene->drive, t, end);
+    const FcMap map = {.relaxation = 1.0,
+                       .offset = delta,
+                       .impulse_offset = force * (end - t),
+                       .work_offset = work,
+                       .heat_offset = work - force * (delta - crossing->along.offset)};
+    fc_append_known(crossing, &map, end);
+}
+
+// Coulomb's law in a part, in which V keeps its sign.
+static void take_coulomb(FcCrossing* crossing) {
+    const double t = crossing->at.t;
+    const double end = crossing->part.end;
+    const double force = crossing->part.side * fc_coefficients_at(crossing, end).static_limit;
+    const double work = force * fc_drive_displacement(&crossing->interval->scene->drive, t, end);
+    const FcMap map = {.impulse_offset = force * (end - t), .work_offset = work, .heat_offset = work};
+    fc_append_known(crossing, &map, end);
+}
+
+// ElasticPlastic without static friction surely slips while |V| is larger than |D'| may be.
+static bool slips_surely(FcCrossing* crossing) {
+    const FcInterval* interval = crossing->interval;
+    const FcFriction* friction = interval->scene->friction;
+    if (fc_has_static_friction(friction) || friction->sigma_1 != 0.0) {
+        return false;
+    }
+    const double fastest = interval->pace.log_sigma * interval->saturation;
+    const int side = crossing->along.offset < 0.0 ? -1 : 1;
+    FcDrive slower = interval->scene->drive;
+    slower.V.value -= side * fastest;
+    const double t = crossing->at.t;
+    const double end = fc_drive_next_event(&slower, t, crossing->part.end).time;
+    if (!(end > t && side * fc_drive_V(&slower, 0.5 * (t + end)) > 0.0)) {
+        return false;
+    }
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, end);
+    const double force = side * at.static_limit;
+    fc_note_slip(crossing, t, end, side);
+    slip_with(crossing, force, force / at.sigma, end);
+    return true;
+}
+
+// With a constant stiffness, too, it slips until V reverses.
+static void slip_to_reversal(FcCrossing* crossing) {
+    const int side = crossing->along.offset < 0.0 ? -1 : 1;
+    if (side != crossing->part.side) {
+        fc_end_slip(crossing, false);
+        return;
+    }
+    const double delta = crossing->along.offset;
+    fc_note_slip(crossing, crossing->at.t, crossing->part.end, side);
+    slip_with(crossing, crossing->interval->stiffness * delta, delta, crossing->part.end);
+}
+
+typedef struct {
+    const FcDrive* drive;
+    double from; // s
+    double way;  // m, to the bound
+    int side;
+} WayToBound;
+
+static FcRootFunction way_to_bound(void* context, double t) {
+    const WayToBound* of = context;
+    const FcVelocity at = fc_drive_velocity(of->drive, t);
+    return (FcRootFunction){.value = of->side * fc_drive_displacement(of->drive, of->from, t) - of->way,
+                            .rate = of->side * at.V,
+                            .curvature = of->side * at.rate};
+}
+
+// Whether a stuck bristle meets its bound in the part; sets *end to when, and *way [m] to how far it is.
+static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
+    const FcInterval* interval = crossing->interval;
+    const FcDrive* drive = &interval->scene->drive;
+    const double t = crossing->at.t;
+    const int side = crossing->part.side;
+    const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
+    const double D = at.static_limit / at.sigma;
+    const double moves = side * fc_drive_displacement(drive, t, *end);
+    *way = fmax(0.0, D - side * crossing->along.offset);
+    if (!(crossing->is_bounded && moves > *way)) {
+        return false;
+    }
+    // One with static friction that is at its bound breaks away if it is pushed there, or goes on in the next part.
+    if (fc_has_static_friction(interval->scene->friction) && *way <= 1e-13 * D && moves <= 1e-9 * D &&
+        crossing->part.end < interval->duration && !(fc_push(interval->scene, interval->scene, t, side) > 0.0)) {
+        return false;
+    }
+    if (*way == 0.0) {
+        *end = t;
+        return true;
+    }
+    WayToBound of = {drive, t, *way, side};
+    *end = fc_root(way_to_bound, &of, t, way_to_bound(&of, t), *end, way_to_bound(&of, *end), 1e-5, INFINITY,
+                   &crossing->evaluations);
+    return true;
+}
+
+static void stick_to_meeting(FcCrossing* crossing) {
+    const FcScene* scene = crossing->interval->scene;
+    const FcDrive* drive = &scene->drive;
+    const double t = crossing->at.t;
+    const double sigma = crossing->interval->stiffness;
+    double end = crossing->part.end;
+    double way;
+    const bool meets = meets_in_part(crossing, &end, &way);
+    const double x = meets ? crossing->part.side * way : fc_drive_displacement(drive, t, end);
+    const FcMap map = {.offset = x,
+                       .impulse_slope = sigma * (end - t),
+                       .impulse_offset = sigma * fc_drive_displacement_integral(drive, t, end),
+                       .work_slope = sigma * x,
+                       .work_offset = 0.5 * sigma * x * x,
+                       .drag_offset = scene->friction->sigma_1 != 0.0 ? fc_drive_square(drive, t, end) : 0.0};
+    fc_append_known(crossing, &map, end);
+    if (meets) {
+        fc_begin_slip(crossing, true);
+    }
+}
+
+bool fc_take_still(FcCrossing* crossing) {
+    const FcScene* scene = crossing->interval->scene;
+    const FcFriction* friction = scene->friction;
+    if (!crossing->plane->on_line || !fc_scene_limit_is_constant(scene)) {
+        return false;
+    }
+    const bool is_still = fc_scene_stiffness_is_constant(scene);
+    const bool has_moving_curve = fc_has_stribeck_curve(friction) && !fc_drive_V_is_constant(&scene->drive);
+    switch (fc_kind(crossing)) {
+    case FC_NO_BRISTLE:
+        take_coulomb(crossing);
+        return true;
+    case FC_SLIPS:
+        if (friction->model == FC_ELASTIC_PLASTIC && is_still && !has_moving_curve) {
+            slip_to_reversal(crossing);
+            return true;
+        }
+        return friction->model == FC_ELASTIC_PLASTIC && slips_surely(crossing);
+    case FC_STICKS:
+        if (is_still && crossing->slips == 0) {
+            stick_to_meeting(crossing);
+            return true;
+        }
+        return false;
+    default:
+        return false;
+    }
+}

@@ -1,0 +1,11 @@
+// Motions along a line that are closed forms, from one event of V to the next: Coulomb's law with a constant limit, and
+// ElasticPlastic with a constant limit, while the bristle surely slips, and with a constant stiffness besides.
+#ifndef FC_SOLVER_STILL_H
+#define FC_SOLVER_STILL_H
+
+#include "solver/crossing.h"
+
+// Takes the present motion to its end or to that of the part; false if it has no closed form.
+bool fc_take_still(FcCrossing* crossing);
+
+#endif
