@@ -46,10 +46,10 @@ void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval
     assert(interval->duration > 0.0 && interval->tolerance > 0.0);
     const double allowed = fc_allowed_force(interval);
     *control = (FcControl){.plane = plane, .interval = interval};
-    control->log_transient = transient > 0.0 ? log(transient / allowed) : -HUGE_VAL;
-    control->log_force = interval->force > 0.0 ? log(interval->force / allowed) : 0.0;
+    control->log_transient = transient > 0.0 ? rough_log(transient / allowed) : -HUGE_VAL;
+    control->log_force = interval->force > 0.0 ? rough_log(interval->force / allowed) : 0.0;
     control->span =
-        FC_SMOOTH * exp(log(interval->tolerance) / ORDER) * fc_smooth_time(&interval->pace);
+        FC_SMOOTH * rough_exp(rough_log(interval->tolerance) / ORDER) * fc_smooth_time(&interval->pace);
     control->longest = longest_for(interval->tolerance);
     control->settles = plane->on_line && fc_scene_limit_is_constant(interval->scene) &&
                        !fc_has_stribeck_curve(interval->scene->friction);

@@ -38,17 +38,21 @@ static void reach(FcCrossing* crossing, double u, double t, const FcPlaneCoeffic
     crossing->at = (FcReached){.u = u, .t = t, .rate = per_path * fabs(at->speed), .per_path = per_path};
 }
 
-void fc_crossing_start(FcCrossing* crossing, const FcPlane* plane, const FcInterval* interval,
+void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane, const FcInterval* interval,
                        double evaluations) {
     *crossing = (FcCrossing){.plane = plane,
                              .interval = interval,
-                             .across = fc_drive_across(&interval->scene->drive),
+                             .parts = room->parts,
+                             .way = room->way,
                              .is_bounded = fc_is_bounded(interval->scene->friction),
                              .by_start = {{1.0, 0.0}, {0.0, 1.0}},
                              .evaluations = evaluations};
-    crossing->count = fc_parts(plane, interval->duration, interval->tolerance, crossing->parts);
-    const FcPlaneCoefficients at = fc_coefficients_at(crossing, 0.0);
-    reach(crossing, 0.0, 0.0, &at);
+    if (!plane->on_line) {
+        crossing->across = fc_drive_across(&interval->scene->drive);
+    }
+    crossing->count = fc_parts(plane, interval->duration, interval->tolerance, room->parts);
+    crossing->first = fc_coefficients_at(crossing, 0.0);
+    reach(crossing, 0.0, 0.0, &crossing->first);
 }
 
 // The present part in a variable.

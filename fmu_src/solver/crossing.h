@@ -7,16 +7,17 @@
 typedef struct {
     const FcPlane* plane;
     const FcInterval* interval;
-    FcDrive across; // fc_drive_across
+    FcDrive across;            // fc_drive_across, in the plane
+    FcPlaneCoefficients first; // at the start
     FcControl control;
     // The parts, and the place reached.
-    FcPart parts[FC_MOST_PARTS];
+    const FcPart* parts;
     int count, number;
     FcPart part; // the present one, in the variable of the present motion
     FcReached at;
     double end;       // of the part, in u
     double h;         // of the next panel, in u; 0 if nothing proposes one
-    double way[FC_MOST_PARTS]; // m, the path after each part, at the least
+    double* way;      // m, the path after each part, at the least
     bool has_ways;
     // The bristle, and the sums.
     FcMap along, across_map;
@@ -36,8 +37,14 @@ typedef struct {
     double evaluations;
 } FcCrossing;
 
+// The memory of the parts of a crossing, which is filled as far as there are any.
+typedef struct {
+    FcPart parts[FC_MOST_PARTS];
+    double way[FC_MOST_PARTS];
+} FcRoom;
+
 // A crossing of the interval from its start on, with its parts; the bristle is to be set.
-void fc_crossing_start(FcCrossing* crossing, const FcPlane* plane, const FcInterval* interval,
+void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane, const FcInterval* interval,
                        double evaluations);
 
 FcKind fc_kind(const FcCrossing* crossing);

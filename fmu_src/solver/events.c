@@ -12,7 +12,7 @@
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
 // Parts of the largest push. A push below the first is rounding. Below the second a slipping bristle may be
-// released: derived, since the rest of a push acts with its square.
+// released, or a place of a panel taken for its end: derived, since the rest of a push acts with its square.
 static const double ROUNDING_OF_PUSH = 1e-13;
 static const double LITTLE_PUSH = 1e-9;
 
@@ -127,10 +127,9 @@ bool fc_begin_slip(FcCrossing* crossing, bool surely) {
     return true;
 }
 
-void fc_end_slip(FcCrossing* crossing, bool touches) {
-    crossing->is_slipping = false;
+void fc_end_slip(FcCrossing* crossing) {
+    crossing->is_slipping = crossing->touches = false;
     crossing->slips = 0;
-    crossing->touches = touches && !has_static_friction(crossing);
 }
 
 // ---- a free bristle ----
@@ -272,10 +271,10 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
                 fc_plane_push(crossing->plane, &at, &bound, (FcVector){delta.x / size, delta.y / size});
         }
         const double ends = end_of_push(crossing, push);
-        if (ends > 1.0 || cuts >= 4) {
+        if (ends > 1.0 - LITTLE_PUSH || cuts >= 4) { // a push of 0 at the end is decided by the motion after it
             return cuts > 0;
         }
-        *h *= fmax(ends, 1e-9);
+        *h *= fmax(ends, LITTLE_PUSH);
         fc_make_again(crossing, *h, nodes, panel);
     }
 }
@@ -310,7 +309,7 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
 void fc_free_until_event(FcCrossing* crossing) {
     assert(!crossing->is_slipping);
     if (crossing->slips != 0 && falls_behind(crossing, direction_of(crossing))) {
-        fc_end_slip(crossing, false);
+        fc_end_slip(crossing);
         return;
     }
     if (crossing->touches && fc_begin_slip(crossing, false)) {
@@ -329,7 +328,7 @@ void fc_free_until_event(FcCrossing* crossing) {
     fc_append_panel(crossing, &nodes, &panel, h);
     crossing->touches = panel.to_bound[LAST] >= -over;
     if (gives_up && !is_cut) {
-        fc_end_slip(crossing, false);
+        fc_end_slip(crossing);
     }
     if (is_cut && !crossing->touches) {
         crossing->h = 4.0 * h; // the panel was too long for its points
@@ -358,9 +357,37 @@ static double push_of(void* context, double t) {
     return push_at(of->crossing, of->n, t);
 }
 
+// A time between two at which the push is negative, by golden section; else that at which it is least.
+static double time_of_dip(Pushed* of, double a, double b, double* least, double* evaluations) {
+    static const double GOLDEN = 0.6180339887498949;
+    enum { MOST_SECTIONS = 40 }; // 0.618^40 is the root of rounding
+    double x = b - GOLDEN * (b - a);
+    double y = a + GOLDEN * (b - a);
+    double at_x = push_of(of, x);
+    double at_y = push_of(of, y);
+    for (int k = 0; k < MOST_SECTIONS && at_x >= 0.0 && at_y >= 0.0; k++) {
+        if (at_x <= at_y) {
+            b = y;
+            y = x;
+            at_y = at_x;
+            x = b - GOLDEN * (b - a);
+            at_x = push_of(of, x);
+        } else {
+            a = x;
+            x = y;
+            at_x = at_y;
+            y = a + GOLDEN * (b - a);
+            at_y = push_of(of, y);
+        }
+        *evaluations += 1.0;
+    }
+    *least = fmin(at_x, at_y);
+    return at_x <= at_y ? x : y;
+}
+
 // The time at which the push ends along a line, where it is known at any time: the first change of its sign between the
 // points, or in a dip of the polynomial if the push itself dips there. Not a number if there is none.
-static double end_of_known_push(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel, double h,
+static double end_of_known_push(FcCrossing* crossing, const FcNodes* nodes, const FcPanel* panel,
                                 double ends) {
     Pushed of = {crossing, {panel->delta[0].x < 0.0 ? -1.0 : 1.0, 0.0}};
     double t_a = nodes->t[START];
@@ -369,14 +396,11 @@ static double end_of_known_push(FcCrossing* crossing, const FcNodes* nodes, cons
         double t_b = nodes->t[i];
         double at_b = panel->to_bound[i];
         if (ends > 0.0 && ends <= 0.5 + FC_RADAU.node[i]) {
-            const double dip = fmin(fmax(fc_part_time(&crossing->part, crossing->at.u + ends * h), t_a), t_b);
-            const double at_dip = push_of(&of, dip);
-            crossing->evaluations += 1.0;
             ends = 0.0;
-            if (at_dip < 0.0) {
-                t_b = dip;
-                at_b = at_dip;
-            }
+            double least = at_b;
+            const double dip = at_b < 0.0 ? t_b : time_of_dip(&of, t_a, t_b, &least, &crossing->evaluations);
+            t_b = least < 0.0 ? dip : t_b;
+            at_b = least < 0.0 ? least : at_b;
         }
         if (at_a > 0.0 && at_b < 0.0) {
             return fc_root_between(push_of, &of, t_a, at_a, t_b, at_b, 0.0, 0.0, &crossing->evaluations);
@@ -393,7 +417,7 @@ static bool cut_at_end_of_push(FcCrossing* crossing, FcNodes* nodes, FcPanel* pa
     const bool on_line = crossing->plane->on_line;
     bool is_cut = *ends < 1.0;
     for (int cuts = 0; cuts < MOST_CUTS && *ends > 0.0 && *ends < 1.0; cuts++) {
-        const double root = on_line ? end_of_known_push(crossing, nodes, panel, *h, *ends) : NAN;
+        const double root = on_line ? end_of_known_push(crossing, nodes, panel, *ends) : NAN;
         if (on_line && isnan(root)) { // a dip of the polynomial alone
             *ends = 2.0;
             return cuts > 0;
@@ -436,11 +460,11 @@ void fc_slip_until_event(FcCrossing* crossing) {
         } else {
             turn_derivatives(crossing, panel.delta[START], panel.delta[LAST]);
         }
-        const double rest = panel.to_bound[LAST] / fc_largest_push(crossing);
-        is_over = rest < (is_cut ? LITTLE_PUSH : ROUNDING_OF_PUSH); // also if V is just 0 at the end
+        // If V is just 0 at the end, the motion after it decides.
+        is_over = is_cut && panel.to_bound[LAST] < LITTLE_PUSH * fc_largest_push(crossing);
         fc_append_panel(crossing, &nodes, &panel, h);
     }
     if (is_over) {
-        fc_end_slip(crossing, !is_cut);
+        fc_end_slip(crossing);
     }
 }

@@ -19,7 +19,6 @@ void fc_slip_until_event(FcCrossing* crossing);
 // A free bristle at its bound slips if it is pushed, or surely; one with static friction breaks away. False if it is
 // not pushed.
 bool fc_begin_slip(FcCrossing* crossing, bool surely);
-// The end of a slip; the bristle may be at its bound.
-void fc_end_slip(FcCrossing* crossing, bool touches);
+void fc_end_slip(FcCrossing* crossing);
 
 #endif

@@ -248,7 +248,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
         speed = INFINITY;
     } else if (from->limit_stands && !planar && relaxes) {
         held = F[LAST];
-        exact_integrals(nodes, for_any ? panel->sigma * of.Q_x[LAST] : held, panel->limit, &panel->along);
+        exact_integrals(nodes, held, panel->limit, &panel->along);
     }
     const bool has_defect = relaxes && !is_known;
     double defect = has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
@@ -257,7 +257,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
         for (int i = 0; i < POINTS; i++) {
             F[i] = nodes->sigma[i] * y[i];
             slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
-        }
+            }
         defect += has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
         quadrature += fc_error_of_force(nodes, speed, 0.0, F, nodes->V_y);
     }

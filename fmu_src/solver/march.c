@@ -12,7 +12,7 @@
 // The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
 // minus its change in the time 1 / r.
 static double first_transient(const FcCrossing* crossing, FcVector delta, double scale) {
-    const FcPlaneCoefficients at = fc_coefficients_at(crossing, 0.0);
+    const FcPlaneCoefficients at = crossing->first;
     const FcVector now = fc_plane_coulomb(&at);
     const double r = at.sigma * at.speed / at.limit;
     FcVector next = now;
@@ -73,8 +73,7 @@ static void cross(FcCrossing* crossing) {
 // Whether a bristle begins in a slip. It leaves its bound at once if it is not pushed.
 static bool begins_slipping(const FcCrossing* crossing, FcBristle bristle) {
     const bool has_memory = fc_has_static_friction(crossing->interval->scene->friction);
-    const FcPlaneCoefficients at = fc_coefficients_at(crossing, 0.0);
-    const double D = fc_plane_radius(crossing->plane, &at, bristle.slips);
+    const double D = fc_plane_radius(crossing->plane, &crossing->first, bristle.slips);
     return crossing->is_bounded && fc_size(bristle) >= D * (1.0 - 1e-13) &&
            (!has_memory || bristle.slips != 0);
 }
@@ -109,8 +108,9 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     fc_plane_make(&plane, scene);
     plane.on_line = !fc_is_planar(scene, bristle);
     const FcInterval interval = fc_interval_make(scene, duration, options);
+    FcRoom room;
     FcCrossing crossing;
-    fc_crossing_start(&crossing, &plane, &interval, result->evaluations);
+    fc_crossing_start(&crossing, &room, &plane, &interval, result->evaluations);
     fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
     if (scene->friction->model == FC_COULOMB) { // whose deflection stands
         crossing.along.relaxation = crossing.across_map.relaxation = 0.0;
@@ -131,12 +131,12 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
     fc_plane_make(&plane, scene);
     plane.on_line = across == NULL;
     const FcInterval interval = fc_interval_make(scene, duration, options);
+    FcRoom room;
     FcCrossing crossing;
-    fc_crossing_start(&crossing, &plane, &interval, *evaluations);
+    fc_crossing_start(&crossing, &room, &plane, &interval, *evaluations);
     crossing.for_any = true;
     crossing.is_bounded = false;
-    const FcPlaneCoefficients at = fc_coefficients_at(&crossing, 0.0);
-    crossing.scale = fmax(start, at.limit / at.sigma);
+    crossing.scale = fmax(start, crossing.first.limit / crossing.first.sigma);
     start_control(&crossing, crossing.scale);
     cross(&crossing);
     *evaluations = crossing.evaluations;

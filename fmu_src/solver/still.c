@@ -56,7 +56,7 @@ static bool slips_surely(FcCrossing* crossing) {
 static void slip_to_reversal(FcCrossing* crossing) {
     const int side = crossing->along.offset < 0.0 ? -1 : 1;
     if (side != crossing->part.side) {
-        fc_end_slip(crossing, false);
+        fc_end_slip(crossing);
         return;
     }
     const double delta = crossing->along.offset;
