@@ -283,25 +283,23 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
 // to_bound at the panel's end is in *over.
 // - The panel is made again up to the event, which its own points then show more accurately.
 // - A panel that dips inside the bound between its points is shortened.
+// - An exact meeting is the first one, unless there is a top before it.
 static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h, double* over) {
     bool is_cut = false;
+    bool is_exact = false;
     for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
         find_to_bound(crossing, nodes, panel);
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
         *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));
-        const double meets = fc_first_rise(panel->to_bound, *over);
+        const double meets = is_exact ? 2.0 : fc_first_rise(panel->to_bound, *over);
         const double top = meets > 1.0 ? top_at_bound(crossing, nodes, panel) : 2.0;
         if (meets > 1.0 && top > 1.0) {
             break;
         }
-        bool is_exact = false;
-        is_cut = is_cut || meets <= 1.0;
+        is_cut = meets <= 1.0 || (is_cut && !is_exact);
+        is_exact = false;
         *h *= meets > 1.0 ? top : place_of_meeting(crossing, panel, *h, meets, *over, &is_exact);
         fc_make_again(crossing, *h, nodes, panel);
-        if (is_exact) {
-            find_to_bound(crossing, nodes, panel);
-            break;
-        }
     }
     return is_cut;
 }
