@@ -184,7 +184,8 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         return fail_stiffness(message, drive->d.value, fc_drive_largest_E(drive, h));
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
-    if (by_load && !(fmax(drive->load.value, fc_drive_load(drive, h)) > 0.0)) {
+    const bool stays_open = scene->is_open && !scene->floats;
+    if (by_load && (stays_open || !(fmax(drive->load.value, fc_drive_load(drive, h)) > 0.0))) {
         return true; // open throughout
     }
     const double d = fc_scene_smallest_d(scene, h);

@@ -360,13 +360,23 @@ static bool turns_near(const View* view, int side, double delta, double t) {
                NEAR_THE_BOUND * fc_bound(&view->bound, t);
 }
 
+// The time [s], at most `longest`, within which an input that falls does not come to 0.
+static double before_opening(const FcDrive* drive, double longest) {
+    const FcLinearInput falling[] = {drive->load, drive->E, {drive->d.value - drive->vibration.a_d, drive->d.rate}};
+    for (int i = 0; i < 3; i++) {
+        longest = falling[i].rate < 0.0 ? fmin(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
+    }
+    return longest;
+}
+
 // The time [s] in which the vibration turns the bristle back from a bound; at most `longest`.
 static double time_to_turn(const View* view, double delta, double period, double longest) {
     const double start = 1e3 * AFTER_TURN * period;
+    const double end = before_opening(&view->scene.drive, longest);
     double turn = longest;
     for (int side = -1; side <= 1; side += 2) {
-        const double t = view->side != -side ? first_turn(view, side, start, period, turn) : turn;
-        if (view->side != 0 || turns_near(view, side, delta, t)) {
+        const double t = view->side != -side ? first_turn(view, side, start, period, end) : end;
+        if (t < end && (view->side != 0 || turns_near(view, side, delta, t))) {
             turn = fmin(turn, t);
         }
     }
