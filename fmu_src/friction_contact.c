@@ -145,7 +145,8 @@ static bool fail_separation(const FcScene* scene, double h, FcMessage* message) 
 // Some tools send 0 for an input that is not connected.
 static bool fail_input(FcMessage* message, const char* name, double value, const char* unit) {
     return fc_message_set(message, "%s = %.9g %s must be above 0 %s: the scene uses it%s", name, value, unit,
-                          unit, value == 0.0 ? "; an input that is not connected may have been sent as 0" : "");
+                          unit,
+                          value == 0.0 ? "; an input that is not connected may have been sent as 0" : "");
 }
 
 // The inputs that the law uses must be above 0. A load of 0 opens the contact.
@@ -517,7 +518,11 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result,
 }
 
 static bool inputs_move(const double rate[FC_INPUT_COUNT]) {
-    return memcmp(rate, HELD, sizeof HELD) != 0;
+    bool moves = false;
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        moves = moves || rate[input] != 0.0;
+    }
+    return moves;
 }
 
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {

@@ -362,7 +362,8 @@ static bool turns_near(const View* view, int side, double delta, double t) {
 
 // The time [s], at most `longest`, within which an input that falls does not come to 0.
 static double before_opening(const FcDrive* drive, double longest) {
-    const FcLinearInput falling[] = {drive->load, drive->E, {drive->d.value - drive->vibration.a_d, drive->d.rate}};
+    const FcLinearInput falling[] = {
+        drive->load, drive->E, {drive->d.value - drive->vibration.a_d, drive->d.rate}};
     for (int i = 0; i < 3; i++) {
         longest = falling[i].rate < 0.0 ? fmin(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
     }

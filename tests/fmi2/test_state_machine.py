@@ -70,7 +70,11 @@ class Model:
         return ends
 
     def step_is_legal(self, t: float, h: float) -> bool:
-        if self.state != "step complete" or not self.works() or not (math.isfinite(h) and h >= 0 and t == self.time):
+        if (
+            self.state != "step complete"
+            or not self.works()
+            or not (math.isfinite(h) and h >= 0 and t == self.time)
+        ):
             return False
         if self.stop is not None and t + h > self.stop * (1 + 1e-9):
             return False
@@ -203,7 +207,9 @@ class Machine(RuleBasedStateMachine):
             assert dict(zip(names, values, strict=True)) == model.values
             outputs = ("F_t", "F_t_mean", "W_f", "sigma", "delta")
             results = (c_double * len(outputs))()
-            status = self.instance.call("fmi2GetReal", self.instance.references(outputs), len(outputs), results)
+            status = self.instance.call(
+                "fmi2GetReal", self.instance.references(outputs), len(outputs), results
+            )
             assert status == (OK if model.works() else ERROR)
             assert all(map(math.isfinite, results))
 

@@ -45,8 +45,10 @@ typedef enum {
     ACTION_COUNT
 } Kind;
 static const char* const KIND[] = {
-    "step", "set", "rate", "outputs", "settled", "rates of states", "output rates", "directional",
-    "settled directional", "state copy",
+    "step",         "set",         "rate",
+    "outputs",      "settled",     "rates of states",
+    "output rates", "directional", "settled directional",
+    "state copy",
 };
 
 typedef struct {
@@ -160,9 +162,8 @@ static double extreme(const FcVariableInfo* info) {
     if (info->min < 0.0) {
         return happens(0.5) ? -fmin(size, -info->min) : fmin(size, info->max);
     }
-    return size >= info->min && size <= info->max
-               ? size
-               : between(fmax(info->min, 1e-300), fmin(info->max, 1e300));
+    return size >= info->min && size <= info->max ? size
+                                                  : between(fmax(info->min, 1e-300), fmin(info->max, 1e300));
 }
 
 static double drawn(const FcVariableInfo* info, double wild) {
@@ -181,7 +182,8 @@ static Scene scene_of(long number) {
     Scene scene = {.exchange = happens(0.25)};
     for (unsigned vr = 0; vr < fc_variables_count; vr++) {
         const FcVariableInfo* info = &fc_variables[vr];
-        if (!info->has_start || (info->causality != FC_CAUSALITY_INPUT && info->causality != FC_CAUSALITY_PARAMETER)) {
+        if (!info->has_start ||
+            (info->causality != FC_CAUSALITY_INPUT && info->causality != FC_CAUSALITY_PARAMETER)) {
             continue;
         }
         const double value = info->type == FC_TYPE_REAL ? drawn(info, wild) : drawn_item(info);
@@ -273,7 +275,9 @@ static fmi2Status ended(fmi2Status status) {
         tell(TOO_LONG, "");
     }
     if (ordinary && raised) {
-        tell(EXCEPTION, raised & FE_INVALID ? "invalid" : raised & FE_DIVBYZERO ? "division by zero" : "overflow");
+        tell(EXCEPTION, raised & FE_INVALID     ? "invalid"
+                        : raised & FE_DIVBYZERO ? "division by zero"
+                                                : "overflow");
     }
     return status;
 }
@@ -293,7 +297,8 @@ static size_t computed(fmi2ValueReference* vr, bool rates) {
     size_t count = 0;
     for (unsigned i = 0; i < fc_variables_count; i++) {
         const FcVariableInfo* info = &fc_variables[i];
-        const bool is_output = info->causality == FC_CAUSALITY_OUTPUT || info->causality == FC_CAUSALITY_LOCAL;
+        const bool is_output =
+            info->causality == FC_CAUSALITY_OUTPUT || info->causality == FC_CAUSALITY_LOCAL;
         if (is_output && !fc_variable_is_settled_force(info) && fc_variable_is_rate(info) == rates &&
             info->offset != offsetof(FcVariables, solver.evaluations)) {
             vr[count++] = i;
@@ -332,8 +337,8 @@ static void copy_state(fmi2Component c) {
     fmi2FreeFMUstate(c, &saved);
 }
 
-static void directional(fmi2Component c, const char* name, fmi2ValueReference input, const fmi2ValueReference* vr,
-                        size_t count) {
+static void directional(fmi2Component c, const char* name, fmi2ValueReference input,
+                        const fmi2ValueReference* vr, size_t count) {
     double value[64];
     const double one = 1.0;
     if (CALL(name, fmi2GetDirectionalDerivative(c, vr, count, &input, 1, &one, value)) == fmi2OK) {

@@ -1,4 +1,4 @@
-"""The host for scipy on docs/model-exchange.md, over scenes in which an error control alone skips whole periods."""
+"""The host for scipy on docs/model-exchange.md, in scenes in which an error control alone skips periods."""
 
 from __future__ import annotations
 
