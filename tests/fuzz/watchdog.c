@@ -550,7 +550,6 @@ static long run_many(long calls, long first) {
     while (board->calls < calls) {
         board->fault = SOUND;
         board->since = HUGE_VAL;
-        fflush(stdout);
         const pid_t worker = fork();
         if (worker == 0) {
             for (; board->calls < calls && board->fault == SOUND; board->scene++) {
@@ -574,6 +573,7 @@ static long run_many(long calls, long first) {
 }
 
 int main(int count, char** words) {
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
     board = mmap(NULL, sizeof *board, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (board == MAP_FAILED || count < 2) {
         fprintf(stderr, "usage: watchdog CALLS [SEED] [--ordinary] | --scene SCENE [--ordinary]\n");
