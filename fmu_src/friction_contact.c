@@ -57,30 +57,28 @@ static bool uses_separation(const FcVariables* v) {
     return fc_scene_depends_on_d(&scene);
 }
 
-// Takes from a scene whose law does not use them what the inputs d, E and load are not to disturb: they stand still,
-// and without a separation above 0 the contact counts as open.
-static void leave_unused(FcScene* scene, bool has_E) {
-    FcDrive* drive = &scene->drive;
-    drive->d.rate = drive->E.rate = drive->load.rate = 0.0;
-    scene->floats = false;
-    const bool is_finite = isfinite(scene->at_E.area_0) && isfinite(scene->at_E.load_0);
-    if (!has_E || !is_finite || !(drive->d.value > drive->vibration.a_d)) {
-        drive->d.value = 1.0;
-        scene->is_open = true;
-    }
+// Whether a scene whose law does not use the separation has one above 0, with finite results.
+static bool has_contact(const FcScene* scene) {
+    return scene->drive.d.value > scene->drive.vibration.a_d && isfinite(scene->at_E.area_0) &&
+           isfinite(scene->at_E.load_0);
 }
 
 // The scene from the absolute time start + rest on, with the inputs moving at these rates for ahead [s]
-// before it begins.
+// before it begins. Inputs that the law does not use stand still, and without a separation above 0 they count as an
+// open contact.
 static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
                           const double rate[FC_INPUT_COUNT], double ahead) {
     const FcVariables* v = &contact->state.variables;
+    const bool is_used = uses_separation(v);
     const FcLinearInput V = {v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
-    const FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
+    FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
     FcLinearInput E = {v->E, rate[FC_INPUT_E]};
     FcLinearInput load = {v->load, rate[FC_INPUT_LOAD]};
     E.value = fc_input_after(E, ahead);
     load.value = load_after(load, ahead);
+    if (!is_used) {
+        d.rate = E.rate = load.rate = 0.0;
+    }
     const bool has_E = E.value > 0.0;
     if (!has_E) { // it is not used, or will be refused
         E = (FcLinearInput){1.0, 0.0};
@@ -88,8 +86,9 @@ static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
     FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
     drive.V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
     FcScene scene = fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
-    if (!fc_scene_depends_on_d(&scene)) {
-        leave_unused(&scene, has_E);
+    if (!is_used && !(has_E && has_contact(&scene))) {
+        scene.drive.d.value = 1.0;
+        scene.is_open = true;
     }
     return scene;
 }

@@ -64,6 +64,17 @@ def test_an_unused_input_may_move_through_0(instance: Instance) -> None:
     assert instance.get("W_f") == [pytest.approx(55.0 * (0.005 * 1.000001 - 55.0 / 2.5e6), rel=1e-9)]
 
 
+@pytest.mark.parametrize("law", [1, 2, 3, 4], ids=["Dahl", "Coulomb", "ElasticPlastic", "LuGre"])
+def test_an_unused_load_that_moves_is_the_normal_force(instance: Instance, law: int) -> None:
+    assert instance.choose(CONSTANT | BY_LOAD | {"friction.model": law}) == OK
+    instance.initialize()
+    assert instance.set({"load": 100.0}) == OK
+    assert instance.set_input_rates({"load": 5e4, "E": 1e12}) == OK
+    assert instance.get("F_n") == [pytest.approx(100.0, rel=1e-12)]
+    assert instance.step(0.0, 1e-3) == OK
+    assert instance.get("F_n", "load") == [pytest.approx(150.0, rel=1e-12)] * 2
+
+
 @pytest.mark.parametrize("kind", [CO_SIMULATION, MODEL_EXCHANGE], ids=["co-simulation", "model exchange"])
 @pytest.mark.parametrize("state", ["instantiated", "initialization"])
 def test_a_tool_may_write_0_to_every_input_first(
