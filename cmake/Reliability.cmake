@@ -3,6 +3,13 @@ add_executable(soak EXCLUDE_FROM_ALL tests/soak/soak.c host/fmi2_linked.c "${var
 target_include_directories(soak PRIVATE fmu_src tests)
 target_link_libraries(soak PRIVATE FrictionContact fmi2_library fc_options m)
 
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux") # it forks, and reads another process's clock
+    add_executable(watchdog EXCLUDE_FROM_ALL tests/fuzz/watchdog.c host/fmi2_linked.c "${variable_table}")
+    target_include_directories(watchdog PRIVATE fmu_src tests)
+    target_compile_definitions(watchdog PRIVATE _GNU_SOURCE)
+    target_link_libraries(watchdog PRIVATE FrictionContact fmi2_library fc_options m)
+endif()
+
 if(FC_FUZZ AND NOT CMAKE_C_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "FC_FUZZ needs clang, which libFuzzer is part of (Debian: clang libclang-rt-14-dev); "
                         "name it with CC=clang")

@@ -51,20 +51,46 @@ static double load_after(FcLinearInput load, double h) {
     return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fmin(after, 0.0) : after;
 }
 
+// Whether the law uses the separation, and with it the modulus and the load.
+static bool uses_separation(const FcVariables* v) {
+    const FcScene scene = {.friction = &v->friction, .at_E = {.model = v->contact.model}};
+    return fc_scene_depends_on_d(&scene);
+}
+
+// Whether a scene whose law does not use the separation has one above 0, with finite results.
+static bool has_contact(const FcScene* scene) {
+    return scene->drive.d.value > scene->drive.vibration.a_d && isfinite(scene->at_E.area_0) &&
+           isfinite(scene->at_E.load_0);
+}
+
 // The scene from the absolute time start + rest on, with the inputs moving at these rates for ahead [s]
-// before it begins.
+// before it begins. Inputs that the law does not use stand still, and without a separation above 0 they count as an
+// open contact.
 static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
                           const double rate[FC_INPUT_COUNT], double ahead) {
     const FcVariables* v = &contact->state.variables;
+    const bool is_used = uses_separation(v);
     const FcLinearInput V = {v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
-    const FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
+    FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
     FcLinearInput E = {v->E, rate[FC_INPUT_E]};
     FcLinearInput load = {v->load, rate[FC_INPUT_LOAD]};
     E.value = fc_input_after(E, ahead);
     load.value = load_after(load, ahead);
+    if (!is_used) {
+        d.rate = E.rate = load.rate = 0.0;
+    }
+    const bool has_E = E.value > 0.0;
+    if (!has_E) { // it is not used, or will be refused
+        E = (FcLinearInput){1.0, 0.0};
+    }
     FcDrive drive = fc_drive_make(V, d, E, load, v->vibration, start, rest);
     drive.V_y = (FcLinearInput){v->V_y + rate[FC_INPUT_V_Y] * ahead, rate[FC_INPUT_V_Y]};
-    return fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
+    FcScene scene = fc_scene_make(&v->contact, contact_at(contact, E.value), &v->friction, v->F_C, &drive);
+    if (!is_used && !(has_E && has_contact(&scene))) {
+        scene.drive.d.value = 1.0;
+        scene.is_open = true;
+    }
+    return scene;
 }
 
 FcScene fc_friction_contact_scene(FcFrictionContact* contact) {
@@ -115,9 +141,30 @@ static bool fail_separation(const FcScene* scene, double h, FcMessage* message) 
                           drive->d.value, drive->d.value + drive->d.rate * h, a_d);
 }
 
-// Over the step [0, h] separation and modulus must stay positive, E near its start, and the stiffness and the
-// limit finite.
+// Some tools send 0 for an input that is not connected.
+static bool fail_input(FcMessage* message, const char* name, double value, const char* unit) {
+    return fc_message_set(message, "%s = %.9g %s must be above 0 %s: the scene uses it%s", name, value, unit,
+                          unit,
+                          value == 0.0 ? "; an input that is not connected may have been sent as 0" : "");
+}
+
+// The inputs that the law uses must be above 0. A load of 0 opens the contact.
+static bool check_inputs(const FcVariables* v, FcMessage* message) {
+    if (!uses_separation(v)) {
+        return true;
+    }
+    if (!(v->E > 0.0)) {
+        return fail_input(message, "E", v->E, "Pa");
+    }
+    return v->contact.input == FC_CONTACT_LOAD || v->d > 0.0 || fail_input(message, "d", v->d, "m");
+}
+
+// Over the step [0, h] separation and modulus, if the law uses them, must stay positive, E near its start, and the
+// stiffness and the limit finite.
 static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
+    if (!fc_scene_depends_on_d(scene)) {
+        return true;
+    }
     const FcDrive* drive = &scene->drive;
     const double E = drive->E.value;
     const double end = fc_drive_E(drive, h);
@@ -137,7 +184,8 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
         return fail_stiffness(message, drive->d.value, fc_drive_largest_E(drive, h));
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
-    if (by_load && !(fmax(drive->load.value, fc_drive_load(drive, h)) > 0.0)) {
+    const bool stays_open = scene->is_open && !scene->floats;
+    if (by_load && (stays_open || !(fmax(drive->load.value, fc_drive_load(drive, h)) > 0.0))) {
         return true; // open throughout
     }
     const double d = fc_scene_smallest_d(scene, h);
@@ -252,7 +300,8 @@ FcScene fc_friction_contact_scene_moving(FcFrictionContact* contact, const doubl
 // stiffness and the limit finite and above 0, and the time must determine the phase.
 bool fc_friction_contact_check(FcFrictionContact* contact, FcMessage* message) {
     const FcScene scene = fc_friction_contact_scene_moving(contact, NULL);
-    return check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
+    return check_inputs(&contact->state.variables, message) &&
+           check_time(&scene.drive, contact->state.time, message) && check_scene(&scene, 0.0, message);
 }
 
 static bool update_outputs(FcFrictionContact* contact, FcMessage* message) {
@@ -467,6 +516,14 @@ static void commit(FcFrictionState* state, double h, const FcStepResult* result,
     state->next_rate_set = 0;
 }
 
+static bool inputs_move(const double rate[FC_INPUT_COUNT]) {
+    bool moves = false;
+    for (int input = 0; input < FC_INPUT_COUNT; input++) {
+        moves = moves || rate[input] != 0.0;
+    }
+    return moves;
+}
+
 bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
     if (!(h == 0.0 || h >= DBL_MIN) || !isfinite(t + h)) {
         return fc_message_set(
@@ -477,7 +534,8 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     }
     const FcFrictionState* before = &contact->state;
     const FcScene scene = scene_from(contact, t, 0.0, before->next_rate, 0.0);
-    if (!check_time(&scene.drive, t, message) || !check_time(&scene.drive, t + h, message)) {
+    if (!check_inputs(&before->variables, message) || !check_time(&scene.drive, t, message) ||
+        !check_time(&scene.drive, t + h, message)) {
         return false;
     }
     if (is_to_be_checked(&scene) && !check_scene(&scene, h, message)) {
@@ -506,11 +564,12 @@ bool fc_friction_contact_advance(FcFrictionContact* contact, double t, double h,
     // step's start would lose digits with every period.
     const double time_rest = rounding_of_sum(t, h);
     FcScene moved;
-    if (moves) {
+    const bool ends_elsewhere = moves || inputs_move(before->next_rate); // also one that the law does not use
+    if (ends_elsewhere) {
         moved = scene_from(contact, t + h, time_rest, before->next_rate, h);
         response = fc_scene_contact(&moved, 0.0);
     }
-    const FcScene* end = moves ? &moved : &scene;
+    const FcScene* end = ends_elsewhere ? &moved : &scene;
     Outputs now;
     const bool slips = result.on_bound && !fc_scene_is_loose(end);
     const FcBristle reached = slips ? fc_onto_bound(end, fc_bristle_of(&result)) : fc_bristle_of(&result);

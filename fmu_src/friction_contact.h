@@ -71,11 +71,12 @@ typedef struct {
 // Plain data: a copy of it is a saved state, and advancing from equal states gives equal bits.
 typedef struct {
     FcVariables variables;
-    double time;                      // s, the communication point reached
-    double time_rest;                 // s, the rounding error of time
-    double W_f_rest;                  // J, the rounding errors of the sums W_f
-    double Q_f_rest;                  // J, and Q_f
-    double rate[FC_INPUT_COUNT];      // time derivatives of the inputs over the last step
+    double time;      // s, the communication point reached
+    double time_rest; // s, the rounding error of time
+    double W_f_rest;  // J, the rounding errors of the sums W_f
+    double Q_f_rest;  // J, and Q_f
+    double rate
+        [FC_INPUT_COUNT]; // time derivatives of the inputs over the last step, 0 once an input is set again
     double next_rate[FC_INPUT_COUNT]; // the same for the next step; zero again after it
     int next_rate_set; // one of them was set since the last step, so all of them hold, also a zero
     int slips;         // the other part of the bristle's state (FcBristle); in model exchange too

@@ -28,6 +28,11 @@ static const double PART_OF_PERIOD = 1.0 / 32.0;
 static const double PART_OF_PEAK = 0.5;
 static const double LEAST_PART_OF_PERIOD = 1e-4;
 
+// The largest part of a period up to a time event. At places half a period apart |V|, and with it the rates, may be
+// alike, as if nothing happened between them; at three places in a period no error control takes them for that. Half of
+// it costs twice the events.
+static const double LONGEST_AHEAD = 1.0 / 3.0;
+
 // The slope in the plane: V + SLANT V_y passes 0 at a reversal in any direction. Chosen empirically:
 // tan(1/2), a ratio of V_y to V that hosts are unlikely to have. With such a ratio a reversal would be
 // missed.
@@ -330,15 +335,14 @@ static double part_of_period(const View* view, double t, double period) {
     return fmax(part, LEAST_PART_OF_PERIOD * period);
 }
 
-// The first local time within the period at which the push towards the bound of that side ends; else the
-// period's end.
-static double first_turn(const View* view, int side, double start, double period) {
+// The first local time up to `end` at which the push towards the bound of that side ends; else `end`.
+static double first_turn(const View* view, int side, double start, double period, double end) {
     FcPushed of = {&view->scene, &view->bound, side};
     double evaluations = 0.0;
     double before = fc_push_at(&of, start);
     double t = start;
-    while (t < period) {
-        const double next = fmin(period, t + part_of_period(view, t, period));
+    while (t < end) {
+        const double next = fmin(end, t + part_of_period(view, t, period));
         const double after = fc_push_at(&of, next);
         if (before > 0.0 && after <= 0.0) {
             return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, 0.0, &evaluations);
@@ -346,7 +350,7 @@ static double first_turn(const View* view, int side, double start, double period
         before = after;
         t = next;
     }
-    return period;
+    return end;
 }
 
 // Whether a bristle that sticks from now on is near the bound of that side at the time t.
@@ -356,27 +360,44 @@ static bool turns_near(const View* view, int side, double delta, double t) {
                NEAR_THE_BOUND * fc_bound(&view->bound, t);
 }
 
-bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
-    View now;
-    look(contact, &now);
-    const FcDrive* drive = &now.scene.drive;
-    if (!fc_drive_vibrates(drive) || !fc_is_bounded(now.scene.friction) || fc_scene_is_loose(&now.scene)) {
-        return false;
+// The time [s], at most `longest`, within which an input that falls does not come to 0.
+static double before_opening(const FcDrive* drive, double longest) {
+    const FcLinearInput falling[] = {
+        drive->load, drive->E, {drive->d.value - drive->vibration.a_d, drive->d.rate}};
+    for (int i = 0; i < 3; i++) {
+        longest = falling[i].rate < 0.0 ? fmin(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
     }
-    const double period = 1.0 / drive->vibration.f;
-    if (fc_is_planar(&now.scene, fc_friction_contact_bristle(contact))) {
-        *time = contact->state.time + PART_OF_PERIOD * period;
-        return isfinite(*time) && *time > contact->state.time;
-    }
+    return longest;
+}
+
+// The time [s] in which the vibration turns the bristle back from a bound; at most `longest`.
+static double time_to_turn(const View* view, double delta, double period, double longest) {
     const double start = 1e3 * AFTER_TURN * period;
-    double turn = period;
+    const double end = before_opening(&view->scene.drive, longest);
+    double turn = longest;
     for (int side = -1; side <= 1; side += 2) {
-        const double t = now.side != -side ? first_turn(&now, side, start, period) : period;
-        if (now.side != 0 || turns_near(&now, side, contact->state.variables.delta, t)) {
+        const double t = view->side != -side ? first_turn(view, side, start, period, end) : end;
+        if (t < end && (view->side != 0 || turns_near(view, side, delta, t))) {
             turn = fmin(turn, t);
         }
     }
-    *time = contact->state.time + turn + AFTER_TURN * period;
+    return turn;
+}
+
+bool fc_hybrid_next_event(FcFrictionContact* contact, double* time) {
+    View now;
+    look(contact, &now);
+    if (!fc_drive_vibrates(&now.scene.drive)) {
+        return false;
+    }
+    const double period = 1.0 / now.scene.drive.vibration.f;
+    double ahead = LONGEST_AHEAD * period;
+    if (fc_is_bounded(now.scene.friction) && !fc_scene_is_loose(&now.scene)) {
+        ahead = fc_is_planar(&now.scene, fc_friction_contact_bristle(contact))
+                    ? PART_OF_PERIOD * period
+                    : time_to_turn(&now, contact->state.variables.delta, period, ahead);
+    }
+    *time = contact->state.time + ahead + AFTER_TURN * period;
     return isfinite(*time) && *time > contact->state.time;
 }
 

@@ -56,10 +56,10 @@ void fc_hybrid_event_begins(FcFrictionContact* contact);
 // *nominals_changed whether the nominal values have. False as fc_hybrid_refresh.
 bool fc_hybrid_update(FcFrictionContact* contact, bool* changed, bool* nominals_changed, FcMessage* message);
 
-// The time [s] of the next event that the indicators may miss, because a step may pass two of their zeros.
-// Along a line it is the time at which the vibration, with the present inputs, turns a bounded bristle back
-// from a bound, or a period ahead without such a turn. In the plane it is a part of the period ahead. False
-// if there is no such event.
+// The time [s] of the next event that the indicators may miss, because a step may pass two of their zeros, or that keeps
+// an error control from passing over whole periods. Under vibration it is at most a third of a period ahead. Along a
+// line it is the time at which the vibration, with the present inputs, turns a bounded bristle back from a bound, if
+// that is sooner. A bounded bristle in the plane has a smaller part of the period. False if nothing vibrates.
 bool fc_hybrid_next_event(FcFrictionContact* contact, double* time);
 
 // Ends an event. A jump of the inputs in it is not a motion.

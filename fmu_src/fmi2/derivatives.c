@@ -68,6 +68,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
         instance->contact.state.next_rate[fc_variable_input(&fc_variables[vr[i]])] = value[i];
         instance->contact.state.next_rate_set = 1;
     }
+    instance->experiment.outputs_stale |= nvr > 0;
     return fmi2OK;
 }
 

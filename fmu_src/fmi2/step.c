@@ -11,6 +11,15 @@
 // allowance is relative: steps of 1e-12 s work as well as steps of 1e9 s.
 static double rounding_of_time(double t, double h) { return 1e-6 * h + 16.0 * DBL_EPSILON * fabs(t); }
 
+// What the end of a step may exceed the stop time by: the rounding errors of a host that adds steps, here steps as long
+// as this one. A step that begins at the stop time is one too many.
+static double rounding_of_end(const FcExperiment* experiment, double end, double h) {
+    const double steps = (end - experiment->start_time) / h;
+    const double sum = 0.5 * DBL_EPSILON * steps * fmax(fabs(experiment->start_time), fabs(end));
+    const double rounding = rounding_of_time(end, h);
+    return fmax(rounding, fmin(sum, h - rounding));
+}
+
 static bool check_step(const FcInstance* instance, double t, double h) {
     if (!(h >= 0.0 && h <= DBL_MAX)) {
         fc_refuse(instance, FC_CALL_DO_STEP, "communicationStepSize = %s must be finite and at least 0 s",
@@ -24,7 +33,7 @@ static bool check_step(const FcInstance* instance, double t, double h) {
         return false;
     }
     if (instance->experiment.has_stop_time &&
-        t + h > instance->experiment.stop_time + rounding_of_time(t + h, h)) {
+        t + h > instance->experiment.stop_time + rounding_of_end(&instance->experiment, t + h, h)) {
         fc_refuse(instance, FC_CALL_DO_STEP, "the step ends at %s, after the stop time %s",
                   fc_quantity_text(t + h, "s").text,
                   fc_quantity_text(instance->experiment.stop_time, "s").text);

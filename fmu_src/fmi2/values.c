@@ -177,6 +177,9 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     for (size_t i = 0; i < nvr; i++) {
         const FcVariableInfo* info = &fc_variables[vr[i]];
         *fc_variable_real(&instance->contact.state.variables, info) = value[i];
+        if (info->causality == FC_CAUSALITY_INPUT) { // its rate in the last step counts no longer
+            instance->contact.state.rate[fc_variable_input(info)] = 0.0;
+        }
         if (info->offset == offsetof(FcVariables, solver.tolerance)) {
             instance->experiment.tolerance_is_set = 1;
         }

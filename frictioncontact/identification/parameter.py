@@ -12,6 +12,8 @@ from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.values import LARGEST
 
+LEAST = {"d": 1e-12, "E": 1.0}  # m, Pa: the FMU asks for more than 0 where they are used
+
 # The ranges where nothing is given. Of other parameters starts are sought within a factor of 3 of the usual
 # value, and the fit stays within a factor of FARTHEST of it.
 PHASES = ("vibration.phase_d", "vibration.phase_2")
@@ -81,7 +83,7 @@ def parameter(
             f"{name} can't be fitted{did_you_mean(str(name), names) or ';'} these can: {', '.join(names)}"
         )
     variable = fmu.variables[name]
-    low = -LARGEST if variable.min is None else float(variable.min)
+    low = LEAST.get(name, -LARGEST) if variable.min is None else float(variable.min)
     high = LARGEST if variable.max is None else float(variable.max)
     for value in (*(search or ()), *([] if start is None else [start])):
         if not low <= value <= high:

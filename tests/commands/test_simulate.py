@@ -101,7 +101,7 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path, V: str, 
     ("arguments", "message"),
     [
         ({"start": {"v": 1.0}}, "start: v is no variable of the FMU; did you mean V?"),
-        ({"start": {"d": -1e-6}}, "d = -1e-06 m is below its minimum"),
+        ({"start": {"d": -1e-6}}, "fmi2ExitInitializationMode: d = -1e-06 m must be above 0 m"),
         ({"outputs": ["F_tt"]}, "outputs: F_tt is no variable of the FMU; did you mean F_t?"),
         (
             {"outputs": ["friction.model"]},

@@ -54,7 +54,10 @@ def test_fails_when_a_result_leaves_its_band(ended: Ended, capsys: pytest.Captur
         ("one,V,F_t_mean,54,56,why", "row 2, column start values: 'V' is not of the form NAME=VALUE"),
         ("one,V=0.5,F_t_mean,54", "row 2: must have 6 cells"),
         ("one,v=0.5,F_t_mean,54,56,why", "v: no variable of FrictionContact.fmu"),
-        ("one,d=-1,F_t_mean,54,56,why", "the FMU refused a call: fmi2SetReal: d = -1 m is below its minimum"),
+        (
+            "one,d=-1,F_t_mean,54,56,why",
+            "the FMU refused a call: fmi2ExitInitializationMode: d = -1 m must be above",
+        ),
     ],
 )
 def test_wrong_input_is_one_line(ended: Ended, tmp_path: Path, line: str, message: str) -> None:

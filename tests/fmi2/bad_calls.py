@@ -41,6 +41,19 @@ def _step(title: str, t: float, h: float, *named: str) -> BadCall:
     return BadCall(title, BETWEEN_STEPS, lambda i: i.step(t, h), ("fmi2DoStep", *named))
 
 
+def _unusable(name: str, value: float, *named: str) -> BadCall:
+    """A step with an input that could be set, but not used."""
+    start = {"d": 14e-6, "E": 58.556936170e9}[name]
+    return BadCall(
+        f"a step with {name} = {value:g}",
+        BETWEEN_STEPS,
+        lambda i: i.step(0.0, 1e-5),
+        ("fmi2DoStep", *named),
+        prepare=lambda i: i.set({name: value}),
+        mend=lambda i: i.set({name: start}),
+    )
+
+
 def _moved(name: str, rate: float, h: float, *named: str, **values: float) -> BadCall:
     """A step in which a derivative moves an input too far."""
     return BadCall(
@@ -55,7 +68,9 @@ def _moved(name: str, rate: float, h: float, *named: str, **values: float) -> Ba
 
 CALLS = [
     _set("V", math.nan, "nan"),
-    _set("d", math.inf, "inf", "1e-12"),
+    _set("d", math.inf, "inf"),
+    _unusable("d", 0.0, "d = 0 m", "above 0 m", "not connected"),
+    _unusable("E", -1e9, "E = -1e+09 Pa", "above 0 Pa"),
     _set("F_C", -55.0, "-55", "1e-12"),
     _set("vibration.f", 1e16, "1e+16", "1e+15"),
     _set("contact.nu", 0.6, "0.6", "0.5", state="instantiated"),

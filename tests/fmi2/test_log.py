@@ -76,7 +76,7 @@ def test_an_instance_without_a_logger_works(
     new_instance: Callable[..., Instance], capfd: pytest.CaptureFixture[str]
 ) -> None:
     instance = new_instance(with_logger=False, logging_on=True)
-    assert instance.set({"d": -1.0}) == ERROR
+    assert instance.set({"F_C": -1.0}) == ERROR
     whole_life(instance)
     assert capfd.readouterr() == ("", "")
 

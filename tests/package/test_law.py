@@ -84,7 +84,10 @@ class TestLaw:
             (lambda law: law(0.5, f=3.0), "inputs: f is no variable of the FMU"),
             (lambda law: law(0.5, F_C=3.0), "inputs: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law([1.0, 2.0], E=[1e9, 2e9, 3e9]), "the shapes do not go together: V (2,), E (3,)"),
-            (lambda law: law(0.5, d=-1e-6), "fmi2SetReal: d = -1e-06 m is below"),
+            (
+                lambda law: law(0.5, d=-1e-6),
+                "fmi2GetReal: the outputs can't be computed: d = -1e-06 m must be above",
+            ),
             (lambda law: law.derivative(0.5, "F_C"), "by: F_C is a parameter of the FMU, not one of V, d, E"),
             (lambda law: law.derivative(0.5, of="F_t"), "of F_t: must be F_t_settled or F_y_settled"),
         ],
@@ -277,7 +280,7 @@ class TestSessions:
 
 def test_variables_are_a_table() -> None:
     table = fc.variables()
-    assert table.loc["d", ["unit", "start", "min"]].to_list() == ["m", 14e-6, 1e-12]
+    assert table.loc["F_C", ["unit", "start", "min"]].to_list() == ["N", 55.0, 1e-12]
     assert (
         table.loc["friction.model", "items"]["LuGre"] == 4 and table.loc["friction.model", "start"] == "Dahl"
     )

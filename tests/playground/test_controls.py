@@ -137,7 +137,7 @@ def test_pointing_at_the_map_of_a_refused_scene_changes_nothing(playground: Play
     playground.finish()
     playground.enter("d", "0")
     refusal = playground.refusal("d")
-    assert "d = 0 m is below its minimum" in refusal
+    assert "d = 0 m must be above 0 m" in refusal
     box = playground.page.locator("#map svg").bounding_box()
     assert box is not None
     playground.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])

@@ -48,12 +48,15 @@ class Extent:
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
-    seed: int = 0  # of the hunt
+    watched: str  # calls
+    seed: int = 0  # of the hunt and the watchdog
 
 
-FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0)
-QUICK = Extent(("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0)
-CI = Extent(("tests/fmi2", "-m", "not slow"), 5, 10_000_000, ("1e6", "1e2"), 0.2)
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, "1000000")
+QUICK = Extent(
+    ("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, "100000"
+)
+CI = Extent(("tests/fmi2", "-m", "not slow"), 5, 10_000_000, ("1e6", "1e2"), 0.2, "20000")
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -166,6 +169,13 @@ def check_soak(extent: Extent) -> None:
     _run([str(folder / "soak"), *extent.soak])
 
 
+def check_watchdog(extent: Extent) -> None:
+    """Scenes of any numbers: every call returns. Usual scenes: no floating-point exception, either."""
+    folder = build_targets("default", ["watchdog"])
+    for numbers in ([], ["--ordinary"]):
+        _run([str(folder / "watchdog"), extent.watched, str(extent.seed), *numbers])
+
+
 def check_hunt(extent: Extent) -> None:
     """Random scenes against the references of hunt/, along and in the plane: none is beyond the tolerance."""
     folder = build_targets("default", ["hunt"])
@@ -214,6 +224,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "fuzz-many": check_fuzz_many,
     "soak": check_soak,
     "hunt": check_hunt,
+    "watchdog": check_watchdog,
     "leaks": check_leaks,
     "coverage": check_coverage,
     "analysis": check_analysis,
@@ -235,7 +246,7 @@ def main() -> None:
         "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
     )
     parser.add_argument("--minutes", type=float, help="of the hunt")
-    parser.add_argument("--seed", type=int, help="of the hunt; drawn anew when not given")
+    parser.add_argument("--seed", type=int, help="of the hunt and the watchdog; drawn anew when not given")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:
