@@ -4,11 +4,14 @@
 // slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f)
 // (model/derivatives.c), and the deflection after a jump of inputs. These are central differences.
 #include <math.h>
+#include <string.h>
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
+#include "model/constants.h"
 #include "model/derivatives.h"
+#include "model/special.h"
 #include "settled_force.h"
 
 // The variable of the reference if it has the causality; otherwise NULL, after logging the reason.
@@ -101,73 +104,195 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-static double scaled(double slope, double change) {
-    return slope != 0.0 && change != 0.0 ? slope * change : 0.0;
+// Whether there are derivatives by the variable in both interfaces: an input or a tunable parameter.
+static bool is_known(const FcVariableInfo* info) {
+    return info->causality == FC_CAUSALITY_INPUT || (info->causality == FC_CAUSALITY_PARAMETER &&
+                                                     info->variability == FC_VARIABILITY_TUNABLE);
 }
 
-// The derivative of a logarithm along the direction, from its slopes by d, E and load.
-static double log_along(const FcVariables* along, double by_d, double by_E, double by_load) {
-    return scaled(by_d, along->d) + scaled(by_E, along->E) + scaled(by_load, along->load);
+// The contact with its present phase, whether it vibrates or not.
+static FcDrive turning_drive(const FcFrictionContact* contact) {
+    const FcFrictionState* state = &contact->state;
+    FcVibration vibration = state->variables.vibration;
+    vibration.V_1 = vibration.V_2 = 1.0;
+    const FcLinearInput none = {0.0, 0.0};
+    return fc_drive_make(none, none, none, none, vibration, state->time, state->time_rest);
 }
 
-// The part of their sizes by which inputs are moved for a difference: its error is some 1e-9, by the square of the
-// part and by rounding over it. Half or twice of it multiplies one of them by two or four.
+// rad, by which the phase moves along the direction.
+static double phase_along(const FcFrictionContact* contact, const FcVariables* along) {
+    return FC_TWO_PI * (contact->state.time + contact->state.time_rest) * along->vibration.f;
+}
+
+// The contact with its inputs and parameters moved by `change` of the direction.
+static FcFrictionContact moved_by(const FcFrictionContact* contact, FcVariables along, double change) {
+    FcFrictionContact moved = *contact;
+    FcVariables* v = &moved.state.variables;
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        if (is_known(info)) {
+            *fc_variable_real(v, info) += change * *fc_variable_real(&along, info);
+        }
+    }
+    if (along.vibration.f != 0.0) { // the phase, without the rounding of f
+        const double phase = turning_drive(contact).theta_0 + change * phase_along(contact, &along);
+        const double ahead = remainder(phase - turning_drive(&moved).theta_0, FC_TWO_PI);
+        moved.state.time_rest += ahead / (FC_TWO_PI * v->vibration.f);
+    }
+    return moved;
+}
+
+// The change of a variable with which the contact becomes another one; 0 for an unused parameter that is 0.
+static double scale_of(const FcFrictionContact* contact, const FcVariableInfo* info) {
+    const FcVariables* v = &contact->state.variables;
+    if (strcmp(info->unit, "m/s") == 0) {
+        return v->friction.V_S;
+    }
+    if (strcmp(info->unit, "m") == 0) {
+        return fmin(v->d, v->contact.R_q / v->contact.lambda);
+    }
+    if (strcmp(info->unit, "rad") == 0) {
+        return 1.0;
+    }
+    const double value = fc_variable_value(v, info);
+    return info->offset == offsetof(FcVariables, vibration.f)
+               ? fmin(value, 1.0 / (FC_TWO_PI * fabs(contact->state.time)))
+               : value;
+}
+
+// The part of the direction that moves no variable farther than its scale; 0 if nothing moves.
+static double part_of_scale(const FcFrictionContact* contact, const FcVariables* along) {
+    double most = 0.0;
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double scale = is_known(info) ? scale_of(contact, info) : 0.0;
+        most = scale > 0.0 ? fmax(most, fabs(fc_variable_value(along, info)) / scale) : most;
+    }
+    return most > 0.0 ? 1.0 / most : 0.0;
+}
+
+// Whether `change` of the direction leaves every variable within its bounds.
+static bool may_move_by(const FcFrictionContact* contact, FcVariables along, double change) {
+    const FcFrictionContact moved = moved_by(contact, along, change);
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        if (is_known(info) && !fc_variable_allows(info, fc_variable_value(&moved.state.variables, info))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The part of their scales by which variables are moved for a difference of order 2: its error is some 1e-9, by the
+// square of the part and by rounding over it. Half or twice of it multiplies one of them by two or four.
 static const double MOVED_PART = 3e-5;
 
-// The deflection that inputs leave which have jumped, and by `change` of the direction more.
-static FcVector reached_after(FcFrictionContact moved, FcVariables along, double change) {
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        *fc_input_of(&moved.state.variables, (FcInput)input) += change * *fc_input_of(&along, (FcInput)input);
-    }
+// The deflection that inputs and parameters leave which have jumped, and by `change` of the direction more.
+static FcVector reached_after(const FcFrictionContact* contact, FcVariables along, double change) {
+    FcFrictionContact moved = moved_by(contact, along, change);
     const FcScene scene = fc_friction_contact_scene(&moved);
     const FcBristle end = fc_friction_contact_reached(&moved, &scene);
     return (FcVector){end.delta, end.delta_y};
 }
 
 // Its derivative along the direction, by a difference, since it may be the least bound on the way: a central one, or
-// one to the side on which the bristle moves, if it does not on the other.
+// one to the side on which the bristle moves, if it does not on the other, or to which the variables may move.
 static FcVector reached_along(const FcFrictionContact* contact, FcVariables along) {
-    FcVariables now = contact->state.variables;
-    double part = 0.0;
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        const bool is_velocity = input == FC_INPUT_V || input == FC_INPUT_V_Y;
-        const double size = is_velocity ? now.friction.V_S : *fc_input_of(&now, (FcInput)input);
-        part = size > 0.0 ? fmax(part, fabs(*fc_input_of(&along, (FcInput)input)) / size) : part;
-    }
-    if (part == 0.0) {
+    const FcVariables now = contact->state.variables;
+    double change = MOVED_PART * part_of_scale(contact, &along);
+    if (change == 0.0) {
         return (FcVector){0.0, 0.0};
     }
-    double change = MOVED_PART / part;
-    FcVector before = reached_after(*contact, along, -change);
-    FcVector after = reached_after(*contact, along, change);
-    const bool moves_before = before.x != now.delta || before.y != now.delta_y;
-    if (moves_before && (after.x != now.delta || after.y != now.delta_y)) {
+    const bool may_fall = may_move_by(contact, along, -change);
+    const bool may_rise = may_move_by(contact, along, change);
+    FcVector before = reached_after(contact, along, may_fall ? -change : change);
+    FcVector after = reached_after(contact, along, may_rise ? change : -change);
+    const bool moves_before = may_fall && (before.x != now.delta || before.y != now.delta_y);
+    if (moves_before && may_rise && (after.x != now.delta || after.y != now.delta_y)) {
         return (FcVector){(after.x - before.x) / (2.0 * change), (after.y - before.y) / (2.0 * change)};
     }
-    const FcVector here = reached_after(*contact, along, 0.0);
+    const FcVector here = reached_after(contact, along, 0.0);
     change = moves_before ? -change : change;
     const FcVector near = moves_before ? before : after;
-    const FcVector far = reached_after(*contact, along, 2.0 * change);
+    const FcVector far = reached_after(contact, along, 2.0 * change);
     return (FcVector){(4.0 * near.x - far.x - 3.0 * here.x) / (2.0 * change),
                       (4.0 * near.y - far.y - 3.0 * here.y) / (2.0 * change)};
 }
 
-// All derivatives along a direction of inputs and states, at the places of the variables; those of F_t_settled and
-// F_y_settled stay 0. So do those of outputs that do not depend on the present inputs.
+// The scene that the outputs see: held in model exchange.
+static FcScene scene_of(FcFrictionContact* contact, bool hybrid) {
+    return hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
+}
+
+// The same part for differences of order 4, in units of which a variable is moved up to 4 times: their error is its
+// fourth power, and rounding over it. Half or twice of it multiplies one of them by two or sixteen.
+static const double MOVED_PART_OF_ORDER_4 = 5e-4;
+
+// The derivative along the direction of the rate of the bound along which the bristle slips.
+static double bound_rate_along(const FcFrictionContact* contact, bool hybrid, int slips, FcVariables along) {
+    static const double central[] = {1.0, -8.0, 0.0, 8.0, -1.0}, sided[] = {-25.0, 48.0, -36.0, 16.0, -3.0};
+    double change = MOVED_PART_OF_ORDER_4 * part_of_scale(contact, &along);
+    if (change == 0.0) {
+        return 0.0;
+    }
+    const bool both = may_move_by(contact, along, -2.0 * change) && may_move_by(contact, along, 2.0 * change);
+    change = both || may_move_by(contact, along, 4.0 * change) ? change : -change;
+    double sum = 0.0;
+    for (int k = 0; k < 5; k++) {
+        FcFrictionContact moved = moved_by(contact, along, (both ? k - 2 : k) * change);
+        const FcScene scene = scene_of(&moved, hybrid);
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(&scene, slips, &friction);
+        sum += (both ? central : sided)[k] * fc_bound_in_plane(&bound, 0.0).rate;
+    }
+    return sum / (12.0 * change);
+}
+
+static double over(double change, double value) { return change != 0.0 ? change / value : 0.0; }
+
+// The direction in the space of the motion: the vibration moves the velocities and the separation.
+static FcDirection direction_of(const FcFrictionContact* contact, const FcScene* scene, const FcVariables* along) {
+    const FcVariables* v = &contact->state.variables;
+    const FcVibration* of = &v->vibration;
+    const FcVibration* change = &along->vibration;
+    const double angle = turning_drive(contact).theta_0;
+    const double turn = phase_along(contact, along);
+    const double across = angle + of->phase_2;
+    const double apart = angle + of->phase_d;
+    FcDirection direction = {
+        .V = along->V + change->V_1 * cos(angle) - of->V_1 * sin(angle) * turn,
+        .d = along->d,
+        .swing = change->a_d * cos(apart) - of->a_d * sin(apart) * (turn + change->phase_d),
+        .E = along->E,
+        .load = along->load,
+        .delta = along->delta,
+        .V_y = along->V_y + change->V_2 * cos(across) - of->V_2 * sin(across) * (turn + change->phase_2),
+        .delta_y = along->delta_y,
+        .log_limit = fc_limit_follows_load(&v->friction) ? over(along->friction.mu, v->friction.mu)
+                                                         : over(along->F_C, v->F_C),
+        .log_stiffness = v->contact.model == FC_CONTACT_CONSTANT
+                             ? over(along->contact.sigma, v->contact.sigma)
+                             : over(along->contact.stiffnessScale, v->contact.stiffnessScale),
+        .staticRatio = fc_may_have_static_friction(&v->friction) ? along->friction.staticRatio : 0.0,
+        .V_S = along->friction.V_S,
+        .sigma_1 = along->friction.sigma_1,
+        .sigma_2 = along->friction.sigma_2,
+    };
+    if (v->contact.input == FC_CONTACT_LOAD && change->a_d != 0.0) { // the mean of F_n is the load
+        direction.swing += fc_bessel_ratio(scene->at_E.decay * of->a_d) * change->a_d;
+    }
+    return direction;
+}
+
+// All derivatives along a direction of inputs, parameters and states, at the places of the variables; those of
+// F_t_settled and F_y_settled stay 0. So do those of outputs that do not depend on the present values.
 static FcVariables derivatives_along(FcInstance* instance, const FcVariables* along) {
     FcFrictionContact* contact = &instance->contact;
     const bool hybrid = fc_instance_is_hybrid(instance);
-    const FcScene scene =
-        hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
+    const FcScene scene = scene_of(contact, hybrid);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
-    FcDirection direction = {.V = along->V,
-                             .d = along->d,
-                             .E = along->E,
-                             .load = along->load,
-                             .delta = along->delta,
-                             .V_y = along->V_y,
-                             .delta_y = along->delta_y};
+    FcDirection direction = direction_of(contact, &scene, along);
     if ((reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) &&
         !fc_scene_is_loose(&scene)) { // an input has jumped and moved it
         const FcVector moves = reached_along(contact, *along);
@@ -175,9 +300,12 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
         direction.delta_y = moves.y;
     }
     const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
+    if (regime != FC_FREE) {
+        direction.bound_rate = bound_rate_along(contact, hybrid, (int)regime, *along);
+    }
     const FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
-    const FcLogSlopes by = fc_log_slopes(&scene);
+    const FcContactLogSlope by = fc_contact_along(&scene, &direction);
     // Before the first step F_t_mean is F_t, and F_y_mean F_y.
     const bool mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE;
     return (FcVariables){
@@ -185,9 +313,9 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
         .F_y = motion.force.y,
         .F_t_mean = mean_is_force ? motion.force.x : 0.0,
         .F_y_mean = mean_is_force ? motion.force.y : 0.0,
-        .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
-        .sigma = scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
-        .A_r = scaled(now.A_r, log_along(along, by.by_d.A_r, by.by_E.A_r, by.by_load.A_r)),
+        .F_n = now.F_n != 0.0 ? now.F_n * by.F_n : 0.0,
+        .sigma = now.sigma != 0.0 ? now.sigma * by.sigma : 0.0,
+        .A_r = now.A_r != 0.0 ? now.A_r * by.A_r : 0.0,
         .delta = along->delta,
         .W_f = along->W_f,
         .Q_f = along->Q_f,
@@ -201,16 +329,40 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
 static bool settled_force_along(const FcFrictionContact* contact, FcVariables along, FcVector* derivative,
                                 FcMessage* message) {
     *derivative = (FcVector){0.0, 0.0};
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        const double change = *fc_input_of(&along, (FcInput)input);
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double change = is_known(info) ? fc_variable_value(&along, info) : 0.0;
         FcVector slope = {0.0, 0.0};
-        if (change != 0.0 && !fc_settled_force_slope(contact, (FcInput)input, &slope, message)) {
+        if (change != 0.0 && !fc_settled_force_slope(contact, info->offset, &slope, message)) {
             return false;
         }
-        derivative->x += scaled(slope.x, change);
-        derivative->y += scaled(slope.y, change);
+        derivative->x += change != 0.0 ? slope.x * change : 0.0;
+        derivative->y += change != 0.0 ? slope.y * change : 0.0;
     }
     return true;
+}
+
+// The variable by which a derivative is asked for; otherwise NULL, after logging the reason.
+static const FcVariableInfo* expect_known(const FcInstance* instance, fmi2ValueReference vr) {
+    const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
+    const FcVariables* v = &instance->contact.state.variables;
+    const FcVariableInfo* info = vr < fc_variables_count ? &fc_variables[vr] : NULL;
+    const bool is_state = info && fc_instance_is_hybrid(instance) && fc_variable_is_state(info);
+    if (!info || info->causality != FC_CAUSALITY_PARAMETER) {
+        return is_state ? info : expect(instance, call, vr, FC_CAUSALITY_INPUT);
+    }
+    if (!is_known(info)) {
+        fc_refuse(instance, call, "%s (value reference %u) is a fixed parameter: derivatives are by inputs, tunable "
+                  "parameters and, in model exchange, states", info->name, vr);
+        return NULL;
+    }
+    if (info->offset == offsetof(FcVariables, friction.staticRatio) &&
+        v->friction.model == FC_ELASTIC_PLASTIC && v->friction.staticRatio == 1.0) {
+        fc_refuse(instance, call, "%s = 1: there is no derivative by it in ElasticPlastic, since a bristle that slips "
+                  "would stick at any larger ratio", info->name);
+        return NULL;
+    }
+    return info;
 }
 
 // Reads the direction; false after logging the fault.
@@ -218,10 +370,7 @@ static bool read_direction(const FcInstance* instance, const fmi2ValueReference 
                            const fmi2Real change[], FcVariables* direction) {
     const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
     for (size_t k = 0; k < n; k++) {
-        const bool is_state = fc_instance_is_hybrid(instance) && vr[k] < fc_variables_count &&
-                              fc_variable_is_state(&fc_variables[vr[k]]);
-        const FcVariableInfo* info =
-            is_state ? &fc_variables[vr[k]] : expect(instance, call, vr[k], FC_CAUSALITY_INPUT);
+        const FcVariableInfo* info = expect_known(instance, vr[k]);
         if (!info) {
             return false;
         }
