@@ -1,8 +1,8 @@
 // Time derivatives in co-simulation: of inputs, given, and of F_t and F_y. Directional derivatives of outputs
-// and rates: by the inputs from initialization mode on, in model exchange by the states too. All are formulas
-// except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of a bound for a
-// slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f)
-// (model/derivatives.c), and the deflection after a jump of inputs. These are central differences.
+// and rates: by inputs, tunable parameters and time from initialization mode on, in model exchange by the states
+// too. All are formulas except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of
+// a bound for a slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f), and the
+// deflection after a jump. These are differences.
 #include <math.h>
 #include <string.h>
 
@@ -104,10 +104,10 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-// Whether there are derivatives by the variable in both interfaces: an input or a tunable parameter.
+// Whether there are derivatives by the variable in both interfaces: an input, a tunable parameter or time.
 static bool is_known(const FcVariableInfo* info) {
-    return info->causality == FC_CAUSALITY_INPUT || (info->causality == FC_CAUSALITY_PARAMETER &&
-                                                     info->variability == FC_VARIABILITY_TUNABLE);
+    return info->causality == FC_CAUSALITY_INPUT || info->causality == FC_CAUSALITY_INDEPENDENT ||
+           (info->causality == FC_CAUSALITY_PARAMETER && info->variability == FC_VARIABILITY_TUNABLE);
 }
 
 // The contact with its present phase, whether it vibrates or not.
@@ -121,7 +121,8 @@ static FcDrive turning_drive(const FcFrictionContact* contact) {
 
 // rad, by which the phase moves along the direction.
 static double phase_along(const FcFrictionContact* contact, const FcVariables* along) {
-    return FC_TWO_PI * (contact->state.time + contact->state.time_rest) * along->vibration.f;
+    const double time = contact->state.time + contact->state.time_rest;
+    return FC_TWO_PI * (time * along->vibration.f + contact->state.variables.vibration.f * along->time);
 }
 
 // The contact with its inputs and parameters moved by `change` of the direction.
@@ -134,7 +135,7 @@ static FcFrictionContact moved_by(const FcFrictionContact* contact, FcVariables 
             *fc_variable_real(v, info) += change * *fc_variable_real(&along, info);
         }
     }
-    if (along.vibration.f != 0.0) { // the phase, without the rounding of f
+    if (along.vibration.f != 0.0 || along.time != 0.0) { // the phase, without the rounding of f
         const double phase = turning_drive(contact).theta_0 + change * phase_along(contact, &along);
         const double ahead = remainder(phase - turning_drive(&moved).theta_0, FC_TWO_PI);
         moved.state.time_rest += ahead / (FC_TWO_PI * v->vibration.f);
@@ -153,6 +154,9 @@ static double scale_of(const FcFrictionContact* contact, const FcVariableInfo* i
     }
     if (strcmp(info->unit, "rad") == 0) {
         return 1.0;
+    }
+    if (info->causality == FC_CAUSALITY_INDEPENDENT) {
+        return 1.0 / (FC_TWO_PI * v->vibration.f);
     }
     const double value = fc_variable_value(v, info);
     return info->offset == offsetof(FcVariables, vibration.f)
@@ -251,7 +255,8 @@ static double bound_rate_along(const FcFrictionContact* contact, bool hybrid, in
 static double over(double change, double value) { return change != 0.0 ? change / value : 0.0; }
 
 // The direction in the space of the motion: the vibration moves the velocities and the separation.
-static FcDirection direction_of(const FcFrictionContact* contact, const FcScene* scene, const FcVariables* along) {
+static FcDirection direction_of(const FcFrictionContact* contact, const FcScene* scene,
+                                const FcVariables* along) {
     const FcVariables* v = &contact->state.variables;
     const FcVibration* of = &v->vibration;
     const FcVibration* change = &along->vibration;
@@ -348,18 +353,22 @@ static const FcVariableInfo* expect_known(const FcInstance* instance, fmi2ValueR
     const FcVariables* v = &instance->contact.state.variables;
     const FcVariableInfo* info = vr < fc_variables_count ? &fc_variables[vr] : NULL;
     const bool is_state = info && fc_instance_is_hybrid(instance) && fc_variable_is_state(info);
-    if (!info || info->causality != FC_CAUSALITY_PARAMETER) {
+    if (!info || is_state || (!is_known(info) && info->causality != FC_CAUSALITY_PARAMETER)) {
         return is_state ? info : expect(instance, call, vr, FC_CAUSALITY_INPUT);
     }
     if (!is_known(info)) {
-        fc_refuse(instance, call, "%s (value reference %u) is a fixed parameter: derivatives are by inputs, tunable "
-                  "parameters and, in model exchange, states", info->name, vr);
+        fc_refuse(instance, call,
+                  "%s (value reference %u) is a fixed parameter: derivatives are by inputs, tunable "
+                  "parameters and, in model exchange, states",
+                  info->name, vr);
         return NULL;
     }
     if (info->offset == offsetof(FcVariables, friction.staticRatio) &&
         v->friction.model == FC_ELASTIC_PLASTIC && v->friction.staticRatio == 1.0) {
-        fc_refuse(instance, call, "%s = 1: there is no derivative by it in ElasticPlastic, since a bristle that slips "
-                  "would stick at any larger ratio", info->name);
+        fc_refuse(instance, call,
+                  "%s = 1: there is no derivative by it in ElasticPlastic, since a bristle that slips "
+                  "would stick at any larger ratio",
+                  info->name);
         return NULL;
     }
     return info;
@@ -380,6 +389,39 @@ static bool read_direction(const FcInstance* instance, const fmi2ValueReference 
             return false;
         }
         *fc_variable_real(direction, info) += change[k];
+    }
+    return true;
+}
+
+// Whether an output or rate has derivatives by all of these variables; otherwise false, after logging the reason.
+// Those of a step and of a settled start are the results of many periods, which are not differentiated.
+static bool has_derivatives(const FcInstance* instance, const FcVariableInfo* unknown,
+                            const fmi2ValueReference known[], size_t n) {
+    const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
+    const FcVariables* v = &instance->contact.state.variables;
+    const bool is_mean = unknown->offset == offsetof(FcVariables, F_t_mean) ||
+                         unknown->offset == offsetof(FcVariables, F_y_mean);
+    const bool starts = instance->experiment.mode == FC_INITIALIZATION_MODE;
+    const bool follows_delta =
+        is_mean || fc_variable_is_rate(unknown) || unknown->offset == offsetof(FcVariables, F_t) ||
+        unknown->offset == offsetof(FcVariables, F_y) || unknown->offset == offsetof(FcVariables, delta) ||
+        unknown->offset == offsetof(FcVariables, delta_y);
+    if (starts && n > 0 && v->initialState == FC_STATE_SETTLED && follows_delta) {
+        fc_refuse(instance, call,
+                  "%s has no derivatives in initialization mode with initialState = Settled; it has "
+                  "them afterwards, at the deflection that it started from",
+                  unknown->name);
+        return false;
+    }
+    for (size_t k = 0; k < n && !starts && !fc_instance_is_hybrid(instance); k++) {
+        if (fc_variables[known[k]].causality != FC_CAUSALITY_INPUT &&
+            (is_mean || fc_variable_is_state(unknown))) {
+            fc_refuse(instance, call,
+                      "%s has no derivative by %s in co-simulation, since the last step left it; "
+                      "F_t_settled and F_y_settled have, and model exchange",
+                      unknown->name, fc_variables[known[k]].name);
+            return false;
+        }
     }
     return true;
 }
@@ -406,6 +448,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         if (!is_rate && !expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
             return fmi2Error;
         }
+        if (!has_derivatives(instance, &fc_variables[vUnknown_ref[u]], vKnown_ref, nKnown)) {
+            return fmi2Error;
+        }
         asks_settled |= fc_variable_is_settled_force(&fc_variables[vUnknown_ref[u]]);
     }
     FcMessage message;
@@ -420,7 +465,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
         if (!isfinite(fc_variable_value(&slopes, info))) {
-            return fc_refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
+            return fc_refuse(instance, call,
+                             "the derivative of %s does not exist here, or is beyond the largest number",
+                             info->name);
         }
     }
     for (size_t u = 0; u < nUnknown; u++) {

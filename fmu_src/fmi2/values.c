@@ -95,7 +95,9 @@ static fmi2Status refuse_setting(const FcInstance* instance, FcCall call, const 
                          info->name);
     }
     return fc_refuse(instance, call, "%s is %s variable and can't be set", info->name,
-                     info->causality == FC_CAUSALITY_OUTPUT ? "an output" : "a local");
+                     info->causality == FC_CAUSALITY_OUTPUT  ? "an output"
+                     : info->causality == FC_CAUSALITY_LOCAL ? "a local"
+                                                             : "the independent");
 }
 
 static bool is_computed(const FcVariableInfo* info) {
@@ -151,6 +153,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
         const FcVariableInfo* info = &fc_variables[vr[i]];
         value[i] = info->offset == offsetof(FcVariables, F_t_settled)   ? of_settled.x
                    : info->offset == offsetof(FcVariables, F_y_settled) ? of_settled.y
+                   : info->causality == FC_CAUSALITY_INDEPENDENT        ? instance->contact.state.time
                                                                         : *fc_variable_real(variables, info);
     }
     return fmi2OK;

@@ -339,7 +339,10 @@ static Parts free_along(const FcScene* scene, FcBristle bristle, const FcContact
     const FcVector V_along = {along->V, along->V_y};
     if (scene->friction->model == FC_COULOMB) {
         const FcVector n = direction(at.V.x, at.V.y);
-        const FcVector turning = at.speed > 0.0 ? times(at.limit / at.speed, perpendicular(V_along, n)) : n;
+        FcVector turning = {0.0, 0.0};
+        if (V_along.x != 0.0 || V_along.y != 0.0) { // at rest the force jumps: not a number
+            turning = times(at.limit / at.speed, perpendicular(V_along, n));
+        }
         return (Parts){.V = V_along, .force = plus(turning, at.limit * log_limit, n)};
     }
     const FcVector delta = {bristle.delta, bristle.delta_y};
