@@ -302,7 +302,7 @@ def prepared(
 @pytest.mark.parametrize("part", range(8))
 @pytest.mark.parametrize("kind", [CO_SIMULATION, MODEL_EXCHANGE])
 def test_by_every_tunable_parameter(new_instance: Callable[..., Instance], kind: int, part: int) -> None:
-    """Eight digits, of the derivative or of the output over the parameter's scale; in model exchange by time."""
+    """Eight digits, of the derivative or of the output over the parameter's scale; by time too."""
     of_step = {*STATES, "F_t_mean", "F_y_mean"} if kind == CO_SIMULATION else set()
     unknown = tuple(name for name in (*OUTPUTS, *RATES) if name not in of_step)
     asked = graded = 0
