@@ -141,13 +141,13 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, s
     }
 }
 
-// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points, and
-// the largest of its last terms. With the coefficients c_k of T_k over the range, the derivative there is 2 /
-// range times the sum of (-1)^(k + 1) k^2 c_k. Half the points need a shorter range; twice as many multiply
-// rounding by four.
+// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points, the
+// largest of its last terms, and the distance *missed [N] of the polynomial from the force at the start: a kink
+// before the first point. With the coefficients c_k of T_k over the range, the derivative there is 2 / range times
+// the sum of (-1)^(k + 1) k^2 c_k. Half the points need a shorter range; twice as many multiply rounding by four.
 enum { POINTS = 8 };
 static bool slope_over(FcFrictionContact* held, size_t variable, double range, FcVector* slope, double* error,
-                       double* evaluations, FcMessage* message) {
+                       double* missed, double* evaluations, FcMessage* message) {
     double* const x = (double*)(void*)((char*)&held->state.variables + variable);
     const double start = *x;
     FcVector force[POINTS];
@@ -158,6 +158,14 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
         }
     }
     *x = start;
+    FcVector gap; // from the force at the start, which is no point, to the polynomial
+    if (!dry_force(held, TOLERANCE_OF_FORCES, &gap, evaluations, message)) {
+        return false;
+    }
+    for (int j = 0; j < POINTS; j++) {
+        gap.x -= force[j].x / POINTS;
+        gap.y -= force[j].y / POINTS;
+    }
     *slope = (FcVector){0.0, 0.0};
     *error = 0.0;
     for (int k = 1; k < POINTS; k++) {
@@ -170,8 +178,11 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
         const FcVector term = {2.0 * k * k * c.x / range, 2.0 * k * k * c.y / range};
         slope->x += k % 2 == 1 ? term.x : -term.x;
         slope->y += k % 2 == 1 ? term.y : -term.y;
+        gap.x += k % 2 == 1 ? c.x : -c.x;
+        gap.y += k % 2 == 1 ? c.y : -c.y;
         *error = k >= POINTS - 2 ? fmax(*error, hypot(term.x, term.y)) : 0.0;
     }
+    *missed = hypot(gap.x, gap.y);
     return true;
 }
 
@@ -193,16 +204,19 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     double evaluations = 0.0;
     for (int tried = 0; tried < MOST_RANGES && !is_flat; tried++) {
         FcVector found;
-        double error;
-        if (!slope_over(&held, variable, range, &found, &error, &evaluations, message)) {
+        double error, missed;
+        if (!slope_over(&held, variable, range, &found, &error, &missed, &evaluations, message)) {
             return false;
         }
         const double size = hypot(found.x, found.y);
-        if (error < least * (size + usual)) {
+        const bool is_good =
+            missed <= GOOD_OVER_FORCE * force &&
+            (error <= GOOD_OVER_SLOPE * size || error * fabs(range) <= GOOD_OVER_FORCE * force);
+        if (is_good || error < least * (size + usual)) {
             least = error / (size + usual);
             *slope = found;
         }
-        if (error <= GOOD_OVER_SLOPE * size || error * fabs(range) <= GOOD_OVER_FORCE * force) {
+        if (is_good) {
             break;
         }
         range *= RANGE_SHORTENED_BY;
