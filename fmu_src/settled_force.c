@@ -204,7 +204,8 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     double evaluations = 0.0;
     for (int tried = 0; tried < MOST_RANGES && !is_flat; tried++) {
         FcVector found;
-        double error, missed;
+        double error;
+        double missed;
         if (!slope_over(&held, variable, range, &found, &error, &missed, &evaluations, message)) {
             return false;
         }

@@ -11,7 +11,6 @@
 #include "fmi2/variables.h"
 #include "model/constants.h"
 #include "model/derivatives.h"
-#include "model/special.h"
 #include "settled_force.h"
 
 // The variable of the reference if it has the causality; otherwise NULL, after logging the reason.
@@ -110,115 +109,63 @@ static bool is_known(const FcVariableInfo* info) {
            (info->causality == FC_CAUSALITY_PARAMETER && info->variability == FC_VARIABILITY_TUNABLE);
 }
 
-// The contact with its present phase, whether it vibrates or not.
-static FcDrive turning_drive(const FcFrictionContact* contact) {
-    const FcFrictionState* state = &contact->state;
-    FcVibration vibration = state->variables.vibration;
-    vibration.V_1 = vibration.V_2 = 1.0;
-    const FcLinearInput none = {0.0, 0.0};
-    return fc_drive_make(none, none, none, none, vibration, state->time, state->time_rest);
-}
-
-// rad, by which the phase moves along the direction.
-static double phase_along(const FcFrictionContact* contact, const FcVariables* along) {
-    const double time = contact->state.time + contact->state.time_rest;
-    return FC_TWO_PI * (time * along->vibration.f + contact->state.variables.vibration.f * along->time);
-}
-
-// The contact with its inputs and parameters moved by `change` of the direction.
-static FcFrictionContact moved_by(const FcFrictionContact* contact, FcVariables along, double change) {
+// The contact with one variable moved. A power of two moves it without rounding.
+static FcFrictionContact moved_by(const FcFrictionContact* contact, const FcVariableInfo* info,
+                                  double change) {
     FcFrictionContact moved = *contact;
-    FcVariables* v = &moved.state.variables;
-    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
-        const FcVariableInfo* info = &fc_variables[vr];
-        if (is_known(info)) {
-            *fc_variable_real(v, info) += change * *fc_variable_real(&along, info);
-        }
-    }
-    if (along.vibration.f != 0.0 || along.time != 0.0) { // the phase, without the rounding of f
-        const double phase = turning_drive(contact).theta_0 + change * phase_along(contact, &along);
-        const double ahead = remainder(phase - turning_drive(&moved).theta_0, FC_TWO_PI);
-        moved.state.time_rest += ahead / (FC_TWO_PI * v->vibration.f);
-    }
+    *(info->causality == FC_CAUSALITY_INDEPENDENT ? &moved.state.time_rest
+                                                  : fc_variable_real(&moved.state.variables, info)) += change;
     return moved;
 }
 
-// The change of a variable with which the contact becomes another one; 0 for an unused parameter that is 0.
-static double scale_of(const FcFrictionContact* contact, const FcVariableInfo* info) {
+// The power of two below this part of the change of a variable with which the contact becomes another one; 0 for a
+// parameter that is 0.
+static double small_change(const FcFrictionContact* contact, const FcVariableInfo* info, double part) {
     const FcVariables* v = &contact->state.variables;
+    const double period_over_2_pi = 1.0 / (FC_TWO_PI * v->vibration.f);
+    double scale = fc_variable_value(v, info);
     if (strcmp(info->unit, "m/s") == 0) {
-        return v->friction.V_S;
+        scale = v->friction.V_S;
+    } else if (strcmp(info->unit, "m") == 0) {
+        scale = fmin(v->d, v->contact.R_q / v->contact.lambda);
+    } else if (strcmp(info->unit, "rad") == 0) {
+        scale = 1.0;
+    } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
+        scale = period_over_2_pi;
+    } else if (info->offset == offsetof(FcVariables, vibration.f)) {
+        scale *= fmin(1.0, period_over_2_pi / fabs(contact->state.time));
     }
-    if (strcmp(info->unit, "m") == 0) {
-        return fmin(v->d, v->contact.R_q / v->contact.lambda);
-    }
-    if (strcmp(info->unit, "rad") == 0) {
-        return 1.0;
-    }
-    if (info->causality == FC_CAUSALITY_INDEPENDENT) {
-        return 1.0 / (FC_TWO_PI * v->vibration.f);
-    }
-    const double value = fc_variable_value(v, info);
-    return info->offset == offsetof(FcVariables, vibration.f)
-               ? fmin(value, 1.0 / (FC_TWO_PI * fabs(contact->state.time)))
-               : value;
+    return scale > 0.0 ? ldexp(1.0, ilogb(part * scale)) : 0.0;
 }
 
-// The part of the direction that moves no variable farther than its scale; 0 if nothing moves.
-static double part_of_scale(const FcFrictionContact* contact, const FcVariables* along) {
-    double most = 0.0;
-    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
-        const FcVariableInfo* info = &fc_variables[vr];
-        const double scale = is_known(info) ? scale_of(contact, info) : 0.0;
-        most = scale > 0.0 ? fmax(most, fabs(fc_variable_value(along, info)) / scale) : most;
-    }
-    return most > 0.0 ? 1.0 / most : 0.0;
-}
-
-// Whether `change` of the direction leaves every variable within its bounds.
-static bool may_move_by(const FcFrictionContact* contact, FcVariables along, double change) {
-    const FcFrictionContact moved = moved_by(contact, along, change);
-    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
-        const FcVariableInfo* info = &fc_variables[vr];
-        if (is_known(info) && !fc_variable_allows(info, fc_variable_value(&moved.state.variables, info))) {
-            return false;
-        }
-    }
-    return true;
-}
-
-// The part of their scales by which variables are moved for a difference of order 2: its error is some 1e-9, by the
-// square of the part and by rounding over it. Half or twice of it multiplies one of them by two or four.
+// The part for a difference of order 2: its error is some 1e-9, by the square of the part and by rounding over it.
+// Half or twice of it multiplies one of them by two or four.
 static const double MOVED_PART = 3e-5;
 
-// The deflection that inputs and parameters leave which have jumped, and by `change` of the direction more.
-static FcVector reached_after(const FcFrictionContact* contact, FcVariables along, double change) {
-    FcFrictionContact moved = moved_by(contact, along, change);
+// The deflection that inputs and parameters leave which have jumped, and one of them by `change` more.
+static FcVector reached_after(const FcFrictionContact* contact, const FcVariableInfo* info, double change) {
+    FcFrictionContact moved = moved_by(contact, info, change);
     const FcScene scene = fc_friction_contact_scene(&moved);
     const FcBristle end = fc_friction_contact_reached(&moved, &scene);
     return (FcVector){end.delta, end.delta_y};
 }
 
-// Its derivative along the direction, by a difference, since it may be the least bound on the way: a central one, or
-// one to the side on which the bristle moves, if it does not on the other, or to which the variables may move.
-static FcVector reached_along(const FcFrictionContact* contact, FcVariables along) {
-    const FcVariables now = contact->state.variables;
-    double change = MOVED_PART * part_of_scale(contact, &along);
-    if (change == 0.0) {
+// Its derivative by one variable, by a difference, since it may be the least bound on the way: to the side on which
+// the bristle moves.
+static FcVector reached_by(const FcFrictionContact* contact, const FcVariableInfo* info) {
+    const FcVariables* now = &contact->state.variables;
+    double change = small_change(contact, info, MOVED_PART);
+    FcVector near = reached_after(contact, info, change);
+    if (near.x == now->delta && near.y == now->delta_y) {
+        change = -change;
+        near = reached_after(contact, info, change);
+    }
+    const double end = fc_variable_value(now, info) + 2.0 * change;
+    if (change == 0.0 || (change < 0.0 && !fc_variable_allows(info, end))) {
         return (FcVector){0.0, 0.0};
     }
-    const bool may_fall = may_move_by(contact, along, -change);
-    const bool may_rise = may_move_by(contact, along, change);
-    FcVector before = reached_after(contact, along, may_fall ? -change : change);
-    FcVector after = reached_after(contact, along, may_rise ? change : -change);
-    const bool moves_before = may_fall && (before.x != now.delta || before.y != now.delta_y);
-    if (moves_before && may_rise && (after.x != now.delta || after.y != now.delta_y)) {
-        return (FcVector){(after.x - before.x) / (2.0 * change), (after.y - before.y) / (2.0 * change)};
-    }
-    const FcVector here = reached_after(contact, along, 0.0);
-    change = moves_before ? -change : change;
-    const FcVector near = moves_before ? before : after;
-    const FcVector far = reached_after(contact, along, 2.0 * change);
+    const FcVector here = reached_after(contact, info, 0.0);
+    const FcVector far = reached_after(contact, info, 2.0 * change);
     return (FcVector){(4.0 * near.x - far.x - 3.0 * here.x) / (2.0 * change),
                       (4.0 * near.y - far.y - 3.0 * here.y) / (2.0 * change)};
 }
@@ -228,65 +175,62 @@ static FcScene scene_of(FcFrictionContact* contact, bool hybrid) {
     return hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
 }
 
-// The same part for differences of order 4, in units of which a variable is moved up to 4 times: their error is its
-// fourth power, and rounding over it. Half or twice of it multiplies one of them by two or sixteen.
+// The part for a difference of order 4 over 4 changes: its error is the fourth power of the part, and rounding over
+// it. Half or twice of it multiplies one of them by two or sixteen.
 static const double MOVED_PART_OF_ORDER_4 = 5e-4;
 
-// The derivative along the direction of the rate of the bound along which the bristle slips.
-static double bound_rate_along(const FcFrictionContact* contact, bool hybrid, int slips, FcVariables along) {
-    static const double central[] = {1.0, -8.0, 0.0, 8.0, -1.0}, sided[] = {-25.0, 48.0, -36.0, 16.0, -3.0};
-    double change = MOVED_PART_OF_ORDER_4 * part_of_scale(contact, &along);
-    if (change == 0.0) {
-        return 0.0;
-    }
-    const bool both = may_move_by(contact, along, -2.0 * change) && may_move_by(contact, along, 2.0 * change);
-    change = both || may_move_by(contact, along, 4.0 * change) ? change : -change;
+// The derivative by one variable of the rate of the bound along which the bristle slips. The variable rises, since
+// it may be at its minimum.
+static double bound_rate_by(const FcFrictionContact* contact, bool hybrid, int slips,
+                            const FcVariableInfo* info) {
+    static const double weight[] = {-25.0, 48.0, -36.0, 16.0, -3.0};
+    const double change = small_change(contact, info, MOVED_PART_OF_ORDER_4);
     double sum = 0.0;
     for (int k = 0; k < 5; k++) {
-        FcFrictionContact moved = moved_by(contact, along, (both ? k - 2 : k) * change);
+        FcFrictionContact moved = moved_by(contact, info, k * change);
         const FcScene scene = scene_of(&moved, hybrid);
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(&scene, slips, &friction);
-        sum += (both ? central : sided)[k] * fc_bound_in_plane(&bound, 0.0).rate;
+        sum += weight[k] * fc_bound_in_plane(&bound, 0.0).rate;
     }
-    return sum / (12.0 * change);
+    return change != 0.0 ? sum / (12.0 * change) : 0.0;
 }
 
-static double over(double change, double value) { return change != 0.0 ? change / value : 0.0; }
-
 // The direction in the space of the motion: the vibration moves the velocities and the separation.
-static FcDirection direction_of(const FcFrictionContact* contact, const FcScene* scene,
-                                const FcVariables* along) {
+static FcDirection direction_of(const FcFrictionContact* contact, const FcVariables* along) {
     const FcVariables* v = &contact->state.variables;
     const FcVibration* of = &v->vibration;
     const FcVibration* change = &along->vibration;
-    const double angle = turning_drive(contact).theta_0;
-    const double turn = phase_along(contact, along);
+    FcVibration turning = *of;
+    turning.V_1 = 1.0; // without it there would be no phase if nothing vibrates
+    const FcLinearInput none = {0.0, 0.0};
+    const FcDrive drive =
+        fc_drive_make(none, none, none, none, turning, contact->state.time, contact->state.time_rest);
+    const double time = contact->state.time + contact->state.time_rest;
+    const double turn = FC_TWO_PI * (time * change->f + of->f * along->time);
+    const double angle = drive.theta_0;
     const double across = angle + of->phase_2;
     const double apart = angle + of->phase_d;
-    FcDirection direction = {
+    return (FcDirection){
         .V = along->V + change->V_1 * cos(angle) - of->V_1 * sin(angle) * turn,
         .d = along->d,
         .swing = change->a_d * cos(apart) - of->a_d * sin(apart) * (turn + change->phase_d),
+        .a_d = change->a_d,
         .E = along->E,
         .load = along->load,
         .delta = along->delta,
         .V_y = along->V_y + change->V_2 * cos(across) - of->V_2 * sin(across) * (turn + change->phase_2),
         .delta_y = along->delta_y,
-        .log_limit = fc_limit_follows_load(&v->friction) ? over(along->friction.mu, v->friction.mu)
-                                                         : over(along->F_C, v->F_C),
+        .log_limit =
+            fc_limit_follows_load(&v->friction) ? along->friction.mu / v->friction.mu : along->F_C / v->F_C,
         .log_stiffness = v->contact.model == FC_CONTACT_CONSTANT
-                             ? over(along->contact.sigma, v->contact.sigma)
-                             : over(along->contact.stiffnessScale, v->contact.stiffnessScale),
+                             ? along->contact.sigma / v->contact.sigma
+                             : along->contact.stiffnessScale / v->contact.stiffnessScale,
         .staticRatio = fc_may_have_static_friction(&v->friction) ? along->friction.staticRatio : 0.0,
         .V_S = along->friction.V_S,
         .sigma_1 = along->friction.sigma_1,
         .sigma_2 = along->friction.sigma_2,
     };
-    if (v->contact.input == FC_CONTACT_LOAD && change->a_d != 0.0) { // the mean of F_n is the load
-        direction.swing += fc_bessel_ratio(scene->at_E.decay * of->a_d) * change->a_d;
-    }
-    return direction;
 }
 
 // All derivatives along a direction of inputs, parameters and states, at the places of the variables; those of
@@ -297,16 +241,20 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
     const FcScene scene = scene_of(contact, hybrid);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
-    FcDirection direction = direction_of(contact, &scene, along);
-    if ((reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) &&
-        !fc_scene_is_loose(&scene)) { // an input has jumped and moved it
-        const FcVector moves = reached_along(contact, *along);
-        direction.delta = moves.x;
-        direction.delta_y = moves.y;
-    }
+    FcDirection direction = direction_of(contact, along);
     const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
-    if (regime != FC_FREE) {
-        direction.bound_rate = bound_rate_along(contact, hybrid, (int)regime, *along);
+    const bool has_jumped = reached.delta != bristle.delta || reached.delta_y != bristle.delta_y;
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double change = is_known(info) ? fc_variable_value(along, info) : 0.0;
+        if (change != 0.0 && has_jumped && !fc_scene_is_loose(&scene)) {
+            const FcVector moves = reached_by(contact, info);
+            direction.delta += change * moves.x;
+            direction.delta_y += change * moves.y;
+        }
+        if (change != 0.0 && regime != FC_FREE) {
+            direction.bound_rate += change * bound_rate_by(contact, hybrid, (int)regime, info);
+        }
     }
     const FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
@@ -341,8 +289,8 @@ static bool settled_force_along(const FcFrictionContact* contact, FcVariables al
         if (change != 0.0 && !fc_settled_force_slope(contact, info->offset, &slope, message)) {
             return false;
         }
-        derivative->x += change != 0.0 ? slope.x * change : 0.0;
-        derivative->y += change != 0.0 ? slope.y * change : 0.0;
+        derivative->x += slope.x * change;
+        derivative->y += slope.y * change;
     }
     return true;
 }
@@ -350,24 +298,24 @@ static bool settled_force_along(const FcFrictionContact* contact, FcVariables al
 // The variable by which a derivative is asked for; otherwise NULL, after logging the reason.
 static const FcVariableInfo* expect_known(const FcInstance* instance, fmi2ValueReference vr) {
     const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
-    const FcVariables* v = &instance->contact.state.variables;
-    const FcVariableInfo* info = vr < fc_variables_count ? &fc_variables[vr] : NULL;
-    const bool is_state = info && fc_instance_is_hybrid(instance) && fc_variable_is_state(info);
-    if (!info || is_state || (!is_known(info) && info->causality != FC_CAUSALITY_PARAMETER)) {
-        return is_state ? info : expect(instance, call, vr, FC_CAUSALITY_INPUT);
+    const FcFriction* friction = &instance->contact.state.variables.friction;
+    if (vr >= fc_variables_count) {
+        return expect(instance, call, vr, FC_CAUSALITY_INPUT); // none
     }
-    if (!is_known(info)) {
-        fc_refuse(instance, call,
-                  "%s (value reference %u) is a fixed parameter: derivatives are by inputs, tunable "
-                  "parameters and, in model exchange, states",
-                  info->name, vr);
+    const FcVariableInfo* info = &fc_variables[vr];
+    if (!is_known(info) && !(fc_instance_is_hybrid(instance) && fc_variable_is_state(info))) {
+        fc_refuse(
+            instance, call,
+            "%s (value reference %u) is not an input, a tunable parameter, time or, in model exchange, a "
+            "state",
+            info->name, vr);
         return NULL;
     }
     if (info->offset == offsetof(FcVariables, friction.staticRatio) &&
-        v->friction.model == FC_ELASTIC_PLASTIC && v->friction.staticRatio == 1.0) {
+        friction->model == FC_ELASTIC_PLASTIC && friction->staticRatio == 1.0) {
         fc_refuse(instance, call,
-                  "%s = 1: there is no derivative by it in ElasticPlastic, since a bristle that slips "
-                  "would stick at any larger ratio",
+                  "%s = 1: a slipping bristle would stick at any larger ratio, so that there is no "
+                  "derivative",
                   info->name);
         return NULL;
     }
@@ -393,37 +341,29 @@ static bool read_direction(const FcInstance* instance, const fmi2ValueReference 
     return true;
 }
 
-// Whether an output or rate has derivatives by all of these variables; otherwise false, after logging the reason.
-// Those of a step and of a settled start are the results of many periods, which are not differentiated.
-static bool has_derivatives(const FcInstance* instance, const FcVariableInfo* unknown,
-                            const fmi2ValueReference known[], size_t n) {
-    const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
-    const FcVariables* v = &instance->contact.state.variables;
-    const bool is_mean = unknown->offset == offsetof(FcVariables, F_t_mean) ||
-                         unknown->offset == offsetof(FcVariables, F_y_mean);
-    const bool starts = instance->experiment.mode == FC_INITIALIZATION_MODE;
-    const bool follows_delta =
-        is_mean || fc_variable_is_rate(unknown) || unknown->offset == offsetof(FcVariables, F_t) ||
-        unknown->offset == offsetof(FcVariables, F_y) || unknown->offset == offsetof(FcVariables, delta) ||
-        unknown->offset == offsetof(FcVariables, delta_y);
-    if (starts && n > 0 && v->initialState == FC_STATE_SETTLED && follows_delta) {
-        fc_refuse(instance, call,
-                  "%s has no derivatives in initialization mode with initialState = Settled; it has "
-                  "them afterwards, at the deflection that it started from",
-                  unknown->name);
-        return false;
-    }
-    for (size_t k = 0; k < n && !starts && !fc_instance_is_hybrid(instance); k++) {
-        if (fc_variables[known[k]].causality != FC_CAUSALITY_INPUT &&
-            (is_mean || fc_variable_is_state(unknown))) {
-            fc_refuse(instance, call,
-                      "%s has no derivative by %s in co-simulation, since the last step left it; "
-                      "F_t_settled and F_y_settled have, and model exchange",
-                      unknown->name, fc_variables[known[k]].name);
-            return false;
+// Whether an output or rate has a derivative by the variable; otherwise false, after logging the reason. Means of a
+// step, and a settled start, are results of many periods, which are not differentiated.
+static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unknown,
+                           const FcVariableInfo* known) {
+    const size_t place = unknown->offset;
+    const bool is_mean = place == offsetof(FcVariables, F_t_mean) || place == offsetof(FcVariables, F_y_mean);
+    const bool is_force = place == offsetof(FcVariables, F_t) || place == offsetof(FcVariables, F_y);
+    const bool is_state = fc_variable_is_state(unknown);
+    const char* reason = NULL;
+    if (instance->experiment.mode == FC_INITIALIZATION_MODE) {
+        const bool is_settled = instance->contact.state.variables.initialState == FC_STATE_SETTLED;
+        if (is_settled && (is_mean || is_force || is_state || fc_variable_is_rate(unknown))) {
+            reason = "in initialization mode with initialState = Settled; afterwards it has";
         }
+    } else if (!fc_instance_is_hybrid(instance) && known->causality != FC_CAUSALITY_INPUT &&
+               (is_mean || is_state)) {
+        reason = "in co-simulation, since the last step left it; F_t_settled and F_y_settled have";
     }
-    return true;
+    if (reason) {
+        fc_refuse(instance, FC_CALL_GET_DIRECTIONAL_DERIVATIVE, "%s has no derivative by %s %s",
+                  unknown->name, known->name, reason);
+    }
+    return reason == NULL;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
@@ -448,8 +388,10 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         if (!is_rate && !expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
             return fmi2Error;
         }
-        if (!has_derivatives(instance, &fc_variables[vUnknown_ref[u]], vKnown_ref, nKnown)) {
-            return fmi2Error;
+        for (size_t k = 0; k < nKnown; k++) {
+            if (!has_derivative(instance, &fc_variables[vUnknown_ref[u]], &fc_variables[vKnown_ref[k]])) {
+                return fmi2Error;
+            }
         }
         asks_settled |= fc_variable_is_settled_force(&fc_variables[vUnknown_ref[u]]);
     }

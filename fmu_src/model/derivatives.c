@@ -1,5 +1,7 @@
 #include "model/derivatives.h"
 
+#include "model/special.h"
+
 // a + factor b.
 static FcContactLogSlope plus(FcContactLogSlope a, double factor, FcContactLogSlope b) {
     return (FcContactLogSlope){a.sigma + factor * b.sigma, a.A_r + factor * b.A_r, a.F_n + factor * b.F_n};
@@ -17,7 +19,9 @@ FcContactLogSlope fc_contact_along(const FcScene* scene, const FcDirection* alon
     if (scene->contact->input == FC_CONTACT_SEPARATION) {
         d += along->d;
     } else { // d = (ln F_n(0) - ln load + ...) / decay
-        d += (by_E.F_n * along->E - along->load / drive->load.value) / scene->at_E.decay;
+        const double decay = scene->at_E.decay;
+        d += (by_E.F_n * along->E - along->load / drive->load.value) / decay;
+        d += fc_bessel_ratio(decay * drive->vibration.a_d) * along->a_d;
     }
     change = along->E != 0.0 ? plus(change, along->E, by_E) : change;
     return d != 0.0 ? plus(change, d, by_d) : change;

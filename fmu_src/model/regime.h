@@ -99,6 +99,7 @@ typedef struct {
     double V;             // m/s, with the vibration
     double d;             // m, the input
     double swing;         // m, by which the vibration moves the separation
+    double a_d;           // m, by which its amplitude moves the mean separation under a load
     double E;             // Pa
     double load;          // N
     double delta;         // m

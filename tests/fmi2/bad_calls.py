@@ -99,7 +99,7 @@ CALLS = [
         "directional derivative in a fixed parameter",
         BETWEEN_STEPS,
         lambda i: i.directional(["F_t"], {"contact.R_q": 1.0})[0],
-        ("contact.R_q", "fixed"),
+        ("contact.R_q", "tunable"),
     ),
     BadCall(
         "unknown log category",

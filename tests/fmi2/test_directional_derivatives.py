@@ -347,7 +347,7 @@ REFUSED = {
     "the state after a step": ({}, {}, "step complete", "delta", "vibration.V_1", "delta has no derivative"),
     "by time, of the last step": ({}, {}, "step complete", "W_f", "time", "W_f has no derivative by time"),
     "a settled start": ({"initialState": 2}, {}, "initialization", "F_t", "V", "initialState = Settled"),
-    "a fixed parameter": ({}, {}, "step complete", "sigma", "contact.R_q", "contact.R_q .*fixed parameter"),
+    "a fixed parameter": ({}, {}, "step complete", "sigma", "contact.R_q", "contact.R_q .*is not an input"),
     "static friction that begins": (ELASTIC_PLASTIC, {}, "step complete", "F_t", "friction.staticRatio",
                                     "friction.staticRatio = 1"),
     "Coulomb at rest": ({"friction.model": 2}, {"V": 0.0}, "step complete", "F_t", "V", "does not exist"),
