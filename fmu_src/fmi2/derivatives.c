@@ -9,7 +9,6 @@
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
-#include "model/constants.h"
 #include "model/derivatives.h"
 #include "settled_force.h"
 
@@ -122,7 +121,7 @@ static FcFrictionContact moved_by(const FcFrictionContact* contact, const FcVari
 // parameter that is 0.
 static double small_change(const FcFrictionContact* contact, const FcVariableInfo* info, double part) {
     const FcVariables* v = &contact->state.variables;
-    const double period_over_2_pi = 1.0 / (FC_TWO_PI * v->vibration.f);
+    const double moment = 0.1 / v->vibration.f; // s
     double scale = fc_variable_value(v, info);
     if (strcmp(info->unit, "m/s") == 0) {
         scale = v->friction.V_S;
@@ -131,9 +130,9 @@ static double small_change(const FcFrictionContact* contact, const FcVariableInf
     } else if (strcmp(info->unit, "rad") == 0) {
         scale = 1.0;
     } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
-        scale = period_over_2_pi;
+        scale = moment;
     } else if (info->offset == offsetof(FcVariables, vibration.f)) {
-        scale *= fmin(1.0, period_over_2_pi / fabs(contact->state.time));
+        scale *= fmin(1.0, moment / fabs(contact->state.time));
     }
     return scale > 0.0 ? ldexp(1.0, ilogb(part * scale)) : 0.0;
 }
@@ -207,7 +206,7 @@ static FcDirection direction_of(const FcFrictionContact* contact, const FcVariab
     const FcDrive drive =
         fc_drive_make(none, none, none, none, turning, contact->state.time, contact->state.time_rest);
     const double time = contact->state.time + contact->state.time_rest;
-    const double turn = FC_TWO_PI * (time * change->f + of->f * along->time);
+    const double turn = drive.omega * (time * change->f / of->f + along->time);
     const double angle = drive.theta_0;
     const double across = angle + of->phase_2;
     const double apart = angle + of->phase_d;
