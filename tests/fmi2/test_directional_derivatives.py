@@ -161,6 +161,14 @@ def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instanc
         ):
             if not output.endswith("_mean"):  # of the step before
                 assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
+    for name in ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma"):
+        (start,) = instance.get(name)
+        status, exact = instance.directional(FORCES, {name: 1.0})
+        assert status == OK
+        expected, smooth = by_richardson(instance, name, 1e-4 * start, FORCES)
+        assert smooth.all(), name
+        size = np.hypot(*instance.get(*FORCES)) / start
+        assert exact == pytest.approx(expected, rel=1e-8, abs=1e-8 * size), name
 
 
 def test_a_direction_is_the_sum_of_its_parts(new_instance: Callable[..., Instance]) -> None:
@@ -340,6 +348,24 @@ def test_a_bristle_that_slips_by_parameters_of_its_bound(new_instance: Callable[
         "friction.sigma_2": 0.5,
     }.items():
         assert instance.directional(["F_t"], {name: 1.0}) == (OK, [pytest.approx(slope, abs=1e-12)]), name
+
+
+def test_a_bristle_of_lugre_that_slips_along_its_static_bound(new_instance: Callable[..., Instance]) -> None:
+    """The load falls faster than the bristle relaxes: F_t is the static limit, staticRatio mu F_n."""
+    instance = new_instance(kind=MODEL_EXCHANGE)
+    assert instance.choose({**LUGRE, **PRESSED, "contact.model": 2}) == OK
+    values = {"V": 0.01, "contact.sigma": 1e5, "vibration.a_d": 1e-6, "vibration.phase_d": -1.5}
+    assert instance.set({**values, **DAMPED, "friction.staticRatio": 1.4, "delta_0": 1.0}) == OK
+    instance.bring_to("continuous-time mode")
+    F_n, delta = instance.get("F_n", "delta")
+    assert 1e5 * delta == pytest.approx(1.4 * 0.176 * F_n, rel=1e-12)
+    for name in ("friction.staticRatio", "friction.mu", "contact.sigma", "vibration.a_d", "vibration.f"):
+        (start,) = instance.get(name)
+        status, exact = instance.directional(("F_t", *RATES), {name: 1.0})
+        assert status == OK
+        expected, _ = by_richardson(instance, name, 1e-3 * start, ("F_t", *RATES))
+        size = np.abs(instance.get("F_t", *RATES)) / start
+        assert np.all(np.abs(exact - expected) <= 1e-8 * (np.abs(expected) + size)), name
 
 
 REFUSED = {
