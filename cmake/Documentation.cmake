@@ -11,25 +11,13 @@ add_custom_command(
     COMMENT "Writing the documentation"
     VERBATIM)
 
-# Parameter sets, experiments and their reference results (layered standard FMI-LS-REF), and the page about them.
-set(related_folder "${CMAKE_BINARY_DIR}/generated/org.fmi-standard.fmi-ls-ref")
-set(related_manifest "${related_folder}/fmi-ls-manifest.xml")
-set(related_page "${CMAKE_BINARY_DIR}/generated/fmi-ls-ref.html")
-file(GLOB related_parts CONFIGURE_DEPENDS workshop/related/*.py data/related/*.csv docs/fmu/related.html)
-add_custom_command(
-    OUTPUT "${related_manifest}" "${related_page}"
-    COMMAND Python3::Interpreter -B -m workshop.related.files "${related_folder}"
-    COMMAND Python3::Interpreter -B -m workshop.related.page "${related_page}"
-    DEPENDS "${model_description}" ${related_parts} workshop/presets.py frictioncontact/parameters.py
-            workshop/description.py
-    WORKING_DIRECTORY "${CMAKE_SOURCE_DIR}"
-    COMMENT "Writing the related files"
-    VERBATIM)
-
+# Parameter sets, experiments and their reference results (layered standard FMI-LS-REF), what connects to what, and pages.
+file(GLOB related_files CONFIGURE_DEPENDS data/related/*)
 set(documentation_arguments
-    --folder "extra/org.fmi-standard.fmi-ls-ref=${related_folder}"
+    --folder "extra/org.fmi-standard.fmi-ls-ref=data/related"
     --file "documentation/index.html=${documentation_page}"
-    --file "documentation/fmi-ls-ref.html=${related_page}"
+    --file documentation/fmi-ls-ref.html=docs/fmu/related.html
+    --file terminalsAndIcons/terminalsAndIcons.xml=docs/fmu/terminalsAndIcons.xml
     --file model.png=docs/fmu/model.png
     --file documentation/licenses/license.txt=LICENSE)
 if(WITH_SUNDIALS)
@@ -39,4 +27,5 @@ if(WITH_SUNDIALS)
 endif()
 file(GLOB documentation_licenses CONFIGURE_DEPENDS docs/fmu/licenses/*.txt)
 set(documentation_files
-    "${documentation_page}" "${related_manifest}" "${related_page}" docs/fmu/model.png LICENSE ${documentation_licenses})
+    "${documentation_page}" ${related_files} docs/fmu/related.html docs/fmu/terminalsAndIcons.xml docs/fmu/model.png
+    LICENSE ${documentation_licenses})

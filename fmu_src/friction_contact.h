@@ -49,6 +49,7 @@ typedef struct {
     double F_y_settled; // N    output, as F_t_settled
     double delta_y;     // m    output, the state across
     double delta_y_0;   // m
+    double time;        // s, the independent variable, which FcFrictionState holds: 0 here
 } FcVariables;
 
 typedef enum { FC_INPUT_V, FC_INPUT_D, FC_INPUT_E, FC_INPUT_LOAD, FC_INPUT_V_Y, FC_INPUT_COUNT } FcInput;

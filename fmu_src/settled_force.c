@@ -98,33 +98,57 @@ static double first_range_of_V(const FcVariables* v, const FcScene* scene, doubl
     return copysign(PART_OF_SCALE * scale, room > PART_OF_SCALE * scale ? -V : V);
 }
 
-// The first range [the input's unit] over which the force is fitted, with its sign. It contains neither V = 0
-// nor |V| = V_1, at which the force has jumps and kinks, and leads to surfaces farther apart.
-static double first_range(const FcFrictionContact* held, const FcScene* scene, FcInput input) {
+// For an amplitude of a velocity: away from |V|, or to larger ones from 0.
+static double first_range_of_amplitude(const FcVariables* v, double V, double amplitude) {
+    const double speed = fabs(V);
+    const double room = fabs(amplitude - speed);
+    if (amplitude == 0.0) {
+        return PART_OF_SCALE * (speed > 0.0 ? speed : v->friction.V_S);
+    }
+    return PART_OF_SCALE * (amplitude < speed ? -fmin(room, amplitude) : amplitude);
+}
+
+// The first range [the variable's unit] over which the force is fitted, with its sign. It contains neither V = 0
+// nor |V| = V_1, at which the force has jumps and kinks, and leads to surfaces farther apart, and away from the
+// bounds of the variable. 0 for a variable that the mean does not depend on.
+static double first_range(const FcFrictionContact* held, const FcScene* scene, size_t variable) {
     const FcVariables* v = &held->state.variables;
-    const double part = PART_OF_SCALE;
-    switch (input) {
-    case FC_INPUT_V:
+    const double decay = scene->at_E.decay;
+    switch (variable) {
+    case offsetof(FcVariables, V):
         return first_range_of_V(v, scene, v->V, v->vibration.V_1);
-    case FC_INPUT_V_Y:
+    case offsetof(FcVariables, V_y):
         return first_range_of_V(v, scene, v->V_y, v->vibration.V_2);
-    case FC_INPUT_D:
-        return part * fmin(1.0 / scene->at_E.decay, v->d);
-    case FC_INPUT_E:
-        return part * v->E;
+    case offsetof(FcVariables, vibration.V_1):
+        return first_range_of_amplitude(v, v->V, v->vibration.V_1);
+    case offsetof(FcVariables, vibration.V_2):
+        return first_range_of_amplitude(v, v->V_y, v->vibration.V_2);
+    case offsetof(FcVariables, d):
+        return PART_OF_SCALE * fmin(1.0 / decay, v->d);
+    case offsetof(FcVariables, vibration.a_d):
+        return PART_OF_SCALE * (v->vibration.a_d > 0.0 ? -fmin(1.0 / decay, v->vibration.a_d)
+                                                       : fmin(1.0 / decay, fc_scene_d(scene, 0.0)));
+    case offsetof(FcVariables, vibration.phase_d):
+    case offsetof(FcVariables, vibration.phase_2):
+        return PART_OF_SCALE;
+    case offsetof(FcVariables, load):
+        return -PART_OF_SCALE * v->load;
+    case offsetof(FcVariables, friction.sigma_1):
+    case offsetof(FcVariables, friction.sigma_2):
+        return 0.0;
     default:
-        return -part * v->load;
+        return PART_OF_SCALE * *(const double*)(const void*)((const char*)v + variable);
     }
 }
 
-// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points, and
-// the largest of its last terms. With the coefficients c_k of T_k over the range, the derivative there is 2 /
-// range times the sum of (-1)^(k + 1) k^2 c_k. Half the points need a shorter range; twice as many multiply
-// rounding by four.
+// The derivative at the start of a range by the polynomial through the force at POINTS Chebyshev points, the
+// largest of its last terms, and the distance *missed [N] of the polynomial from the force at the start: a kink
+// before the first point. With the coefficients c_k of T_k over the range, the derivative there is 2 / range times
+// the sum of (-1)^(k + 1) k^2 c_k. Half the points need a shorter range; twice as many multiply rounding by four.
 enum { POINTS = 8 };
-static bool slope_over(FcFrictionContact* held, FcInput input, double range, FcVector* slope, double* error,
-                       double* evaluations, FcMessage* message) {
-    double* const x = fc_input_of(&held->state.variables, input);
+static bool slope_over(FcFrictionContact* held, size_t variable, double range, FcVector* slope, double* error,
+                       double* missed, double* evaluations, FcMessage* message) {
+    double* const x = (double*)(void*)((char*)&held->state.variables + variable);
     const double start = *x;
     FcVector force[POINTS];
     for (int j = 0; j < POINTS; j++) {
@@ -134,6 +158,14 @@ static bool slope_over(FcFrictionContact* held, FcInput input, double range, FcV
         }
     }
     *x = start;
+    FcVector gap; // from the force at the start, which is no point, to the polynomial
+    if (!dry_force(held, TOLERANCE_OF_FORCES, &gap, evaluations, message)) {
+        return false;
+    }
+    for (int j = 0; j < POINTS; j++) {
+        gap.x -= force[j].x / POINTS;
+        gap.y -= force[j].y / POINTS;
+    }
     *slope = (FcVector){0.0, 0.0};
     *error = 0.0;
     for (int k = 1; k < POINTS; k++) {
@@ -146,13 +178,16 @@ static bool slope_over(FcFrictionContact* held, FcInput input, double range, FcV
         const FcVector term = {2.0 * k * k * c.x / range, 2.0 * k * k * c.y / range};
         slope->x += k % 2 == 1 ? term.x : -term.x;
         slope->y += k % 2 == 1 ? term.y : -term.y;
+        gap.x += k % 2 == 1 ? c.x : -c.x;
+        gap.y += k % 2 == 1 ? c.y : -c.y;
         *error = k >= POINTS - 2 ? fmax(*error, hypot(term.x, term.y)) : 0.0;
     }
+    *missed = hypot(gap.x, gap.y);
     return true;
 }
 
 // The range is shortened until the last terms are small, or rounding.
-bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcVector* slope,
+bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, FcVector* slope,
                             FcMessage* message) {
     FcFrictionContact held = at_time_0(contact);
     if (!fc_friction_contact_refresh(&held, message)) {
@@ -160,7 +195,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcV
     }
     const FcScene scene = fc_friction_contact_scene(&held);
     const double force = fc_scene_mean_limit(&scene, 0.0);
-    double range = first_range(&held, &scene, input);
+    double range = first_range(&held, &scene, variable);
     const double usual = force / fabs(range);
     double least = DBL_MAX;
     const bool is_flat =
@@ -170,20 +205,26 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcV
     for (int tried = 0; tried < MOST_RANGES && !is_flat; tried++) {
         FcVector found;
         double error;
-        if (!slope_over(&held, input, range, &found, &error, &evaluations, message)) {
+        double missed;
+        if (!slope_over(&held, variable, range, &found, &error, &missed, &evaluations, message)) {
             return false;
         }
         const double size = hypot(found.x, found.y);
-        if (error < least * (size + usual)) {
+        const bool is_good =
+            missed <= GOOD_OVER_FORCE * force &&
+            (error <= GOOD_OVER_SLOPE * size || error * fabs(range) <= GOOD_OVER_FORCE * force);
+        if (is_good || error < least * (size + usual)) {
             least = error / (size + usual);
             *slope = found;
         }
-        if (error <= GOOD_OVER_SLOPE * size || error * fabs(range) <= GOOD_OVER_FORCE * force) {
+        if (is_good) {
             break;
         }
         range *= RANGE_SHORTENED_BY;
     }
-    slope->x += input == FC_INPUT_V ? held.state.variables.friction.sigma_2 : 0.0;
-    slope->y += input == FC_INPUT_V_Y ? held.state.variables.friction.sigma_2 : 0.0;
+    const FcVariables* v = &held.state.variables;
+    const bool is_viscous = variable == offsetof(FcVariables, friction.sigma_2);
+    slope->x += variable == offsetof(FcVariables, V) ? v->friction.sigma_2 : is_viscous ? v->V : 0.0;
+    slope->y += variable == offsetof(FcVariables, V_y) ? v->friction.sigma_2 : is_viscous ? v->V_y : 0.0;
     return is_finite(*slope, "the derivative of ", message);
 }

@@ -8,15 +8,18 @@
 #ifndef FC_SETTLED_FORCE_H
 #define FC_SETTLED_FORCE_H
 
+#include <stddef.h>
+
 #include "friction_contact.h"
 
 // Within the tolerance, for any solver.method. Returns false, with *message filled, if the inputs and
 // parameters are not a valid combination, or if the period needs more than FC_MOST_EVALUATIONS.
 bool fc_settled_force(const FcFrictionContact* contact, FcVector* force, FcMessage* message);
 
-// Their partial derivatives by one input [N over the input's unit], one-sided at a kink: by differences,
-// whose accuracy docs/solver.md states. Returns false as fc_settled_force does.
-bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcVector* slope,
+// Their partial derivatives by one input or tunable parameter, at this place in FcVariables [N over its unit],
+// one-sided at a kink: by differences, whose accuracy docs/solver.md states. Returns false as fc_settled_force
+// does.
+bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, FcVector* slope,
                             FcMessage* message);
 
 #endif

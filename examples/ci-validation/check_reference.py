@@ -2,7 +2,7 @@
 
     check_reference.py FrictionContact.fmu            the file, or the folder it was unpacked into
 
-Works for any FMU with experiments of the layered standard FMI-LS-REF (1.0.0-alpha.1) that have reference
+Works for any FMU with experiments of the layered standard FMI-LS-REF (1.0.0-beta.1) that have reference
 results (.csv), with or without a parameter set (.ssv). A column is met when no row is further from the
 reference than the experiment's tolerance times the column's largest value.
 

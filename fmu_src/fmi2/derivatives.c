@@ -1,9 +1,10 @@
 // Time derivatives in co-simulation: of inputs, given, and of F_t and F_y. Directional derivatives of outputs
-// and rates: by the inputs from initialization mode on, in model exchange by the states too. All are formulas
-// except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of a bound for a
-// slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f)
-// (model/derivatives.c), and the deflection after a jump of inputs. These are central differences.
+// and rates: by inputs, tunable parameters and time from initialization mode on, in model exchange by the states
+// too. All are formulas except those of F_t_settled and F_y_settled (settled_force.c), and the part of the rate of
+// a bound for a slipping bristle, in F_t and F_y by its damping, in der(delta), der(delta_y) and der(Q_f), and the
+// deflection after a jump. These are differences.
 #include <math.h>
+#include <string.h>
 
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
@@ -102,83 +103,162 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     return fmi2OK;
 }
 
-static double scaled(double slope, double change) {
-    return slope != 0.0 && change != 0.0 ? slope * change : 0.0;
+// Whether there are derivatives by the variable in both interfaces: an input, a tunable parameter or time.
+static bool is_known(const FcVariableInfo* info) {
+    return info->causality == FC_CAUSALITY_INPUT || info->causality == FC_CAUSALITY_INDEPENDENT ||
+           (info->causality == FC_CAUSALITY_PARAMETER && info->variability == FC_VARIABILITY_TUNABLE);
 }
 
-// The derivative of a logarithm along the direction, from its slopes by d, E and load.
-static double log_along(const FcVariables* along, double by_d, double by_E, double by_load) {
-    return scaled(by_d, along->d) + scaled(by_E, along->E) + scaled(by_load, along->load);
+// The contact with one variable moved. A power of two moves it without rounding.
+static FcFrictionContact moved_by(const FcFrictionContact* contact, const FcVariableInfo* info,
+                                  double change) {
+    FcFrictionContact moved = *contact;
+    *(info->causality == FC_CAUSALITY_INDEPENDENT ? &moved.state.time_rest
+                                                  : fc_variable_real(&moved.state.variables, info)) += change;
+    return moved;
 }
 
-// The part of their sizes by which inputs are moved for a difference: its error is some 1e-9, by the square of the
-// part and by rounding over it. Half or twice of it multiplies one of them by two or four.
+// The power of two below this part of the change of a variable with which the contact becomes another one; 0 for a
+// parameter that is 0.
+static double small_change(const FcFrictionContact* contact, const FcVariableInfo* info, double part) {
+    const FcVariables* v = &contact->state.variables;
+    const double moment = 0.1 / v->vibration.f; // s
+    double scale = fc_variable_value(v, info);
+    if (strcmp(info->unit, "m/s") == 0) {
+        scale = v->friction.V_S;
+    } else if (strcmp(info->unit, "m") == 0) {
+        scale = fmin(v->d, v->contact.R_q / v->contact.lambda);
+    } else if (strcmp(info->unit, "rad") == 0) {
+        scale = 1.0;
+    } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
+        scale = moment;
+    } else if (info->offset == offsetof(FcVariables, vibration.f)) {
+        scale *= fmin(1.0, moment / fabs(contact->state.time));
+    }
+    return scale > 0.0 ? ldexp(1.0, ilogb(part * scale)) : 0.0;
+}
+
+// The part for a difference of order 2: its error is some 1e-9, by the square of the part and by rounding over it.
+// Half or twice of it multiplies one of them by two or four.
 static const double MOVED_PART = 3e-5;
 
-// The deflection that inputs leave which have jumped, and by `change` of the direction more.
-static FcVector reached_after(FcFrictionContact moved, FcVariables along, double change) {
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        *fc_input_of(&moved.state.variables, (FcInput)input) += change * *fc_input_of(&along, (FcInput)input);
-    }
+// The deflection that inputs and parameters leave which have jumped, and one of them by `change` more.
+static FcVector reached_after(const FcFrictionContact* contact, const FcVariableInfo* info, double change) {
+    FcFrictionContact moved = moved_by(contact, info, change);
     const FcScene scene = fc_friction_contact_scene(&moved);
     const FcBristle end = fc_friction_contact_reached(&moved, &scene);
     return (FcVector){end.delta, end.delta_y};
 }
 
-// Its derivative along the direction, by a difference, since it may be the least bound on the way: a central one, or
-// one to the side on which the bristle moves, if it does not on the other.
-static FcVector reached_along(const FcFrictionContact* contact, FcVariables along) {
-    FcVariables now = contact->state.variables;
-    double part = 0.0;
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        const bool is_velocity = input == FC_INPUT_V || input == FC_INPUT_V_Y;
-        const double size = is_velocity ? now.friction.V_S : *fc_input_of(&now, (FcInput)input);
-        part = size > 0.0 ? fmax(part, fabs(*fc_input_of(&along, (FcInput)input)) / size) : part;
+// Its derivative by one variable, by a difference, since it may be the least bound on the way: to the side on which
+// the bristle moves.
+static FcVector reached_by(const FcFrictionContact* contact, const FcVariableInfo* info) {
+    const FcVariables* now = &contact->state.variables;
+    double change = small_change(contact, info, MOVED_PART);
+    FcVector near = reached_after(contact, info, change);
+    if (near.x == now->delta && near.y == now->delta_y) {
+        change = -change;
+        near = reached_after(contact, info, change);
     }
-    if (part == 0.0) {
+    const double end = fc_variable_value(now, info) + 2.0 * change;
+    if (change == 0.0 || (change < 0.0 && !fc_variable_allows(info, end))) {
         return (FcVector){0.0, 0.0};
     }
-    double change = MOVED_PART / part;
-    FcVector before = reached_after(*contact, along, -change);
-    FcVector after = reached_after(*contact, along, change);
-    const bool moves_before = before.x != now.delta || before.y != now.delta_y;
-    if (moves_before && (after.x != now.delta || after.y != now.delta_y)) {
-        return (FcVector){(after.x - before.x) / (2.0 * change), (after.y - before.y) / (2.0 * change)};
-    }
-    const FcVector here = reached_after(*contact, along, 0.0);
-    change = moves_before ? -change : change;
-    const FcVector near = moves_before ? before : after;
-    const FcVector far = reached_after(*contact, along, 2.0 * change);
+    const FcVector here = reached_after(contact, info, 0.0);
+    const FcVector far = reached_after(contact, info, 2.0 * change);
     return (FcVector){(4.0 * near.x - far.x - 3.0 * here.x) / (2.0 * change),
                       (4.0 * near.y - far.y - 3.0 * here.y) / (2.0 * change)};
 }
 
-// All derivatives along a direction of inputs and states, at the places of the variables; those of F_t_settled and
-// F_y_settled stay 0. So do those of outputs that do not depend on the present inputs.
+// The scene that the outputs see: held in model exchange.
+static FcScene scene_of(FcFrictionContact* contact, bool hybrid) {
+    return hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
+}
+
+// The part for a difference of order 4 over 4 changes: its error is the fourth power of the part, and rounding over
+// it. Half or twice of it multiplies one of them by two or sixteen.
+static const double MOVED_PART_OF_ORDER_4 = 5e-4;
+
+// The derivative by one variable of the rate of the bound along which the bristle slips. The variable rises, since
+// it may be at its minimum.
+static double bound_rate_by(const FcFrictionContact* contact, bool hybrid, int slips,
+                            const FcVariableInfo* info) {
+    static const double weight[] = {-25.0, 48.0, -36.0, 16.0, -3.0};
+    const double change = small_change(contact, info, MOVED_PART_OF_ORDER_4);
+    double sum = 0.0;
+    for (int k = 0; k < 5; k++) {
+        FcFrictionContact moved = moved_by(contact, info, k * change);
+        const FcScene scene = scene_of(&moved, hybrid);
+        FcFriction friction;
+        const FcScene bound = fc_scene_of_bound(&scene, slips, &friction);
+        sum += weight[k] * fc_bound_in_plane(&bound, 0.0).rate;
+    }
+    return change != 0.0 ? sum / (12.0 * change) : 0.0;
+}
+
+// The direction in the space of the motion: the vibration moves the velocities and the separation.
+static FcDirection direction_of(const FcFrictionContact* contact, const FcVariables* along) {
+    const FcVariables* v = &contact->state.variables;
+    const FcVibration* of = &v->vibration;
+    const FcVibration* change = &along->vibration;
+    FcVibration turning = *of;
+    turning.V_1 = 1.0; // without it there would be no phase if nothing vibrates
+    const FcLinearInput none = {0.0, 0.0};
+    const FcDrive drive =
+        fc_drive_make(none, none, none, none, turning, contact->state.time, contact->state.time_rest);
+    const double time = contact->state.time + contact->state.time_rest;
+    const double turn = drive.omega * (time * change->f / of->f + along->time);
+    const double angle = drive.theta_0;
+    const double across = angle + of->phase_2;
+    const double apart = angle + of->phase_d;
+    return (FcDirection){
+        .V = along->V + change->V_1 * cos(angle) - of->V_1 * sin(angle) * turn,
+        .d = along->d,
+        .swing = change->a_d * cos(apart) - of->a_d * sin(apart) * (turn + change->phase_d),
+        .a_d = change->a_d,
+        .E = along->E,
+        .load = along->load,
+        .delta = along->delta,
+        .V_y = along->V_y + change->V_2 * cos(across) - of->V_2 * sin(across) * (turn + change->phase_2),
+        .delta_y = along->delta_y,
+        .log_limit =
+            fc_limit_follows_load(&v->friction) ? along->friction.mu / v->friction.mu : along->F_C / v->F_C,
+        .log_stiffness = v->contact.model == FC_CONTACT_CONSTANT
+                             ? along->contact.sigma / v->contact.sigma
+                             : along->contact.stiffnessScale / v->contact.stiffnessScale,
+        .staticRatio = fc_may_have_static_friction(&v->friction) ? along->friction.staticRatio : 0.0,
+        .V_S = along->friction.V_S,
+        .sigma_1 = along->friction.sigma_1,
+        .sigma_2 = along->friction.sigma_2,
+    };
+}
+
+// All derivatives along a direction of inputs, parameters and states, at the places of the variables; those of
+// F_t_settled and F_y_settled stay 0. So do those of outputs that do not depend on the present values.
 static FcVariables derivatives_along(FcInstance* instance, const FcVariables* along) {
     FcFrictionContact* contact = &instance->contact;
     const bool hybrid = fc_instance_is_hybrid(instance);
-    const FcScene scene =
-        hybrid ? fc_friction_contact_scene_moving(contact, NULL) : fc_friction_contact_scene(contact);
+    const FcScene scene = scene_of(contact, hybrid);
     const FcBristle bristle = fc_friction_contact_bristle(contact);
     const FcBristle reached = hybrid ? bristle : fc_friction_contact_reached(contact, &scene);
-    FcDirection direction = {.V = along->V,
-                             .d = along->d,
-                             .E = along->E,
-                             .load = along->load,
-                             .delta = along->delta,
-                             .V_y = along->V_y,
-                             .delta_y = along->delta_y};
-    if ((reached.delta != bristle.delta || reached.delta_y != bristle.delta_y) &&
-        !fc_scene_is_loose(&scene)) { // an input has jumped and moved it
-        const FcVector moves = reached_along(contact, *along);
-        direction.delta = moves.x;
-        direction.delta_y = moves.y;
-    }
+    FcDirection direction = direction_of(contact, along);
     const FcRegime regime = hybrid ? (FcRegime)contact->state.hybrid.regime : fc_regime(&scene, reached);
+    const bool has_jumped = reached.delta != bristle.delta || reached.delta_y != bristle.delta_y;
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double change = is_known(info) ? fc_variable_value(along, info) : 0.0;
+        if (change != 0.0 && has_jumped && !fc_scene_is_loose(&scene)) {
+            const FcVector moves = reached_by(contact, info);
+            direction.delta += change * moves.x;
+            direction.delta_y += change * moves.y;
+        }
+        if (change != 0.0 && regime != FC_FREE) {
+            direction.bound_rate += change * bound_rate_by(contact, hybrid, (int)regime, info);
+        }
+    }
     const FcMotion motion = fc_motion_along(&scene, regime, reached, &direction);
     const FcContactResponse now = fc_scene_contact(&scene, 0.0);
-    const FcLogSlopes by = fc_log_slopes(&scene);
+    const FcContactLogSlope by = fc_contact_along(&scene, &direction);
     // Before the first step F_t_mean is F_t, and F_y_mean F_y.
     const bool mean_is_force = hybrid || instance->experiment.mode == FC_INITIALIZATION_MODE;
     return (FcVariables){
@@ -186,9 +266,9 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
         .F_y = motion.force.y,
         .F_t_mean = mean_is_force ? motion.force.x : 0.0,
         .F_y_mean = mean_is_force ? motion.force.y : 0.0,
-        .F_n = scaled(now.F_n, log_along(along, by.by_d.F_n, by.by_E.F_n, by.by_load.F_n)),
-        .sigma = scaled(now.sigma, log_along(along, by.by_d.sigma, by.by_E.sigma, by.by_load.sigma)),
-        .A_r = scaled(now.A_r, log_along(along, by.by_d.A_r, by.by_E.A_r, by.by_load.A_r)),
+        .F_n = now.F_n != 0.0 ? now.F_n * by.F_n : 0.0,
+        .sigma = now.sigma != 0.0 ? now.sigma * by.sigma : 0.0,
+        .A_r = now.A_r != 0.0 ? now.A_r * by.A_r : 0.0,
         .delta = along->delta,
         .W_f = along->W_f,
         .Q_f = along->Q_f,
@@ -202,16 +282,44 @@ static FcVariables derivatives_along(FcInstance* instance, const FcVariables* al
 static bool settled_force_along(const FcFrictionContact* contact, FcVariables along, FcVector* derivative,
                                 FcMessage* message) {
     *derivative = (FcVector){0.0, 0.0};
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        const double change = *fc_input_of(&along, (FcInput)input);
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        const FcVariableInfo* info = &fc_variables[vr];
+        const double change = is_known(info) ? fc_variable_value(&along, info) : 0.0;
         FcVector slope = {0.0, 0.0};
-        if (change != 0.0 && !fc_settled_force_slope(contact, (FcInput)input, &slope, message)) {
+        if (change != 0.0 && !fc_settled_force_slope(contact, info->offset, &slope, message)) {
             return false;
         }
-        derivative->x += scaled(slope.x, change);
-        derivative->y += scaled(slope.y, change);
+        derivative->x += slope.x * change;
+        derivative->y += slope.y * change;
     }
     return true;
+}
+
+// The variable by which a derivative is asked for; otherwise NULL, after logging the reason.
+static const FcVariableInfo* expect_known(const FcInstance* instance, fmi2ValueReference vr) {
+    const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
+    const FcFriction* friction = &instance->contact.state.variables.friction;
+    if (vr >= fc_variables_count) {
+        return expect(instance, call, vr, FC_CAUSALITY_INPUT); // none
+    }
+    const FcVariableInfo* info = &fc_variables[vr];
+    if (!is_known(info) && !(fc_instance_is_hybrid(instance) && fc_variable_is_state(info))) {
+        fc_refuse(
+            instance, call,
+            "%s (value reference %u) is not an input, a tunable parameter, time or, in model exchange, a "
+            "state",
+            info->name, vr);
+        return NULL;
+    }
+    if (info->offset == offsetof(FcVariables, friction.staticRatio) &&
+        friction->model == FC_ELASTIC_PLASTIC && friction->staticRatio == 1.0) {
+        fc_refuse(instance, call,
+                  "%s = 1: a slipping bristle would stick at any larger ratio, so that there is no "
+                  "derivative",
+                  info->name);
+        return NULL;
+    }
+    return info;
 }
 
 // Reads the direction; false after logging the fault.
@@ -219,10 +327,7 @@ static bool read_direction(const FcInstance* instance, const fmi2ValueReference 
                            const fmi2Real change[], FcVariables* direction) {
     const FcCall call = FC_CALL_GET_DIRECTIONAL_DERIVATIVE;
     for (size_t k = 0; k < n; k++) {
-        const bool is_state = fc_instance_is_hybrid(instance) && vr[k] < fc_variables_count &&
-                              fc_variable_is_state(&fc_variables[vr[k]]);
-        const FcVariableInfo* info =
-            is_state ? &fc_variables[vr[k]] : expect(instance, call, vr[k], FC_CAUSALITY_INPUT);
+        const FcVariableInfo* info = expect_known(instance, vr[k]);
         if (!info) {
             return false;
         }
@@ -234,6 +339,31 @@ static bool read_direction(const FcInstance* instance, const fmi2ValueReference 
         *fc_variable_real(direction, info) += change[k];
     }
     return true;
+}
+
+// Whether an output or rate has a derivative by the variable; otherwise false, after logging the reason. Means of a
+// step, and a settled start, are results of many periods, which are not differentiated.
+static bool has_derivative(const FcInstance* instance, const FcVariableInfo* unknown,
+                           const FcVariableInfo* known) {
+    const size_t place = unknown->offset;
+    const bool is_mean = place == offsetof(FcVariables, F_t_mean) || place == offsetof(FcVariables, F_y_mean);
+    const bool is_force = place == offsetof(FcVariables, F_t) || place == offsetof(FcVariables, F_y);
+    const bool is_state = fc_variable_is_state(unknown);
+    const char* reason = NULL;
+    if (instance->experiment.mode == FC_INITIALIZATION_MODE) {
+        const bool is_settled = instance->contact.state.variables.initialState == FC_STATE_SETTLED;
+        if (is_settled && (is_mean || is_force || is_state || fc_variable_is_rate(unknown))) {
+            reason = "in initialization mode with initialState = Settled; afterwards it has";
+        }
+    } else if (!fc_instance_is_hybrid(instance) && known->causality != FC_CAUSALITY_INPUT &&
+               (is_mean || is_state)) {
+        reason = "in co-simulation, since the last step left it; F_t_settled and F_y_settled have";
+    }
+    if (reason) {
+        fc_refuse(instance, FC_CALL_GET_DIRECTIONAL_DERIVATIVE, "%s has no derivative by %s %s",
+                  unknown->name, known->name, reason);
+    }
+    return reason == NULL;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
@@ -258,6 +388,11 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         if (!is_rate && !expect(instance, call, vUnknown_ref[u], FC_CAUSALITY_OUTPUT)) {
             return fmi2Error;
         }
+        for (size_t k = 0; k < nKnown; k++) {
+            if (!has_derivative(instance, &fc_variables[vUnknown_ref[u]], &fc_variables[vKnown_ref[k]])) {
+                return fmi2Error;
+            }
+        }
         asks_settled |= fc_variable_is_settled_force(&fc_variables[vUnknown_ref[u]]);
     }
     FcMessage message;
@@ -272,7 +407,9 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     for (size_t u = 0; u < nUnknown; u++) {
         const FcVariableInfo* info = &fc_variables[vUnknown_ref[u]];
         if (!isfinite(fc_variable_value(&slopes, info))) {
-            return fc_refuse(instance, call, "the derivative of %s is beyond the largest number", info->name);
+            return fc_refuse(instance, call,
+                             "the derivative of %s does not exist here, or is beyond the largest number",
+                             info->name);
         }
     }
     for (size_t u = 0; u < nUnknown; u++) {

@@ -76,9 +76,9 @@ static fmi2Status refuse_literal(const FcInstance* instance, const FcVariableInf
                      literals);
 }
 
-// Inputs can be set in every state in which setting is legal. Tunable parameters cannot be set while an
-// integrator runs, fixed parameters not after initialization, outputs and local variables never. Exception:
-// some hosts of model exchange (CasADi) set the states by fmi2SetReal while they integrate.
+// Inputs and tunable parameters can be set in every state in which setting is legal, fixed parameters not after
+// initialization, outputs and local variables never. Beyond the standard, in continuous-time mode: the parameters
+// like inputs, and the states, since some hosts (CasADi) set them by fmi2SetReal while they integrate.
 static bool is_settable(const FcInstance* instance, const FcVariableInfo* info) {
     const int mode = instance->experiment.mode;
     if (info->causality != FC_CAUSALITY_PARAMETER) {
@@ -86,20 +86,18 @@ static bool is_settable(const FcInstance* instance, const FcVariableInfo* info) 
                (mode == FC_CONTINUOUS_TIME_MODE && fc_variable_is_state(info));
     }
     return mode == FC_INSTANTIATED || mode == FC_INITIALIZATION_MODE ||
-           (info->variability == FC_VARIABILITY_TUNABLE && mode != FC_CONTINUOUS_TIME_MODE);
+           info->variability == FC_VARIABILITY_TUNABLE;
 }
 
 static fmi2Status refuse_setting(const FcInstance* instance, FcCall call, const FcVariableInfo* info) {
-    if (info->causality == FC_CAUSALITY_PARAMETER && info->variability == FC_VARIABILITY_TUNABLE) {
-        return fc_refuse(instance, call, "%s is a parameter: in model exchange it can be set in event mode",
-                         info->name);
-    }
     if (info->causality == FC_CAUSALITY_PARAMETER) {
         return fc_refuse(instance, call, "%s is a fixed parameter and can't be set after initialization",
                          info->name);
     }
     return fc_refuse(instance, call, "%s is %s variable and can't be set", info->name,
-                     info->causality == FC_CAUSALITY_OUTPUT ? "an output" : "a local");
+                     info->causality == FC_CAUSALITY_OUTPUT  ? "an output"
+                     : info->causality == FC_CAUSALITY_LOCAL ? "a local"
+                                                             : "the independent");
 }
 
 static bool is_computed(const FcVariableInfo* info) {
@@ -155,6 +153,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
         const FcVariableInfo* info = &fc_variables[vr[i]];
         value[i] = info->offset == offsetof(FcVariables, F_t_settled)   ? of_settled.x
                    : info->offset == offsetof(FcVariables, F_y_settled) ? of_settled.y
+                   : info->causality == FC_CAUSALITY_INDEPENDENT        ? instance->contact.state.time
                                                                         : *fc_variable_real(variables, info);
     }
     return fmi2OK;

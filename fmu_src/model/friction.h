@@ -60,10 +60,14 @@ static inline bool fc_limit_follows_load(const FcFriction* friction) {
 // sgn V.
 static inline double fc_sign(double V) { return V > 0.0 ? 1.0 : V < 0.0 ? -1.0 : 0.0; }
 
+// Whether the law uses staticRatio.
+static inline bool fc_may_have_static_friction(const FcFriction* friction) {
+    return friction->model == FC_LUGRE || friction->model == FC_ELASTIC_PLASTIC;
+}
+
 // Whether the limit depends on V.
 static inline bool fc_has_stribeck_curve(const FcFriction* friction) {
-    return (friction->model == FC_LUGRE || friction->model == FC_ELASTIC_PLASTIC) &&
-           friction->staticRatio != 1.0;
+    return fc_may_have_static_friction(friction) && friction->staticRatio != 1.0;
 }
 
 // Whether the bristle remembers that it slips.

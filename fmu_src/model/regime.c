@@ -265,16 +265,22 @@ FcMotion fc_motion(const FcScene* scene, FcRegime regime, FcBristle bristle) {
                                 .delta_y = at.state_rate.y}};
 }
 
-// The derivative of ln g along the direction, by the normal force and, with the speed, by the Stribeck curve.
-static double log_limit_along(const FcScene* scene, FcVector V, double log_F_n, const FcDirection* along) {
-    const FcFriction* friction = scene->friction;
-    const double by_load = fc_limit_follows_load(friction) ? log_F_n : 0.0;
-    if (!fc_has_stribeck_curve(friction)) {
-        return by_load;
+// The derivative of ln s, Stribeck's curve at V, along the direction.
+static double log_curve_along(const FcFriction* friction, FcVector V, const FcDirection* along) {
+    if (!fc_has_stribeck_curve(friction) && along->staticRatio == 0.0) {
+        return 0.0;
     }
     const double speed = hypot(V.x, V.y);
     const double speed_along = product((FcVector){along->V, along->V_y}, direction(V.x, V.y));
-    return by_load + fc_stribeck_slope(friction, speed) / fc_stribeck(friction, speed) * speed_along;
+    const double ratio = speed / friction->V_S;
+    const double by_speed = fc_stribeck_slope(friction, speed) * (speed_along - ratio * along->V_S);
+    return (by_speed + exp(-ratio * ratio) * along->staticRatio) / fc_stribeck(friction, speed);
+}
+
+// The derivative of ln g: by the parameter of the limit, the normal force and the Stribeck curve.
+static double log_limit_along(const FcScene* scene, FcVector V, double log_F_n, const FcDirection* along) {
+    const double by_load = fc_limit_follows_load(scene->friction) ? log_F_n : 0.0;
+    return along->log_limit + by_load + log_curve_along(scene->friction, V, along);
 }
 
 // The derivative of delta' = V - r delta along the direction, with r = sigma |V| / g.
@@ -290,41 +296,22 @@ static FcVector free_rate_along(const FcScene* scene, const Moment* at, FcVector
     return plus(plus(V_along, -r_along, delta), -r, (FcVector){along->delta, along->delta_y});
 }
 
-// The derivatives of the contact's results along a direction.
-typedef struct {
-    double log_sigma, log_F_n;
-} ContactAlong;
-
-static ContactAlong contact_along(const FcScene* scene, const FcDirection* along) {
-    const FcLogSlopes slopes = fc_log_slopes(scene);
-    const double E = along->E;
-    const double d = along->d;
-    const double load = along->load;
-    return (ContactAlong){
-        .log_sigma = slopes.by_d.sigma * d + slopes.by_E.sigma * E + slopes.by_load.sigma * load,
-        .log_F_n = slopes.by_d.F_n * d + slopes.by_E.F_n * E + slopes.by_load.F_n * load,
-    };
-}
-
-static double bound_rate_along(const FcScene* bound, const FcDirection* along) {
-    const bool floats = bound->contact->input == FC_CONTACT_LOAD; // d is no input
-    const double by[] = {along->V, floats ? 0.0 : along->d, along->E, along->load, along->V_y};
-    const size_t input[] = {offsetof(FcDrive, V), offsetof(FcDrive, d), offsetof(FcDrive, E),
-                            offsetof(FcDrive, load), offsetof(FcDrive, V_y)};
-    double change = 0.0;
-    for (int k = 0; k < 5; k++) {
-        change += by[k] != 0.0 ? by[k] * fc_bound_rate_slope(bound, input[k]) : 0.0;
+// The direction for a scene of the bound: the static bound has no curve, but the ratio as a factor.
+static FcDirection direction_of_bound(const FcScene* scene, FcDirection along) {
+    if (scene->friction->model != FC_ELASTIC_PLASTIC) {
+        along.log_limit += along.staticRatio != 0.0 ? along.staticRatio / scene->friction->staticRatio : 0.0;
+        along.staticRatio = 0.0;
     }
-    return change;
+    return along;
 }
 
-// D_rate_along is the derivative of D' along the direction.
 static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcRegime regime, FcBristle bristle,
-                            const ContactAlong* contact, const FcDirection* along, double D_rate_along) {
+                            const FcContactLogSlope* contact, const FcDirection* along) {
     const FcBound bound = fc_bound_in_plane(of_bound, 0.0);
     const FcContactResponse now = fc_scene_contact(scene, 0.0);
     const FcVector V = moment(scene, &now).V;
-    const double log_limit = log_limit_along(of_bound, V, contact->log_F_n, along);
+    const FcDirection along_bound = direction_of_bound(scene, *along);
+    const double log_limit = log_limit_along(of_bound, V, contact->F_n, &along_bound);
     const FcVector V_along = {along->V, along->V_y};
     const FcVector delta_along = {along->delta, along->delta_y};
     const FcVector n = direction_of_slip(scene, regime, bristle);
@@ -335,32 +322,35 @@ static Parts slipping_along(const FcScene* scene, const FcScene* of_bound, FcReg
     FcVector turning_along = perpendicular(V_along, n);
     turning_along = plus(turning_along, -product(V, n_along), n);
     turning_along = plus(turning_along, -product(V, n), n_along);
-    const FcVector with_D = plus(times(D_rate_along, n), bound.rate, n_along);
+    const FcVector with_D = plus(times(along->bound_rate, n), bound.rate, n_along);
     const double lag = size / bound.D;
-    const double lag_along = product(delta_along, n) / bound.D - lag * (log_limit - contact->log_sigma);
+    const double lag_along = product(delta_along, n) / bound.D - lag * (log_limit - contact->sigma);
     return (Parts){.V = V_along,
                    .force = plus(times(bound.limit * log_limit, n), bound.limit, n_along),
                    .delta_rate = plus(with_D, 1.0, turning_along),
                    .state_rate = plus(plus(with_D, lag, turning_along), lag_along, turning)};
 }
 
-static Parts free_along(const FcScene* scene, FcBristle bristle, const ContactAlong* contact,
+static Parts free_along(const FcScene* scene, FcBristle bristle, const FcContactLogSlope* contact,
                         const FcDirection* along) {
     const FcContactResponse now = fc_scene_contact(scene, 0.0);
     const Moment at = moment(scene, &now);
-    const double log_limit = log_limit_along(scene, at.V, contact->log_F_n, along);
+    const double log_limit = log_limit_along(scene, at.V, contact->F_n, along);
     const FcVector V_along = {along->V, along->V_y};
     if (scene->friction->model == FC_COULOMB) {
         const FcVector n = direction(at.V.x, at.V.y);
-        const FcVector turning = at.speed > 0.0 ? times(at.limit / at.speed, perpendicular(V_along, n)) : n;
+        FcVector turning = {0.0, 0.0};
+        if (V_along.x != 0.0 || V_along.y != 0.0) { // at rest the force jumps: not a number
+            turning = times(at.limit / at.speed, perpendicular(V_along, n));
+        }
         return (Parts){.V = V_along, .force = plus(turning, at.limit * log_limit, n)};
     }
     const FcVector delta = {bristle.delta, bristle.delta_y};
     const FcVector delta_along = {along->delta, along->delta_y};
-    const FcVector rate = free_rate_along(scene, &at, delta, contact->log_sigma, log_limit, along);
+    const FcVector rate = free_rate_along(scene, &at, delta, contact->sigma, log_limit, along);
     return (Parts){
         .V = V_along,
-        .force = times(at.sigma, plus(delta_along, contact->log_sigma, delta)),
+        .force = times(at.sigma, plus(delta_along, contact->sigma, delta)),
         .delta_rate = rate,
         .state_rate = rate,
     };
@@ -370,20 +360,23 @@ static Parts parts_along(const FcScene* scene, FcRegime regime, FcBristle bristl
     if (fc_scene_is_loose(scene)) {
         return (Parts){.V = {along->V, along->V_y}};
     }
-    const ContactAlong contact = contact_along(scene, along);
+    const FcContactLogSlope contact = fc_contact_along(scene, along);
     if (regime == FC_FREE) {
         return free_along(scene, bristle, &contact, along);
     }
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
-    return slipping_along(scene, &bound, regime, bristle, &contact, along, bound_rate_along(&bound, along));
+    return slipping_along(scene, &bound, regime, bristle, &contact, along);
 }
 
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along) {
     const Parts at = parts(scene, regime, bristle);
     const Parts change = parts_along(scene, regime, bristle, along);
     const FcVector F = whole_force(scene->friction, &at);
-    const FcVector F_along = whole_force(scene->friction, &change);
+    FcVector F_along = plus(whole_force(scene->friction, &change), along->sigma_2, at.V);
+    if (scene->friction->model != FC_COULOMB) {
+        F_along = plus(F_along, along->sigma_1, at.delta_rate);
+    }
     const double power = product(F_along, at.V) + product(F, change.V);
     const double stored = product(change.force, at.delta_rate) + product(at.force, change.delta_rate);
     return (FcMotion){.force = F_along,
@@ -424,32 +417,21 @@ FcVector fc_force_rate(const FcScene* scene, FcBristle bristle) {
     const FcDrive* drive = &scene->drive;
     const FcRegime regime = fc_regime(scene, bristle);
     const FcStateRates rates = fc_motion(scene, regime, bristle).rates;
-    const FcDirection in_time = {
+    FcDirection in_time = {
         .V = fc_drive_V_rate(drive, 0.0),
-        .d = scene->contact->input == FC_CONTACT_LOAD ? 0.0 : fc_drive_d_rate(drive, 0.0),
+        .d = drive->d.rate,
+        .swing = fc_drive_d_rate(drive, 0.0) - drive->d.rate,
         .E = drive->E.rate,
         .load = drive->load.rate,
         .delta = rates.delta,
         .V_y = fc_drive_velocity_y_at_phase(drive, 0.0, fc_drive_phase(drive, 0.0)).rate,
         .delta_y = rates.delta_y,
     };
-    if (fc_scene_is_loose(scene)) {
-        return times(scene->friction->sigma_2, (FcVector){in_time.V, in_time.V_y});
-    }
-    ContactAlong contact = contact_along(scene, &in_time);
-    if (scene->contact->input == FC_CONTACT_LOAD) { // which the vibration moves besides
-        const FcContactLogSlope by_d = fc_contact_slope_by_d(&scene->at_E, fc_scene_d(scene, 0.0));
-        contact.log_sigma += by_d.sigma * fc_drive_d_rate(drive, 0.0);
-        contact.log_F_n += by_d.F_n * fc_drive_d_rate(drive, 0.0);
-    }
-    Parts change;
-    if (regime == FC_FREE) {
-        change = free_along(scene, bristle, &contact, &in_time);
-    } else {
+    if (regime != FC_FREE && scene->friction->sigma_1 != 0.0) {
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(scene, regime, &friction);
-        const double acceleration = scene->friction->sigma_1 != 0.0 ? bound_acceleration(&bound) : 0.0;
-        change = slipping_along(scene, &bound, regime, bristle, &contact, &in_time, acceleration);
+        in_time.bound_rate = bound_acceleration(&bound);
     }
+    const Parts change = parts_along(scene, regime, bristle, &in_time);
     return whole_force(scene->friction, &change);
 }

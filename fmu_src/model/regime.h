@@ -96,17 +96,25 @@ FcVector fc_force(const FcScene* scene, const FcContactResponse* contact, FcBris
 
 // A direction in the space of the variables of the motion.
 typedef struct {
-    double V;       // m/s
-    double d;       // m
-    double E;       // Pa
-    double load;    // N
-    double delta;   // m
-    double V_y;     // m/s
-    double delta_y; // m
+    double V;             // m/s, with the vibration
+    double d;             // m, the input
+    double swing;         // m, by which the vibration moves the separation
+    double a_d;           // m, by which its amplitude moves the mean separation under a load
+    double E;             // Pa
+    double load;          // N
+    double delta;         // m
+    double V_y;           // m/s, with the vibration
+    double delta_y;       // m
+    double log_limit;     // 1, of F_C or mu, over itself
+    double log_stiffness; // 1, of contact.sigma or stiffnessScale, over itself
+    double staticRatio;   // 1, 0 in laws that do not use it
+    double V_S;           // m/s
+    double sigma_1;       // N s/m
+    double sigma_2;       // N s/m
+    double bound_rate;    // m/s, of the rate of the bound, for a bristle that slips
 } FcDirection;
 
-// The derivative of the motion along the direction, by the chain rule; of the rate of a bound by a central
-// difference.
+// The derivative of the motion along the direction, by the chain rule.
 FcMotion fc_motion_along(const FcScene* scene, FcRegime regime, FcBristle bristle, const FcDirection* along);
 
 // Time derivative of (F_t, F_y) [N/s] of a bristle that is within its bound, with the rates of the inputs in

@@ -48,3 +48,17 @@ double fc_log_bessel_I0(double x) {
     }
     return x + log(sum / (SQRT_PI * sqrt(2.0 * x)));
 }
+
+// Gauss's continued fraction x / (2 + x x / (4 + x x / (6 + ...))), from the k-th level on, whose effect is below
+// e^(-k^2 / x).
+double fc_bessel_ratio(double x) {
+    assert(!(x < 0.0));
+    if (x > 1e8) {
+        return 1.0 - 0.5 / x;
+    }
+    double ratio = 0.0;
+    for (double k = floor(20.0 + 8.0 * sqrt(x)); k >= 1.0; k -= 1.0) {
+        ratio = x / (2.0 * k + x * ratio);
+    }
+    return ratio;
+}

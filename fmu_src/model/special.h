@@ -11,4 +11,7 @@ double fc_upper_gamma_3_2(double x);
 // ln I_0(x) of the modified Bessel function for x >= 0: ln of the mean of e^(x cos) over a period.
 double fc_log_bessel_I0(double x);
 
+// Its derivative I_1(x) / I_0(x).
+double fc_bessel_ratio(double x);
+
 #endif

@@ -15,7 +15,8 @@
 
 #include "solver/methods.h"
 
-#ifdef FC_WITH_SUNDIALS
+// FC_NO_CVODE leaves it out of any build: SUNDIALS takes memory from the heap, which some targets do not have.
+#if defined(FC_WITH_SUNDIALS) && !defined(FC_NO_CVODE)
 
 #include <assert.h>
 #include <cvode/cvode.h>

@@ -111,10 +111,10 @@ CALLS = [
         ("order = 2", "V"),
     ),
     BadCall(
-        "directional derivative in a parameter",
+        "directional derivative in a fixed parameter",
         BETWEEN_STEPS,
-        lambda i: i.directional(["F_t"], {"F_C": 1.0})[0],
-        ("F_C", "input"),
+        lambda i: i.directional(["F_t"], {"contact.R_q": 1.0})[0],
+        ("contact.R_q", "tunable"),
     ),
     BadCall(
         "unknown log category",
@@ -167,10 +167,10 @@ CALLS = [
         kind=MODEL_EXCHANGE,
     ),
     BadCall(
-        "F_C set in continuous-time mode",
+        "contact.R_q set in continuous-time mode",
         CONTINUOUS,
-        lambda i: i.set({"F_C": 50.0}),
-        ("F_C", "event mode"),
+        lambda i: i.set({"contact.R_q": 5e-6}),
+        ("contact.R_q", "fixed"),
         kind=MODEL_EXCHANGE,
     ),
     BadCall(

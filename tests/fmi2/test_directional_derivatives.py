@@ -1,14 +1,16 @@
-"""fmi2GetDirectionalDerivative: every output to every input, against central differences through the FMU."""
+"""fmi2GetDirectionalDerivative: outputs and rates by inputs and tunable parameters, against differences."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
+from ctypes import c_double
 
 import numpy as np
 import pytest
-from fmi_library import OK, Instance
+from fmi_library import CO_SIMULATION, ERROR, MODEL_EXCHANGE, OK, Instance
 
-from workshop.description import description
+from workshop.description import description, read
 
 # test_settled_force.py has the derivatives of F_t_settled and F_y_settled.
 OUTPUTS = tuple(
@@ -159,6 +161,14 @@ def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instanc
         ):
             if not output.endswith("_mean"):  # of the step before
                 assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
+    for name in ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma"):
+        (start,) = instance.get(name)
+        status, exact = instance.directional(FORCES, {name: 1.0})
+        assert status == OK
+        expected, smooth = by_richardson(instance, name, 1e-4 * start, FORCES)
+        assert smooth.all(), name
+        size = np.hypot(*instance.get(*FORCES)) / start
+        assert exact == pytest.approx(expected, rel=1e-8, abs=1e-8 * size), name
 
 
 def test_a_direction_is_the_sum_of_its_parts(new_instance: Callable[..., Instance]) -> None:
@@ -191,3 +201,193 @@ def test_a_jump_that_moves_the_bristle_a_little(new_instance: Callable[..., Inst
     status, (slope,) = instance.directional(["F_t"], {"d": 1.0})
     assert status == OK
     assert slope == pytest.approx(-0.176 * instance.get("F_n")[0] * 3.0 / 6e-6, rel=1e-7)
+
+
+LAWS = (1, 2, 3, 4)  # Dahl, Coulomb, ElasticPlastic, LuGre
+TUNABLE = tuple(variable.name for variable in read().modelVariables if variable.variability == "tunable")
+STATES = ("delta", "W_f", "Q_f", "delta_y")
+RATES = tuple(f"der({name})" for name in STATES)
+
+
+def drawn(number: int) -> tuple[dict[str, int], dict[str, float], float]:
+    """Enumerations and values of a seeded scene, and a time after its start."""
+    rng = np.random.default_rng([62, number])
+
+    def between(low: float, high: float) -> float:
+        return float(low * (high / low) ** rng.random())
+
+    law = LAWS[number % 4]
+    choices = {
+        "friction.model": law,
+        "friction.limit": int(rng.integers(1, 3)),
+        "contact.model": int(rng.integers(1, 4)),
+        "contact.input": int(rng.integers(1, 3)),
+    }
+    stiffness, V_1 = between(1e6, 1e9), between(1e-2, 1.0)
+    across = number // 4 % 2
+    reach = between(0.2, 0.9) * 20.0 / stiffness  # within the least bound
+    values = {
+        "V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0),
+        "V_y": across * between(1e-2, 1.0),
+        "d": 14e-6 * between(0.9, 1.1),
+        "load": 312.0 * between(0.7, 1.4),
+        "F_C": between(30.0, 90.0),
+        "friction.mu": between(0.12, 0.3),
+        "friction.staticRatio": 1.0 + between(0.1, 1.0),
+        "friction.V_S": between(0.1, 1.0),
+        "friction.sigma_1": between(0.1, 10.0),
+        "friction.sigma_2": between(0.1, 10.0),
+        "contact.sigma": stiffness,
+        "contact.stiffnessScale": between(0.5, 2.0) * (1e-6 if choices["contact.model"] == 1 else 1e-3),
+        "vibration.f": between(1e4, 4e4),
+        "vibration.V_1": V_1,
+        "vibration.a_d": between(1e-7, 2e-6),
+        "vibration.phase_d": float(rng.uniform(-3.0, 3.0)),
+        "vibration.V_2": across * V_1 * between(0.1, 1.0),
+        "vibration.phase_2": float(rng.uniform(-3.0, 3.0)),
+        "delta_0": reach,
+        "delta_y_0": across * reach * float(rng.uniform(-0.5, 0.5)),
+    }
+    return choices, values, between(1e-6, 1e-4)
+
+
+def scale_of(name: str, values: dict[str, float]) -> float:
+    """The change of a parameter with which the contact becomes another one, within its bounds."""
+    if "phase" in name:
+        return 1.0
+    if name == "vibration.a_d":
+        return min(2e-6, values[name])  # m, R_q over lambda
+    if name in ("vibration.f", "time"):
+        return 5e2 if name == "vibration.f" else 1e-5  # Hz, s, which turn the phase by some tenths
+    if name == "friction.staticRatio":
+        return values[name] - 1.0
+    return min(values["friction.V_S"], values[name]) if "V_" in name else values[name]
+
+
+def by_richardson(
+    instance: Instance, name: str, step: float, unknown: Sequence[str]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Central differences of order 6, and whether they tell of a smooth function there."""
+    start, *here = instance.get(name, *unknown)
+
+    def at(x: float) -> np.ndarray:
+        set_it = instance.call("fmi2SetTime", c_double(x)) if name == "time" else instance.set({name: x})
+        assert set_it == OK
+        return np.array(instance.get(*unknown))
+
+    steps = np.array([[step], [step / 2], [step / 4]])
+    above, below = (np.array([at(start + side * h) for h in steps.ravel()]) for side in (1, -1))
+    at(start)
+    first = (above - below) / (2 * steps)
+    second = (4 * first[1:] - first[:-1]) / 3
+    sixth = (16 * second[1] - second[0]) / 15
+    bend = np.abs(above + below - 2 * np.array(here)) / steps  # goes with the step, but at a kink
+    rounding = 1e-11 * (np.abs(here) / step + np.abs(sixth))
+    smooth = (bend[2] <= 0.4 * bend[0] + 1e-9 * np.abs(sixth) + rounding) & (
+        np.abs(sixth - second[1]) <= 1e-6 * np.abs(sixth) + rounding
+    )
+    return sixth, smooth
+
+
+def prepared(
+    new_instance: Callable[..., Instance], kind: int, number: int
+) -> tuple[Instance, dict[str, float]]:
+    """After a step of co-simulation; in model exchange at some time, slipping in a third of the scenes."""
+    choices, values, t = drawn(number)
+    instance = new_instance(kind=kind)
+    slips = kind == MODEL_EXCHANGE and number % 3 == 0
+    assert instance.choose(choices) == OK
+    assert instance.set(values | ({"delta_0": 1e-3} if slips else {})) == OK
+    if kind == CO_SIMULATION:
+        instance.initialize()
+        assert instance.step(0.0, t) == OK
+    else:
+        instance.bring_to("continuous-time mode")
+        assert instance.call("fmi2SetTime", c_double(t)) == OK
+    return instance, values
+
+
+@pytest.mark.parametrize("part", range(8))
+@pytest.mark.parametrize("kind", [CO_SIMULATION, MODEL_EXCHANGE])
+def test_by_every_tunable_parameter(new_instance: Callable[..., Instance], kind: int, part: int) -> None:
+    """Eight digits, of the derivative or of the output over the parameter's scale; by time too."""
+    of_step = {*STATES, "F_t_mean", "F_y_mean"} if kind == CO_SIMULATION else set()
+    unknown = tuple(name for name in (*OUTPUTS, *RATES) if name not in of_step)
+    asked = graded = 0
+    for number in range(25 * part, 25 * part + 25):
+        if kind == MODEL_EXCHANGE and number % 4 == LAWS.index(2):
+            continue  # Coulomb is refused there
+        instance, values = prepared(new_instance, kind, number)
+        here = np.abs(instance.get(*unknown))
+        for name in (*TUNABLE, "time") if kind == MODEL_EXCHANGE else TUNABLE:
+            if values.get(name) == 0.0:
+                continue  # at its bound
+            scale = scale_of(name, values)
+            status, exact = instance.directional(unknown, {name: 1.0})
+            assert status == OK, instance.messages
+            expected, smooth = by_richardson(instance, name, 0.005 * scale, unknown)
+            error = np.abs(np.array(exact) - expected) / (np.abs(expected) + here / scale + 1e-300)
+            asked, graded = asked + len(unknown), graded + int(smooth.sum())
+            wrong = smooth & (error > 1e-8)
+            assert not wrong.any(), (number, name, np.array(unknown)[wrong], error[wrong])
+        instance.free()
+    assert graded > 0.95 * asked
+
+
+def test_a_bristle_that_slips_by_parameters_of_its_bound(new_instance: Callable[..., Instance]) -> None:
+    """In co-simulation it stays on a bound that comes nearer: F_t is the limit then, and the damping's."""
+    instance = new_instance()
+    assert instance.choose({**ELASTIC_PLASTIC, "contact.model": 2}) == OK
+    assert instance.set({"V": 0.5, "friction.sigma_1": 20.0}) == OK
+    instance.initialize()
+    assert instance.step(0.0, 1e-3) == OK
+    for name, slope in {
+        "F_C": 1.0,
+        "contact.sigma": 0.0,
+        "friction.sigma_1": 0.0,
+        "friction.sigma_2": 0.5,
+    }.items():
+        assert instance.directional(["F_t"], {name: 1.0}) == (OK, [pytest.approx(slope, abs=1e-12)]), name
+
+
+def test_a_bristle_of_lugre_that_slips_along_its_static_bound(new_instance: Callable[..., Instance]) -> None:
+    """The load falls faster than the bristle relaxes: F_t is the static limit, staticRatio mu F_n."""
+    instance = new_instance(kind=MODEL_EXCHANGE)
+    assert instance.choose({**LUGRE, **PRESSED, "contact.model": 2}) == OK
+    values = {"V": 0.01, "contact.sigma": 1e5, "vibration.a_d": 1e-6, "vibration.phase_d": -1.5}
+    assert instance.set({**values, **DAMPED, "friction.staticRatio": 1.4, "delta_0": 1.0}) == OK
+    instance.bring_to("continuous-time mode")
+    F_n, delta = instance.get("F_n", "delta")
+    assert 1e5 * delta == pytest.approx(1.4 * 0.176 * F_n, rel=1e-12)
+    for name in ("friction.staticRatio", "friction.mu", "contact.sigma", "vibration.a_d", "vibration.f"):
+        (start,) = instance.get(name)
+        status, exact = instance.directional(("F_t", *RATES), {name: 1.0})
+        assert status == OK
+        expected, _ = by_richardson(instance, name, 1e-3 * start, ("F_t", *RATES))
+        size = np.abs(instance.get("F_t", *RATES)) / start
+        assert np.all(np.abs(exact - expected) <= 1e-8 * (np.abs(expected) + size)), name
+
+
+REFUSED = {
+    "of the last step": ({}, {}, "step complete", "F_t_mean", "F_C", "F_t_mean has no derivative by F_C"),
+    "the state after a step": ({}, {}, "step complete", "delta", "vibration.V_1", "delta has no derivative"),
+    "by time, of the last step": ({}, {}, "step complete", "W_f", "time", "W_f has no derivative by time"),
+    "a settled start": ({"initialState": 2}, {}, "initialization", "F_t", "V", "initialState = Settled"),
+    "a fixed parameter": ({}, {}, "step complete", "sigma", "contact.R_q", "contact.R_q .*is not an input"),
+    "static friction that begins": (ELASTIC_PLASTIC, {}, "step complete", "F_t", "friction.staticRatio",
+                                    "friction.staticRatio = 1"),
+    "Coulomb at rest": ({"friction.model": 2}, {"V": 0.0}, "step complete", "F_t", "V", "does not exist"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_no_derivative_is_refused(new_instance: Callable[..., Instance], case: str) -> None:
+    choices, values, state, unknown, known, reason = REFUSED[case]
+    instance = new_instance(logging_on=True)
+    assert instance.choose(choices) == OK
+    assert instance.set(values) == OK
+    instance.bring_to(state)
+    before = instance.fingerprint()
+    assert instance.directional([unknown], {known: 1.0})[0] == ERROR
+    assert re.search(reason, instance.last_message.text)
+    assert instance.fingerprint() == before

@@ -244,6 +244,21 @@ def test_a_jump_up_of_the_bound_leaves_it_slipping(new_instance: Callable[..., I
         assert one.rates() == pytest.approx([0.0, 60.0, 60.0, 0.0], rel=1e-12)
 
 
+def test_a_parameter_set_in_continuous_time_mode_acts_like_an_input(
+    new_instance: Callable[..., Instance],
+) -> None:
+    """The bristle slips along the bound of the present F_C until the event, which puts it there."""
+    instance = new_instance(kind=MODEL_EXCHANGE)
+    assert instance.choose({"friction.model": 3, "contact.model": 2}) == OK
+    assert instance.set({"V": 0.1, "delta_0": 1e-3, "contact.sigma": 1e6}) == OK
+    instance.bring_to("continuous-time mode")
+    for F_C in (50.0, 60.0):
+        assert instance.set({"F_C": F_C}) == OK
+        assert instance.get("F_t", "der(delta)") == [pytest.approx(F_C, rel=1e-14), 0.0]
+        instance.event()
+        assert instance.get("F_t", "delta") == pytest.approx([F_C, F_C / 1e6], rel=1e-12)
+
+
 @pytest.mark.parametrize("contact", [1, 2, 3])
 def test_a_contact_opens_and_closes_at_events(new_instance: Callable[..., Instance], contact: int) -> None:
     choices = {"friction.model": LUGRE, "friction.limit": 2, "contact.input": 2, "contact.model": contact}

@@ -69,23 +69,30 @@ def test_integration_without_events(fmu: FrictionFmu) -> None:
 
 
 def test_jacobians(fmu: FrictionFmu) -> None:
-    """Exact ones, by differences of CasADi's own evaluations."""
+    """Exact ones, by time, states, inputs and parameters, and differences of CasADi's own evaluations."""
     start = {
         "friction.model": "LuGre",
         "friction.staticRatio": 1.4,
         "vibration.V_1": 0.5,
         "vibration.a_d": 1e-6,
         "vibration.V_2": 0.3,
+        "friction.sigma_1": 20.0,
+        "friction.sigma_2": 30.0,
     }
-    dae = builder(fmu, {**start, "contact.stiffnessScale": 1e-4, "friction.sigma_1": 20.0})
-    contact = dae.create("contact", ["t", "x", "u"], ["ode"])
+    dae = builder(fmu, {**start, "contact.stiffnessScale": 1e-4})
+    contact = dae.create("contact", ["t", "x", "u", "p"], ["ode"])
     values = {"V": 0.1, "d": 14e-6, "E": 58e9, "load": 312.0, "V_y": -0.07, "delta": 2e-8, "delta_y": 3e-8}
-    t, u, x = 3e-6, *(np.array([values.get(name, 1e-4) for name in names]) for names in (dae.u(), dae.x()))
-    by_x, by_u = (np.array(block) for block in contact.jacobian()(t, x, u, 0)[1:])
-    for exact, at, steps in ((by_x, x, 1e-6 * x), (by_u, u, 1e-6 * u)):
-        for k, step in enumerate(steps):
-            moved = np.outer([1.0, -1.0], step * (np.arange(len(at)) == k)) + at
-            ends = [np.array(contact(t, *((m, u) if at is x else (x, m)))).ravel() for m in moved]
-            difference = (ends[0] - ends[1]) / (2 * step)
-            scale = np.abs(ends[0]).max() / abs(at[k])
-            assert exact[:, k] == pytest.approx(difference, rel=1e-6, abs=1e-7 * scale)
+    x, u = (np.array([values.get(name, 1e-4) for name in names]) for names in (dae.x(), dae.u()))
+    at = [np.array([3e-6]), x, u, np.array(dae.get(dae.p()))]
+    blocks = [np.array(block) for block in contact.jacobian()(*at, 0)]
+    for which, exact in enumerate(blocks):
+        for k, value in enumerate(at[which]):
+            size = abs(value) or 1.0  # a phase, or what counts for nothing
+            step = 1e-6 * size * (np.arange(len(at[which])) == k)
+            ends = [
+                np.array(contact(*at[:which], at[which] + side * step, *at[which + 1 :])).ravel()
+                for side in (1, -1)
+            ]
+            difference = (ends[0] - ends[1]) / (2 * step[k])
+            scale = np.abs(ends[0]).max() / size
+            assert exact[:, k] == pytest.approx(difference, rel=1e-6, abs=1e-7 * scale), (which, k)

@@ -1,11 +1,16 @@
-"""The FMU in other hands: fmpy's validator finds nothing; libcosim and Ecos give the numbers of fmpy."""
+"""The FMU in other hands: nothing for checkers; a scene in each importer; FMPy, libcosim and Ecos agree."""
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
+import sys
 import zipfile
 from importlib.metadata import version
 from pathlib import Path
 
+import casadi
 import fmpy
 import numpy as np
 import pytest
@@ -15,17 +20,150 @@ from fmpy.validation import validate_fmu
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import OUTPUTS, SETTLED, FrictionFmu, simulate
 from frictioncontact.parameters import IDENTIFIED, TABLE_2, start_values
+from workshop.description import read
 from workshop.project import ROOT
+from workshop.reference.solution import periodic_mean
+from workshop.reference.start_values import scene_of
 
 
 def test_the_page_names_the_versions_that_are_tested() -> None:
     page = (ROOT / "docs" / "compatibility.md").read_text(encoding="utf-8")
-    for name, package in {"FMPy": "fmpy", "libcosimpy": "libcosimpy", "Ecos": "ecospy"}.items():
+    packages = {
+        "CasADi": "casadi",
+        "Ecos": "ecospy",
+        "FMPy": "fmpy",
+        "PathSim-FMI": "pathsim-fmi",
+        "fmuloader": "fmuloader",
+        "fmureader": "fmureader",
+        "fmutool": "fmu_manipulation_toolbox",
+        "libcosimpy": "libcosimpy",
+    }
+    for name, package in packages.items():
         assert f"{name} {version(package)}" in page
 
 
 def test_fmpy_validate_finds_nothing(fmu_path: Path) -> None:
     assert validate_fmu(str(fmu_path)) == []
+
+
+def fmutool(*arguments: str | Path) -> str:
+    """Its messages; a failure is the test's."""
+    command = [Path(sys.executable).with_name("fmutool"), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def test_fmutool_finds_nothing(fmu_path: Path) -> None:
+    said = fmutool("-input", fmu_path, "-check")
+    assert "compliant with FMI-2.0" in said and "No semantic error" in said
+    assert not re.search("error|warning", said.replace("No semantic error", ""), re.IGNORECASE)
+
+
+# The scene of every importer: ten steps of half a millisecond from 0, ten periods of the vibration each.
+SCENE = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.417e-7}
+STEP, STEPS = 5e-4, 10
+
+
+@pytest.fixture(scope="module")
+def mean() -> float:
+    """F_t_mean [N] at its end, by the independent reference: the bristle has settled long before."""
+    return float(periodic_mean(scene_of(SCENE)))
+
+
+def test_the_scene_in_fmpy(fmu_path: Path, mean: float) -> None:
+    result = simulate_fmu(
+        str(fmu_path),
+        start_values=SCENE,
+        output=["F_t_mean"],
+        output_interval=STEP,
+        stop_time=STEPS * STEP,
+        fmi_type="CoSimulation",
+    )
+    assert result["F_t_mean"][-1] == pytest.approx(mean, abs=1e-11)
+
+
+def test_the_scene_in_libcosim(fmu_path: Path, mean: float) -> None:
+    run = run_libcosim(fmu_path, SCENE, round(1e9 * STEP), STEPS)
+    assert run["F_t_mean"][-1] == pytest.approx(mean, abs=1e-11)
+
+
+def test_the_scene_in_ecos(fmu_path: Path, mean: float) -> None:
+    _, rows = run_ecos(fmu_path, SCENE, STEP, STEPS)
+    assert rows[-1, OUTPUTS.index("F_t_mean")] == pytest.approx(mean, abs=1e-11)
+
+
+def test_the_scene_in_fmuloader(fmu_path: Path, mean: float) -> None:
+    """With the model description that fmureader gives it."""
+    reader = pytest.importorskip("fmureader.fmi2", reason="fmureader is not installed")
+    loader = pytest.importorskip("fmuloader.fmi2", reason="fmuloader is not installed")
+    model = reader.read_model_description(fmu_path)
+    references = {variable.name: variable.value_reference for variable in model.model_variables}
+    slave = loader.Fmi2Slave(fmu_path, model_identifier=model.co_simulation.model_identifier)
+    slave.instantiate("contact", loader.Fmi2Type.CO_SIMULATION, guid=model.guid)
+    slave.setup_experiment(start_time=0.0)
+    slave.enter_initialization_mode()
+    slave.set_real([references[name] for name in SCENE], list(SCENE.values()))
+    slave.exit_initialization_mode()
+    for k in range(STEPS):
+        slave.do_step(STEP * k, STEP)
+    (end,) = slave.get_real([references["F_t_mean"]])
+    slave.terminate()
+    slave.free_instance()
+    assert end == pytest.approx(mean, abs=1e-11)
+
+
+def test_the_scene_in_pathsim(fmu_path: Path, mean: float) -> None:
+    """Every input is connected, since PathSim sets others to 0. It steps at the start of each interval."""
+    blocks = pytest.importorskip("pathsim.blocks", reason="pathsim-fmi is not installed")
+    from pathsim import Connection, Simulation
+    from pathsim_fmi import CoSimulationFMU
+
+    contact = CoSimulationFMU(str(fmu_path), start_values=SCENE, dt=STEP)
+    inputs = {v.name: float(v.start) for v in read().modelVariables if v.causality == "input"} | {"V": 0.5}
+    sources = {name: blocks.Constant(value) for name, value in inputs.items()}
+    wires = [Connection(source, contact[name]) for name, source in sources.items()]
+    Simulation([contact, *sources.values()], wires, dt=STEP, log=False).run((STEPS - 0.5) * STEP)
+    assert contact.outputs["F_t_mean"] == pytest.approx(mean, abs=1e-11)
+
+
+@pytest.mark.slow
+def test_the_scene_after_fmutool_has_compiled_it(fmu_path: Path, mean: float, tmp_path: Path) -> None:
+    bare, compiled = tmp_path / "bare.fmu", tmp_path / "compiled.fmu"
+    with zipfile.ZipFile(fmu_path) as whole, zipfile.ZipFile(bare, "w") as archive:
+        for name in whole.namelist():
+            if not name.startswith("binaries/"):
+                archive.writestr(name, whole.read(name))
+    fmutool("-input", bare, "-compile-sources", "-output", compiled)
+    with FrictionFmu(compiled) as fmu:
+        run = simulate(fmu, SCENE, STEP, STEPS, outputs=["F_t_mean"])
+    assert run["F_t_mean"][-1] == pytest.approx(mean, abs=1e-11)
+
+
+@pytest.mark.skipif(shutil.which("fmi-sim") is None, reason="fmi-sim is not installed")
+def test_the_scene_in_fmi_sim(fmu_path: Path, mean: float, tmp_path: Path) -> None:
+    result = tmp_path / "result.csv"
+    options = ["-s", "0", "-f", str(STEPS * STEP), "--step", str(STEP), "--output-interval", str(STEP)]
+    values = [part for name, value in SCENE.items() for part in ("--init-values", f"{name}={value}")]
+    told = subprocess.run(["fmi-sim", "--version"], capture_output=True, text=True)
+    (name,) = re.findall(r"fmi-sim [\d.]+", told.stdout + told.stderr)
+    assert name in (ROOT / "docs" / "compatibility.md").read_text(encoding="utf-8")
+    command = ["fmi-sim", "--model", fmu_path, "-o", result, "co-simulation", *options, *values]
+    subprocess.run(command, check=True, capture_output=True, timeout=60)
+    rows = np.genfromtxt(result, delimiter=",", names=True)
+    assert len(rows) == STEPS + 1 and rows["time"][-1] == pytest.approx(STEPS * STEP)
+    assert rows["F_t_mean"][-1] == pytest.approx(mean, abs=1e-11)
+
+
+def test_the_scene_in_casadi(fmu: FrictionFmu, mean: float) -> None:
+    """Model exchange has no mean of a step. Its F_t_settled is the limit of F_t_mean."""
+    dae = casadi.DaeBuilder("contact", str(fmu.directory))
+    for name, value in SCENE.items():
+        dae.set(name, value)
+    outputs = dae.create("outputs", ["u"], ["y"])
+    inputs = [SCENE.get(name, fmu.variables[name].start) for name in dae.u()]
+    settled = outputs([float(value) for value in inputs])[dae.y().index("F_t_settled")]
+    assert float(settled) == pytest.approx(mean, abs=1e-11)
 
 
 def test_fmpy_sends_no_input_derivatives(fmu_path: Path) -> None:

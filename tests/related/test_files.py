@@ -1,32 +1,57 @@
-"""What the FMU holds beside the model: its manifest, its parameter sets, and reference results.
+"""What the FMU holds beside the model: its manifest, parameter sets, reference results and terminals.
 
 tests/examples/test_check_reference.py has that the FMU meets them.
 """
 
 from __future__ import annotations
 
-import re
 import zipfile
 from io import BytesIO
 from pathlib import Path
-from xml.etree import ElementTree
 
 import fmpy
 import numpy as np
 import pytest
 from lxml import etree
 
+from workshop.packing.archive import CHECKSUMS
 from workshop.presets import presets
-from workshop.related.experiments import Experiment, experiments
-from workshop.related.files import CHECKSUMS, EXPERIMENTS, FOLDER, LAYERED, MANIFEST, STANDARD, files
-from workshop.related.results import COLUMNS, rows
+from workshop.related.results import COLUMNS, FOLDER, Experiment, experiments, rows
 
-SSV_SCHEMA = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
-# The roles that FMI-LS-REF 1.0.0-alpha.1 knows and that stand here.
+IN_FMU = "extra/org.fmi-standard.fmi-ls-ref"
+SCHEMAS = Path(fmpy.__file__).parent
+SSV_SCHEMA = SCHEMAS / "ssp" / "schema" / "SystemStructureParameterValues.xsd"
+FMI_SCHEMAS = SCHEMAS / "schema" / "fmi3"
+# FMI-LS-REF 1.0.0-beta.1: the roles and types that stand here, and the attributes of every manifest.
+MANIFEST_SCHEMA = f"""
+<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema" xmlns:ls="http://fmi-standard.org/fmi-ls-manifest">
+  <xs:import namespace="http://fmi-standard.org/fmi-ls-manifest"
+             schemaLocation="{(FMI_SCHEMAS / "fmi3LayeredStandardManifest.xsd").as_uri()}"/>
+  <xs:simpleType name="role"><xs:restriction base="xs:string">
+    <xs:pattern value="result|parameter|experiment/validation|meta-data"/>
+  </xs:restriction></xs:simpleType>
+  <xs:simpleType name="type"><xs:restriction base="xs:string">
+    <xs:pattern value="text/(csv|plain)|application/(x-ssp-parameter-set|x-ma-hs-experiments)"/>
+  </xs:restriction></xs:simpleType>
+  <xs:element name="fmiReferences"><xs:complexType>
+    <xs:sequence>
+      <xs:element name="Related" maxOccurs="unbounded"><xs:complexType>
+        <xs:attribute name="type" type="type" use="required"/>
+        <xs:attribute name="source" type="xs:anyURI" use="required"/>
+        <xs:attribute name="role" type="role" use="required"/>
+        <xs:attribute name="description" type="xs:string" use="required"/>
+      </xs:complexType></xs:element>
+    </xs:sequence>
+    <xs:attribute ref="ls:fmi-ls-name" use="required" fixed="org.fmi-standard.fmi-ls-ref"/>
+    <xs:attribute ref="ls:fmi-ls-version" use="required" fixed="1.0.0-beta.1"/>
+    <xs:attribute ref="ls:fmi-ls-description" use="required"/>
+  </xs:complexType></xs:element>
+</xs:schema>
+"""
 TYPES = {
     "result": "text/csv",
     "parameter": "application/x-ssp-parameter-set",
-    "experiment/validation": "application/x-ma-ls-experiments",
+    "experiment/validation": "application/x-ma-hs-experiments",
     "meta-data": "text/plain",
 }
 RUNS = [pytest.param(run, id=run.name) for run in experiments()]
@@ -37,33 +62,39 @@ def packed(fmu_path: Path) -> dict[str, bytes]:
     """The files in the FMU, by their names in the folder."""
     with zipfile.ZipFile(fmu_path) as archive:
         return {
-            name.removeprefix(f"{FOLDER}/"): archive.read(name)
+            name.removeprefix(f"{IN_FMU}/"): archive.read(name)
             for name in archive.namelist()
-            if name.startswith(f"{FOLDER}/")
+            if name.startswith(f"{IN_FMU}/")
         }
 
 
-def test_the_fmu_holds_them(packed: dict[str, bytes]) -> None:
-    assert packed == files() | {CHECKSUMS: packed[CHECKSUMS]}
-
-
-def test_the_manifest_lists_every_file_once_by_its_role_and_type(packed: dict[str, bytes]) -> None:
-    root = ElementTree.fromstring(packed[MANIFEST])
-    assert root.tag == "fmiReferences"
-    assert root.attrib == {
-        f"{{{LAYERED}}}fmi-ls-name": STANDARD,
-        f"{{{LAYERED}}}fmi-ls-version": "1.0.0-alpha.1",
-        f"{{{LAYERED}}}fmi-ls-description": (
-            "Layered Standard providing information on related files included in an FMU."
-        ),
+def test_the_fmu_holds_them_as_they_are(packed: dict[str, bytes]) -> None:
+    checksums = CHECKSUMS.removeprefix(f"{IN_FMU}/")
+    assert packed == {path.name: path.read_bytes() for path in FOLDER.iterdir()} | {
+        checksums: packed[checksums]
     }
-    sources = [element.attrib["source"] for element in root]
-    assert sorted([*sources, MANIFEST]) == sorted(packed)
-    for element in root:
-        assert element.tag == "Related"
-        assert set(element.attrib) == {"type", "source", "role", "description"}
-        assert TYPES[element.attrib["role"]] == element.attrib["type"]
-        assert re.fullmatch(r"[\w.-]+", element.attrib["source"])  # a relative URI as it stands
+
+
+def test_the_manifest_is_valid_and_lists_every_file_once(packed: dict[str, bytes]) -> None:
+    root = etree.fromstring(packed["fmi-ls-manifest.xml"])
+    etree.XMLSchema(etree.fromstring(MANIFEST_SCHEMA)).assertValid(root)
+    assert sorted(["fmi-ls-manifest.xml", *(each.get("source") for each in root)]) == sorted(packed)
+    assert all(TYPES[each.get("role")] == each.get("type") for each in root)
+
+
+def test_the_terminals_are_pairs_of_signals(fmu_path: Path) -> None:
+    schema = etree.XMLSchema(etree.parse(FMI_SCHEMAS / "fmi3TerminalsAndIcons.xsd"))
+    with zipfile.ZipFile(fmu_path) as archive:
+        root = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    schema.assertValid(root)
+    pairs = {
+        terminal.get("name"): [(each.get("variableName"), each.get("memberName")) for each in terminal]
+        for terminal in root.iter("Terminal")
+    }
+    assert pairs == {
+        "along": [("V", "velocity"), ("F_t", "force")],
+        "across": [("V_y", "velocity"), ("F_y", "force")],
+    }
 
 
 def test_parameter_sets_are_those_of_the_presets(packed: dict[str, bytes]) -> None:
@@ -85,13 +116,15 @@ def test_parameter_sets_are_those_of_the_presets(packed: dict[str, bytes]) -> No
 
 
 def test_the_experiments_name_what_is_there(packed: dict[str, bytes]) -> None:
-    root = ElementTree.fromstring(packed[EXPERIMENTS])
-    assert root.tag == "Experiments" and root.attrib.keys() == {"name", "description"}
-    assert [element.attrib["name"] for element in root] == [run.name for run in experiments()]
+    root = etree.fromstring(packed["validation.exp"])
+    assert root.tag == "Experiments" and set(root.keys()) == {"name", "description"}
     for element in root:
-        for part in element:
-            assert part.attrib["source"] in packed
-        steps = float(element.attrib["stopTime"]) / float(element.attrib["stepSize"])
+        assert {part.tag: part.get("source") in packed for part in element}["References"]
+        has_values = bool(next(run for run in experiments() if run.name == element.get("name")).values)
+        assert [part.get("source") for part in element.iter("Parameters")] == (
+            [f"{element.get('name')}.ssv"] if has_values else []
+        )
+        steps = float(element.get("stopTime")) / float(element.get("stepSize"))
         assert steps == pytest.approx(round(steps)) and steps < 1000  # fmpy thins out longer runs
 
 

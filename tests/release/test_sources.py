@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 from fmpy import supported_platforms
+from fmpy.model_description import read_build_description
+from lxml import etree
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, simulate
 
@@ -26,6 +28,15 @@ def without_binaries(fmu_path: Path, tmp_path: Path) -> Path:
     return bare
 
 
+@pytest.fixture
+def broken_sundials(tmp_path: Path) -> Path:
+    """A folder of headers that no compiler accepts."""
+    header = tmp_path / "sundials" / "cvode" / "cvode.h"
+    header.parent.mkdir(parents=True)
+    header.write_text("#error SUNDIALS is used\n")
+    return header.parents[1]
+
+
 def check_runs_without_cvode(path: Path, whole: FrictionFmu) -> None:
     start = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
     with FrictionFmu(path) as compiled:
@@ -35,11 +46,30 @@ def check_runs_without_cvode(path: Path, whole: FrictionFmu) -> None:
             compiled.session({"solver.method": "cvode"})
 
 
-def test_fmpy_compile(without_binaries: Path, fmu: FrictionFmu) -> None:
+def test_the_build_description_lists_the_sources(fmu_path: Path) -> None:
+    """FMPy reads it against its schema; the interfaces of the model description list the same files."""
+    (build,) = read_build_description(fmu_path)
+    (files,) = build.sourceFileSets
+    assert build.modelIdentifier == "FrictionContact"
+    assert [definition.name for definition in files.preprocessorDefinitions] == ["FC_NO_CVODE"]
+    with zipfile.ZipFile(fmu_path) as archive:
+        packed = [name.removeprefix("sources/") for name in archive.namelist() if name.endswith(".c")]
+        xml = etree.fromstring(archive.read("modelDescription.xml"))
+    assert sorted(files.sourceFiles) == sorted(packed)
+    for interface in ("ModelExchange", "CoSimulation"):
+        assert [file.get("name") for file in xml.find(f"{interface}/SourceFiles")] == files.sourceFiles
+
+
+def test_fmpy_compile(without_binaries: Path, broken_sundials: Path, fmu: FrictionFmu) -> None:
+    """By the list of sources: FMPy 0.3.32 reads no build description of FMI 2.0. SUNDIALS is ignored."""
     command = [sys.executable, "-m", "fmpy", "compile", str(without_binaries), "--configuration", "Debug"]
     folder = Path(sys.executable).parent  # fmpy calls cmake from the path
     done = subprocess.run(
-        command, env={"PATH": f"{folder}:/usr/bin:/bin"}, capture_output=True, text=True, timeout=600
+        command,
+        env={"PATH": f"{folder}:/usr/bin:/bin", "CPATH": str(broken_sundials)},
+        capture_output=True,
+        text=True,
+        timeout=600,
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     check_runs_without_cvode(without_binaries, fmu)
@@ -47,16 +77,20 @@ def test_fmpy_compile(without_binaries: Path, fmu: FrictionFmu) -> None:
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="there is no cc")
 @pytest.mark.skipif(sys.platform != "linux", reason="the command is Linux's")
-def test_any_c11_compiler(without_binaries: Path, fmu: FrictionFmu, tmp_path: Path) -> None:
-    """One plain command, strict and without a warning."""
+@pytest.mark.parametrize("is_defined", [False, True])
+def test_any_c11_compiler(
+    without_binaries: Path, broken_sundials: Path, fmu: FrictionFmu, tmp_path: Path, is_defined: bool
+) -> None:
+    """One plain command, strict and without a warning. FC_NO_CVODE holds where SUNDIALS is, too."""
     with zipfile.ZipFile(without_binaries) as archive:
         archive.extractall(tmp_path / "fmu")
     sources = sorted(str(path) for path in (tmp_path / "fmu" / "sources").rglob("*.c"))
     target = tmp_path / "fmu" / "binaries" / "linux64" / "FrictionContact.so"
     target.parent.mkdir(parents=True)
-    flags = ["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O0", "-fPIC", "-shared", "-Isources"]
+    options = ["-DFC_NO_CVODE", "-DFC_WITH_SUNDIALS"] if is_defined else []
+    options += ["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O0", "-fPIC", "-shared"]
     done = subprocess.run(
-        ["cc", *flags, *sources, "-o", str(target), "-lm"],
+        ["cc", *options, "-Isources", f"-I{broken_sundials}", *sources, "-o", str(target), "-lm"],
         cwd=tmp_path / "fmu",
         capture_output=True,
         text=True,

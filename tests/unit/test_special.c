@@ -32,6 +32,15 @@ int main(void) {
         CHECK_NEAR(fc_upper_gamma_3_2(x), cases[i].upper_3_2, 3e-15 + 3e-16 * x);
         CHECK_NEAR(fc_log_bessel_I0(x), cases[i].log_I0, 3e-15);
     }
+    const double ratios[][2] = {{0.5, 0.24249961258080190984},
+                                {4.0, 0.8635226110245506348},
+                                {30.0, 0.98318955536533603201},
+                                {1e4, 0.99994999874987489097},
+                                {1e9, 0.9999999995}};
+    for (size_t i = 0; i < sizeof ratios / sizeof *ratios; i++) {
+        CHECK_NEAR(fc_bessel_ratio(ratios[i][0]), ratios[i][1], 3e-15);
+    }
+    CHECK(fc_bessel_ratio(0.0) == 0.0);
     CHECK(fc_lower_gamma_3_2(0.0) == 0.0 && fc_lower_gamma_5_2(0.0) == 0.0 && fc_log_bessel_I0(0.0) == 0.0);
     return check_result();
 }

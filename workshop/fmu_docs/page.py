@@ -17,7 +17,13 @@ from workshop.project import ROOT
 
 FMU_DOCS = ROOT / "docs" / "fmu"
 PLOTS = ("force", "mean")
-CAUSALITIES = {"input": "Inputs", "output": "Outputs", "parameter": "Parameters", "local": "Local variables"}
+CAUSALITIES = {
+    "input": "Inputs",
+    "output": "Outputs",
+    "parameter": "Parameters",
+    "local": "Local variables",
+    "independent": "Independent variable",
+}
 # How units and the letters in them are written.
 TYPOGRAPHY = {
     "um": "µm",

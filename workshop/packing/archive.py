@@ -73,6 +73,21 @@ def _with_sources(path: Path, text: str, interface: str, sources: list[str]) -> 
     return f"{head}<{interface}\n{attributes}{listed}{rest}"
 
 
+def build_description(identifier: str, sources: list[str]) -> bytes:
+    """sources/buildDescription.xml, which FMI 2.0.4 takes from FMI 3.0: what a compiler needs."""
+    files = "".join(f'      <SourceFile name="{name}"/>\n' for name in sources)
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<fmiBuildDescription fmiVersion="3.0">
+  <BuildConfiguration modelIdentifier="{identifier}">
+    <SourceFileSet language="C11">
+{files}      <PreprocessorDefinition name="FC_NO_CVODE" value="1"/>
+      <IncludeDirectory name="."/>
+    </SourceFileSet>
+  </BuildConfiguration>
+</fmiBuildDescription>
+""".encode()
+
+
 def checksums(entries: dict[str, bytes]) -> bytes:
     """One line for each entry, as sha256sum writes and reads it."""
     lines = (f"{hashlib.sha256(entries[name]).hexdigest()}  {name}\n" for name in sorted(entries))
@@ -91,6 +106,7 @@ def write_fmu(
     entries = {"modelDescription.xml": packaged_xml(xml, c_files)}
     entries |= {binary_name(platform, identifier): whole_binary(path) for platform, path in binaries.items()}
     entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
+    entries["sources/buildDescription.xml"] = build_description(identifier, c_files)
     entries |= {name: path.read_bytes() for name, path in others.items()}
     entries[CHECKSUMS] = checksums(entries)
     with whole_file(output) as unfinished, zipfile.ZipFile(unfinished, "w") as archive:

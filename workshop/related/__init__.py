@@ -1,4 +1,4 @@
-"""Files that the FMU holds beside the model: parameter sets, and experiments with the results they must give.
+"""Reference results that the FMU carries, in data/related/ beside its parameter sets and their manifest.
 
-They stand in extra/org.fmi-standard.fmi-ls-ref/, under the manifest of the layered standard FMI-LS-REF.
+The folder is extra/org.fmi-standard.fmi-ls-ref/ of the FMU, by the layered standard FMI-LS-REF 1.0.0-beta.1.
 """

@@ -7,16 +7,50 @@ is the FMU's.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from lxml import etree
 
 from frictioncontact.command import write_csv
+from workshop.presets import presets
+from workshop.project import ROOT
 from workshop.reference import solution as reference
 from workshop.reference.arithmetic import MP, MULTIPRECISION, multiprecision
 from workshop.reference.contact import area
 from workshop.reference.scene import Drive
 from workshop.reference.start_values import scene_of
-from workshop.related.experiments import Experiment, experiments
 
+FOLDER = ROOT / "data" / "related"
 COLUMNS = ("time", "F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One run from t = 0; times in s."""
+
+    name: str
+    values: dict[str, float | str]  # start values that differ from those of the model description
+    stop: float
+    step: float
+
+    @property
+    def result(self) -> Path:
+        return FOLDER / f"{self.name}.csv"
+
+
+def experiments() -> list[Experiment]:
+    """Those of validation.exp."""
+    values = {preset.id: preset.values for preset in presets()}
+    return [
+        Experiment(
+            each.get("name"),
+            values.get(each.get("name"), {}),
+            float(each.get("stopTime")),
+            float(each.get("stepSize")),
+        )
+        for each in etree.parse(FOLDER / "validation.exp").getroot()
+    ]
 
 
 def rows(experiment: Experiment) -> Iterator[dict[str, float]]:

@@ -84,6 +84,7 @@ CONTENTS = {
         "Overview": "examples/README",
         "A mass on a belt": "examples/stick-slip/README",
         "A friction law": "examples/friction-law/README",
+        "A calibration by gradient": "examples/calibration/README",
         "A slow plant": "examples/ultrasonic-slider/README",
         "An ultrasonic motor": "examples/ultrasonic-motor/README",
         "Validation in CI": "examples/ci-validation/README",
