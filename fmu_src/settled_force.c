@@ -162,7 +162,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcV
     const double force = fc_scene_mean_limit(&scene, 0.0);
     double range = first_range(&held, &scene, input);
     const double usual = force / fabs(range);
-    double least = DBL_MAX;
+    double least = INFINITY;
     const bool is_flat =
         range == 0.0 || fc_scene_is_loose(&scene); // an input that counts for nothing, or no contact
     *slope = is_flat ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};
@@ -174,7 +174,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, FcInput input, FcV
             return false;
         }
         const double size = hypot(found.x, found.y);
-        if (error < least * (size + usual)) {
+        if (isinf(least) || error < least * (size + usual)) {
             least = error / (size + usual);
             *slope = found;
         }
