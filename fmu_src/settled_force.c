@@ -197,7 +197,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     const double force = fc_scene_mean_limit(&scene, 0.0);
     double range = first_range(&held, &scene, variable);
     const double usual = force / fabs(range);
-    double least = DBL_MAX;
+    double least = INFINITY;
     const bool is_flat =
         range == 0.0 || fc_scene_is_loose(&scene); // an input that counts for nothing, or no contact
     *slope = is_flat ? (FcVector){0.0, 0.0} : (FcVector){NAN, NAN};
@@ -213,7 +213,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
         const bool is_good =
             missed <= GOOD_OVER_FORCE * force &&
             (error <= GOOD_OVER_SLOPE * size || error * fabs(range) <= GOOD_OVER_FORCE * force);
-        if (is_good || error < least * (size + usual)) {
+        if (is_good || isinf(least) || error < least * (size + usual)) {
             least = error / (size + usual);
             *slope = found;
         }

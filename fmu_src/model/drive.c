@@ -179,7 +179,7 @@ FcVelocity fc_drive_velocity(const FcDrive* drive, double t) {
 double fc_velocity_time_of_change(const FcVelocity* at, double change) {
     const double time = fc_time_to_move(fabs(at->rate), fabs(at->curvature), change);
     const double third = fabs(at->third);
-    return third * time * time * time <= 6.0 * change ? time : cbrt(6.0 * change / third);
+    return third == 0.0 || third * time * time * time <= 6.0 * change ? time : cbrt(6.0 * change / third);
 }
 
 double fc_drive_d_rate_at_phase(const FcDrive* drive, FcPhase at_t) {
@@ -423,8 +423,11 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
 
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     assert(t >= 0.0 && end >= t);
+    if (drive->vibration.V_1 == 0.0 && drive->V.rate == 0.0) {
+        return none_before(end);
+    }
     if (drive->vibration.V_1 == 0.0) {
-        const double root = -drive->V.value / drive->V.rate; // no root if V' = 0: infinite or NaN
+        const double root = -drive->V.value / drive->V.rate;
         return root > t && root < end ? event_at(drive, root, true) : none_before(end);
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)

@@ -95,8 +95,11 @@ double fc_drive_largest_E(const FcDrive* drive, double h);     // upper bound of
 double fc_drive_largest_speed(const FcDrive* drive, double h); // upper bound of |V| over [0, h], in the plane
 
 // The time [s] in which a quantity with this rate and curvature, neither negative, moves by change: the root
-// of rate x + curvature x^2 / 2 = change.
+// of rate x + curvature x^2 / 2 = change; infinite if it does not move.
 static inline double fc_time_to_move(double rate, double curvature, double change) {
+    if (rate == 0.0 && curvature == 0.0) {
+        return INFINITY;
+    }
     return 2.0 * change / (rate + sqrt(rate * rate + 2.0 * curvature * change));
 }
 

@@ -1,5 +1,6 @@
 #include "model/regime.h"
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -399,10 +400,10 @@ static double bound_acceleration(const FcScene* bound) {
         const double across = fabs(drive->V_y.rate) + drive->omega * drive->vibration.V_2;
         pace += (fabs(drive->V.rate) + drive->omega * drive->vibration.V_1 + across) / bound->friction->V_S;
     }
-    double tau = 1e-4 / pace; // the error is some tau^2
-    if (!isfinite(tau)) {     // it stands still, but for less than the smallest number
+    if (pace < DBL_MIN) { // it stands still
         return 0.0;
     }
+    double tau = 1e-4 / pace; // the error is some tau^2
     tau = copysign(tau, fc_scene_d_rate(bound, 0.0));
     const double apart = fc_bound_in_plane(bound, tau).rate;
     if (fc_scene_d(bound, -tau) > 0.0) {
