@@ -8,10 +8,10 @@ enum { START = FC_STAGES, LAST = FC_STAGES - 1 };
 
 FcKind fc_kind(const FcCrossing* crossing) {
     const int model = crossing->interval->scene->friction->model;
-    return model == FC_COULOMB         ? FC_NO_BRISTLE
-           : crossing->is_slipping     ? FC_SLIPS
-           : model == FC_ELASTIC_PLASTIC ? FC_STICKS
-                                         : FC_RELAXES;
+    return model == FC_COULOMB || crossing->is_rigid ? FC_NO_BRISTLE
+           : crossing->is_slipping                   ? FC_SLIPS
+           : model == FC_ELASTIC_PLASTIC             ? FC_STICKS
+                                                     : FC_RELAXES;
 }
 
 FcVector fc_crossing_delta(const FcCrossing* crossing) {
@@ -136,9 +136,8 @@ static double least_path(const FcCrossing* crossing, const FcPart* part, double 
                  fc_drive_displacement(&crossing->across, turn, end));
 }
 
-// The path from t to the interval's end, at the least. The ways of the parts are found once.
-static double path_left(void* context, double t) {
-    FcCrossing* crossing = context;
+// The ways of the parts are found once.
+double fc_path_left(FcCrossing* crossing, double t) {
     if (!crossing->has_ways) {
         double after = 0.0;
         for (int i = crossing->count - 1; i >= 0; i--) {
@@ -151,6 +150,8 @@ static double path_left(void* context, double t) {
     return crossing->way[crossing->number] +
            least_path(crossing, &crossing->part, t, crossing->part.end);
 }
+
+static double path_left(void* context, double t) { return fc_path_left(context, t); }
 
 double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
     const FcKind kind = fc_kind(crossing);

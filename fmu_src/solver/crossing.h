@@ -27,6 +27,7 @@ typedef struct {
     bool is_slipping; // along its bound
     bool touches;     // a free bristle is at its bound
     bool is_bounded;
+    bool is_rigid; // rounding cannot see the bristle's length beside the path: its force is Coulomb's
     int meetings;
     double heat;          // J, of break-away
     double drag;          // m2/s, of its drops
@@ -54,6 +55,9 @@ FcPlaneCoefficients fc_coefficients_at(const FcCrossing* crossing, double t);
 
 // The largest velocity [m/s] of the bristle and its bound together.
 double fc_largest_push(const FcCrossing* crossing);
+
+// The path from the place reached in the present part to the interval's end, at the least [m].
+double fc_path_left(FcCrossing* crossing, double t);
 
 // Begins a part, and the same part again in the variable of the present motion: a stuck bristle moves smoothly in t, one
 // that slips or relaxes in u.

@@ -154,12 +154,15 @@ static double free_periods_by_steps(Walk* walk, double left) {
     }
     double free = 0.0; // periods that are free
     double more = 1.0; // periods that are not all free, once they are found
-    while (free < left && !meets_after(walk, more - 1.0)) {
+    while (free < left && walk->total.evaluations <= FC_MOST_EVALUATIONS && !meets_after(walk, more - 1.0)) {
         free = more;
         more *= 2.0;
     }
-    while (free < left && more - free > 1.0) {
+    while (free < left && more - free > 1.0 && walk->total.evaluations <= FC_MOST_EVALUATIONS) {
         const double middle = floor(0.5 * (free + more));
+        if (middle == free || middle == more) { // beyond 2^53
+            break;
+        }
         if (meets_after(walk, middle - 1.0)) {
             more = middle;
         } else {

@@ -61,11 +61,11 @@ static inline FcStepResult fc_result_from(FcBristle start, double evaluations) {
         .delta = start.delta, .slips = start.slips, .evaluations = evaluations, .delta_y = start.delta_y};
 }
 
-// The largest number of evaluations in one communication step, some 40 s of computing. A step that needs more
-// is refused, so that no host seems to hang. Twice as many would double the wait. Only inputs that move over
-// many orders of magnitude reach it.
+// The largest number of evaluations in one communication step or one settled state, less than a second of computing. A
+// step that needs more is refused, so that no host seems to hang. Only inputs that move over many orders of magnitude reach
+// it, and motions that never repeat.
 #ifndef FC_MOST_EVALUATIONS
-#define FC_MOST_EVALUATIONS 1e8
+#define FC_MOST_EVALUATIONS 5e6
 #endif
 
 #endif

@@ -23,7 +23,7 @@ static void slip_with(FcCrossing* crossing, double force, double delta, double e
 static void take_coulomb(FcCrossing* crossing) {
     const double t = crossing->at.t;
     const double end = crossing->part.end;
-    const double force = crossing->part.side * fc_coefficients_at(crossing, end).static_limit;
+    const double force = crossing->part.side * fc_coefficients_at(crossing, end).limit;
     const double work = force * fc_drive_displacement(&crossing->interval->scene->drive, t, end);
     const FcMap map = {.impulse_offset = force * (end - t), .work_offset = work, .heat_offset = work};
     fc_append_known(crossing, &map, end);
@@ -138,8 +138,10 @@ bool fc_take_still(FcCrossing* crossing) {
     const bool has_moving_curve = fc_has_stribeck_curve(friction) && !fc_drive_V_is_constant(&scene->drive);
     switch (fc_kind(crossing)) {
     case FC_NO_BRISTLE:
-        take_coulomb(crossing);
-        return true;
+        if (!has_moving_curve) {
+            take_coulomb(crossing);
+        }
+        return !has_moving_curve;
     case FC_SLIPS:
         if (friction->model == FC_ELASTIC_PLASTIC && is_still && !has_moving_curve) {
             slip_to_reversal(crossing);
