@@ -1,6 +1,7 @@
 #include "solver/control.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -39,7 +40,9 @@ static inline double sinh_of_small(double x) {
 }
 
 // The longest panel in u for a function entire in t, to that part of its size: the strip of sinh(u) is pi / 2.
-static double longest_for(double part) { return FC_PI / sinh_of_small(-rough_log(part) / ORDER); }
+static double longest_for(double part) {
+    return FC_PI / sinh_of_small(fc_most(0.01, -rough_log(part)) / ORDER);
+}
 
 void fc_control_start(FcControl* control, const FcPlane* plane, const FcInterval* interval,
                       double transient) {
@@ -73,7 +76,9 @@ static bool is_relaxing(const FcControl* control, FcKind kind) {
 // The lag of the force behind sigma and g, over the force, if the bristle relaxes at that rate: their rate, times the time
 // of relaxation or of the layer.
 static double lag_for(const FcControl* control, const FcStraight* in, double rate) {
-    return control->interval->pace.log_sigma * (rate * in->length > 1.0 ? 1.0 / rate : in->length);
+    const double pace = control->interval->pace.log_sigma;
+    const double relaxation = rate > 1.0 / DBL_MAX ? 1.0 / rate : INFINITY; // s
+    return pace > 0.0 ? pace * fc_least(relaxation, in->length) : 0.0;
 }
 
 // The largest relaxation in a panel, while a transient is left.
@@ -103,7 +108,8 @@ static double span_of_stuck(const FcControl* control, const FcReached* at) {
     const double speed = hypot(x.V, y.V);
     const double D = at->rate > 0.0 ? speed / at->rate : interval->saturation;
     const double bend = hypot(x.rate, y.rate);
-    const double soon = speed + bend > 0.0 ? fc_time_to_move(speed, bend, FC_MOST_OF_BOUND * D) : 0.0;
+    const double soon =
+        speed + bend > 0.0 && D > 0.0 ? fc_time_to_move(speed, bend, FC_MOST_OF_BOUND * D) : 0.0;
     return soon > 0.0 ? soon : INFINITY;
 }
 
@@ -166,7 +172,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
         const double lag = lag_for(control, in, x < 0.0 ? 0.0 : at->rate);
         const double part_of_lag = fc_most(control->interval->tolerance, fc_least(1.0, lag));
         span *= rough_exp(-rough_log(part_of_lag) / ORDER);
-        longest = longest_for(fc_least(0.99, control->interval->tolerance / part_of_lag));
+        longest = longest_for(control->interval->tolerance / part_of_lag);
     }
     double h = proposed > 0.0 ? fc_least(left, proposed) : left;
     h = isinf(in->length) ? fc_least(h, span)

@@ -82,7 +82,9 @@ static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
         const Sample at = sample_at(&drive, 0.0);
-        times[count++] = -at.rate / at.bend; // not a number if nothing moves
+        if (at.bend > 0.0 && fabs(at.rate) < at.bend * DBL_MAX) {
+            times[count++] = -at.rate / at.bend;
+        }
         return count;
     }
     const double period = 1.0 / drive.vibration.f;

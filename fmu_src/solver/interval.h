@@ -3,7 +3,8 @@
 #ifndef FC_SOLVER_INTERVAL_H
 #define FC_SOLVER_INTERVAL_H
 
-#include <stdbool.h>
+#include <float.h>
+#include <math.h>
 
 #include "model/scene.h"
 #include "solver/solver.h"
@@ -18,7 +19,10 @@ typedef struct {
 FcPace fc_pace(const FcScene* scene, double h);
 
 // Time [s] over which the phase, ln(sigma) or ln(g) moves by 1, at the least; infinite if nothing moves.
-static inline double fc_smooth_time(const FcPace* pace) { return 1.0 / (pace->phase + pace->log_sigma); }
+static inline double fc_smooth_time(const FcPace* pace) {
+    const double rate = pace->phase + pace->log_sigma;
+    return rate > 1.0 / DBL_MAX ? 1.0 / rate : INFINITY;
+}
 
 typedef struct {
     const FcScene* scene;

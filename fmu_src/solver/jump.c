@@ -174,7 +174,7 @@ static double next_place(const Ramp* ramp, double s, double step) {
         next = fmin(next,
                     s + fmax(STEP_OF_CURVE * V_S / FACTOR_OF_STEP, V - END_OF_CURVE * FACTOR_OF_STEP * V_S) /
                             change);
-        const double reversal = -ramp->along / ramp->along_change;
+        const double reversal = ramp->along_change != 0.0 ? -ramp->along / ramp->along_change : -1.0;
         next = reversal > s && reversal < next ? reversal : next;
     }
     const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;

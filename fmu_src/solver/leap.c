@@ -54,6 +54,9 @@ static double begin_of_periods(const FcScene* scene, double k, double count) {
     const double period = 1.0 / drive->vibration.f;
     const double V = drive->V.value + k * period * drive->V.rate;
     const double V_end = V + count * period * drive->V.rate;
+    if (drive->vibration.V_1 == 0.0) {
+        return 0.0;
+    }
     const double most = fmax(fabs(V), fabs(V_end)) / drive->vibration.V_1;
     const double opposed = fc_part_until_opposed(drive, V + V_end);
     return most > NEAR_KINK && most < 1.0 + 1e-6 && fabs(opposed - 0.5) > 0.25

@@ -208,9 +208,11 @@ static Variable variable_of(const Block* block) {
         const double middle = drive->V.value + 0.5 * last * block->period * drive->V.rate;
         const double rate = drive->V.rate * block->period / V_1;
         const double V = drive->V.value / V_1 + fc_part_until_opposed(drive, middle) * rate;
-        const Variable found = {true, V, rate, acos(V), acos(V + last * rate)};
-        if (fabs(found.to - found.from) > LEAST_RANGE) { // not if V does not reverse: then it is no number
-            return found;
+        if (fmax(fabs(V), fabs(V + last * rate)) <= 1.0) { // else V does not reverse
+            const Variable found = {true, V, rate, acos(V), acos(V + last * rate)};
+            if (fabs(found.to - found.from) > LEAST_RANGE) {
+                return found;
+            }
         }
     }
     return (Variable){.to = last};

@@ -112,10 +112,12 @@ static void take_free(const Walk* walk, double n, FcStepResult* total) {
 static void settle(const Walk* walk, FcStepResult* total) {
     const FcMap* map = &walk->free_map;
     const FcMap* across = &walk->free_map_across;
-    const double target = map->offset / map->relaxation;
-    const double target_y = across->offset / map->relaxation;
-    total->delta = isfinite(target) ? target : total->delta;
-    total->delta_y = walk->law.is_planar && isfinite(target_y) ? target_y : total->delta_y;
+    const double least = 1e-300 * fmax(1.0, fmax(fabs(map->offset), fabs(across->offset)));
+    if (!(map->relaxation > least)) {
+        return; // nothing relaxes
+    }
+    total->delta = map->offset / map->relaxation;
+    total->delta_y = walk->law.is_planar ? across->offset / map->relaxation : total->delta_y;
 }
 
 // Whether the period after n free ones meets the bound; n may be infinite.
@@ -262,12 +264,18 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         const FcVector* by = met[i].by_start;
         x = (FcVector){by[0].x * x.x + by[1].x * x.y, by[0].y * x.x + by[1].y * x.y};
         y = (FcVector){by[0].x * y.x + by[1].x * y.y, by[0].y * y.x + by[1].y * y.y};
+        if (!(hypot(x.x, x.y) + hypot(y.x, y.y) < 1e100)) { // chaos
+            return false;
+        }
     }
     const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
+    if (hypot(moved.x, moved.y) >= *least || all == 0.0) {
+        return false;
+    }
     const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
                             ((1.0 - x.x) * moved.y + x.y * moved.x) / all}; // what the start is to move by
     const double length = hypot(start.x, start.y);
-    if (!isfinite(length) || hypot(moved.x, moved.y) >= *least) {
+    if (!isfinite(length)) {
         return false;
     }
     *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
@@ -396,8 +404,7 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
 static FcSolverOptions options_until_end(const FcSolverOptions* options, const FcScene* scene, double h) {
     FcSolverOptions own = *options;
     const FcScene end = fc_scene_from(scene, h);
-    const double stiffness = fc_scene_largest_stiffness(&end, 0.0);
-    own.stiffness_at_end = isfinite(stiffness) ? stiffness : 0.0; // open at the end
+    own.stiffness_at_end = end.is_open ? 0.0 : fc_scene_largest_stiffness(&end, 0.0);
     return own;
 }
 
