@@ -289,6 +289,9 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
     bool is_exact = false;
     for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
         find_to_bound(crossing, nodes, panel);
+        if (crossing->touches) { // by rounding it may begin beyond
+            panel->to_bound[START] = fmin(panel->to_bound[START], 0.0);
+        }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
         *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));
         const double meets = is_exact ? 2.0 : fc_first_rise(panel->to_bound, *over);

@@ -99,12 +99,19 @@ static void cross(FcCrossing* crossing) {
     }
 }
 
-// Whether a bristle begins in a slip. It leaves its bound at once if it is not pushed.
-static bool begins_slipping(const FcCrossing* crossing, FcBristle bristle) {
-    const bool has_memory = fc_has_static_friction(crossing->interval->scene->friction);
+// A bristle at its bound begins in a slip, which it leaves at once if it is not pushed. One with static friction that
+// sticks there touches its bound.
+static void begin_at_bound(FcCrossing* crossing, FcBristle bristle) {
+    const bool remembers_stick =
+        fc_has_static_friction(crossing->interval->scene->friction) && bristle.slips == 0;
     const double D = fc_plane_radius(crossing->plane, &crossing->first, bristle.slips);
-    return crossing->is_bounded && fc_size(bristle) >= D * (1.0 - 1e-13) &&
-           (!has_memory || bristle.slips != 0);
+    crossing->slips = bristle.slips;
+    if (crossing->is_bounded && remembers_stick) {
+        crossing->touches = fc_size(bristle) >= D * (1.0 - FC_ROUNDING_OF_BOUND);
+    } else if (crossing->is_bounded) {
+        crossing->is_slipping = fc_size(bristle) >= D * (1.0 - 1e-13);
+    }
+    crossing->meetings = crossing->is_slipping;
 }
 
 static void put_result(const FcCrossing* crossing, FcStepResult* result) {
@@ -146,9 +153,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
         crossing.along.relaxation = crossing.across_map.relaxation = 0.0;
         crossing.along.offset = crossing.across_map.offset = 0.0;
     } else {
-        crossing.slips = bristle.slips;
-        crossing.is_slipping = begins_slipping(&crossing, bristle);
-        crossing.meetings = crossing.is_slipping;
+        begin_at_bound(&crossing, bristle);
     }
     start_control(&crossing, 0.0);
     cross(&crossing);
