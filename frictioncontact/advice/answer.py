@@ -6,20 +6,21 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
-import numpy.typing as npt
 
 from frictioncontact.advice.coulomb_bound import coulomb_errors
-from frictioncontact.advice.question import LEAST, Output, Question, question
+from frictioncontact.advice.question import LEAST, Output, Question, question, scene_values
+from frictioncontact.advice.stuck_mass import MASTERS, Coupling, Master, coupling
 from frictioncontact.doubts import WITH_STATIC_FRICTION
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, with_arguments
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves
+from frictioncontact.values import pairs
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from frictioncontact.tables import Source
 
 MOST = 1e-2  # solver.tolerance
 TIGHT = 1e-10  # the tolerance that grades
@@ -72,29 +73,62 @@ class Advice:
         return "\n".join(lines)
 
 
+@overload
 def advise(
     scene: Mapping[str, Value] | None = None,
     *,
     accuracy: float = 1e-3,
     step: float | None = None,
     output: Output = "both",
-    inputs: Mapping[str, npt.ArrayLike] | pd.DataFrame | None = None,
+    inputs: Source | None = None,
     linear: bool = False,
     phases: tuple[float, ...] = PHASES,
+    mass: None = None,
     fmu: str | Path | None = None,
-) -> Advice:
+) -> Advice: ...
+
+
+@overload
+def advise(
+    scene: Mapping[str, Value] | None = None,
+    *,
+    mass: float,
+    step: float,
+    master: Master = "Jacobi",
+    fmu: str | Path | None = None,
+) -> Coupling: ...
+
+
+@with_arguments
+def advise(
+    scene: Mapping[str, Value] | None = None,
+    *,
+    accuracy: float = 1e-3,
+    step: float | None = None,
+    output: Output = "both",
+    inputs: Source | None = None,
+    linear: bool = False,
+    phases: tuple[float, ...] = PHASES,
+    mass: float | None = None,
+    master: Master = MASTERS[0],
+    fmu: str | Path | None = None,
+) -> Advice | Coupling:
     """Settings with which F_t and F_t_mean are accurate enough, relative to F_C and to the mean friction.
 
     scene     start values that describe it, SI units
     accuracy  largest error, over F_C and over the mean friction, from 1e-8 to 1
     step      communication step, s (a period of the vibration)
     output    which output must be accurate: "F_t", "F_t_mean" or "both"
-    inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load, V_y: the steps
-              are its own, the first 400 are graded
+    inputs    a table as of `simulate`, in even steps: the steps are its own, the first 400 are graded; a
+              position gives its mean velocity over each step
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
+    mass      kg, that moves with the contact: advises on the coupling instead, while the contact sticks
+    master    how the master exchanges values with it: "Jacobi", "Jacobi, reread", "Jacobi, linear" or
+              "Gauss-Seidel"
     fmu       another .fmu file of this model
-    returns   an `Advice`: settings, start_values, mean and error [N]; str() prints them
+    returns   an `Advice`: settings, start_values, mean and error [N]; of a mass a `Coupling`: settings,
+              start_values, stable (the range of friction.sigma_1). str() prints them
     raises    UserError: the question is wrong, or the FMU refuses the scene
     warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 
@@ -106,6 +140,11 @@ def advise(
         fc.simulate(advice.start_values, stop=0.01, step=1e-3, outputs=["F_t_mean"])
     """
     loaded = opened(fmu)
+    if mass is not None:
+        for name, given in (("inputs", inputs is not None), ("linear", linear)):
+            if given:
+                raise UserError(f"--mass does not take --{name}: it looks at the contact stuck at its start values")
+        return coupling(loaded, scene_values(loaded, pairs(scene, "scene")), mass, step, master)
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)
     mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
     if scale == 0.0:

@@ -24,13 +24,21 @@ Jacobi and Gauss-Seidel.
 """
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
 
-from frictioncontact.fmu import Value
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu, Session, Value
+from frictioncontact.values import real
 
-JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = "Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel"
+Master = Literal["Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel"]
+MASTERS: tuple[Master, ...] = ("Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel")
+JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = MASTERS
 # The largest H sqrt(sigma / m) that some sigma_1 makes stable: there the two edges meet.
 LARGEST_STEP = {JACOBI: 0.5, REREAD: 2.0, LINEAR: math.sqrt(2.0 + math.sqrt(8.0)), GAUSS_SEIDEL: 2.0}
-MASTERS = tuple(LARGEST_STEP)
+MASSES = (1e-12, 1e12)  # kg
+STEP_LENGTHS = (1e-15, 1e9)  # s
 MARGIN = 1.1  # of the advised sigma_1 over the smallest stable one, at which a swing never dies out
 
 
@@ -90,3 +98,61 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
             f"If you read F_t_mean, add H sigma / 2 = {H * sigma / 2:.6g} N s/m to each of these values."
         )
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}
+
+
+@dataclass(frozen=True, repr=False)
+class Coupling:
+    """How to couple the contact to a mass while it sticks. str() prints it."""
+
+    given: Mapping[str, Value]  # the scene
+    settings: dict[str, Value]  # friction.sigma_1, the smallest stable value and a tenth; empty if none is
+    stable: tuple[float, float] | None  # N s/m, of friction.sigma_1 at this step
+    why: str = field(repr=False)
+
+    @property
+    def start_values(self) -> dict[str, Value]:
+        """The scene's and the advised ones: start values for `simulate`."""
+        return {**self.given, **self.settings}
+
+    def __repr__(self) -> str:
+        settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
+        return f"<coupling: {settings or 'no friction.sigma_1 is stable'}>"
+
+    def __str__(self) -> str:
+        return self.why
+
+
+def coupling(
+    fmu: FrictionFmu, values: Mapping[str, Value], mass: float, step: float | None, master: str
+) -> Coupling:
+    """The advice for a mass [kg] and a step [s]; UserError says what is wrong."""
+    if master not in MASTERS:
+        raise UserError(f"--master = {master!r}: must be one of {', '.join(map(repr, MASTERS))}")
+    mass = real(mass, "mass")
+    between("--mass", mass, "kg", MASSES)
+    if step is None:
+        raise UserError("--mass needs --step, the communication step")
+    between("--step", real(step, "step"), "s", STEP_LENGTHS)
+    if values.get("friction.model") == "Coulomb":
+        raise UserError("--mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
+    with fmu.session(values) as session:
+        sigma = stiffest(session)
+    if sigma == 0.0:
+        raise UserError("--mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
+    why, settings = advice(mass, sigma, master, step)
+    return Coupling(values, settings, damping_range(mass, sigma, master, step), why)
+
+
+def stiffest(session: Session) -> float:
+    """The largest stiffness [N/m] over a period of the vibration, at 64 of its moments."""
+    found = session.get("sigma")
+    if session.get("vibration.a_d") > 0.0:
+        for _ in range(64):
+            session.step(1.0 / (64.0 * session.get("vibration.f")))
+            found = max(found, session.get("sigma"))
+    return found
+
+
+def between(name: str, value: float, unit: str, limits: tuple[float, float]) -> None:
+    if not limits[0] <= value <= limits[1]:
+        raise UserError(f"{name} {value:g} {unit}: must lie between {limits[0]:g} and {limits[1]:g} {unit}")

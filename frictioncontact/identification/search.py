@@ -95,6 +95,7 @@ def start_points(experiment: Experiment, target: np.ndarray) -> np.ndarray:
     unit = qmc.Sobol(n, scramble=False).random_base2(4 + n)
     sample = np.where(np.isfinite(given), given, low + (high - low) * unit)
     points = np.array([experiment.start(row) for row in sample])
+    points = experiment.with_linear(points, experiment.forces(points, COARSE))
     squares = np.sum(experiment.misfits(points, target, COARSE) ** 2, axis=1)  # nan where the FMU refuses
     if np.isnan(squares).all():
         raise FrictionError(experiment.problem)
@@ -128,11 +129,14 @@ def described(experiment: Experiment, target: np.ndarray, found: list[Minimum]) 
     else:
         variance, quantile = math.nan, math.nan
     residuals = r[:rows] / experiment.weight
+    covariance = variance * inverse(jacobian.T @ jacobian)
     return Fit(
         parameters=experiment.parameters,
         target=target,
         minima=(best, *minima[1:]),
-        covariance=(variance * inverse(jacobian.T @ jacobian))[:n, :n],
+        covariance=covariance[:n, :n],
+        slopes=jacobian,
+        nuisances=_of_instrument(experiment, point, quantile * np.sqrt(np.diag(covariance))),
         degrees=degrees,
         quantile=quantile,
         variance=variance,
@@ -140,7 +144,17 @@ def described(experiment: Experiment, target: np.ndarray, found: list[Minimum]) 
         model=target[:rows] + residuals,
         residuals=residuals,
         correlated=correlated,
+        in_time=experiment.word == "sample",
     )
+
+
+def _of_instrument(experiment: Experiment, point: np.ndarray, widths: np.ndarray) -> dict[str, tuple[float, float]]:
+    """Values and half-widths of 95 % of what was asked of the instrument."""
+    found = {}
+    for name, k in experiment.places.items():
+        scale = experiment.nuisances[k - len(experiment.parameters)].scale
+        found[name] = scale * float(point[k]), scale * float(widths[k])
+    return found
 
 
 def _on_bounds(experiment: Experiment, point: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from frictioncontact.batch.many import processors, shown_progress
 from frictioncontact.batch.prepare import MOST_SAMPLES, check_whole
 from frictioncontact.batch.unpacked import description_and_library
 from frictioncontact.doubts import warn_of
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, with_arguments
 from frictioncontact.sweeps import workers as at
 from frictioncontact.sweeps.folder import Folder
 from frictioncontact.sweeps.group import Group, Job
@@ -58,6 +58,7 @@ class Swept:
         return "\n".join(lines)
 
 
+@with_arguments
 def sweep(
     *,
     output: str | Path,
@@ -179,5 +180,5 @@ def _scenarios(
             raise UserError("--csv does not go with --vary or --random: the file names all scenarios")
         return from_csv(variables, csv)
     if not vary:
-        raise UserError("nothing to sweep: give vary (--vary NAME=VALUES) or csv (--csv FILE)")
+        raise UserError("nothing to sweep: give --vary or --csv")
     return grid(variables, vary) if random is None else drawn(variables, vary, random, seed)
