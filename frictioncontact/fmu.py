@@ -192,6 +192,10 @@ class Session(Closing):
             self.close()
             raise
 
+    def __repr__(self) -> str:
+        state = "closed" if self.slave.component is None else f"at {self.time:g} s"
+        return f"<session of {self.fmu.path.name}, {state}>"
+
     def _call(self, function: Callable[..., Any], *arguments: object) -> Any:
         if not self._in_use.acquire(blocking=False):
             raise UserError("another thread uses this session; open one for each thread")

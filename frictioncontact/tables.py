@@ -127,6 +127,7 @@ def headed(
     """Number of each column that has a name -> the column, without cells; places: of headings, for errors."""
     others = _others(named)
     found: dict[int, Column] = {}
+    idle: list[str] = []
     for k, (cell, place) in enumerate(zip(headings, places, strict=True)):
         name, unit = _parted(cell)
         asked = others.pop(cell, None) or others.pop(name, None)
@@ -135,11 +136,11 @@ def headed(
             if not cell:
                 continue  # an index
             if named:
-                warn([f"{place}: column {shown(cell)} is not used"])
+                idle.append(f"{place}: column {shown(cell)} is not used")
                 continue
             if not name:
                 raise UserError(f"{place}: heading {cell!r} is not of the form 'name [unit]' or 'name'")
-            hint = did_you_mean(name, units) or f"; these are: {', '.join(name for name in units if SUFFIX not in name)}"
+            hint = did_you_mean(name, units, likeness=0.7) or f"; these are: {', '.join(name for name in units if SUFFIX not in name)}"
             raise UserError(f"{place}: {name} is no {what}{hint}")
         if name in [column.name for column in found.values()]:
             raise UserError(f"{place}: {name} is there twice")
@@ -147,6 +148,7 @@ def headed(
         found[k] = Column(name, cell, scale, ())
     for missing, (name, _) in others.items():
         raise UserError(f"column {name}: there is no heading {shown(missing)}; these are: {', '.join(headings)}")
+    warn(idle)
     return found
 
 

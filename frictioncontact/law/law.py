@@ -6,13 +6,14 @@ import math
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import numpy.typing as npt
 
+from frictioncontact import resources
 from frictioncontact.doubts import warn_of
-from frictioncontact.errors import UserError
+from frictioncontact.errors import UserError, quiet
 from frictioncontact.fmu import Value, opened
 from frictioncontact.values import numbers_of
 
@@ -42,6 +43,15 @@ class FrictionLaw:
     def __repr__(self) -> str:
         return f"<friction law of {self.start}>"
 
+    def __reduce__(self) -> tuple[Callable[..., FrictionLaw], tuple[dict[str, Value], Path | None]]:
+        return _again, (self.start, None if self._fmu.path == resources.fmu() else self._fmu.path)
+
+    @overload
+    def __call__(self, V: float, **inputs: float) -> float: ...
+
+    @overload
+    def __call__(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray: ...
+
     def __call__(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
         """The force at velocities.
 
@@ -53,9 +63,23 @@ class FrictionLaw:
         """
         return self._at(V, inputs, lambda: self._session.get(FORCE))
 
+    @overload
+    def transverse(self, V: float, **inputs: float) -> float: ...
+
+    @overload
+    def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray: ...
+
     def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
         """The force transverse to V, F_y_settled [N]; arguments as in a call."""
         return self._at(V, inputs, lambda: self._session.get(TRANSVERSE))
+
+    @overload
+    def derivative(self, V: float, by: str = "V", *, of: str = FORCE, **inputs: float) -> float: ...
+
+    @overload
+    def derivative(
+        self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
+    ) -> float | np.ndarray: ...
 
     def derivative(
         self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
@@ -152,3 +176,9 @@ def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | 
         print(law(np.linspace(0.1, 2.0, 5), E=[[44.6e9], [58.6e9]]).shape)
     """
     return FrictionLaw(scene, fmu)
+
+
+def _again(scene: Mapping[str, Value], fmu: Path | None) -> FrictionLaw:
+    """A law that was pickled or copied, whose user was warned already."""
+    with quiet():
+        return FrictionLaw(scene, fmu)

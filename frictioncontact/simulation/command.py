@@ -4,10 +4,11 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from frictioncontact.command import add_fmu, add_set, command_line, new_file, print_frame, say_written
+from frictioncontact.command import add_column, add_fmu, add_set, command_line, new_file, print_frame, say_written
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, opened
 from frictioncontact.simulation.run import simulate
+from frictioncontact.values import assignments
 
 DESCRIPTION = """\
 Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file, whose
@@ -28,6 +29,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help=f"columns time and any of {', '.join(INPUTS)}, or position; linear between their samples; in SI "
         "units, or with a unit as 'V [mm/s]'",
     )  # fmt: skip
+    add_column(parser)
     parser.add_argument(
         "--outputs", nargs="+", default=OUTPUTS, metavar="NAME", help=f"variables ({' '.join(OUTPUTS)})"
     )
@@ -44,6 +46,7 @@ def run(options: argparse.Namespace) -> None:
         stop=options.stop,
         step=options.step,
         inputs=options.inputs,
+        columns=assignments(options.column, "--column"),
         outputs=options.outputs,
         fmu=options.fmu,
     )

@@ -77,19 +77,22 @@ def moving(
     )
 
 
-def samples(source: Source, known: Variables, stop: float | None = None) -> Samples:
+def samples(
+    source: Source, known: Variables, stop: float | None = None, columns: Mapping[str, str] | None = None
+) -> Samples:
     """The samples of a table with a column time and any inputs, or position; UserError if it is wrong.
 
-    What was measured is left out. stop [s]: warns of samples beyond it.
+    What was measured is left out. stop [s]: warns of samples beyond it. columns: headings of other names.
     """
     units = known.units(("input",))
     names = ", ".join(units)
-    table = read(source, "inputs", {**units, **OWN, **{f"{n}{SUFFIX}": u for n, u in OWN.items()}}, "input of the FMU")
-    columns = {name: each for name, each in table.numbers().items() if name in (*units, TIME, POSITION)}
+    measured = {f"{name}{SUFFIX}": unit for name, unit in OWN.items()}
+    table = read(source, "inputs", {**units, **OWN, **measured}, "input of the FMU", columns)
+    found = {name: each for name, each in table.numbers().items() if name in (*units, TIME, POSITION)}
     where = table.where
-    if TIME not in columns or len(columns) < 2:
+    if TIME not in found or len(found) < 2:
         raise UserError(f"{where}: needs a column time [s] and at least one of {names}, {POSITION}")
-    time, position = columns.pop(TIME), columns.pop(POSITION, None)
+    time, position = found.pop(TIME), found.pop(POSITION, None)
     if not len(time):
         raise UserError(f"{where}: no samples")
     backward = np.flatnonzero(np.diff(time) < 0.0)
@@ -100,10 +103,10 @@ def samples(source: Source, known: Variables, stop: float | None = None) -> Samp
     if beyond:
         warn([f"{where}: {beyond} of {len(time)} samples are after stop = {stop:g} s; the last is at {time[-1]:g} s"])
     if position is None:
-        return Samples(time, columns)
-    if "V" in columns or len(time) < 2 or (np.diff(time) <= 0.0).any():
+        return Samples(time, found)
+    if "V" in found or len(time) < 2 or (np.diff(time) <= 0.0).any():
         raise UserError(f"{where}: position needs two samples, a time that grows, and no V beside it")
-    found = moving(time, columns, position)
-    ends = {name: np.concatenate([each[:1], each, each[-1:]]) for name, each in found.values.items()}
+    pieces = moving(time, found, position)
+    ends = {name: np.concatenate([each[:1], each, each[-1:]]) for name, each in pieces.values.items()}
     ends["V"][[0, -1]] = 0.0  # it rests outside of its samples
-    return Samples(np.concatenate([time[:1], found.time, time[-1:]]), ends)
+    return Samples(np.concatenate([time[:1], pieces.time, time[-1:]]), ends)

@@ -28,6 +28,7 @@ def simulate(
     stop: float,
     step: float,
     inputs: Source | None = None,
+    columns: Mapping[str, str] | None = None,
     outputs: Sequence[str] = OUTPUTS,
     fmu: str | Path | None = None,
 ) -> pd.DataFrame:
@@ -41,6 +42,7 @@ def simulate(
               "V [mm/s]": linear between the samples, held before the first and after the last; two samples
               at one time are a jump. position in place of V: its velocity. Samples need not coincide with
               steps
+    columns   headings of other names in inputs: "V" or "V [mm/s]" -> the heading there
     outputs   names of the variables to read
     fmu       another .fmu file of this model
     returns   a frame of ceil(stop / step) + 1 rows: the column time [s], and one for each output, SI units
@@ -58,7 +60,7 @@ def simulate(
         loaded.known.readable(name, "outputs")
     values = loaded.known.values(start, "start")
     ends = _ends(real(stop, "stop"), real(step, "step"))
-    moving = samples(inputs, loaded.known, float(ends[-1])) if inputs is not None else Samples(np.zeros(1), {})
+    moving = samples(inputs, loaded.known, float(ends[-1]), columns) if inputs is not None else Samples(np.zeros(1), {})
     times = moving.steps(ends)
     begins = np.concatenate([[0.0], times[:-1]])
     lengths = times - begins
