@@ -56,6 +56,7 @@ class Series:
     constants: dict[str, Any]
     uncertainty: np.ndarray | None = None  # N
     position: np.ndarray | None = None
+    told: np.ndarray | None = None  # the samples whose force is fitted; None: all
     scatter: float = 0.0  # m, of the measured position, which is smoothed by as much
 
     @property
@@ -193,4 +194,13 @@ def _series(
                 f"{path}: column {name}: a series takes inputs of the FMU, d, E and load; "
                 "give it as a start value"
             )
-    return Series(time, V, columns, force, constants, uncertainty, position, scatter)
+    told = _told(V) if constants.get("friction.model") == "Coulomb" else None
+    return Series(time, V, columns, force, constants, uncertainty, position, told, scatter)
+
+
+def _told(V: np.ndarray) -> np.ndarray:
+    """Samples whose Coulomb friction the record tells: not those beside a reversal, which have either sign."""
+    turns = np.flatnonzero(V[1:] * V[:-1] <= 0.0)
+    told = np.ones(len(V), dtype=bool)
+    told[turns] = told[turns + 1] = False
+    return told

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy import stats
 
 from frictioncontact.doubts import BRISTLES, unused
 from frictioncontact.errors import FrictionError
@@ -15,7 +16,7 @@ from frictioncontact.identification.experiment import Experiment
 from frictioncontact.identification.judge import misfits
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import search
-from frictioncontact.identification.suspicion import visible
+from frictioncontact.identification.suspicion import CHANCE, visible
 
 V_1 = "vibration.V_1"
 SHOWS = 3.0  # standard deviations by which a fault's residuals must exceed the scatter to be seen
@@ -63,12 +64,17 @@ def hidden(experiment: Experiment, result: Fit) -> list[str]:
 def remedies(experiment: Experiment, result: Fit) -> list[str]:
     """What explains a fit that failed: each fault that does alone, the best first, or some together."""
     found = [(one, fit) for one in _alone(experiment) if (fit := _fitted(one.experiment)) is not None]
-    good = [(one, fit) for one, fit in found if fit.squares < result.squares and not misfits(one.experiment, fit)]
+    good = [(one, fit) for one, fit in found if _better(fit, result) and not misfits(one.experiment, fit)]
     if good:
         good.sort(key=lambda pair: pair[1].squares)
         return [_said(one.words, one.experiment, fit) for one, fit in good]
     together = _together(experiment, result)
     return [together] if together else []
+
+
+def _better(fit: Fit, than: Fit) -> bool:
+    """By more than one coordinate more takes off of scatter."""
+    return than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance
 
 
 def _alone(experiment: Experiment) -> list[Remedy]:

@@ -19,7 +19,7 @@ def picture(experiment: Experiment, result: Fit) -> Figure:
     points = 41 if experiment.word == "row" else 11  # a side of the map; a record costs more than rows
     figure, (left, right) = style.subplots(1, 2, size=(10.0, 4.2))
     if isinstance(experiment.rows, Series):
-        _draw_record(left, experiment.rows, result)
+        _draw_record(left, experiment, result)
     else:
         _draw_means(left, experiment, result)
     if len(result.parameters) == 1:
@@ -29,9 +29,9 @@ def picture(experiment: Experiment, result: Fit) -> Figure:
     return figure
 
 
-def _draw_record(axes: Axes, series: Series, result: Fit) -> None:
-    axes.plot(series.time, series.force, color=style.SOURCE["paper"], lw=1.2, label="measured")
-    axes.plot(series.time, result.model, color=style.SOURCE["identified"], lw=1.2, label="fitted")
+def _draw_record(axes: Axes, experiment: Experiment, result: Fit) -> None:
+    axes.plot(experiment.time, experiment.force, color=style.SOURCE["paper"], lw=1.2, label="measured")
+    axes.plot(experiment.time, result.model, color=style.SOURCE["identified"], lw=1.2, label="fitted")
     axes.set(xlabel="time [s]", ylabel="friction force [N]", title="Measured and fitted force")
     axes.legend(loc="lower right")
 

@@ -34,12 +34,14 @@ class Record(Experiment):
         instrument: Sequence[str] = (),
     ) -> None:
         self.rows = series
-        uncertainty = None if series.uncertainty is None else list(series.uncertainty)
+        told = slice(None) if series.told is None else series.told
+        force, time = series.force[told], series.time[told]
+        uncertainty = None if series.uncertainty is None else list(series.uncertainty[told])
         sign = -1.0 if "sign" in instrument else 1.0
-        first = [Nuisance(sign * float(series.force[0]), False)]
+        first = [Nuisance(sign * float(force[0]), False)]
         first += [Nuisance(1.0, False)] if "delay" in instrument else []
         super().__init__(
-            fmu, parameters, list(series.force), uncertainty, first, list(series.time), instrument
+            fmu, parameters, list(force), uncertainty, first, list(time), instrument
         )
         held = {name: float(values[0]) for name, values in series.inputs.items()}
         self._constants = {**series.constants, **held, "V": float(series.V[0])}
