@@ -83,7 +83,7 @@ def test_units_of_another_kind_are_refused(unit: str, si: str) -> None:
         ("time;V;F_t\n0,5;1.5;2\n", "log.csv: has decimal commas and decimal points, as in '1.5'; write one of them"),
         ("time;V;F_t\n1;2;1.234,5\n", "row 1 (line 2), column 'F_t': '1.234,5' is not a number"),
         ("time;V\nms;mm/h/s\n1;2\n", "line 1, column 2: V takes a unit like m/s, not 'mm/h/s'"),
-        ("t;v\n1;2\n", "log.csv, line 1, column 1: t is no column; did you mean"),
+        ("t;v\n1;2\n", "log.csv, line 1, column 1: t is no column; these are: time, V, F_t"),
         ("time;V;V\n1;2;3\n", "line 1, column 3: V is there twice"),
         ("time;V\n1;2;3\n", "row 1 (line 2): 3 cells, but 2 columns"),
     ],
