@@ -22,7 +22,7 @@ from frictioncontact.identification.experiment import INSTRUMENT, Experiment, Ro
 from frictioncontact.identification.fit import fit as fitted
 from frictioncontact.identification.parameter import Parameter, parameter
 from frictioncontact.identification.result import Fit
-from frictioncontact.identification.search import Tell, silent
+from frictioncontact.identification.search import Tell, search, silent
 from frictioncontact.identification.series import Record
 from frictioncontact.identification.show import show
 from frictioncontact.tables import accepted
@@ -162,10 +162,12 @@ def identify(
     _check(parameters, rows, constants)
     _check_use(loaded.known, parameters, rows)
     kind = Record if isinstance(rows, Series) else Rows
-    plain = [name for name in instrument if name != "sign"]
-    tried = [kind(loaded, rows, parameters, each) for each in ((plain, instrument) if "sign" in instrument else (plain,))]
+    experiment = kind(loaded, rows, parameters, instrument)
     with quiet():
-        experiment, found = min(((one, fitted(one, tell)) for one in tried), key=lambda pair: pair[1].squares)
+        if "sign" in instrument:  # or not, whichever fits better
+            plain = experiment.like(rows, [name for name in instrument if name != "sign"])
+            experiment = min((plain, experiment), key=lambda one: search(one, one.target).squares)
+        found = fitted(experiment, tell)
         spread = None if bootstrap is None else refits_of(experiment, found, bootstrap, tell)
     return Identification(found, experiment, spread)
 

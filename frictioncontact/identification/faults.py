@@ -19,6 +19,7 @@ from frictioncontact.identification.search import search
 from frictioncontact.identification.suspicion import CHANCE, visible
 
 V_1 = "vibration.V_1"
+MOST = 0.25  # of the sum of squares, left of a misfit that is mostly explained
 SHOWS = 3.0  # standard deviations by which a fault's residuals must exceed the scatter to be seen
 
 
@@ -62,14 +63,21 @@ def hidden(experiment: Experiment, result: Fit) -> list[str]:
 
 
 def remedies(experiment: Experiment, result: Fit) -> list[str]:
-    """What explains a fit that failed: each fault that does alone, the best first, or some together."""
+    """What explains a fit that failed: each fault that does alone, the best first, or some together.
+
+    Or else what takes most of the misfit away.
+    """
     found = [(one, fit) for one in _alone(experiment) if (fit := _fitted(one.experiment)) is not None]
-    good = [(one, fit) for one, fit in found if _better(fit, result) and not misfits(one.experiment, fit)]
-    if good:
-        good.sort(key=lambda pair: pair[1].squares)
-        return [_said(one.words, one.experiment, fit) for one, fit in good]
-    together = _together(experiment, result)
-    return [together] if together else []
+    better = sorted((pair for pair in found if _better(pair[1], result)), key=lambda pair: pair[1].squares)
+    if good := [(one, fit) for one, fit in better if not misfits(one.experiment, fit)]:
+        return [f"it fits with {_said(one, fit)}" for one, fit in good]
+    together, fit = _together(experiment, result)
+    if fit is not result and not misfits(together.experiment, fit):
+        return [f"it fits with {_said(together, fit)}"]
+    best, fit = min([*better, (together, fit)], key=lambda pair: pair[1].squares)
+    if fit.squares > MOST * result.squares:
+        return []
+    return [f"the misfit falls to {np.sqrt(np.mean(fit.residuals**2)):.3g} N rms with {_said(best, fit)}"]
 
 
 def _better(fit: Fit, than: Fit) -> bool:
@@ -84,19 +92,18 @@ def _alone(experiment: Experiment) -> list[Remedy]:
     return instruments + [Remedy(w, experiment.like(rows, experiment.instrument)) for w, rows in others.items()]
 
 
-def _together(experiment: Experiment, result: Fit) -> str:
-    """Faults of the instrument that explain the misfit together: each the best beside those before it."""
-    asked, squares = experiment.instrument, result.squares
-    while names := [name for name in possible(experiment) if name not in asked]:
-        tried = [experiment.like(experiment.rows, (*asked, name)) for name in names]
-        fits = [(one, fit) for one in tried if (fit := _fitted(one)) is not None and fit.squares < squares]
+def _together(experiment: Experiment, result: Fit) -> tuple[Remedy, Fit]:
+    """Faults of the instrument, each the best beside those before it, until they explain the misfit."""
+    best, fit = experiment, result
+    while names := [name for name in possible(experiment) if name not in best.instrument]:
+        tried = [experiment.like(experiment.rows, (*best.instrument, name)) for name in names]
+        fits = [(one, next_) for one in tried if (next_ := _fitted(one)) is not None and _better(next_, fit)]
         if not fits:
-            return ""
+            break
         best, fit = min(fits, key=lambda pair: pair[1].squares)
         if not misfits(best, fit):
-            return _said("", best, fit)
-        asked, squares = best.instrument, fit.squares
-    return ""
+            break
+    return Remedy("", best), fit
 
 
 def possible(experiment: Experiment) -> list[str]:
@@ -157,10 +164,9 @@ def described(experiment: Experiment, fit: Fit) -> list[str]:
     return said + (["force of the opposite sign"] if experiment.sign < 0.0 else [])
 
 
-def _said(words: str, experiment: Experiment, fit: Fit) -> str:
-    values = ", ".join(
-        f"{p.name} = {value:.4g}{p.after}" for p, value in zip(fit.parameters, fit.values, strict=True)
-    )
-    names: Sequence[str] = experiment.instrument
-    ask = "" if words else f" (nuisance {', '.join(names)})"
-    return f"it fits with {words or ', '.join(described(experiment, fit))}{ask}; then {values}"
+def _said(remedy: Remedy, fit: Fit) -> str:
+    """What it is, how to ask for it, and the parameters with it."""
+    experiment, pairs = remedy.experiment, zip(fit.parameters, fit.values, strict=True)
+    values = ", ".join(f"{p.name} = {value:.4g}{p.after}" for p, value in pairs)
+    ask = f"{', '.join(described(experiment, fit))} (nuisance {', '.join(experiment.instrument)})"
+    return f"{remedy.words or ask}; then {values}"

@@ -54,10 +54,10 @@ def rig(fault: str, seed: int) -> Rig:
     kind = "record" if record else str(random.choice(["rows by V", "rows by V_1"]))
     sigma = F_C / random.uniform(0.5e-6, 5e-6)  # N/m
     of_law = STRIBECK if law == "LuGre" else {}
-    frame = _record(random, law, F_C, sigma) if record else _rows(random, law, F_C, sigma, kind)
+    frame = loop(random, law, F_C, sigma) if record else measured_rows(random, law, F_C, sigma, kind)
     force = "F_t [N]" if record else "F_t_mean [N]"
     exact = frame[force].to_numpy()
-    frame[force] = _measured(random, fault, frame, exact, F_C) + scatter * F_C * random.standard_normal(len(frame))
+    frame[force] = with_fault(random, fault, frame, exact, F_C) + scatter * F_C * random.standard_normal(len(frame))
     if fault == "peak to peak":
         frame["vibration.V_1 [mm/s]"] *= 2.0
     start = {"friction.model": assumed, "contact.model": "Constant", **(of_law if assumed in ("LuGre",) else {})}
@@ -68,12 +68,12 @@ def rig(fault: str, seed: int) -> Rig:
     return Rig(fault, kind, frame, start, truth, scatter * F_C, stated)
 
 
-def _scene(law: str, F_C: float, sigma: float, **values: float) -> Any:
+def rig_scene(law: str, F_C: float, sigma: float, **values: float) -> Any:
     ratio = {"staticRatio": STRIBECK["friction.staticRatio"], "V_S": STRIBECK["friction.V_S"]} if law == "LuGre" else {}
     return scene(law=law, contact="Constant", F_C=F_C, contact_sigma=sigma, **ratio, **values)
 
 
-def _rows(random: np.random.Generator, law: str, F_C: float, sigma: float, kind: str) -> pd.DataFrame:
+def measured_rows(random: np.random.Generator, law: str, F_C: float, sigma: float, kind: str) -> pd.DataFrame:
     """A grid of velocities and amplitudes, sorted as they were measured."""
     f, kappa = random.uniform(20e3, 40e3), math.exp(random.uniform(math.log(0.3), math.log(3.0)))
     amplitude = kappa * 2.0 * math.pi * f * F_C / sigma  # m/s
@@ -82,22 +82,24 @@ def _rows(random: np.random.Generator, law: str, F_C: float, sigma: float, kind:
     V = amplitude * np.geomspace(random.uniform(0.02, 0.1), random.uniform(0.8, 1.5), count)
     order = [(v, a * amplitude) for v in V for a in levels]
     order.sort(key=lambda row: row if kind == "rows by V" else row[::-1])
-    means = [settled(_scene(law, F_C, sigma, f=f, V=v, V_1=a))[0] for v, a in order]
+    means = [settled(rig_scene(law, F_C, sigma, f=f, V=v, V_1=a))[0] for v, a in order]
     columns = ["V [mm/s]", "vibration.V_1 [mm/s]"]
     frame = pd.DataFrame(1e3 * np.array(order), columns=columns)
     return frame.assign(**{"vibration.f [kHz]": 1e-3 * f, "F_t_mean [N]": means})
 
 
-def _record(random: np.random.Generator, law: str, F_C: float, sigma: float) -> pd.DataFrame:
+def loop(
+    random: np.random.Generator, law: str, F_C: float, sigma: float, samples: int = 0, finer: int = 4
+) -> pd.DataFrame:
     """A loop that grows from within presliding to beyond; the motion is that of the finer samples."""
-    samples, finer, cycles = int(random.integers(150, 400)), 4, random.uniform(2.0, 3.5)
+    samples, cycles = samples or int(random.integers(150, 400)), random.uniform(2.0, 3.5)
     duration = cycles * random.uniform(0.5, 2.0)
     t = np.linspace(0.0, duration, finer * (samples - 1) + 1)
     reach = random.uniform(3.0, 8.0) * F_C / sigma  # m
     w = 2.0 * math.pi * cycles / duration
     V = np.gradient(reach * np.sin(w * t) * (0.15 + 0.85 * t / duration), t, edge_order=2)
     h = t[1]
-    now = _scene(law, F_C, sigma, V=V[0], V_rate=(V[1] - V[0]) / h, h=h)
+    now = rig_scene(law, F_C, sigma, V=V[0], V_rate=(V[1] - V[0]) / h, h=h)
     before, force = None, []
     for k in range(len(t) - 1):
         found = step(now, before)
@@ -108,7 +110,7 @@ def _record(random: np.random.Generator, law: str, F_C: float, sigma: float) -> 
     return pd.DataFrame({"time [ms]": 1e3 * t, "position [um]": 1e6 * x, "F_t [N]": force})[::finer].reset_index(drop=True)
 
 
-def _measured(
+def with_fault(
     random: np.random.Generator, fault: str, frame: pd.DataFrame, exact: np.ndarray, F_C: float
 ) -> np.ndarray:
     sign, part = random.choice([-1.0, 1.0]), np.linspace(0.0, 1.0, len(exact))
