@@ -1,16 +1,12 @@
 """The errors and the warning that users see, and the words for a wrong name."""
 
 import difflib
-import re
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import wraps
-from typing import ParamSpec, TypeVar
 
-P, T = ParamSpec("P"), TypeVar("T")
 SHOWN = 40  # characters of a wrong name or value in a message
 
 
@@ -45,19 +41,6 @@ def warn(texts: Iterable[str]) -> None:
         frame, level = frame.f_back, level + 1
     for text in texts:
         warnings.warn(text, FrictionWarning, stacklevel=level)
-
-
-def with_arguments(function: Callable[P, T]) -> Callable[P, T]:
-    """Errors name the function's arguments, where those of its command, which calls __wrapped__, name options."""
-
-    @wraps(function)
-    def called(*positional: P.args, **named: P.kwargs) -> T:
-        try:
-            return function(*positional, **named)
-        except UserError as error:
-            raise type(error)(re.sub(r"(?<!\S)--(?=[a-z])", "", str(error))) from None
-
-    return called
 
 
 @contextmanager

@@ -119,6 +119,10 @@ class FrictionFmu(Closing):
             instanceName="contact",
         )
 
+    def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | None]]:
+        """Of a copy: the package's own FMU, or the file, opened there."""
+        return opened, (None if self.path == resources.fmu() else self.path,)
+
     def session(
         self,
         start_values: Mapping[str, Value] | None = None,

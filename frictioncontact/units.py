@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -30,10 +31,8 @@ def is_unit(text: str) -> bool:
 def _root(unit: str) -> Any:
     """Factor and unit in base units; None of what is no unit. rad/s is not Hz: radians stay."""
     powers = re.sub(r"(?<=[^\W\d])(-?\d)", r"**\1", unit)  # mm2, s-1
-    try:
+    with suppress(Exception):  # pint raises whatever its parser comes to
         return _registry().get_root_units(_registry().parse_units(powers))
-    except Exception:  # pint raises whatever its parser comes to
-        return None
 
 
 @cache

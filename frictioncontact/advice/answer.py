@@ -6,18 +6,17 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from frictioncontact.advice.coulomb_bound import coulomb_errors
-from frictioncontact.advice.question import LEAST, Output, Question, question, scene_values
-from frictioncontact.advice.stuck_mass import MASTERS, Coupling, Master, coupling
+from frictioncontact.advice.question import LEAST, Output, Question, question
+from frictioncontact.advice.stuck_mass import MASTERS, Master, coupling
 from frictioncontact.doubts import WITH_STATIC_FRICTION
-from frictioncontact.errors import UserError, with_arguments
+from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves
-from frictioncontact.values import pairs
 
 if TYPE_CHECKING:
     from frictioncontact.tables import Source
@@ -53,9 +52,12 @@ class Advice:
 
     def __repr__(self) -> str:
         settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
-        return f"<advice: {settings}; within {self.asked.accuracy:g}>"
+        within = "" if math.isnan(self.error) else f"; within {self.asked.accuracy:g}"
+        return f"<advice: {settings or 'none'}{within}>"
 
     def __str__(self) -> str:
+        if math.isnan(self.error):  # of a mass
+            return self.why
         asked, known = self.asked, self.knows_the_mean
         of_mean = f", {self.error / abs(self.mean):.1e} of the mean friction" if known else ""
         promise = (
@@ -73,33 +75,6 @@ class Advice:
         return "\n".join(lines)
 
 
-@overload
-def advise(
-    scene: Mapping[str, Value] | None = None,
-    *,
-    accuracy: float = 1e-3,
-    step: float | None = None,
-    output: Output = "both",
-    inputs: Source | None = None,
-    linear: bool = False,
-    phases: tuple[float, ...] = PHASES,
-    mass: None = None,
-    fmu: str | Path | None = None,
-) -> Advice: ...
-
-
-@overload
-def advise(
-    scene: Mapping[str, Value] | None = None,
-    *,
-    mass: float,
-    step: float,
-    master: Master = "Jacobi",
-    fmu: str | Path | None = None,
-) -> Coupling: ...
-
-
-@with_arguments
 def advise(
     scene: Mapping[str, Value] | None = None,
     *,
@@ -112,7 +87,7 @@ def advise(
     mass: float | None = None,
     master: Master = MASTERS[0],
     fmu: str | Path | None = None,
-) -> Advice | Coupling:
+) -> Advice:
     """Settings with which F_t and F_t_mean are accurate enough, relative to F_C and to the mean friction.
 
     scene     start values that describe it, SI units
@@ -127,8 +102,7 @@ def advise(
     master    how the master exchanges values with it: "Jacobi", "Jacobi, reread", "Jacobi, linear" or
               "Gauss-Seidel"
     fmu       another .fmu file of this model
-    returns   an `Advice`: settings, start_values, mean and error [N]; of a mass a `Coupling`: settings,
-              start_values, stable (the range of friction.sigma_1). str() prints them
+    returns   an `Advice`: settings, start_values, mean and error [N] (nan of a mass); str() prints them
     raises    UserError: the question is wrong, or the FMU refuses the scene
     warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 
@@ -140,12 +114,14 @@ def advise(
         fc.simulate(advice.start_values, stop=0.01, step=1e-3, outputs=["F_t_mean"])
     """
     loaded = opened(fmu)
-    if mass is not None:
-        for name, given in (("inputs", inputs is not None), ("linear", linear)):
-            if given:
-                raise UserError(f"--mass does not take --{name}: it looks at the contact stuck at its start values")
-        return coupling(loaded, scene_values(loaded, pairs(scene, "scene")), mass, step, master)
+    if mass is not None and (step is None or inputs is not None or linear):
+        raise UserError(
+            "mass needs step and takes no inputs: it looks at the contact stuck at its start values"
+        )
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)
+    if mass is not None:
+        why, settings = coupling(loaded, asked.given, mass, asked.step, master)
+        return Advice(asked, settings, why, math.nan, math.nan, math.nan, math.nan)
     mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
     if scale == 0.0:
         raise UserError("friction.mu F_n = 0 N: must be above 0 N, since the accuracy is relative to it")

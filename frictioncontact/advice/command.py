@@ -41,7 +41,9 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help=f"how the master exchanges values: {' or '.join(map(repr, MASTERS))} ({MASTERS[0]})",
     )  # fmt: skip
     parser.add_argument("--output-of", choices=OUTPUTS, default="both", help="which output must be accurate")
-    parser.add_argument("--inputs", type=Path, help="CSV with time, in even steps, and any of V, d, E, load, or position")
+    parser.add_argument(
+        "--inputs", type=Path, help="CSV with time, in even steps, and any of V, d, E, load, or position"
+    )
     parser.add_argument("--linear", action="store_true", help="inputs move linearly between their samples")
     parser.add_argument("--quick", action="store_true", help="grade from two phases instead of five")
     add_fmu(parser)
@@ -51,16 +53,9 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 def run(options: argparse.Namespace) -> None:
     fmu = opened(options.fmu)
     known = scene_values(fmu, fmu.known.assigned(options.set))
-    if options.mass is not None:
-        of_mass = advise.__wrapped__(
-            known, inputs=options.inputs, linear=options.linear, mass=options.mass, step=options.step,
-            master=options.master, fmu=options.fmu,
-        )  # fmt: skip
-        print(of_mass, start_values(fmu, of_mass.start_values), sep="\n\n")
-        return
     with progress_bar() as progress:
         progress.add_task("Grading", total=None)
-        found = advise.__wrapped__(
+        found = advise(
             known,
             accuracy=options.accuracy,
             step=options.step,
@@ -68,6 +63,8 @@ def run(options: argparse.Namespace) -> None:
             inputs=options.inputs,
             linear=options.linear,
             phases=PHASES[:2] if options.quick else PHASES,
+            mass=options.mass,
+            master=options.master,
             fmu=options.fmu,
         )
     print(found, command_for(fmu, found, options.inputs), sep="\n\n")
@@ -76,6 +73,8 @@ def run(options: argparse.Namespace) -> None:
 def command_for(fmu: FrictionFmu, found: Advice, path: Path | None) -> str:
     """What runs the scene with its inputs as graded: fmpy holds them, simulate moves them from time 0 on."""
     asked, values = found.asked, start_values(fmu, found.start_values)
+    if np.isnan(found.error):  # of a mass
+        return values
     fmpy = f"fmpy simulate {shown(fmu.path)} --output-interval {asked.step:.10g}"
     if path is None or asked.table is None:
         return f"{fmpy} {values}".rstrip()

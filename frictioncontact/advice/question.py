@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from frictioncontact.advice.stuck_mass import STEP_LENGTHS, between
+from frictioncontact.advice.stuck_mass import between
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
@@ -17,10 +17,10 @@ from frictioncontact.values import pairs, real
 
 if TYPE_CHECKING:
     from frictioncontact.tables import Source
-    from frictioncontact.values import Variables
 
 Output = Literal["both", "F_t", "F_t_mean"]
 OUTPUTS: tuple[Output, ...] = ("both", "F_t", "F_t_mean")
+STEP_LENGTHS = (1e-15, 1e9)  # s
 LONGEST = 400  # communication steps taken from a table of inputs
 LEAST = 1e-8  # accuracy; solver.tolerance promises no more
 
@@ -100,7 +100,7 @@ def _starts(fmu: FrictionFmu) -> dict[str, Value]:
 
 
 def _at_steps(table: Samples) -> Samples:
-    """One sample a time; of a velocity that jumps at all of them, as a position's does, its means over steps."""
+    """One sample a time; of a velocity that jumps at all, as a position's does, its means over steps."""
     time = table.time
     if len(time) < 4 or len(time) % 2 or (time[::2] != time[1::2]).any():
         return table

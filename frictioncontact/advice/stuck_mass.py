@@ -25,7 +25,6 @@ Jacobi and Gauss-Seidel.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Literal
 
 from frictioncontact.errors import UserError
@@ -38,7 +37,6 @@ JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = MASTERS
 # The largest H sqrt(sigma / m) that some sigma_1 makes stable: there the two edges meet.
 LARGEST_STEP = {JACOBI: 0.5, REREAD: 2.0, LINEAR: math.sqrt(2.0 + math.sqrt(8.0)), GAUSS_SEIDEL: 2.0}
 MASSES = (1e-12, 1e12)  # kg
-STEP_LENGTHS = (1e-15, 1e9)  # s
 MARGIN = 1.1  # of the advised sigma_1 over the smallest stable one, at which a swing never dies out
 
 
@@ -100,47 +98,20 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}
 
 
-@dataclass(frozen=True, repr=False)
-class Coupling:
-    """How to couple the contact to a mass while it sticks. str() prints it."""
-
-    given: Mapping[str, Value]  # the scene
-    settings: dict[str, Value]  # friction.sigma_1, the smallest stable value and a tenth; empty if none is
-    stable: tuple[float, float] | None  # N s/m, of friction.sigma_1 at this step
-    why: str = field(repr=False)
-
-    @property
-    def start_values(self) -> dict[str, Value]:
-        """The scene's and the advised ones: start values for `simulate`."""
-        return {**self.given, **self.settings}
-
-    def __repr__(self) -> str:
-        settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
-        return f"<coupling: {settings or 'no friction.sigma_1 is stable'}>"
-
-    def __str__(self) -> str:
-        return self.why
-
-
 def coupling(
-    fmu: FrictionFmu, values: Mapping[str, Value], mass: float, step: float | None, master: str
-) -> Coupling:
-    """The advice for a mass [kg] and a step [s]; UserError says what is wrong."""
+    fmu: FrictionFmu, scene: Mapping[str, Value], mass: float, step: float, master: str
+) -> tuple[str, dict[str, Value]]:
+    """The advice for a mass [kg] that a scene holds; UserError says what is wrong."""
     if master not in MASTERS:
-        raise UserError(f"--master = {master!r}: must be one of {', '.join(map(repr, MASTERS))}")
-    mass = real(mass, "mass")
-    between("--mass", mass, "kg", MASSES)
-    if step is None:
-        raise UserError("--mass needs --step, the communication step")
-    between("--step", real(step, "step"), "s", STEP_LENGTHS)
-    if values.get("friction.model") == "Coulomb":
-        raise UserError("--mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
-    with fmu.session(values) as session:
+        raise UserError(f"master = {master!r}: must be one of {', '.join(map(repr, MASTERS))}")
+    between("mass", real(mass, "mass"), "kg", MASSES)
+    if scene.get("friction.model") == "Coulomb":
+        raise UserError("mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
+    with fmu.session(scene) as session:
         sigma = stiffest(session)
     if sigma == 0.0:
-        raise UserError("--mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
-    why, settings = advice(mass, sigma, master, step)
-    return Coupling(values, settings, damping_range(mass, sigma, master, step), why)
+        raise UserError("mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
+    return advice(mass, sigma, master, step)
 
 
 def stiffest(session: Session) -> float:

@@ -83,8 +83,8 @@ class Identification:
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
-        count = len(self.misfits)
-        said = f"{count} misfit{'s' if count > 1 else ''}" if count else "it fits" if self.judged else "fit not judged"
+        said, count = "it fits" if self.judged else "fit not judged", len(self.misfits)
+        said = f"{count} misfit{'s' if count > 1 else ''}" if count else said
         return f"<identification: {values}; {said}>"
 
     def __str__(self) -> str:

@@ -6,8 +6,8 @@ of the column NAME. A column "time" makes a series.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,6 +44,13 @@ class Measurements:
     uncertainty: list[float] | None  # N
     uncertain: tuple[Uncertain, ...] = ()
 
+    def column(self, name: str) -> np.ndarray:
+        return np.array([float(row.get(name, 0.0)) for row in self.conditions])
+
+    def changed(self, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Measurements:
+        """With other conditions."""
+        return replace(self, conditions=[{**row, **change(row)} for row in self.conditions])
+
 
 @dataclass(frozen=True)
 class Series:
@@ -62,6 +69,13 @@ class Series:
     @property
     def names(self) -> tuple[str, ...]:
         return ("V", *self.inputs)
+
+    def column(self, name: str) -> np.ndarray:
+        return np.array([float(self.constants.get(name, 0.0))])
+
+    def changed(self, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Series:
+        """With other constants."""
+        return replace(self, constants={**self.constants, **change(self.constants)})
 
 
 @dataclass(frozen=True)
@@ -199,7 +213,7 @@ def _series(
 
 
 def _told(V: np.ndarray) -> np.ndarray:
-    """Samples whose Coulomb friction the record tells: not those beside a reversal, which have either sign."""
+    """Samples whose Coulomb friction a record tells: not those beside a reversal, of either sign."""
     turns = np.flatnonzero(V[1:] * V[:-1] <= 0.0)
     told = np.ones(len(V), dtype=bool)
     told[turns] = told[turns + 1] = False

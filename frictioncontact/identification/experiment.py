@@ -10,15 +10,12 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
-from frictioncontact import resources
 from frictioncontact.batch import simulate_many
-from frictioncontact.fmu import FrictionError, FrictionFmu, opened
+from frictioncontact.fmu import FrictionError, FrictionFmu
 from frictioncontact.identification.data import Measurements, Series
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.values import LARGEST
@@ -59,8 +56,7 @@ class Experiment(ABC):
         instrument: Sequence[str] = (),
     ) -> None:
         """time [s]: of each force; the number of each row where there is none."""
-        self.file: Path | None = fmu.path
-        self.parameters, self.instrument = tuple(parameters), tuple(instrument)
+        self.fmu, self.parameters, self.instrument = fmu, tuple(parameters), tuple(instrument)
         self.force = np.array(force)
         self.time = np.arange(1.0, len(force) + 1.0) if time is None else np.array(time)
         self.sign = -1.0 if "sign" in instrument else 1.0
@@ -76,25 +72,13 @@ class Experiment(ABC):
         self._measured = [k for k, one in enumerate(self.nuisances) if one.measured]
         self._groups = self._shifted_together()
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Without an FMU: the package's own, or the file of another, is opened where it is needed."""
-        file = None if self.file == resources.fmu() else self.file
-        return {**{name: each for name, each in vars(self).items() if name != "fmu"}, "file": file}
-
-    @cached_property
-    def fmu(self) -> FrictionFmu:
-        return opened(self.file)
-
     def _of_instrument(self) -> list[Nuisance]:
         size, span = float(np.abs(self.force).max()), float(np.ptp(self.time)) or 1.0
         step = span / max(len(self.time) - 1, 1)
         scales = {"offset": 0.1 * size, "drift": 0.1 * size / span, "delay": step}
         reach = {"delay": 0.25 * span / step}
-        return [
-            Nuisance(0.0, False, None, name, scales[name], reach.get(name, math.inf))
-            for name in self.instrument
-            if name != "sign"
-        ]
+        asked = [(name, scales[name]) for name in self.instrument if name != "sign"]
+        return [Nuisance(0.0, False, None, name, scale, reach.get(name, math.inf)) for name, scale in asked]
 
     @property
     def elapsed(self) -> np.ndarray:
@@ -116,17 +100,6 @@ class Experiment(ABC):
     @abstractmethod
     def model(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
         """The forces of the law, as above."""
-
-    def with_linear(self, points: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """The points with the offset and drift that these forces of theirs ask for."""
-        basis = {"offset": np.ones(len(self.force)), "drift": self.elapsed}
-        asked = {self.places[name]: shape for name, shape in basis.items() if name in self.places}
-        if asked:
-            shapes = np.stack([shape * self.weight for shape in asked.values()], axis=1)
-            misses = np.nan_to_num((self.force - forces) * self.weight)
-            for k, values in zip(asked, np.linalg.lstsq(shapes, misses.T)[0], strict=True):
-                points[:, k] += values / self.nuisances[k - len(self.parameters)].scale
-        return points
 
     def like(self, rows: Measurements | Series, instrument: Sequence[str]) -> Self:
         """The same with other rows and nuisances of the instrument."""
@@ -239,9 +212,7 @@ class Rows(Experiment):
     ) -> None:
         self.rows = rows
         nuisances = [Nuisance(0.0, True, u.row) for u in rows.uncertain]
-        super().__init__(
-            fmu, parameters, rows.force, rows.uncertainty, nuisances, instrument=instrument
-        )
+        super().__init__(fmu, parameters, rows.force, rows.uncertainty, nuisances, instrument=instrument)
         names = {name for condition in rows.conditions for name in condition}
         self._conditions = {
             name: np.array([condition[name] for condition in rows.conditions]) for name in names

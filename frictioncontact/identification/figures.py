@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 from frictioncontact import style
-from frictioncontact.identification.data import Measurements, Series
+from frictioncontact.identification.data import Series
 from frictioncontact.identification.experiment import Experiment
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.identification.result import Fit
@@ -37,28 +37,18 @@ def _draw_record(axes: Axes, experiment: Experiment, result: Fit) -> None:
 
 
 def _draw_means(axes: Axes, experiment: Experiment, result: Fit) -> None:
-    """Against V, or another column where V is one, or the row; a colour for each of few other conditions."""
-    assert isinstance(experiment.rows, Measurements)
+    """Against V, or another column where V is one, or the row."""
     rows, measured = experiment.rows, experiment.force
-    columns = {name: np.array([float(row[name]) for row in rows.conditions]) for name in rows.names}
-    varied = [name for name in ("V", *columns) if name in columns and np.ptp(columns[name]) > 0.0]
-    name = varied[0] if varied else "row"
-    place = columns.get(name, np.arange(1.0, len(measured) + 1.0))
+    name = next((each for each in ("V", *rows.names) if np.ptp(rows.column(each)) > 0.0), "row")
+    place = experiment.time if name == "row" else rows.column(name)
     error = 1.0 / experiment.weight if experiment.known else np.full(len(measured), result.deviation)
     error = np.where(np.isfinite(error), error, 0.0)
-    other = next((each for each in varied[1:] if len(set(columns[each])) <= len(style.CYCLE)), None)
-    for k, value in enumerate(sorted(set(columns[other])) if other else [None]):
-        part = np.flatnonzero(columns[other] == value) if other else np.arange(len(measured))
-        part, colour = part[np.argsort(place[part], kind="stable")], style.CYCLE[k]
-        label = "" if other is None else f"{other} = {value:.3g} "
-        axes.errorbar(place[part], measured[part], error[part], fmt="o", color=colour, capsize=3, label=f"{label}measured")
-        axes.plot(place[part], result.model[part], "_-", ms=12, mew=2.0, lw=0.8, color=colour, label=f"{label}fitted")
-    unit = experiment.fmu.variables[name].unit if varied else None
-    label = f"{name} [{unit}]" if unit and unit != "1" else name
-    axes.set(xlabel=label, ylabel="mean friction force [N]", title="Measured and fitted means")
+    axes.errorbar(place, measured, error, fmt="o", color=style.SOURCE["paper"], capsize=3, label="measured")
+    axes.plot(place, result.model, "_", ms=16, mew=2.5, color=style.SOURCE["identified"], label="fitted")
+    unit = "" if name == "row" else f" [{experiment.fmu.variables[name].unit}]"
+    axes.set(xlabel=f"{name}{unit}", ylabel="mean friction force [N]", title="Measured and fitted means")
     _ticks(axes, "x", place, place.min() > 0.0 and name != "row")
-    low, high = min(measured.min(), result.model.min()), max(measured.max(), result.model.max())
-    axes.set_ylim(min(0.0, 1.1 * low), max(0.0, 1.12 * high))
+    axes.set_ylim(min(0.0, 1.1 * measured.min()), 1.12 * max(measured.max(), result.model.max()))
     axes.legend(loc="best")
 
 

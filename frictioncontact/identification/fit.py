@@ -26,12 +26,13 @@ def fit(experiment: Experiment, tell: Tell = silent) -> Fit:
     """
     result = with_profiles(experiment, search(experiment, experiment.target, tell), tell)
     result = dataclasses.replace(result, kappa=experiment.kappa(result.point))
-    judge(experiment, result, shapes(experiment, result))
+    of_faults = shapes(experiment, result)
+    judge(experiment, result, of_faults)
     if result.misfits:
         tell("what explains the misfit")
         result.remedies.extend(remedies(experiment, result))
     elif result.degrees > 0:
-        result.hidden.extend(hidden(experiment, result))
+        result.hidden.extend(hidden(experiment, result, of_faults))
     return result
 
 

@@ -36,7 +36,9 @@ def judge(experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray])
     )
 
 
-def misfits(experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray] = MappingProxyType({})) -> list[str]:
+def misfits(
+    experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray] = MappingProxyType({})
+) -> list[str]:
     """What is wrong with a fit, in words. shapes: of faults, as of `suspicion`."""
     rms = float(np.sqrt(np.mean(result.residuals**2)))
     if result.degrees <= 0 or np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
@@ -78,7 +80,7 @@ def _large_parts(experiment: Experiment, result: Fit) -> str:
     rows, force, miss = experiment.rows, experiment.force, result.residuals
     parts = {"": np.ones(len(force), dtype=bool)}
     for name in rows.names:
-        values = np.array([row[name] for row in rows.conditions], dtype=float)
+        values = rows.column(name)
         few = np.unique(values)
         if 1 < len(few) <= len(values) / FEW:
             parts |= {f" of the rows with {name} = {each:.4g}": values == each for each in few}

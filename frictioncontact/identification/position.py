@@ -6,7 +6,9 @@ import numpy as np
 from scipy.interpolate import make_smoothing_spline
 from scipy.optimize import brentq
 
-SMALL = 0.03  # of a step: a scatter that does not matter, and what the curve of an exact position may look like
+SMALL = (
+    0.03  # of a step: a scatter that does not matter, and what the curve of an exact position may look like
+)
 MEDIAN = 0.6745  # of the size of normal noise with a standard deviation of 1
 
 
@@ -21,7 +23,7 @@ def scatter(time: np.ndarray, position: np.ndarray) -> float:
 
 
 def smoothed(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, float]:
-    """The smoothest spline as far from the position as its scatter, and that [m]; 0 where it does not matter."""
+    """The smoothest spline as far from the position as its scatter, and that [m], 0 if it is small."""
     noise = scatter(time, position) if len(time) > 8 else 0.0
     if noise <= SMALL * float(np.std(np.diff(position))):
         return position, 0.0

@@ -95,7 +95,6 @@ def start_points(experiment: Experiment, target: np.ndarray) -> np.ndarray:
     unit = qmc.Sobol(n, scramble=False).random_base2(4 + n)
     sample = np.where(np.isfinite(given), given, low + (high - low) * unit)
     points = np.array([experiment.start(row) for row in sample])
-    points = experiment.with_linear(points, experiment.forces(points, COARSE))
     squares = np.sum(experiment.misfits(points, target, COARSE) ** 2, axis=1)  # nan where the FMU refuses
     if np.isnan(squares).all():
         raise FrictionError(experiment.problem)
@@ -148,7 +147,9 @@ def described(experiment: Experiment, target: np.ndarray, found: list[Minimum]) 
     )
 
 
-def _of_instrument(experiment: Experiment, point: np.ndarray, widths: np.ndarray) -> dict[str, tuple[float, float]]:
+def _of_instrument(
+    experiment: Experiment, point: np.ndarray, widths: np.ndarray
+) -> dict[str, tuple[float, float]]:
     """Values and half-widths of 95 % of what was asked of the instrument."""
     found = {}
     for name, k in experiment.places.items():

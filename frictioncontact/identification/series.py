@@ -40,9 +40,7 @@ class Record(Experiment):
         sign = -1.0 if "sign" in instrument else 1.0
         first = [Nuisance(sign * float(force[0]), False)]
         first += [Nuisance(1.0, False)] if "delay" in instrument else []
-        super().__init__(
-            fmu, parameters, list(force), uncertainty, first, list(time), instrument
-        )
+        super().__init__(fmu, parameters, list(force), uncertainty, first, list(time), instrument)
         held = {name: float(values[0]) for name, values in series.inputs.items()}
         self._constants = {**series.constants, **held, "V": float(series.V[0])}
         inputs = series.inputs if series.position is not None else {"V": series.V, **series.inputs}
@@ -90,9 +88,7 @@ class Record(Experiment):
 
     def _simulated(self, values: Mapping[str, Any], outputs: Outputs, **steps: Any) -> dict[str, np.ndarray]:
         """From the first sample on; what the FMU refuses is nan, and a problem."""
-        answer = simulate_many(
-            values, outputs, unit="s", errors="keep", fmu=self.fmu.path, **steps
-        )
+        answer = simulate_many(values, outputs, unit="s", errors="keep", fmu=self.fmu.path, **steps)
         refused = [reason for reason in answer["reason"] if reason is not None]
         self.problem = refused[0] if refused else self.problem
         return answer

@@ -42,11 +42,11 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
     if getattr(experiment.rows, "scatter", 0.0):
         say(f"the measured position scatters by {experiment.rows.scatter:.2g} m, and is smoothed by as much")
     if asked := described(experiment, result):
-        say(f"instrument: {', '.join(asked)} (95 %)")
+        say(f"instrument: {asked} (95 %)")
     if not result.judged and not result.misfits:
         say("whether the law fits is open: state the uncertainty of the force (uncertain, --uncertain)")
     if result.hidden:
-        say(f"these data would not show {' or '.join(result.hidden)}: the parameters would take it up")
+        say(f"these data would not show {' or '.join(result.hidden)} of a tenth: the parameters take it up")
     names = [p.name for p in result.parameters]
     if "contact.stiffnessScale" in names and isinstance(experiment.rows, Measurements):
         scale = result.values[names.index("contact.stiffnessScale")]

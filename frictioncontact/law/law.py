@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 import numpy.typing as npt
 
-from frictioncontact import resources
 from frictioncontact.doubts import warn_of
-from frictioncontact.errors import UserError, quiet
-from frictioncontact.fmu import Value, opened
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.values import numbers_of
 
 if TYPE_CHECKING:
@@ -31,8 +30,8 @@ class FrictionLaw:
     `start` holds the scene. `friction_law` makes it. Use it in one thread only.
     """
 
-    def __init__(self, start: Mapping[str, Value] | None, fmu: str | Path | None) -> None:
-        self._fmu = opened(fmu)
+    def __init__(self, start: Mapping[str, Value] | None, fmu: FrictionFmu) -> None:
+        self._fmu = fmu
         self.start = self._fmu.known.values(start, "scene")
         self._session = self._fmu.session(self.start)
         weakref.finalize(self, self._session.close)
@@ -43,8 +42,8 @@ class FrictionLaw:
     def __repr__(self) -> str:
         return f"<friction law of {self.start}>"
 
-    def __reduce__(self) -> tuple[Callable[..., FrictionLaw], tuple[dict[str, Value], Path | None]]:
-        return _again, (self.start, None if self._fmu.path == resources.fmu() else self._fmu.path)
+    def __reduce__(self) -> tuple[Callable[..., FrictionLaw], tuple[dict[str, Value], FrictionFmu]]:
+        return FrictionLaw, (self.start, self._fmu)
 
     @overload
     def __call__(self, V: float, **inputs: float) -> float: ...
@@ -62,12 +61,6 @@ class FrictionLaw:
         raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses it
         """
         return self._at(V, inputs, lambda: self._session.get(FORCE))
-
-    @overload
-    def transverse(self, V: float, **inputs: float) -> float: ...
-
-    @overload
-    def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray: ...
 
     def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
         """The force transverse to V, F_y_settled [N]; arguments as in a call."""
@@ -175,10 +168,4 @@ def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | 
         print(law(0.5), law.derivative(0.5))
         print(law(np.linspace(0.1, 2.0, 5), E=[[44.6e9], [58.6e9]]).shape)
     """
-    return FrictionLaw(scene, fmu)
-
-
-def _again(scene: Mapping[str, Value], fmu: Path | None) -> FrictionLaw:
-    """A law that was pickled or copied, whose user was warned already."""
-    with quiet():
-        return FrictionLaw(scene, fmu)
+    return FrictionLaw(scene, opened(fmu))

@@ -4,7 +4,15 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from frictioncontact.command import add_column, add_fmu, add_set, command_line, new_file, print_frame, say_written
+from frictioncontact.command import (
+    add_column,
+    add_fmu,
+    add_set,
+    command_line,
+    new_file,
+    print_frame,
+    say_written,
+)
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import INPUTS, OUTPUTS, opened
 from frictioncontact.simulation.run import simulate
@@ -55,4 +63,3 @@ def run(options: argparse.Namespace) -> None:
         say_written([options.output])
     else:
         print_frame(table, fmu.known, scene)
-

@@ -59,9 +59,7 @@ class Samples:
         return values, rates
 
 
-def moving(
-    time: np.ndarray, values: Mapping[str, np.ndarray], position: np.ndarray | None = None
-) -> Samples:
+def moving(time: np.ndarray, values: Mapping[str, np.ndarray], position: np.ndarray | None = None) -> Samples:
     """Samples of the inputs; of a position its velocity, which between two samples is linear.
 
     Each piece goes as far as the position, and not to and fro.
@@ -101,7 +99,8 @@ def samples(
         raise UserError(f"{where}: time falls from {time[k]:g} to {time[k + 1]:g} s at sample {k + 1}")
     beyond = 0 if stop is None else int(np.sum(time > stop * (1.0 + 1e-9)))
     if beyond:
-        warn([f"{where}: {beyond} of {len(time)} samples are after stop = {stop:g} s; the last is at {time[-1]:g} s"])
+        late = f"{beyond} of {len(time)} samples are after stop = {stop:g} s"
+        warn([f"{where}: {late}; the last is at {time[-1]:g} s"])
     if position is None:
         return Samples(time, found)
     if "V" in found or len(time) < 2 or (np.diff(time) <= 0.0).any():

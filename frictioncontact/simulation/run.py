@@ -38,7 +38,7 @@ def simulate(
               its number
     stop      s; the last step is shorter if stop is not a multiple of step
     step      s between two rows; F_t_mean and F_y_mean are means over the time since the row before
-    inputs    a table (a CSV file, a mapping or a frame) with time and any inputs, in SI units or under headings
+    inputs    a table (CSV file, mapping or frame) with time and any inputs, in SI units or under headings
               "V [mm/s]": linear between the samples, held before the first and after the last; two samples
               at one time are a jump. position in place of V: its velocity. Samples need not coincide with
               steps
@@ -60,7 +60,11 @@ def simulate(
         loaded.known.readable(name, "outputs")
     values = loaded.known.values(start, "start")
     ends = _ends(real(stop, "stop"), real(step, "step"))
-    moving = samples(inputs, loaded.known, float(ends[-1]), columns) if inputs is not None else Samples(np.zeros(1), {})
+    moving = (
+        samples(inputs, loaded.known, float(ends[-1]), columns)
+        if inputs is not None
+        else Samples(np.zeros(1), {})
+    )
     times = moving.steps(ends)
     begins = np.concatenate([[0.0], times[:-1]])
     lengths = times - begins

@@ -68,7 +68,7 @@ def wanted(options: argparse.Namespace) -> dict[str, object]:
 
 
 def run(options: argparse.Namespace) -> None:
-    print(sweep.__wrapped__(progress=True, **wanted(options)))
+    print(sweep(progress=True, **wanted(options)))
 
 
 def main(argv: Sequence[str] | None = None) -> None:

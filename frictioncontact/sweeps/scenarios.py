@@ -72,7 +72,7 @@ def _grid_rows(axes: Mapping[str, np.ndarray], first: int, stop: int) -> dict[st
 
 def drawn(variables: Variables, vary: Vary, count: int, seed: int) -> Scenarios:
     """Each value drawn by itself."""
-    check_whole(count, MOST_SCENARIOS, "--random")
+    check_whole(count, MOST_SCENARIOS, "random")
     values = {name: _values(variables, name, given, "low:high")[0] for name, given in vary.items()}
     ends = {name: each.spaced(2) if isinstance(each, Range) else each for name, each in values.items()}
     return Scenarios(count, partial(_drawn_rows, values, seed), ends)
@@ -97,7 +97,7 @@ def from_csv(variables: Variables, path: Path) -> Scenarios:
         raise UserError(f"{path}: has no row below the header")
     columns = {}
     for name, column in read.columns.items():
-        values = [variables.text(name, text, read.place(column, k)) for k, text in enumerate(column.cells)]
+        values = [variables.text(name, text, read.place(name, k)) for k, text in enumerate(column.cells)]
         columns[name] = np.array(values) if variables.items[name] else np.array(values) * column.factor
     return Scenarios(len(read.lines), partial(_csv_rows, columns), columns)
 
@@ -110,7 +110,7 @@ def _values(
     variables: Variables, name: str, given: str | Sequence[Value], form: str
 ) -> tuple[np.ndarray | Range, str]:
     """Of "a,b,c", a sequence of values, or a range "low:high[:count][:log]", whose count it gives too."""
-    where = f"--vary {name}"
+    where = f"vary {name}"
     items = variables.items[variables.find(name, where).name]
     parts = given.split(":") if isinstance(given, str) else []
     if len(parts) < 2:
@@ -138,7 +138,7 @@ def _values(
 
 def _count(text: str, name: str) -> int:
     if not re.fullmatch("[-+]?[0-9]{1,20}", text):
-        raise UserError(f"--vary {name}: the count {shown(text)} is not a whole number")
+        raise UserError(f"vary {name}: the count {shown(text)} is not a whole number")
     count = int(text)
-    check_whole(count, MOST_VALUES, f"--vary {name}: the count")
+    check_whole(count, MOST_VALUES, f"vary {name}: the count")
     return count

@@ -235,7 +235,10 @@ GOOD = "20,0.5,31\n40,0.5,33\n"
         ("V [m/s,F_t_mean [N]\n1,2\n", r"line 1, column 1: heading 'V \[m/s' is not of the form"),
         ("V [km],F_t_mean [N]\n1,2\n", "column 1: V takes a unit like m/s, not 'km'"),
         ("V [m/s],F_t_mean [kg]\n1,2\n", "column 2: F_t_mean takes a unit like N, not 'kg'"),
-        ("V [m/s],speed [m/s],F_t_mean [N]\n", "column 2: speed is no variable that a table of measurements may hold; these"),
+        (
+            "V [m/s],speed [m/s],F_t_mean [N]\n",
+            "column 2: speed is no variable that a table of measurements may hold; these",
+        ),
         ("V [m/s],V [mm/s],F_t_mean [N]\n", "column 2: V is there twice"),
         (
             HEADER + GOOD + "nan,0.5,3\n",
@@ -573,7 +576,7 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
 def test_differences_with_a_trend_are_a_misfit(
     fmu_path: Path, V: Sequence[int], force: Sequence[int], said: str
 ) -> None:
-    """Of one force, F_C, at eight velocities: measured ones that grow with V, from row to row, or with neither."""
+    """Of one force, F_C, at eight velocities: measured ones grow with V, from row to row, or with neither."""
     data = {"V [cm/s]": 10.0 * np.array(V), "F_t_mean": 50.0 + np.array(force)}
     misfits = fc.identify(data, "F_C", fmu=fmu_path).misfits
     assert len(misfits) == bool(said)

@@ -1,4 +1,4 @@
-"""One grammar of tables: ten dialects of CSV and Python's own tables read alike, in every function; what is wrong is named."""
+"""One grammar of tables: dialects of CSV and Python's own tables read alike, in every function."""
 
 from __future__ import annotations
 
@@ -21,27 +21,53 @@ UNITS = {"time": "s", "V": "m/s", "F_t": "N"}
 OWN = {"time": "t", "V [mm/s]": "Geschwindigkeit", "F_t": "Kraft (kN)"}
 DIALECTS: dict[str, tuple[str, str, Mapping[str, str] | None]] = {
     "commas": ("time [ms],V [mm/s],F_t [kN]\n0,0.5,1\n1.5,20,2.25\n4,-30,-0.5\n", "utf-8", None),
-    "semicolons and decimal commas": ("time [ms];V [mm/s];F_t [kN]\n0;0,5;1\n1,5;20;2,25\n4;-30;-0,5\n", "utf-8", None),
-    "tabs, Windows": ("time (ms)\tV (mm / s)\tF_t (kN)\r\n0\t0,5\t1\r\n1,5\t20\t2,25\r\n4\t-30\t-0,5\r\n", "utf-16", None),
+    "semicolons and decimal commas": (
+        "time [ms];V [mm/s];F_t [kN]\n0;0,5;1\n1,5;20;2,25\n4;-30;-0,5\n",
+        "utf-8",
+        None,
+    ),
+    "tabs, Windows": (
+        "time (ms)\tV (mm / s)\tF_t (kN)\r\n0\t0,5\t1\r\n1,5\t20\t2,25\r\n4\t-30\t-0,5\r\n",
+        "utf-16",
+        None,
+    ),
     "a preamble": (
         'Rig 5;"14:02"\nOperator;A. B.\n\ntime [ms];V [mm/s];F_t [kN]\n0;0.5;1\n1.5;20;2.25\n4;-30;-0.5\n',
         "utf-8-sig",
         None,
     ),
     "a row of units": ("time;V;F_t;\nms;mm/s;kN;\n0;0.5;1;\n1.5;20;2.25;\n4;-30;-0.5;\n", "utf-8", None),
-    "a header in a remark, spaces": ("# time [ms] V [mm/s] F_t [kN]\n0 0.5 1\n1.5 20 2.25\n4 -30 -0.5\n", "utf-8", None),
+    "a header in a remark, spaces": (
+        "# time [ms] V [mm/s] F_t [kN]\n0 0.5 1\n1.5 20 2.25\n4 -30 -0.5\n",
+        "utf-8",
+        None,
+    ),
     "an index and remarks": (
-        ",time [ms],V [mm/s],F_t [kN]\n0,0,0.5,1\n# pause\n1,1.5,20,2.25\n\n2,4,-30,-0.5\n", "utf-8", None,
+        ",time [ms],V [mm/s],F_t [kN]\n0,0,0.5,1\n# pause\n1,1.5,20,2.25\n\n2,4,-30,-0.5\n",
+        "utf-8",
+        None,
     ),
     "micrometres in Latin 1": (
-        "time [ms];V [µm/s];F_t [N]\n0;500;1e3\n1,5;2e4;2250\n4;-3e4;-500\n", "cp1252", None,
+        "time [ms];V [µm/s];F_t [N]\n0;500;1e3\n1,5;2e4;2250\n4;-3e4;-500\n",
+        "cp1252",
+        None,
     ),
-    "the other mu": ("time [ms],V [\u03bcm\u00b7s\u207b\u00b9],F_t [N]\n0,500,1e3\n1.5,2e4,2250\n4,-3e4,-500\n", "utf-8", None),
+    "the other mu": (
+        "time [ms],V [\u03bcm\u00b7s\u207b\u00b9],F_t [N]\n0,500,1e3\n1.5,2e4,2250\n4,-3e4,-500\n",
+        "utf-8",
+        None,
+    ),
     "own names": (
-        "no.;t [ms];Geschwindigkeit;Kraft (kN)\n1;0;0,5;1\n2;1,5;20;2,25\n3;4;-30;-0,5\n", "utf-8", OWN,
+        "no.;t [ms];Geschwindigkeit;Kraft (kN)\n1;0;0,5;1\n2;1,5;20;2,25\n3;4;-30;-0,5\n",
+        "utf-8",
+        OWN,
     ),
-    "DIN and ISO headings": ("sep=;\ntime in ms;V / (mm/s);F_t / kN\n0;0,5;1\n1,5;20;2,25\n4;-30;-0,5\n", "utf-8", None),
-}  # fmt: skip
+    "DIN and ISO headings": (
+        "sep=;\ntime in ms;V / (mm/s);F_t / kN\n0;0,5;1\n1,5;20;2,25\n4;-30;-0,5\n",
+        "utf-8",
+        None,
+    ),
+}
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
@@ -60,17 +86,35 @@ def test_dialects_read_alike(tmp_path: Path, dialect: str) -> None:
 @pytest.mark.parametrize(
     ("unit", "si", "size"),
     [
-        ("um", "m", 1e-6), ("µm", "m", 1e-6), ("μm", "m", 1e-6), ("mm / s", "m/s", 1e-3), ("(mm/s)", "m/s", 1e-3),
-        ("N·s/m", "N.s/m", 1.0), ("Ns/m", "N.s/m", 1.0), ("kN", "N", 1e3), ("mN", "N", 1e-3), ("°", "rad", np.pi / 180),
-        ("deg", "rad", np.pi / 180), ("kHz", "Hz", 1e3), ("mm²", "m2", 1e-6), ("mm2", "m2", 1e-6), ("1/mm2", "1/m2", 1e6),
-        ("N/mm", "N/m", 1e3), ("GPa", "Pa", 1e9), ("km/h", "m/s", 1 / 3.6), ("m s-1", "m/s", 1.0), ("%", "1", 0.01),
+        ("um", "m", 1e-6),
+        ("µm", "m", 1e-6),
+        ("μm", "m", 1e-6),
+        ("mm / s", "m/s", 1e-3),
+        ("(mm/s)", "m/s", 1e-3),
+        ("N·s/m", "N.s/m", 1.0),
+        ("Ns/m", "N.s/m", 1.0),
+        ("kN", "N", 1e3),
+        ("mN", "N", 1e-3),
+        ("°", "rad", np.pi / 180),
+        ("deg", "rad", np.pi / 180),
+        ("kHz", "Hz", 1e3),
+        ("mm²", "m2", 1e-6),
+        ("mm2", "m2", 1e-6),
+        ("1/mm2", "1/m2", 1e6),
+        ("N/mm", "N/m", 1e3),
+        ("GPa", "Pa", 1e9),
+        ("km/h", "m/s", 1 / 3.6),
+        ("m s-1", "m/s", 1.0),
+        ("%", "1", 0.01),
     ],
-)  # fmt: skip
+)
 def test_units_as_people_write_them(unit: str, si: str, size: float) -> None:
     assert factor(unit, si, "") == pytest.approx(size, rel=1e-14)
 
 
-@pytest.mark.parametrize(("unit", "si"), [("rad/s", "Hz"), ("rpm", "Hz"), ("%", "rad"), ("kg", "N"), ("furlong/", "m")])
+@pytest.mark.parametrize(
+    ("unit", "si"), [("rad/s", "Hz"), ("rpm", "Hz"), ("%", "rad"), ("kg", "N"), ("furlong/", "m")]
+)
 def test_units_of_another_kind_are_refused(unit: str, si: str) -> None:
     """Also those that a library of units would convert by a factor of 2 pi, in silence."""
     with pytest.raises(fc.UserError, match=re.escape(f"V takes a unit like {si}, not {unit!r}")):
@@ -80,7 +124,10 @@ def test_units_of_another_kind_are_refused(unit: str, si: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("time;V;F_t\n0,5;1.5;2\n", "log.csv: has decimal commas and decimal points, as in '1.5'; write one of them"),
+        (
+            "time;V;F_t\n0,5;1.5;2\n",
+            "log.csv: has decimal commas and decimal points, as in '1.5'; write one of them",
+        ),
         ("time;V;F_t\n1;2;1.234,5\n", "row 1 (line 2), column 'F_t': '1.234,5' is not a number"),
         ("time;V\nms;mm/h/s\n1;2\n", "line 1, column 2: V takes a unit like m/s, not 'mm/h/s'"),
         ("t;v\n1;2\n", "log.csv, line 1, column 1: t is no column; these are: time, V, F_t"),
@@ -125,7 +172,9 @@ def test_every_function_takes_the_same_tables(fmu_path: Path, tmp_path: Path, wa
     def given(data: Mapping[str, Any]) -> Any:
         return WAYS[way](data, tmp_path / "table.csv")
 
-    plain = fc.simulate(LAW, stop=0.4, step=0.01, inputs={"time": TIME, "V": V}, outputs=["F_t"], fmu=fmu_path)
+    plain = fc.simulate(
+        LAW, stop=0.4, step=0.01, inputs={"time": TIME, "V": V}, outputs=["F_t"], fmu=fmu_path
+    )
     drive = given({"time [ms]": 1e3 * TIME, "V [mm/s]": 1e3 * V})
     units = fc.simulate(LAW, stop=0.4, step=0.01, inputs=drive, outputs=["F_t"], fmu=fmu_path)
     assert units["F_t"].to_numpy() == pytest.approx(plain["F_t"].to_numpy(), abs=1e-9)
@@ -133,7 +182,13 @@ def test_every_function_takes_the_same_tables(fmu_path: Path, tmp_path: Path, wa
     si = {"time": [0.0, 1e-3, 2e-3], "V": [1e-3, 2e-3, 3e-3]}
     advised = [fc.advise(LAW, inputs=inputs, fmu=fmu_path) for inputs in (even, si)]
     assert advised[0].settings == advised[1].settings and advised[0].mean == pytest.approx(advised[1].mean)
-    record = given({"time [ms]": 1e3 * plain["time"], "V [mm/s]": 1e3 * np.interp(plain["time"], TIME, V), "F_t [kN]": 1e-3 * plain["F_t"]})
+    record = given(
+        {
+            "time [ms]": 1e3 * plain["time"],
+            "V [mm/s]": 1e3 * np.interp(plain["time"], TIME, V),
+            "F_t [kN]": 1e-3 * plain["F_t"],
+        }
+    )
     found = fc.identify(record, "F_C", start=LAW, fmu=fmu_path)
     assert found.values["F_C"] == pytest.approx(55.0, rel=1e-3)
 
@@ -158,10 +213,17 @@ def test_a_position_moves_the_contact_as_far_as_it_says(fmu_path: Path) -> None:
     found = fc.simulate(scene, stop=6e-3, step=1e-3, inputs=drive, outputs=["F_t"], fmu=fmu_path)["F_t"]
     assert found[[0, 1, 2, 4, 5, 6]].tolist() == pytest.approx([0.0, 0.0, 10.0, 3.0, 3.0, 3.0], abs=1e-5)
     with pytest.raises(fc.UserError, match="inputs: position needs two samples, a time that grows, and no V"):
-        fc.simulate(stop=1.0, step=0.1, inputs={"time": [0.0, 1.0], "position": [0.0, 1.0], "V": [0.0, 1.0]}, fmu=fmu_path)
+        fc.simulate(
+            stop=1.0,
+            step=0.1,
+            inputs={"time": [0.0, 1.0], "position": [0.0, 1.0], "V": [0.0, 1.0]},
+            fmu=fmu_path,
+        )
 
 
 def test_samples_beyond_the_end_are_told(fmu_path: Path) -> None:
     drive = {"time": [0.0, 500.0, 1000.0], "V": [0.1, 0.1, 0.1]}
-    with pytest.warns(fc.FrictionWarning, match="inputs: 2 of 3 samples are after stop = 1 s; the last is at 1000 s"):
+    with pytest.warns(
+        fc.FrictionWarning, match="inputs: 2 of 3 samples are after stop = 1 s; the last is at 1000 s"
+    ):
         fc.simulate(stop=1.0, step=0.1, inputs=drive, fmu=fmu_path)

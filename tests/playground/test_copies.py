@@ -52,7 +52,11 @@ def test_a_refused_value_is_not_copied(playground: Playground, scene: Preset) ->
     playground.enter("d", "-7")
     assert "below its minimum" in playground.refusal("d")
     assert {kind: playground.text(kind) for kind in kinds} == before
-    assert playground.page.evaluate(opacity) == playground.page.evaluate(opacity.replace("#numbers", ".plot")) != "1"
+    assert (
+        playground.page.evaluate(opacity)
+        == playground.page.evaluate(opacity.replace("#numbers", ".plot"))
+        != "1"
+    )
     assert "the last scene that the FMU accepted" in playground.page.locator("#copied").inner_text()
     playground.enter("d", "13")
     assert playground.text("Link") != before["Link"] and playground.page.evaluate(opacity) == "1"

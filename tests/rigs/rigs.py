@@ -1,4 +1,4 @@
-"""Synthetic rigs: what hunt/reference.c gives, as an instrument with one fault would write it, and what identify says.
+"""Synthetic rigs: what hunt/reference.c gives, as an instrument with one fault writes it; what identify says.
 
 `.venv/bin/python tests/rigs/rigs.py` prints the table of 200 rigs by fault, `--sentences` what a user reads.
 """
@@ -57,10 +57,16 @@ def rig(fault: str, seed: int) -> Rig:
     frame = loop(random, law, F_C, sigma) if record else measured_rows(random, law, F_C, sigma, kind)
     force = "F_t [N]" if record else "F_t_mean [N]"
     exact = frame[force].to_numpy()
-    frame[force] = with_fault(random, fault, frame, exact, F_C) + scatter * F_C * random.standard_normal(len(frame))
+    frame[force] = with_fault(random, fault, frame, exact, F_C) + scatter * F_C * random.standard_normal(
+        len(frame)
+    )
     if fault == "peak to peak":
         frame["vibration.V_1 [mm/s]"] *= 2.0
-    start = {"friction.model": assumed, "contact.model": "Constant", **(of_law if assumed in ("LuGre",) else {})}
+    start = {
+        "friction.model": assumed,
+        "contact.model": "Constant",
+        **(of_law if assumed in ("LuGre",) else {}),
+    }
     if assumed == "LuGre" and not of_law:
         start |= STRIBECK
     truth = {"F_C": F_C} | ({} if assumed == "Coulomb" else {"contact.sigma": sigma})
@@ -69,7 +75,11 @@ def rig(fault: str, seed: int) -> Rig:
 
 
 def rig_scene(law: str, F_C: float, sigma: float, **values: float) -> Any:
-    ratio = {"staticRatio": STRIBECK["friction.staticRatio"], "V_S": STRIBECK["friction.V_S"]} if law == "LuGre" else {}
+    ratio = (
+        {"staticRatio": STRIBECK["friction.staticRatio"], "V_S": STRIBECK["friction.V_S"]}
+        if law == "LuGre"
+        else {}
+    )
     return scene(law=law, contact="Constant", F_C=F_C, contact_sigma=sigma, **ratio, **values)
 
 
@@ -107,7 +117,9 @@ def loop(
         if k + 2 < len(t):
             before, now = after(now, found, V=V[k + 1], V_rate=(V[k + 2] - V[k + 1]) / h)
     x = np.concatenate([[0.0], np.cumsum(0.5 * (V[1:] + V[:-1]) * h)])
-    return pd.DataFrame({"time [ms]": 1e3 * t, "position [um]": 1e6 * x, "F_t [N]": force})[::finer].reset_index(drop=True)
+    return pd.DataFrame({"time [ms]": 1e3 * t, "position [um]": 1e6 * x, "F_t [N]": force})[
+        ::finer
+    ].reset_index(drop=True)
 
 
 def with_fault(
@@ -156,9 +168,10 @@ def verdict(case: tuple[str, int]) -> Verdict:
     held = {n: low <= made.truth[n] <= high for n, (low, high) in found.intervals.items()}
     narrow = [not held[n] and 0.0 < low and high < NARROW * low for n, (low, high) in found.intervals.items()]
     named = any(NAMES.get(made.fault, "?") in text for text in found.remedies)
+    said = "\n".join([repr(found), *found.misfits, *found.remedies])
     return Verdict(
-        made, f"{found!r}\n" + "\n".join([*found.misfits, *found.remedies]), len(found.misfits), found.judged, named,
-        found.fit.hidden, stats.chi2.sf(squares, free) < CHANCE, held, any(narrow),
+        made, said, len(found.misfits), found.judged, named, found.fit.hidden,
+        stats.chi2.sf(squares, free) < CHANCE, held, any(narrow),
     )  # fmt: skip
 
 
@@ -189,7 +202,9 @@ def table(found: list[Verdict], of: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--each", type=int, default=EACH, help="rigs of a fault")
     parser.add_argument("--faults", nargs="+", default=FAULTS)
     parser.add_argument("--sentences", action="store_true", help="print what a user reads of each rig")
@@ -197,9 +212,12 @@ def main() -> None:
     found = list(verdicts(options.each, tuple(options.faults)))
     if options.sentences:
         for one in found:
-            print(f"[{one.rig.fault}, {one.rig.kind}, {one.rig.start['friction.model']}, shows {one.shows}, held {one.held}] {one.said}\n")
+            about = f"{one.rig.fault}, {one.rig.kind}, {one.rig.start['friction.model']}"
+            print(f"[{about}; the data show it: {one.shows}; held: {one.held}] {one.said}\n")
     by_fault = {fault: lambda one, fault=fault: one.rig.fault == fault for fault in options.faults}
-    kinds = {kind: lambda one, kind=kind: one.rig.kind == kind for kind in ("rows by V", "rows by V_1", "record")}
+    kinds = {
+        kind: lambda one, kind=kind: one.rig.kind == kind for kind in ("rows by V", "rows by V_1", "record")
+    }
     pd.set_option("display.width", 250, "display.max_columns", 20)
     print(table(found, by_fault | kinds).to_string())
 
