@@ -71,8 +71,8 @@ class Identification:
 
     @property
     def nuisances(self) -> dict[str, tuple[float, float]]:
-        """What was asked of the instrument: offset [N], drift [N/s, or N per row], delay [s], sign (1 or -1);
-        value and half-width of its 95 % interval."""
+        """What was asked of the instrument, with half-widths of 95 %: offset [N], drift [N/s or N per row],
+        delay [s], and a sign of -1 where the other one fits better."""
         found = dict(self.fit.nuisances)
         return found | ({"sign": (-1.0, 0.0)} if self.experiment.sign < 0.0 else {})
 

@@ -19,6 +19,7 @@ from frictioncontact.identification.suspicion import CHANCE, visible
 V_1, LAW = "vibration.V_1", "friction.model"
 MOST = 0.25  # of the sum of squares, left of a misfit that is mostly explained
 TENTH = 0.1  # of the force: a fault that a fit should show
+STARTS = 3  # of each remedy
 SHOWS = 3.0  # standard deviations of the scatter by which it does
 
 Remedy = tuple[
@@ -90,7 +91,7 @@ def _tried(remedies: list[Remedy], than: Fit) -> list[Tried]:
     found = []
     for words, experiment in remedies:
         try:
-            fit = search(experiment, experiment.target) if experiment.degrees > 0 else than
+            fit = search(experiment, experiment.target, most=STARTS) if experiment.degrees > 0 else than
         except FrictionError:
             continue
         if than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:

@@ -27,14 +27,14 @@ def silent(text: str) -> None:
     """For who does not want to be told."""
 
 
-def search(experiment: Experiment, target: np.ndarray, tell: Tell = silent) -> Fit:
-    """The fit to a target (as Experiment.target), without profiles and judgement."""
+def search(experiment: Experiment, target: np.ndarray, tell: Tell = silent, most: int = STARTS) -> Fit:
+    """The fit to a target (as Experiment.target), from so many starts, without profiles and judgement."""
     if experiment.degrees < 0:
         names = ", ".join(p.name for p in experiment.parameters)
         have = f"{len(experiment.force)} {experiment.word}s"
         raise UserError(f"{have} can't give {len(experiment.parameters)} parameters ({names})")
     found = []
-    starts = start_points(experiment, target)
+    starts = start_points(experiment, target)[:most]
     for k, start in enumerate(starts):
         tell(f"search {k + 1} of {len(starts)}")
         found.append(solve(experiment, start, target))

@@ -53,7 +53,8 @@ class Record(Experiment):
         delays, before = self.nuisance(points, "delay"), points[:, [len(self.parameters) + 1]]
         pairs, place = np.unique(np.hstack([delays, before]), axis=0, return_inverse=True)
         for k, pair in enumerate(pairs.tolist()):
-            found[place == k] = self._model(points[place == k], tolerance, *pair)
+            here = place.ravel() == k
+            found[here] = self._model(points[here], tolerance, *pair)
         return found
 
     def _model(self, points: np.ndarray, tolerance: float, delay: float, before: float) -> np.ndarray:
@@ -63,7 +64,8 @@ class Record(Experiment):
         """
         fitted = {p.name: p.values(points[:, k]) for k, p in enumerate(self.parameters)}
         found = np.full((len(points), len(self.force)), np.nan)
-        deflections = self._deflections(fitted, points[:, len(self.parameters)])
+        begin = self.time[0] - delay
+        deflections = self._deflections(fitted, points[:, len(self.parameters)], begin)
         good = np.isfinite(deflections)
         values = {
             **self._constants,
@@ -71,7 +73,6 @@ class Record(Experiment):
             "delta_0": deflections[good],
             "solver.tolerance": tolerance,
         }
-        begin = self.time[0] - delay
         inputs, ends = self._inputs.preceded(before, begin), self.time[1:] - self.time[0]
         times = np.concatenate([[0.0], inputs.steps(ends)])
         held, rates = inputs.over(times[:-1], times[1:])
@@ -93,10 +94,10 @@ class Record(Experiment):
         self.problem = refused[0] if refused else self.problem
         return answer
 
-    def _deflections(self, fitted: dict[str, np.ndarray], force: np.ndarray) -> np.ndarray:
-        """Of the bristle at the start [m], for a force there [N] that can't exceed its bound."""
+    def _deflections(self, fitted: dict[str, np.ndarray], force: np.ndarray, begin: float) -> np.ndarray:
+        """Of the bristle at begin [s], in m, for a force there [N] that can't exceed its bound."""
         values = {**self._constants, **fitted, "V": np.full(len(force), self._constants["V"])}
-        now = self._simulated(values, ("sigma", "F_n"), duration=0.0)
+        now = self._simulated(values, ("sigma", "F_n"), duration=0.0, begin=begin)
         bound = self.limit(values, now["F_n"])
         if values.get("friction.model") in WITH_STATIC_FRICTION:
             bound = bound * self.value(values, "friction.staticRatio")

@@ -44,7 +44,8 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
     if asked := described(experiment, result):
         say(f"instrument: {asked} (95 %)")
     if not result.judged and not result.misfits:
-        say("whether the law fits is open: state the uncertainty of the force (uncertain, --uncertain)")
+        ask = "state the uncertainty of the force (uncertain, --uncertain)"
+        say(f"no misfit is seen, but whether the law fits is open: {ask}")
     if result.hidden:
         say(f"these data would not show {' or '.join(result.hidden)} of a tenth: the parameters take it up")
     names = [p.name for p in result.parameters]

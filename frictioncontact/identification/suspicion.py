@@ -102,8 +102,8 @@ def _over_rows(experiment: Experiment) -> dict[str, Statistic]:
         found[f"to rows of neighbouring {name} are alike"] = _neighbours(same)
     if len(varied) > 1:
         places = np.stack([rank / rank.max() for rank in varied.values()], axis=1)
-        near = cKDTree(places).query(places, 3)[1][:, 1:]
-        pairs = np.stack([np.repeat(np.arange(len(near)), 2), near.ravel()])
+        near = cKDTree(places).query(places, min(3, len(places)))[1][:, 1:]
+        pairs = np.stack([np.repeat(np.arange(len(near)), near.shape[1]), near.ravel()])
         found["to rows of like conditions are alike"] = _neighbours(pairs)
     return found
 

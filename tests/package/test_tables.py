@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -219,6 +221,15 @@ def test_a_position_moves_the_contact_as_far_as_it_says(fmu_path: Path) -> None:
             inputs={"time": [0.0, 1.0], "position": [0.0, 1.0], "V": [0.0, 1.0]},
             fmu=fmu_path,
         )
+
+
+def test_pint_is_imported_for_units_alone(fmu_path: Path) -> None:
+    code = (
+        "import sys, frictioncontact as fc;"
+        f"run = lambda name: fc.simulate(stop=1e-3, step=1e-3, inputs={{'time': [0.0], name: [0.1]}}, fmu={str(fmu_path)!r});"
+        "run('V'); run('V [m/s]'); assert 'pint' not in sys.modules; run('V [mm/s]'); assert 'pint' in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_samples_beyond_the_end_are_told(fmu_path: Path) -> None:
