@@ -224,11 +224,16 @@ def test_a_position_moves_the_contact_as_far_as_it_says(fmu_path: Path) -> None:
 
 
 def test_pint_is_imported_for_units_alone(fmu_path: Path) -> None:
-    code = (
-        "import sys, frictioncontact as fc;"
-        f"run = lambda name: fc.simulate(stop=1e-3, step=1e-3, inputs={{'time': [0.0], name: [0.1]}}, fmu={str(fmu_path)!r});"
-        "run('V'); run('V [m/s]'); assert 'pint' not in sys.modules; run('V [mm/s]'); assert 'pint' in sys.modules"
-    )
+    code = f"""
+import sys, frictioncontact as fc
+def run(name):
+    fc.simulate(stop=1e-3, step=1e-3, inputs={{"time": [0.0], name: [0.1]}}, fmu={str(fmu_path)!r})
+run("V")
+run("V [m/s]")
+assert "pint" not in sys.modules
+run("V [mm/s]")
+assert "pint" in sys.modules
+"""
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
