@@ -11,6 +11,7 @@ import csv
 import os
 import re
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 HEADING = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\)|\s(?:in|/)\s+([^\[\],;\t]*))?", re.DOTALL)
 COMMA, POINT = (re.compile(rf"[-+]?\d*{mark}\d*(?:e[-+]?\d+)?", re.IGNORECASE) for mark in (",", r"\."))
 SEPARATORS = (";", "\t", ",", " ")
+FIRST = 1000  # lines in which the header is
 TIME, POSITION = "time", "position"
 OWN = {TIME: "s", POSITION: "m", "F_t": "N", "F_t_mean": "N"}  # columns that are no inputs or parameters
 SUFFIX = ".uncertainty"
@@ -213,16 +215,21 @@ def _text(path: Path) -> str:
 
 
 def _header(lines: Sequence[tuple[int, str]], known: Collection[str]) -> tuple[int, str]:
-    """The number of the first line with a known heading, and what separates its cells; else the first line's.
+    """The number of the line with the most known headings, and what separates its cells; else the first.
 
     A remark if no other line has one: numpy.savetxt writes such a header.
     """
     plain = [(k, line) for k, line in lines if line.lstrip()[0] != "#"]
-    for k, line in [*plain, *lines]:
-        split = [_cells(line, separator) for separator in SEPARATORS]
-        found = [sum(cell in known or _parted(cell)[0] in known for cell in cells) for cells in split]
-        if any(found):
-            return k, SEPARATORS[int(np.argmax(found))]
+    for candidates in (plain, lines):
+        most, place = 0, (0, "")
+        for k, line in candidates[:FIRST]:
+            for separator in SEPARATORS:
+                with suppress(csv.Error):  # of a preamble
+                    cells = _cells(line, separator)
+                    count = sum(cell in known or _parted(cell)[0] in known for cell in cells)
+                    most, place = (count, (k, separator)) if count > most else (most, place)
+        if most:
+            return place
     k, line = next(iter(plain), (0, ""))
     return k, max(SEPARATORS[:3], key=line.count)
 

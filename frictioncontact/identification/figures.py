@@ -45,8 +45,9 @@ def _draw_means(axes: Axes, experiment: Experiment, result: Fit) -> None:
     error = np.where(np.isfinite(error), error, 0.0)
     axes.errorbar(place, measured, error, fmt="o", color=style.SOURCE["paper"], capsize=3, label="measured")
     axes.plot(place, result.model, "_", ms=16, mew=2.5, color=style.SOURCE["identified"], label="fitted")
-    unit = "" if name == "row" else f" [{experiment.fmu.variables[name].unit}]"
-    axes.set(xlabel=f"{name}{unit}", ylabel="mean friction force [N]", title="Measured and fitted means")
+    unit = "1" if name == "row" else experiment.fmu.variables[name].unit
+    label = name if unit == "1" else f"{name} [{unit}]"
+    axes.set(xlabel=label, ylabel="mean friction force [N]", title="Measured and fitted means")
     _ticks(axes, "x", place, place.min() > 0.0 and name != "row")
     axes.set_ylim(min(0.0, 1.1 * measured.min()), 1.12 * max(measured.max(), result.model.max()))
     axes.legend(loc="best")

@@ -71,14 +71,15 @@ def _along(direction: np.ndarray) -> Statistic:
 
 
 def _in_time(samples: int) -> dict[str, Statistic]:
-    """Sums over blocks of samples, of several lengths."""
+    """Sums over blocks of samples, of several lengths; the largest."""
 
     def blocks(length: int) -> Statistic:
         whole = samples // length
         return lambda r: np.sum(r[:, : whole * length].reshape(-1, whole, length).sum(axis=2) ** 2, axis=1)
 
     lengths = [2**k for k in range(1, 12) if 2**k <= max(samples // 4, 2)]
-    return {f"to {length} neighbouring samples are alike": blocks(length) for length in lengths}
+    found = {f"to {length} neighbouring samples are alike": blocks(length) for length in lengths}
+    return {**found, "are far larger at a sample than at others": lambda r: np.abs(r).max(axis=1)}
 
 
 def _over_rows(experiment: Experiment) -> dict[str, Statistic]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import warnings
 from pathlib import Path
 
@@ -88,6 +89,19 @@ def test_whether_rows_were_judged_is_said(rows: pd.DataFrame, fmu_path: Path) ->
         assert found.misfits == [] and low < 12e6 < high
 
 
+def test_the_plot_is_against_V_with_ticks_that_are_read(rows: pd.DataFrame, fmu_path: Path) -> None:
+    """Decades of V; an interval of 2 % of a stiffness of 12e6 N/m in a few short numbers."""
+    figure = fc.identify(rows, ["contact.sigma", "F_C"], start=ELASTIC, fmu=fmu_path).plot()
+    figure.savefig(io.BytesIO())  # which lays the ticks out
+    means, sharp = figure.axes[:2]
+    assert (means.get_xlabel(), means.get_xscale()) == ("V [m/s]", "log")
+    for axis, least in ((means.xaxis, 2), (sharp.xaxis, 2), (sharp.yaxis, 2)):
+        low, high = sorted(axis.get_view_interval())
+        shown = [t.label1.get_text() for t in axis.get_major_ticks() if low <= t.get_loc() <= high]
+        assert least <= len(shown) <= 7 and all(0 < len(text) <= 7 for text in shown), shown
+        assert len(set(shown)) == len(shown)
+
+
 LATE, OFFSET, DRIFT = 13e-3, 0.6, 0.12  # s, N, N/s
 
 
@@ -129,6 +143,7 @@ def test_faults_of_an_instrument_are_named_with_their_sizes(
         low, high = fitted.intervals[name]
         assert low < right < high and high < 1.1 * low, name
     assert "the measured position scatters by " in str(fitted)
+    assert fitted.plot().axes[0].get_xlabel() == "time [s]"
 
 
 def test_a_force_of_the_other_sign(rig_record: pd.DataFrame, fmu_path: Path) -> None:
