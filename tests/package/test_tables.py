@@ -34,7 +34,7 @@ DIALECTS: dict[str, tuple[str, str, Mapping[str, str] | None]] = {
         None,
     ),
     "a preamble": (
-        'Rig "5\ntime;14:02\nOperator;A. B.\n\ntime [ms];V [mm/s];F_t [kN]\n0;0.5;1\n1.5;20;2.25\n4;-30;-0.5\n',
+        'Rig "5\ntime;14:02\nOperator;B\n\ntime [ms];V [mm/s];F_t [kN]\n0;0.5;1\n1.5;20;2.25\n4;-30;-0.5\n',
         "utf-8-sig",
         None,
     ),
