@@ -94,7 +94,8 @@ def _tried(remedies: list[Remedy], than: Fit) -> list[Tried]:
             fit = search(experiment, experiment.target, most=STARTS) if experiment.degrees > 0 else than
         except FrictionError:
             continue
-        if than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:
+        is_new = all(abs(fit.squares - one[2].squares) > 1e-6 * fit.squares for one in found)  # LuGre as Dahl
+        if is_new and than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:
             found.append((words, experiment, fit))
     return sorted(found, key=lambda one: one[2].squares)
 
