@@ -68,6 +68,13 @@ def add_set(parser: argparse.ArgumentParser, of: str) -> None:
     )  # fmt: skip
 
 
+def add_column(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--column", action="append", default=[], metavar="NAME=HEADING",
+        help="heading in the file of what the FMU calls NAME, or 'NAME [UNIT]'; again for each",
+    )  # fmt: skip
+
+
 def add_output(parser: argparse.ArgumentParser, default: Path) -> None:
     parser.add_argument(
         "--output", type=Path, default=default, help=f"folder to write to, made if missing ({place(default)})"

@@ -86,8 +86,8 @@ def unlikely(known: Variables, given: Mapping[str, np.ndarray]) -> list[str]:
         odd = (size != 0.0) & ((size < low) | (size > high))
         if odd.any():
             value = float(given[name].flat[int(np.argmax(odd))])
-            unit = known.all[name].unit
-            found.append(f"{name} = {value:g} {unit} is an unlikely magnitude{_display(known, name, value)}")
+            unit = "" if known.all[name].unit == "1" else f" {known.all[name].unit}"
+            found.append(f"{name} = {value:g}{unit} is an unlikely magnitude{_display(known, name, value)}")
     return found
 
 

@@ -119,6 +119,10 @@ class FrictionFmu(Closing):
             instanceName="contact",
         )
 
+    def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | None]]:
+        """Of a copy: the package's own FMU, or the file, opened there."""
+        return opened, (None if self.path == resources.fmu() else self.path,)
+
     def session(
         self,
         start_values: Mapping[str, Value] | None = None,
@@ -191,6 +195,10 @@ class Session(Closing):
         except UserError:
             self.close()
             raise
+
+    def __repr__(self) -> str:
+        state = "closed" if self.slave.component is None else f"at {self.time:g} s"
+        return f"<session of {self.fmu.path.name}, {state}>"
 
     def _call(self, function: Callable[..., Any], *arguments: object) -> Any:
         if not self._in_use.acquire(blocking=False):

@@ -1,11 +1,10 @@
 """Is this a value of that variable? The one answer, for Python, command lines and CSV files."""
 
-import csv
 import math
 import numbers
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -83,27 +82,6 @@ def assignments(texts: Sequence[str], option: str) -> dict[str, str]:
             raise UserError(f"{option} {name}: is given twice")
         values[name] = value
     return values
-
-
-def csv_rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Line number and stripped cells of each row; blank lines and those that begin with # are left out."""
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file, strict=True)
-            first = True
-            for cells in reader:
-                if any(cells) and not cells[0].lstrip().startswith("#"):
-                    if first and len(cells) == 1 and re.search("[;\t]", cells[0].strip()):
-                        kind = "semicolons" if ";" in cells[0] else "tabs"
-                        raise UserError(
-                            f"{path}: its columns are separated by {kind}; write commas, and decimal points"
-                        )
-                    first = False
-                    yield reader.line_num, [cell.strip() for cell in cells]
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from None
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: is not a CSV file in UTF-8: {error}") from None
 
 
 def numbers_of(value: object, where: str, items: Mapping[str, float] | None = None) -> np.ndarray:
@@ -192,6 +170,10 @@ class Variables:
             for unit in description.unitDefinitions
             for display in unit.displayUnits
         }
+
+    def units(self, causalities: Sequence[str] = SETTABLE) -> dict[str, str]:
+        """Those of the variables of a causality."""
+        return {n: each.unit or "1" for n, each in self.all.items() if each.causality in causalities}
 
     def find(self, name: object, where: str, causalities: Sequence[str] = SETTABLE) -> ScalarVariable:
         """The variable of this name that can be set."""

@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.advice.question import LEAST, Output, Question, question
+from frictioncontact.advice.stuck_mass import MASTERS, Master, coupling
 from frictioncontact.doubts import WITH_STATIC_FRICTION
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import SETTLED, FrictionFmu, Value, opened, run, simulate
 from frictioncontact.periodic import periodic_mean, periodic_waves
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from frictioncontact.tables import Source
 
 MOST = 1e-2  # solver.tolerance
 TIGHT = 1e-10  # the tolerance that grades
@@ -52,9 +52,12 @@ class Advice:
 
     def __repr__(self) -> str:
         settings = ", ".join(f"{name} = {value}" for name, value in self.settings.items())
-        return f"<advice: {settings}; within {self.asked.accuracy:g}>"
+        within = "" if math.isnan(self.error) else f"; within {self.asked.accuracy:g}"
+        return f"<advice: {settings or 'none'}{within}>"
 
     def __str__(self) -> str:
+        if math.isnan(self.error):  # of a mass
+            return self.why
         asked, known = self.asked, self.knows_the_mean
         of_mean = f", {self.error / abs(self.mean):.1e} of the mean friction" if known else ""
         promise = (
@@ -78,9 +81,11 @@ def advise(
     accuracy: float = 1e-3,
     step: float | None = None,
     output: Output = "both",
-    inputs: Mapping[str, npt.ArrayLike] | pd.DataFrame | None = None,
+    inputs: Source | None = None,
     linear: bool = False,
     phases: tuple[float, ...] = PHASES,
+    mass: float | None = None,
+    master: Master = MASTERS[0],
     fmu: str | Path | None = None,
 ) -> Advice:
     """Settings with which F_t and F_t_mean are accurate enough, relative to F_C and to the mean friction.
@@ -89,12 +94,15 @@ def advise(
     accuracy  largest error, over F_C and over the mean friction, from 1e-8 to 1
     step      communication step, s (a period of the vibration)
     output    which output must be accurate: "F_t", "F_t_mean" or "both"
-    inputs    a table (mapping or frame) with time [s] in even steps and any of V, d, E, load, V_y: the steps
-              are its own, the first 400 are graded
+    inputs    a table as of `simulate`, in even steps: the steps are its own, the first 400 are graded; a
+              position gives its mean velocity over each step
     linear    inputs are linear between their samples; else held
     phases    of the vibration, over a period, from which it is graded
+    mass      kg, that moves with the contact: advises on the coupling instead, while the contact sticks
+    master    how the master exchanges values with it: "Jacobi", "Jacobi, reread", "Jacobi, linear" or
+              "Gauss-Seidel"
     fmu       another .fmu file of this model
-    returns   an `Advice`: settings, start_values, mean and error [N]; str() prints them
+    returns   an `Advice`: settings, start_values, mean and error [N] (nan of a mass); str() prints them
     raises    UserError: the question is wrong, or the FMU refuses the scene
     warns     FrictionWarning: of a setting that has no effect; of an unlikely magnitude
 
@@ -106,7 +114,14 @@ def advise(
         fc.simulate(advice.start_values, stop=0.01, step=1e-3, outputs=["F_t_mean"])
     """
     loaded = opened(fmu)
+    if mass is not None and (step is None or inputs is not None or linear):
+        raise UserError(
+            "mass needs step and takes no inputs: it looks at the contact stuck at its start values"
+        )
     asked = question(loaded, scene, accuracy, step, output, inputs, linear)
+    if mass is not None:
+        why, settings = coupling(loaded, asked.given, mass, asked.step, master)
+        return Advice(asked, settings, why, math.nan, math.nan, math.nan, math.nan)
     mean, scale = mean_friction(loaded, asked), mean_limit(loaded, asked)
     if scale == 0.0:
         raise UserError("friction.mu F_n = 0 N: must be above 0 N, since the accuracy is relative to it")

@@ -8,12 +8,10 @@ import numpy as np
 from fmpy.util import read_csv
 
 from frictioncontact.advice.answer import PHASES, Advice, advise
-from frictioncontact.advice.question import OUTPUTS, STEP_LENGTHS, between, scene_values
-from frictioncontact.advice.stuck_mass import MASTERS, advice
+from frictioncontact.advice.question import OUTPUTS, scene_values
+from frictioncontact.advice.stuck_mass import MASTERS
 from frictioncontact.command import add_fmu, add_set, command_line, progress_bar, shown
-from frictioncontact.errors import UserError
-from frictioncontact.fmu import FrictionFmu, Session, Value, opened
-from frictioncontact.simulation.command import read_inputs
+from frictioncontact.fmu import FrictionFmu, Value, opened
 
 DESCRIPTION = """\
 Says what to set for a scene so that F_t and F_t_mean are within an accuracy of F_C and of the mean friction:
@@ -29,8 +27,6 @@ that keeps the master's exchange stable at the communication step, and the large
 
   %(prog)s --mass 1 --step 1e-4 --set contact.model=Constant --set contact.sigma=1e6"""
 
-MASSES = (1e-12, 1e12)  # kg
-
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser = command_line("frictioncontact advise", DESCRIPTION)
@@ -45,7 +41,9 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help=f"how the master exchanges values: {' or '.join(map(repr, MASTERS))} ({MASTERS[0]})",
     )  # fmt: skip
     parser.add_argument("--output-of", choices=OUTPUTS, default="both", help="which output must be accurate")
-    parser.add_argument("--inputs", type=Path, help="CSV with time, in even steps, and any of V, d, E, load")
+    parser.add_argument(
+        "--inputs", type=Path, help="CSV with time, in even steps, and any of V, d, E, load, or position"
+    )
     parser.add_argument("--linear", action="store_true", help="inputs move linearly between their samples")
     parser.add_argument("--quick", action="store_true", help="grade from two phases instead of five")
     add_fmu(parser)
@@ -55,11 +53,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 def run(options: argparse.Namespace) -> None:
     fmu = opened(options.fmu)
     known = scene_values(fmu, fmu.known.assigned(options.set))
-    if options.mass is not None:
-        said, settings = coupling(fmu, known, options)
-        print(said, start_values(fmu, known | settings), sep="\n\n")
-        return
-    inputs = read_inputs(options.inputs, fmu) if options.inputs else None
     with progress_bar() as progress:
         progress.add_task("Grading", total=None)
         found = advise(
@@ -67,32 +60,34 @@ def run(options: argparse.Namespace) -> None:
             accuracy=options.accuracy,
             step=options.step,
             output=options.output_of,
-            inputs=inputs,
+            inputs=options.inputs,
             linear=options.linear,
             phases=PHASES[:2] if options.quick else PHASES,
+            mass=options.mass,
+            master=options.master,
             fmu=options.fmu,
         )
-    print(found, command_for(fmu, found, options.inputs, inputs), sep="\n\n")
+    print(found, command_for(fmu, found, options.inputs), sep="\n\n")
 
 
-def command_for(
-    fmu: FrictionFmu, found: Advice, path: Path | None, inputs: Mapping[str, Sequence[float]] | None
-) -> str:
+def command_for(fmu: FrictionFmu, found: Advice, path: Path | None) -> str:
     """What runs the scene with its inputs as graded: fmpy holds them, simulate moves them from time 0 on."""
     asked, values = found.asked, start_values(fmu, found.start_values)
+    if np.isnan(found.error):  # of a mass
+        return values
     fmpy = f"fmpy simulate {shown(fmu.path)} --output-interval {asked.step:.10g}"
-    if inputs is None:
+    if path is None or asked.table is None:
         return f"{fmpy} {values}".rstrip()
-    stop = f"{inputs['time'][-1]:.10g}"
+    stop = f"{asked.table.time[-1]:.10g}"
     if asked.linear and asked.start == 0.0:
         settings = " ".join(f"--set {name}={value}" for name, value in found.start_values.items())
         return f"frictioncontact simulate --inputs {path} --stop {stop} --step {asked.step:.10g} {settings}"
-    if asked.linear or not fmpy_reads(path, inputs):
+    if asked.linear or not fmpy_reads(path, {"time": asked.table.time, **asked.table.values}):
         return f"Neither fmpy nor simulate runs these inputs as they were graded: {values}"
     return f"{fmpy} --start-time {asked.start:.10g} --stop-time {stop} --input-file {path} {values}"
 
 
-def fmpy_reads(path: Path | None, inputs: Mapping[str, Sequence[float]]) -> bool:
+def fmpy_reads(path: Path, inputs: Mapping[str, np.ndarray]) -> bool:
     """Whether FMPy makes the same numbers of the file, under the same names."""
     try:
         table = read_csv(path)
@@ -107,35 +102,3 @@ def start_values(fmu: FrictionFmu, values: Mapping[str, Value]) -> str:
     return " ".join(
         ["--start-values" if codes else "", *(f"{name} {code:.10g}" for name, code in codes.items())]
     )
-
-
-def coupling(
-    fmu: FrictionFmu, values: dict[str, Value], options: argparse.Namespace
-) -> tuple[str, dict[str, Value]]:
-    """The advice for --mass."""
-    for name in ("inputs", "linear"):
-        if getattr(options, name):
-            raise UserError(
-                f"--mass does not take --{name}: it looks at the contact stuck at its start values"
-            )
-    between("--mass", options.mass, "kg", MASSES)
-    if options.step is None:
-        raise UserError("--mass needs --step, the communication step")
-    between("--step", options.step, "s", STEP_LENGTHS)
-    if values.get("friction.model") == "Coulomb":
-        raise UserError("--mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
-    with fmu.session(values) as session:
-        sigma = stiffest(session)
-    if sigma == 0.0:
-        raise UserError("--mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
-    return advice(options.mass, sigma, options.master, options.step)
-
-
-def stiffest(session: Session) -> float:
-    """The largest stiffness [N/m] over a period of the vibration, at 64 of its moments."""
-    found = session.get("sigma")
-    if session.get("vibration.a_d") > 0.0:
-        for _ in range(64):
-            session.step(1.0 / (64.0 * session.get("vibration.f")))
-            found = max(found, session.get("sigma"))
-    return found

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from frictioncontact.advice.stuck_mass import between
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
-from frictioncontact.simulation.inputs import samples
+from frictioncontact.simulation.inputs import Samples, samples
 from frictioncontact.values import pairs, real
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from frictioncontact.tables import Source
 
 Output = Literal["both", "F_t", "F_t_mean"]
 OUTPUTS: tuple[Output, ...] = ("both", "F_t", "F_t_mean")
+STEP_LENGTHS = (1e-15, 1e9)  # s
 LONGEST = 400  # communication steps taken from a table of inputs
 LEAST = 1e-8  # accuracy; solver.tolerance promises no more
-STEP_LENGTHS = (1e-15, 1e9)  # s
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,7 @@ class Question:
     start: float  # s
     inputs: dict[str, np.ndarray]
     linear: bool  # inputs between their samples
+    table: Samples | None = None  # all of the inputs
 
     @property
     def vibrates(self) -> bool:
@@ -54,7 +55,7 @@ def question(
     accuracy: float,
     step: float | None,
     output: Output,
-    inputs: Mapping[str, npt.ArrayLike] | pd.DataFrame | None,
+    inputs: Source | None,
     linear: bool,
 ) -> Question:
     """The question, checked; UserError says what is wrong."""
@@ -65,18 +66,19 @@ def question(
         raise UserError(f"output {output}: must be one of {', '.join(OUTPUTS)}")
     given = scene_values(fmu, pairs(scene, "scene"))
     values = {**_starts(fmu), **given}
-    start, moving = 0.0, {}
+    start, moving, table = 0.0, {}, None
     if inputs is not None:
         if step is not None:
             raise UserError("step and inputs: the samples' own time steps are used; leave step out")
-        start, step, moving = _even(inputs, fmu.known.inputs)
+        table = _at_steps(samples(inputs, fmu.known))
+        start, step, moving = _even(table)
     elif step is None:
         step = 1.0 / float(values["vibration.f"])
     step = real(step, "step")
     between("step", step, "s", STEP_LENGTHS)
     with fmu.session({**given, **{name: float(v[0]) for name, v in moving.items()}}) as session:
         warn_of(fmu.known, given | moving, session.warnings, is_over_period=True)
-    return Question(given, values, step, accuracy, output, start, moving, linear)
+    return Question(given, values, step, accuracy, output, start, moving, linear, table)
 
 
 def scene_values(fmu: FrictionFmu, scene: Mapping[str, Value]) -> dict[str, Value]:
@@ -88,11 +90,6 @@ def scene_values(fmu: FrictionFmu, scene: Mapping[str, Value]) -> dict[str, Valu
     return values
 
 
-def between(option: str, value: float, unit: str, limits: tuple[float, float]) -> None:
-    if not limits[0] <= value <= limits[1]:
-        raise UserError(f"{option} {value:g} {unit}: must lie between {limits[0]:g} and {limits[1]:g} {unit}")
-
-
 def _starts(fmu: FrictionFmu) -> dict[str, Value]:
     """Start values of the variables that describe a scene: not the solver's, and not where it begins."""
     return {
@@ -102,11 +99,17 @@ def _starts(fmu: FrictionFmu) -> dict[str, Value]:
     }
 
 
-def _even(
-    inputs: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[str]
-) -> tuple[float, float, dict[str, np.ndarray]]:
+def _at_steps(table: Samples) -> Samples:
+    """One sample a time; of a velocity that jumps at all, as a position's does, its means over steps."""
+    time = table.time
+    if len(time) < 4 or len(time) % 2 or (time[::2] != time[1::2]).any():
+        return table
+    means = {name: 0.5 * (each[1:-1:2] + each[2:-1:2]) for name, each in table.values.items()}
+    return Samples(time[::2], {name: np.append(each, each[-1]) for name, each in means.items()})
+
+
+def _even(table: Samples) -> tuple[float, float, dict[str, np.ndarray]]:
     """Start [s], step [s] and samples."""
-    table = samples(inputs, names)
     time = table.time[: LONGEST + 1]
     if len(time) < 2:
         raise UserError("inputs: needs at least two samples")

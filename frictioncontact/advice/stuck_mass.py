@@ -24,13 +24,19 @@ Jacobi and Gauss-Seidel.
 """
 
 import math
+from collections.abc import Mapping
+from typing import Literal
 
-from frictioncontact.fmu import Value
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import FrictionFmu, Session, Value
+from frictioncontact.values import real
 
-JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = "Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel"
+Master = Literal["Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel"]
+MASTERS: tuple[Master, ...] = ("Jacobi", "Jacobi, reread", "Jacobi, linear", "Gauss-Seidel")
+JACOBI, REREAD, LINEAR, GAUSS_SEIDEL = MASTERS
 # The largest H sqrt(sigma / m) that some sigma_1 makes stable: there the two edges meet.
 LARGEST_STEP = {JACOBI: 0.5, REREAD: 2.0, LINEAR: math.sqrt(2.0 + math.sqrt(8.0)), GAUSS_SEIDEL: 2.0}
-MASTERS = tuple(LARGEST_STEP)
+MASSES = (1e-12, 1e12)  # kg
 MARGIN = 1.1  # of the advised sigma_1 over the smallest stable one, at which a swing never dies out
 
 
@@ -90,3 +96,34 @@ def advice(m: float, sigma: float, master: str, H: float) -> tuple[str, dict[str
             f"If you read F_t_mean, add H sigma / 2 = {H * sigma / 2:.6g} N s/m to each of these values."
         )
     return "\n".join(lines), {"friction.sigma_1": float(f"{damping:.6g}")}
+
+
+def coupling(
+    fmu: FrictionFmu, scene: Mapping[str, Value], mass: float, step: float, master: str
+) -> tuple[str, dict[str, Value]]:
+    """The advice for a mass [kg] that a scene holds; UserError says what is wrong."""
+    if master not in MASTERS:
+        raise UserError(f"master = {master!r}: must be one of {', '.join(map(repr, MASTERS))}")
+    between("mass", real(mass, "mass"), "kg", MASSES)
+    if scene.get("friction.model") == "Coulomb":
+        raise UserError("mass: friction.model = Coulomb never sticks, and sigma_1 does nothing in it")
+    with fmu.session(scene) as session:
+        sigma = stiffest(session)
+    if sigma == 0.0:
+        raise UserError("mass: sigma = 0 N/m: must be above 0 N/m; the contact is open")
+    return advice(mass, sigma, master, step)
+
+
+def stiffest(session: Session) -> float:
+    """The largest stiffness [N/m] over a period of the vibration, at 64 of its moments."""
+    found = session.get("sigma")
+    if session.get("vibration.a_d") > 0.0:
+        for _ in range(64):
+            session.step(1.0 / (64.0 * session.get("vibration.f")))
+            found = max(found, session.get("sigma"))
+    return found
+
+
+def between(name: str, value: float, unit: str, limits: tuple[float, float]) -> None:
+    if not limits[0] <= value <= limits[1]:
+        raise UserError(f"{name} {value:g} {unit}: must lie between {limits[0]:g} and {limits[1]:g} {unit}")

@@ -54,9 +54,9 @@ def simulate_many(
 ) -> dict[str, np.ndarray] | pd.DataFrame:
     """Results of every scenario: arrays of the shape that the values broadcast to, or a frame for a frame.
 
-    values    name of an input or parameter -> values at the start, SI units; of an enumeration items or their
-              numbers. Arrays broadcast as in NumPy; a row of a frame is a scenario, and nothing broadcasts
-              beyond its rows
+    values    name of an input or parameter -> values at the start, SI units, or under a heading "V [mm/s]";
+              of an enumeration items or their numbers. Arrays broadcast as in NumPy; a row of a frame is a
+              scenario, and nothing broadcasts beyond its rows
     outputs   names of variables to be read; or name of a result -> variable, or (variable, statistic)
               with a statistic of "end" (after the last step, the default), "change" (since the settling),
               "mean", "min", "max" (of the samples), "samples" (all of them: one axis more; in a frame the

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import BatchError, shown
+from ..tables import in_SI
 from ..values import numbers_of, pairs, real
 from .columns import common_shape, flat, lengths_of
 from .run import Batch
@@ -48,7 +49,7 @@ def prepared(
     if unit not in ("period", "s"):
         raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
     check_whole(samples, MOST_SAMPLES, "samples =")
-    named = _named(values)
+    named = in_SI(_named(values), fmu.variables.units(), "column")
     if settle is None:
         settle = 0.0
         settled = settled or (unit == "period" and "initialState" not in named)

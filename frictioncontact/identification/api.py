@@ -12,25 +12,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
-from frictioncontact.columns import accepted
 from frictioncontact.command import TABLE
 from frictioncontact.doubts import unused, warn_of
 from frictioncontact.errors import UserError, did_you_mean, quiet
 from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.identification.bootstrap import bootstrap as refits_of
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
-from frictioncontact.identification.experiment import Experiment, Rows
+from frictioncontact.identification.experiment import INSTRUMENT, Experiment, Rows
 from frictioncontact.identification.fit import fit as fitted
 from frictioncontact.identification.parameter import Parameter, parameter
 from frictioncontact.identification.result import Fit
-from frictioncontact.identification.search import Tell, silent
+from frictioncontact.identification.search import Tell, search, silent
 from frictioncontact.identification.series import Record
 from frictioncontact.identification.show import show
-from frictioncontact.values import LARGEST, Variables, number, pairs, path_of, real
+from frictioncontact.tables import accepted
+from frictioncontact.values import LARGEST, Variables, number, pairs, real
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
+
+    from frictioncontact.tables import Source
 
     Asked = Sequence[str] | Mapping[str, float | tuple[float, float] | None]
 
@@ -63,11 +64,28 @@ class Identification:
         """The reasons why the law does not fit these data, in words; empty if it fits."""
         return self.fit.misfits
 
+    @property
+    def remedies(self) -> list[str]:
+        """With what else the data fit, in words: a fault of the instrument, another law or amplitude."""
+        return self.fit.remedies
+
+    @property
+    def nuisances(self) -> dict[str, tuple[float, float]]:
+        """What was asked of the instrument, with half-widths of 95 %: offset [N], drift [N/s or N per row],
+        delay [s], and a sign of -1 where the other one fits better."""
+        found = dict(self.fit.nuisances)
+        return found | ({"sign": (-1.0, 0.0)} if self.experiment.sign < 0.0 else {})
+
+    @property
+    def judged(self) -> bool:
+        """Whether the data tell if the law fits: the uncertainty is stated, or it is a record in time."""
+        return self.fit.judged
+
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
-        return (
-            f"<identification: {values}; {f'{len(self.misfits)} misfits' if self.misfits else 'no misfit'}>"
-        )
+        said, count = "it fits" if self.judged else "fit not judged", len(self.misfits)
+        said = f"{count} misfit{'s' if count > 1 else ''}" if count else said
+        return f"<identification: {values}; {said}>"
 
     def __str__(self) -> str:
         text = io.StringIO()
@@ -84,28 +102,34 @@ class Identification:
 
 
 def identify(
-    data: str | Path | pd.DataFrame,
+    data: Source,
     fit: Asked = DEFAULT,
     *,
     start: Mapping[str, Value] | None = None,
     uncertain: Mapping[str, float | str] | None = None,
     bootstrap: int | None = None,
+    nuisance: Iterable[str] = (),
+    columns: Mapping[str, str] | None = None,
     fmu: str | Path | None = None,
     tell: Tell = silent,
 ) -> Identification:
     """Least squares of any parameters of the FMU to measured friction, with 95 % intervals.
 
-    data       a CSV file, or a frame with the same headings, NAME in SI units or "NAME [UNIT]": a row a
-               steady mean, F_t_mean with V and any other input or parameter; or a series in time (that
+    data       a CSV file, or a mapping or frame with the same headings, NAME in SI units or "NAME [UNIT]": a
+               row a steady mean, F_t_mean with V and any other input or parameter; or a series in time (that
                the vibration's phase refers to), F_t with position or V. NAME.uncertainty is the standard
                uncertainty of a column
     fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
     start      start values that all rows share, SI units; of an enumeration an item or its number
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")
     bootstrap  number of refits to data with new noise, at least 40, for intervals by simulation
+    nuisance   faults of the instrument to fit beside the parameters: "offset" and "drift" of the force,
+               "delay" of the force in a record, "sign" (1 or -1, whichever fits better)
+    columns    headings of other names: "V" or "V [mm/s]" -> the heading in the data
     fmu        another .fmu file of this model
     tell       a function that is called with the name of each stage
-    returns    an `Identification`: values, intervals, misfits; str() prints them, plot() draws the fit
+    returns    an `Identification`: values, intervals, nuisances, misfits and with what else the data fit;
+               str() prints them, plot() draws the fit
     raises     UserError: the data or the request are wrong; a parameter has no effect on these data
     warns      FrictionWarning: of a start value that has no effect; of an unlikely magnitude
 
@@ -125,7 +149,8 @@ def identify(
     loaded = opened(fmu)
     constants = loaded.known.values(start, "start")
     stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
-    rows = read(path_of(data, "data") if isinstance(data, (str, Path)) else data, loaded, constants, stated)
+    rows = read(data, loaded, constants, stated, columns)
+    instrument = _instrument(nuisance, rows)
     asked = fit.items() if isinstance(fit, Mapping) else ((name, None) for name in _names(fit))
     largest = float(np.max(np.abs(rows.force)))
     if largest == 0.0:
@@ -136,11 +161,25 @@ def identify(
         raise UserError("fit: names no parameter")
     _check(parameters, rows, constants)
     _check_use(loaded.known, parameters, rows)
-    experiment = (Record if isinstance(rows, Series) else Rows)(loaded, rows, parameters)
+    kind = Record if isinstance(rows, Series) else Rows
+    experiment = kind(loaded, rows, parameters, instrument)
     with quiet():
+        if "sign" in instrument:  # or not, whichever fits better
+            plain = experiment.like(rows, [name for name in instrument if name != "sign"])
+            experiment = min((plain, experiment), key=lambda one: search(one, one.target).squares)
         found = fitted(experiment, tell)
         spread = None if bootstrap is None else refits_of(experiment, found, bootstrap, tell)
     return Identification(found, experiment, spread)
+
+
+def _instrument(nuisance: Iterable[str], rows: Measurements | Series) -> list[str]:
+    names = [nuisance] if isinstance(nuisance, str) else list(nuisance)
+    for name in names:
+        if name not in INSTRUMENT:
+            raise UserError(f"nuisance {name}: must be one of {', '.join(INSTRUMENT)}")
+    if "delay" in names and not isinstance(rows, Series):
+        raise UserError("nuisance delay: is for a series, with a column 'time [s]'")
+    return [name for name in INSTRUMENT if name in names]
 
 
 def _names(fit: Iterable[str]) -> list[str]:
@@ -154,7 +193,7 @@ def _names(fit: Iterable[str]) -> list[str]:
 
 
 def _stated(fmu: FrictionFmu, name: str, value: float | str) -> Stated:
-    known = (MEASURED, FORCE, *accepted(fmu))
+    known = (MEASURED, FORCE, *accepted(fmu.variables))
     if name not in known:
         hint = did_you_mean(str(name), known)
         raise UserError(f"the uncertainty of {name}: {name} is no variable that a file may hold{hint}")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from frictioncontact import resources
 from frictioncontact.command import (
+    add_column,
     add_fmu,
     add_output,
     add_set,
@@ -17,6 +18,7 @@ from frictioncontact.command import (
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.identification.api import DEFAULT, identify
+from frictioncontact.identification.experiment import INSTRUMENT
 from frictioncontact.identification.show import show
 from frictioncontact.values import assignments, number
 
@@ -27,8 +29,8 @@ what the data can't tell. Draws identify.png."""
 
 EPILOG = """\
 The CSV has one row per steady state, and every model value is the FMU's own F_t_settled, the mean over the
-periodic state. Each column is a variable of the FMU, with a unit that it may have in brackets
-or else in SI units; lines that begin with # are skipped:
+periodic state. Each column is a variable of the FMU, with its unit in brackets or else in SI units. Commas,
+semicolons or tabs, decimal commas, a preamble and remarks (#) are understood:
 
   V [mm/s],vibration.V_1 [m/s],load [N],F_t_mean [N],F_t_mean.uncertainty [N]
   20,0.5,100,31.2,0.8
@@ -40,6 +42,9 @@ otherwise. What is no column keeps the FMU's start value, or that of --set.
 A column time makes it a series instead, for example a loop of presliding and sliding, with F_t and either
 position or V; load, d and E may vary along it. What simulate writes with --outputs V F_t is such a file.
 
+If the law does not fit, faults of the instrument, half the amplitude of the vibration and other laws are
+tried, and those with which it fits are named.
+
 Without a file it fits the informative rows of the paper's Table 2: two parameters, three
 rows. That is an identification, not a validation.
 
@@ -47,6 +52,7 @@ examples:
   %(prog)s
   %(prog)s mine.csv --fit contact.stiffnessScale --fit F_C=55 --set vibration.f=22e3
   %(prog)s mine.csv --fit contact.sigma=1e5..1e8 --set contact.model=Constant
+  %(prog)s rig.csv --column "position=x [um]" --column F_t=force --nuisance offset --nuisance delay
   %(prog)s mine.csv --uncertain F_t_mean=0.5 --uncertain vibration.V_1=10%% --bootstrap 1000"""
 
 EXAMPLE = resources.data() / "table2.csv"
@@ -69,6 +75,11 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--bootstrap", type=int, metavar="N", help="intervals by N refits of data with new noise, too"
     )
+    parser.add_argument(
+        "--nuisance", action="append", default=[], metavar="NAME",
+        help=f"fault of the instrument to fit beside the parameters: {', '.join(INSTRUMENT)}; again for each",
+    )  # fmt: skip
+    add_column(parser)
     parser.add_argument("--quick", action="store_true", help="no picture")
     add_fmu(parser)
     add_output(parser, resources.output())
@@ -84,6 +95,8 @@ def run(options: argparse.Namespace) -> None:
             start=opened(options.fmu).known.assigned(options.set),
             uncertain=assignments(options.uncertain, "--uncertain"),
             bootstrap=options.bootstrap,
+            nuisance=options.nuisance,
+            columns=assignments(options.column, "--column"),
             fmu=options.fmu,
             tell=lambda text: bar.update(task, description=text),
         )

@@ -1,30 +1,27 @@
 """Measurements from CSV files or frames: rows of means, or a series in time.
 
-A column is named after a variable of the FMU: "V" in SI units, or with its unit in brackets, "V [mm/s]".
-NAME.uncertainty is the standard uncertainty of the column NAME. A column "time" makes a series.
+A column is named after a variable of the FMU, as tables.py says. NAME.uncertainty is the standard uncertainty
+of the column NAME. A column "time" makes a series.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frictioncontact.columns import columns_of, numbers_below
-from frictioncontact.errors import UserError, shown
+from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.values import csv_rows
+from frictioncontact.identification.position import smoothed
+from frictioncontact.tables import OWN, POSITION, SUFFIX, TIME, accepted, table
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from frictioncontact.tables import Source
 
-MEASURED = "F_t_mean"
-TIME, POSITION, FORCE = "time", "position", "F_t"
+MEASURED, FORCE = "F_t_mean", "F_t"
 LOAD = "load"
-SUFFIX = ".uncertainty"
 FOLLOWS = {"contact.input": "Load", "friction.limit": "Load"}  # from a column or a constant load
 
 
@@ -47,6 +44,13 @@ class Measurements:
     uncertainty: list[float] | None  # N
     uncertain: tuple[Uncertain, ...] = ()
 
+    def column(self, name: str) -> np.ndarray:
+        return np.array([float(row.get(name, 0.0)) for row in self.conditions])
+
+    def changed(self, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Measurements:
+        """With other conditions."""
+        return replace(self, conditions=[{**row, **change(row)} for row in self.conditions])
+
 
 @dataclass(frozen=True)
 class Series:
@@ -59,10 +63,19 @@ class Series:
     constants: dict[str, Any]
     uncertainty: np.ndarray | None = None  # N
     position: np.ndarray | None = None
+    told: np.ndarray | None = None  # the samples whose force is fitted; None: all
+    scatter: float = 0.0  # m, of the measured position, which is smoothed by as much
 
     @property
     def names(self) -> tuple[str, ...]:
         return ("V", *self.inputs)
+
+    def column(self, name: str) -> np.ndarray:
+        return np.array([float(self.constants.get(name, 0.0))])
+
+    def changed(self, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Series:
+        """With other constants."""
+        return replace(self, constants={**self.constants, **change(self.constants)})
 
 
 @dataclass(frozen=True)
@@ -78,39 +91,29 @@ class Stated:
 
 
 def read(
-    source: Path | pd.DataFrame,
+    source: Source,
     fmu: FrictionFmu,
     constants: Mapping[str, Any],
     stated: Sequence[Stated] = (),
+    columns: Mapping[str, str] | None = None,
 ) -> Measurements | Series:
-    """A CSV file, or a frame with the same headings; constants are start values that all rows share.
+    """A table; constants are start values that all rows share, columns the headings of those of other names.
 
     No column may repeat one. UserError names the file, the row (counted from 1), its line and the column.
     """
-    is_path = isinstance(source, Path)
-    path = source if is_path else Path("data")
-    lines = list(csv_rows(source)) if is_path else _lines(source)
-    columns = columns_of(fmu, path, lines)
-    names = [column.name for column in columns]
+    units = {**OWN, **accepted(fmu.variables)}
+    units |= {f"{name}{SUFFIX}": unit for name, unit in units.items()}
+    found = table(source, "data", units, "variable that a table of measurements may hold", columns)
+    names, where = list(found.columns), found.where
     is_series = TIME in names
-    _check(path, names, constants, is_series)
-    if not lines[1:]:
-        raise UserError(f"{path}: no rows of numbers")
-    positive = [name for name in names if name == LOAD or name.endswith(SUFFIX)]
-    measured = numbers_below(path, columns, lines[1:], positive)
+    _check(where, names, constants, is_series)
+    measured = found.numbers([name for name in names if name == LOAD or name.endswith(SUFFIX)])
+    if not len(measured[names[0]]):
+        raise UserError(f"{where}: no rows of numbers")
     shared = with_load(names, constants)
     if is_series:
-        return _series(path, fmu, measured, shared, stated)
-    return _rows(fmu, measured, shared, stated)
-
-
-def _lines(frame: pd.DataFrame) -> list[tuple[int, list[str]]]:
-    """A frame as lines of a CSV file."""
-    if not hasattr(frame, "itertuples"):
-        hint = "; it has one, .data" if hasattr(frame, "data") else ""
-        raise UserError(f"data = {shown(frame)}: must be the path of a CSV file, or a pandas frame{hint}")
-    cells = [[str(cell) for cell in row] for row in frame.itertuples(index=False)]
-    return list(enumerate([[str(name) for name in frame.columns], *cells], 1))
+        return _series(where, fmu, measured, shared, stated)
+    return _rows(fmu, {name: values.tolist() for name, values in measured.items()}, shared, stated)
 
 
 def with_load(names: Sequence[str], constants: Mapping[str, Any]) -> dict[str, Any]:
@@ -118,7 +121,7 @@ def with_load(names: Sequence[str], constants: Mapping[str, Any]) -> dict[str, A
     return {**(FOLLOWS if LOAD in names or LOAD in constants else {}), **constants}
 
 
-def _check(path: Path, names: Sequence[str], constants: Mapping[str, Any], is_series: bool) -> None:
+def _check(path: str, names: Sequence[str], constants: Mapping[str, Any], is_series: bool) -> None:
     for name in names:
         if name in constants:
             raise UserError(f"{path}: {name} is a column and also set as a constant")
@@ -175,13 +178,12 @@ def _rows(
 
 
 def _series(
-    path: Path,
+    path: str,
     fmu: FrictionFmu,
-    measured: dict[str, list[float]],
+    columns: dict[str, np.ndarray],
     constants: dict[str, Any],
     stated: Sequence[Stated],
 ) -> Series:
-    columns = {name: np.array(values) for name, values in measured.items()}
     time, force = columns.pop(TIME), columns.pop(FORCE)
     if len(time) < 3:
         raise UserError(f"{path}: a series needs at least 3 rows")
@@ -195,7 +197,9 @@ def _series(
         uncertainty = np.array([one.of(value) for value in force])
         if not (uncertainty > 0.0).all():
             raise UserError(f"the uncertainty of {FORCE}: give it in N, since the force passes zero")
-    position = columns.pop(POSITION, None)
+    position, scatter = columns.pop(POSITION, None), 0.0
+    if position is not None:
+        position, scatter = smoothed(time, position)
     given = columns.pop("V", None)
     V = np.gradient(position, time, edge_order=2) if given is None else given
     for name in columns:
@@ -204,4 +208,13 @@ def _series(
                 f"{path}: column {name}: a series takes inputs of the FMU, d, E and load; "
                 "give it as a start value"
             )
-    return Series(time, V, columns, force, constants, uncertainty, position)
+    told = _told(V) if constants.get("friction.model") == "Coulomb" else None
+    return Series(time, V, columns, force, constants, uncertainty, position, told, scatter)
+
+
+def _told(V: np.ndarray) -> np.ndarray:
+    """Samples whose Coulomb friction a record tells: not those beside a reversal, of either sign."""
+    turns = np.flatnonzero(V[1:] * V[:-1] <= 0.0)
+    told = np.ones(len(V), dtype=bool)
+    told[turns] = told[turns + 1] = False
+    return told

@@ -2,20 +2,21 @@
 
 A point has a coordinate for each fitted parameter, and after them one for each nuisance: something else
 that is not known exactly, in standard deviations where it was measured (then its own residual holds it to
-what was measured), or in its unit where it is free.
+what was measured), or in its unit where it is free. An instrument's nuisances lie between the forces of the
+law and what it measured: sign * F(t - delay) + offset + drift * (t - first t).
 """
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionError, FrictionFmu
-from frictioncontact.identification.data import Measurements
+from frictioncontact.identification.data import Measurements, Series
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.values import LARGEST
 
@@ -25,17 +26,24 @@ DIFFERENCE = 1e-3  # of a coordinate
 NUISANCE_DIFFERENCE = 1e-2  # of a nuisance's
 
 
+INSTRUMENT = ("offset", "drift", "delay", "sign")
+
+
 @dataclass(frozen=True)
 class Nuisance:
     start: float
     measured: bool  # has a residual of its own
     row: int | None = None  # the only row that depends on it
+    name: str = ""  # of one of the instrument
+    scale: float = 1.0  # of one of the instrument: its value [SI] at a coordinate of 1
+    reach: float = math.inf  # largest coordinate
 
 
 class Experiment(ABC):
     """Forces of points, their residuals and derivatives."""
 
     word = "row"  # what one measured force is called
+    rows: Measurements | Series
 
     def __init__(
         self,
@@ -44,21 +52,58 @@ class Experiment(ABC):
         force: Sequence[float],
         uncertainty: Sequence[float] | None,
         nuisances: Sequence[Nuisance] = (),
+        time: Sequence[float] | None = None,
+        instrument: Sequence[str] = (),
     ) -> None:
-        self.fmu, self.parameters, self.nuisances = fmu, tuple(parameters), tuple(nuisances)
+        """time [s]: of each force; the number of each row where there is none."""
+        self.fmu, self.parameters, self.instrument = fmu, tuple(parameters), tuple(instrument)
         self.force = np.array(force)
+        self.time = np.arange(1.0, len(force) + 1.0) if time is None else np.array(time)
+        self.sign = -1.0 if "sign" in instrument else 1.0
+        self.nuisances = (*nuisances, *self._of_instrument())
+        n = len(self.parameters)
+        self.places = {one.name: n + k for k, one in enumerate(self.nuisances) if one.name}
         self.known = uncertainty is not None
         self.weight = 1.0 / np.array(uncertainty) if self.known else np.ones(len(self.force))
-        free = [math.inf] * len(self.nuisances)
-        self.low = np.array([p.to_coordinate(p.low) for p in self.parameters] + [-v for v in free])
-        self.high = np.array([p.to_coordinate(p.high) for p in self.parameters] + free)
+        reach = [one.reach for one in self.nuisances]
+        self.low = np.array([p.to_coordinate(p.low) for p in self.parameters] + [-v for v in reach])
+        self.high = np.array([p.to_coordinate(p.high) for p in self.parameters] + reach)
         self.problem = "no start value works"  # the FMU's last refusal
         self._measured = [k for k, one in enumerate(self.nuisances) if one.measured]
         self._groups = self._shifted_together()
 
-    @abstractmethod
+    def _of_instrument(self) -> list[Nuisance]:
+        size, span = float(np.abs(self.force).max()), float(np.ptp(self.time)) or 1.0
+        step = span / max(len(self.time) - 1, 1)
+        scales = {"offset": 0.1 * size, "drift": 0.1 * size / span, "delay": step}
+        reach = {"delay": 0.25 * span / step}
+        asked = [(name, scales[name]) for name in self.instrument if name != "sign"]
+        return [Nuisance(0.0, False, None, name, scale, reach.get(name, math.inf)) for name, scale in asked]
+
+    @property
+    def elapsed(self) -> np.ndarray:
+        """From the first sample or row [s, or rows]."""
+        return self.time - self.time[0]
+
+    def nuisance(self, points: np.ndarray, name: str) -> np.ndarray | float:
+        """Value of one of the instrument at each point, as a column; 0 where it is not asked for."""
+        if name not in self.places:
+            return 0.0
+        k = self.places[name]
+        return points[:, [k]] * self.nuisances[k - len(self.parameters)].scale
+
     def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
-        """[point, row] in N; nan in a row of points that the FMU refuses, and then self.problem says why."""
+        """What would be measured, [point, row] in N; nan where the FMU refuses, and self.problem says why."""
+        found = self.sign * self.model(points, tolerance)
+        return found + self.nuisance(points, "offset") + self.nuisance(points, "drift") * self.elapsed
+
+    @abstractmethod
+    def model(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+        """The forces of the law, as above."""
+
+    def like(self, rows: Measurements | Series, instrument: Sequence[str]) -> Self:
+        """The same with other rows and nuisances of the instrument."""
+        return type(self)(self.fmu, rows, self.parameters, instrument)  # type: ignore[call-arg, arg-type]
 
     def kappa(self, point: np.ndarray) -> np.ndarray | None:
         """sigma V_1 / (2 pi f F) of every row, F the limit, at the mean separation; None of a series."""
@@ -156,10 +201,18 @@ class Experiment(ABC):
 class Rows(Experiment):
     """Rows of means, each in its periodic state: F_t_settled."""
 
-    def __init__(self, fmu: FrictionFmu, rows: Measurements, parameters: Sequence[Parameter]) -> None:
+    rows: Measurements
+
+    def __init__(
+        self,
+        fmu: FrictionFmu,
+        rows: Measurements,
+        parameters: Sequence[Parameter],
+        instrument: Sequence[str] = (),
+    ) -> None:
         self.rows = rows
         nuisances = [Nuisance(0.0, True, u.row) for u in rows.uncertain]
-        super().__init__(fmu, parameters, rows.force, rows.uncertainty, nuisances)
+        super().__init__(fmu, parameters, rows.force, rows.uncertainty, nuisances, instrument=instrument)
         names = {name for condition in rows.conditions for name in condition}
         self._conditions = {
             name: np.array([condition[name] for condition in rows.conditions]) for name in names
@@ -178,7 +231,7 @@ class Rows(Experiment):
         values["V"] = np.broadcast_to(values["V"], (len(points), len(self.force)))
         return values
 
-    def forces(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
+    def model(self, points: np.ndarray, tolerance: float = TOLERANCE) -> np.ndarray:
         values = {**self._values(points), "solver.tolerance": tolerance}
         found = simulate_many(
             values, ("F_t_settled",), settle=0.0, duration=0.0, errors="keep", fmu=self.fmu.path

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 from frictioncontact import style
 from frictioncontact.identification.data import Series
@@ -18,7 +19,7 @@ def picture(experiment: Experiment, result: Fit) -> Figure:
     points = 41 if experiment.word == "row" else 11  # a side of the map; a record costs more than rows
     figure, (left, right) = style.subplots(1, 2, size=(10.0, 4.2))
     if isinstance(experiment.rows, Series):
-        _draw_record(left, experiment.rows, result)
+        _draw_record(left, experiment, result)
     else:
         _draw_means(left, experiment, result)
     if len(result.parameters) == 1:
@@ -28,27 +29,40 @@ def picture(experiment: Experiment, result: Fit) -> Figure:
     return figure
 
 
-def _draw_record(axes: Axes, series: Series, result: Fit) -> None:
-    place, label = (
-        (series.time, "time [s]") if series.position is None else (1e6 * series.position, "position [µm]")
-    )
-    axes.plot(place, series.force, color=style.SOURCE["paper"], lw=1.2, label="measured")
-    axes.plot(place, result.model, color=style.SOURCE["identified"], lw=1.2, label="fitted")
-    axes.set(xlabel=label, ylabel="friction force [N]", title="Measured and fitted force")
+def _draw_record(axes: Axes, experiment: Experiment, result: Fit) -> None:
+    axes.plot(experiment.time, experiment.force, color=style.SOURCE["paper"], lw=1.2, label="measured")
+    axes.plot(experiment.time, result.model, color=style.SOURCE["identified"], lw=1.2, label="fitted")
+    axes.set(xlabel="time [s]", ylabel="friction force [N]", title="Measured and fitted force")
     axes.legend(loc="lower right")
 
 
 def _draw_means(axes: Axes, experiment: Experiment, result: Fit) -> None:
-    measured, place = experiment.force, np.arange(1, len(experiment.force) + 1)
-    error = 1.0 / experiment.weight if experiment.known else None
-    if error is None and np.isfinite(result.deviation):
-        error = np.full(len(measured), result.deviation)
+    """Against V, or another column where V is one, or the row."""
+    rows, measured = experiment.rows, experiment.force
+    name = next((each for each in ("V", *rows.names) if np.ptp(rows.column(each)) > 0.0), "row")
+    place = experiment.time if name == "row" else rows.column(name)
+    error = 1.0 / experiment.weight if experiment.known else np.full(len(measured), result.deviation)
+    error = np.where(np.isfinite(error), error, 0.0)
     axes.errorbar(place, measured, error, fmt="o", color=style.SOURCE["paper"], capsize=3, label="measured")
     axes.plot(place, result.model, "_", ms=16, mew=2.5, color=style.SOURCE["identified"], label="fitted")
-    axes.set(xlabel="row", ylabel="mean friction force [N]", title="Measured and fitted means")
-    axes.set_xticks(place if len(measured) <= 15 else place[:: len(measured) // 10])
+    unit = "1" if name == "row" else experiment.fmu.variables[name].unit
+    label = name if unit == "1" else f"{name} [{unit}]"
+    axes.set(xlabel=label, ylabel="mean friction force [N]", title="Measured and fitted means")
+    _ticks(axes, "x", place, place.min() > 0.0 and name != "row")
     axes.set_ylim(min(0.0, 1.1 * measured.min()), 1.12 * max(measured.max(), result.model.max()))
-    axes.legend(loc="lower right")
+    axes.legend(loc="best")
+
+
+def _ticks(axes: Axes, which: str, values: np.ndarray, logarithmic: bool) -> None:
+    """A logarithmic axis where the values span a decade; a few ticks that are short to read."""
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    if logarithmic and np.max(values) > 10.0 * np.min(values):
+        (axes.set_xscale if which == "x" else axes.set_yscale)("log")
+        axis.set_minor_formatter(NullFormatter())
+        axis.set_major_locator(LogLocator(numticks=6))
+    else:
+        axis.set_major_locator(MaxNLocator(5))
+    axis.set_major_formatter(EngFormatter(sep="") if np.max(values) >= 1e4 else StrMethodFormatter("{x:g}"))
 
 
 def _window(result: Fit, k: int) -> tuple[float, float]:
@@ -82,8 +96,7 @@ def _draw_curve(axes: Axes, experiment: Experiment, result: Fit, points: int) ->
         axes.axhline(bound, color=style.ORANGE, ls="--", label="95 % region: below")
         axes.legend()
     axes.set(xlabel=label, ylabel="sum of squares", title="How sharply the data fix it")
-    if result.parameters[0].logarithmic:
-        axes.set_xscale("log")
+    _ticks(axes, "x", values, result.parameters[0].logarithmic)
 
 
 def _draw_map(axes: Axes, experiment: Experiment, result: Fit, points: int) -> None:
@@ -105,8 +118,6 @@ def _draw_map(axes: Axes, experiment: Experiment, result: Fit, points: int) -> N
     axes.plot(*best, "o", color=style.ORANGE, mec="white", ms=8, label="fitted")
     axes.set(xlabel=x_label, ylabel=y_label, title="How sharply the data fix them")
     axes.grid(visible=False)
-    if result.parameters[0].logarithmic:
-        axes.set_xscale("log")
-    if result.parameters[1].logarithmic:
-        axes.set_yscale("log")
+    _ticks(axes, "x", x, result.parameters[0].logarithmic)
+    _ticks(axes, "y", y, result.parameters[1].logarithmic)
     axes.legend(loc="upper right", frameon=True, framealpha=0.9)

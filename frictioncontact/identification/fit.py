@@ -8,6 +8,7 @@ import dataclasses
 import math
 
 from frictioncontact.identification.experiment import Experiment
+from frictioncontact.identification.faults import hidden, remedies, shapes
 from frictioncontact.identification.judge import judge
 from frictioncontact.identification.profile import LowerMinimum, profiles
 from frictioncontact.identification.result import Fit
@@ -19,11 +20,19 @@ RESTARTS = 5  # from lower minima that profiles come to
 def fit(experiment: Experiment, tell: Tell = silent) -> Fit:
     """Least squares from the best of some sampled starts, or from the given start values.
 
+    Where the law does not fit, its remedies are sought.
+
     UserError where there are fewer rows than parameters; FrictionError where the FMU refuses every start.
     """
     result = with_profiles(experiment, search(experiment, experiment.target, tell), tell)
     result = dataclasses.replace(result, kappa=experiment.kappa(result.point))
-    judge(experiment, result)
+    of_faults = shapes(experiment, result)
+    judge(experiment, result, of_faults)
+    if result.misfits:
+        tell("what explains the misfit")
+        result.remedies.extend(remedies(experiment, result))
+    elif result.degrees > 0:
+        result.hidden.extend(hidden(experiment, result, of_faults))
     return result
 
 

@@ -1,6 +1,8 @@
 """What a fit can't tell, and whether the law fits at all, in words."""
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 from scipy import stats
@@ -9,20 +11,20 @@ from frictioncontact.identification.experiment import Experiment
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import SAME
+from frictioncontact.identification.suspicion import CHANCE, FEW, suspicion
 
 # kappa = sigma V_1 / (2 pi f F): mean friction changes by less than 0.3 % of F_C (1.5 % near V = V_1) per
 # e-fold of sigma outside of these, the first pair with d constant, the second where it vibrates.
 INFORMATIVE = {False: (0.1, 100.0), True: (0.01, 3000.0)}
 STIFFNESS_LIKE = ("contact.stiffnessScale", "contact.sigma", "d", "E", "load")
 SMALL = 1e-5  # a difference over the force that the search for the fit may leave
-PERMUTATIONS = 10_000
 LARGE = 0.2  # a misfit over the force that no scatter of a mean explains
 MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
 
 
-def judge(experiment: Experiment, result: Fit) -> None:
+def judge(experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray]) -> None:
     """Adds misfits and warnings to a fit with kappa and profiles."""
-    result.misfits.extend(_misfits(experiment, result))
+    result.misfits.extend(misfits(experiment, result, shapes))
     result.warnings.extend(
         [
             *_count(experiment, result),
@@ -34,56 +36,61 @@ def judge(experiment: Experiment, result: Fit) -> None:
     )
 
 
-def _misfits(experiment: Experiment, result: Fit) -> list[str]:
+def misfits(
+    experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray] = MappingProxyType({})
+) -> list[str]:
+    """What is wrong with a fit, in words. shapes: of faults, as of `suspicion`."""
     rms = float(np.sqrt(np.mean(result.residuals**2)))
-    found = []
-    if result.known and result.degrees > 0:
+    if result.degrees <= 0 or np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
+        return []
+    if result.known:
         independent = result.squares / result.correlated
         chance = float(stats.chi2.sf(independent, result.degrees))
-        if chance < 0.01:
+        if chance < CHANCE:
             stated = float(np.sqrt(np.mean(experiment.weight**-2.0)))
-            found.append(
+            return [
                 f"the law does not fit: the misfit, {rms:.3g} N rms, is larger than the stated "
                 f"uncertainties allow ({stated:.3g} N rms; probability {chance:.1e}). "
                 "The intervals are those of a law that fits"
-            )
-    elif experiment.word == "sample":
-        scatter = float(np.std(np.diff(experiment.force, 2)) / math.sqrt(6.0))
-        if rms > max(2.0 * scatter, SMALL * np.abs(experiment.force).max()):
-            times = f"{rms / scatter:.3g} times" if scatter > 0.0 else "more than"
-            found.append(
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is {times} the scatter of neighbouring "
-                f"samples, {scatter:.2g} N. The intervals count {result.correlated:.3g} samples as one"
-            )
-    elif result.degrees > 0:
-        size = float(np.sqrt(np.mean(experiment.force**2)))
-        if rms > LARGE * size:
-            found.append(
-                f"the law does not fit: the misfit, {rms:.3g} N rms, is {rms / size:.3g} of the force"
-            )
-    return found or (_trends(experiment, result) if experiment.word == "row" else [])
-
-
-def _trends(experiment: Experiment, result: Fit) -> list[str]:
-    """Conditions along which neighbouring rows miss by nearly the same: by a permutation test of the sum of
-    squares of what neighbours differ by."""
-    miss, found = result.residuals * experiment.weight, []
-    if np.abs(result.residuals).max() < SMALL * np.abs(experiment.force).max():
+            ]
+    elif experiment.word == "row" and (large := _large_parts(experiment, result)):
+        return [f"the law does not fit: {large}"]
+    chance, oddest = suspicion(experiment, result, shapes)
+    if chance >= CHANCE:
         return []
-    rows = experiment.rows
-    columns = {name: [row[name] for row in rows.conditions] for name in rows.names}
-    varied = {name: values for name, values in columns.items() if len(set(values)) > 2}
-    shuffled = np.random.default_rng(0).permuted(np.tile(miss, (PERMUTATIONS, 1)), axis=1)
-    by_chance = np.sum(np.diff(shuffled) ** 2, axis=1)
-    for name, values in varied.items():
-        rise = np.sum(np.diff(miss[np.argsort(values, kind="stable")]) ** 2)
-        chance = np.mean(by_chance <= rise * (1 + 1e-9)) * len(varied)
-        if chance < 0.01:
-            found.append(
-                f"the law does not fit: its differences to rows of neighbouring {name} are alike, which "
-                f"scatter hardly explains (probability {max(chance, 1 / PERMUTATIONS):.1e})"
-            )
-    return found
+    size = f"the misfit, {rms:.3g} N rms, is no scatter: its differences {oddest} (probability {chance:.1e})"
+    if experiment.word == "sample":
+        scatter = min(scatter_of(experiment.force), scatter_of(result.residuals))
+        times = f"{rms / scatter:.3g} times" if scatter > 0.0 else "more than"
+        size = (
+            f"the misfit, {rms:.3g} N rms, is {times} the scatter of neighbouring samples, {scatter:.2g} N: "
+            f"its differences {oddest} (probability {chance:.1e}). "
+            f"The intervals count {result.correlated:.3g} samples as one"
+        )
+    return [f"the law does not fit: {size}"]
+
+
+def scatter_of(samples: np.ndarray) -> float:
+    """Standard deviation of white noise on a smooth curve, by second differences."""
+    return float(np.std(np.diff(samples, 2)) / math.sqrt(6.0))
+
+
+def _large_parts(experiment: Experiment, result: Fit) -> str:
+    """The rows that miss by more than a scatter would: all, or those of one value of a column."""
+    rows, force, miss = experiment.rows, experiment.force, result.residuals
+    parts = {"": np.ones(len(force), dtype=bool)}
+    for name in rows.names:
+        values = rows.column(name)
+        few = np.unique(values)
+        if 1 < len(few) <= len(values) / FEW:
+            parts |= {f" of the rows with {name} = {each:.4g}": values == each for each in few}
+    for words, part in parts.items():
+        own, size = np.sqrt(np.mean(miss[part] ** 2)), np.sqrt(np.mean(force[part] ** 2))
+        rest = np.mean(miss[~part] ** 2) if (~part).any() else 0.0
+        odd = stats.f.sf(own**2 / max(rest, 1e-300), part.sum(), max((~part).sum(), 1)) < CHANCE
+        if own > LARGE * size and (odd or part.all()):
+            return f"the misfit{words}, {own:.3g} N rms, is {own / max(size, 1e-300):.3g} of the force"
+    return ""
 
 
 def _count(experiment: Experiment, result: Fit) -> list[str]:
@@ -142,7 +149,7 @@ def _moves(row: dict) -> bool:
 def _interval(result: Fit, k: int) -> list[str]:
     p, value = result.parameters[k], result.values[k]
     low, high = result.profiles[k]
-    unit = "" if p.unit == "1" else f" {p.unit}"
+    unit = p.after
     found = []
     if not math.isnan(low):
         below, above = p.to_coordinate(low), p.to_coordinate(high)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from frictioncontact.columns import accepted
 from frictioncontact.errors import UserError, did_you_mean
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.tables import accepted
 from frictioncontact.values import LARGEST
 
 LEAST = {"d": 1e-12, "E": 1.0}  # m, Pa: the FMU asks for more than 0 where they are used
@@ -39,6 +39,11 @@ class Parameter:
     search: tuple[float, float]  # where starts are sought
     start: float | None
     logarithmic: bool
+
+    @property
+    def after(self) -> str:
+        """The unit as it follows a number."""
+        return "" if self.unit == "1" else f" {self.unit}"
 
     @property
     def periodic(self) -> bool:
@@ -77,7 +82,7 @@ def parameter(
     search is the range that it stays in; of a phase it says only where starts are sought. UserError where the
     name is none that can be fitted, or a value is out of bounds.
     """
-    names = accepted(fmu)
+    names = accepted(fmu.variables)
     if name not in names:
         raise UserError(
             f"{name} can't be fitted{did_you_mean(str(name), names) or ';'} these can: {', '.join(names)}"
@@ -85,9 +90,10 @@ def parameter(
     variable = fmu.variables[name]
     low = LEAST.get(name, -LARGEST) if variable.min is None else float(variable.min)
     high = LARGEST if variable.max is None else float(variable.max)
+    after = "" if variable.unit == "1" else f" {variable.unit}"
     for value in (*(search or ()), *([] if start is None else [start])):
         if not low <= value <= high:
-            raise UserError(f"{name} = {value:g} {variable.unit} must be from {low:g} to {high:g}")
+            raise UserError(f"{name} = {value:g}{after} must be from {low:g} to {high:g}")
     logarithmic = low > 0.0
     search = search or (RANGES.get(name) if start is None else None)
     if search is not None:

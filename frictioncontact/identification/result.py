@@ -33,11 +33,23 @@ class Fit:
     known: bool  # uncertainties are stated
     model: np.ndarray  # N
     residuals: np.ndarray  # N, model minus measurement
+    slopes: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  # of the residuals, as weighed
+    nuisances: dict[str, tuple[float, float]] = field(
+        default_factory=dict
+    )  # of the instrument: value, half-width
+    in_time: bool = False  # the forces are samples, whose own scatter is known
     correlated: float = 1.0  # how many samples of a series count as one
     kappa: np.ndarray | None = None
     profiles: list[tuple[float, float]] | None = None  # intervals, as values
     misfits: list[str] = field(default_factory=list)  # what is wrong with the fit, in words
+    remedies: list[str] = field(default_factory=list)  # with what else it fits
+    hidden: list[str] = field(default_factory=list)  # faults that the data can't show
     warnings: list[str] = field(default_factory=list)
+
+    @property
+    def judged(self) -> bool:
+        """Whether the data can tell if the law fits."""
+        return self.degrees > 0 and (self.known or self.in_time)
 
     @property
     def point(self) -> np.ndarray:

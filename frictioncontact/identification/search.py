@@ -27,14 +27,14 @@ def silent(text: str) -> None:
     """For who does not want to be told."""
 
 
-def search(experiment: Experiment, target: np.ndarray, tell: Tell = silent) -> Fit:
-    """The fit to a target (as Experiment.target), without profiles and judgement."""
+def search(experiment: Experiment, target: np.ndarray, tell: Tell = silent, most: int = STARTS) -> Fit:
+    """The fit to a target (as Experiment.target), from so many starts, without profiles and judgement."""
     if experiment.degrees < 0:
         names = ", ".join(p.name for p in experiment.parameters)
         have = f"{len(experiment.force)} {experiment.word}s"
         raise UserError(f"{have} can't give {len(experiment.parameters)} parameters ({names})")
     found = []
-    starts = start_points(experiment, target)
+    starts = start_points(experiment, target)[:most]
     for k, start in enumerate(starts):
         tell(f"search {k + 1} of {len(starts)}")
         found.append(solve(experiment, start, target))
@@ -128,11 +128,14 @@ def described(experiment: Experiment, target: np.ndarray, found: list[Minimum]) 
     else:
         variance, quantile = math.nan, math.nan
     residuals = r[:rows] / experiment.weight
+    covariance = variance * inverse(jacobian.T @ jacobian)
     return Fit(
         parameters=experiment.parameters,
         target=target,
         minima=(best, *minima[1:]),
-        covariance=(variance * inverse(jacobian.T @ jacobian))[:n, :n],
+        covariance=covariance[:n, :n],
+        slopes=jacobian,
+        nuisances=_of_instrument(experiment, point, quantile * np.sqrt(np.diag(covariance))),
         degrees=degrees,
         quantile=quantile,
         variance=variance,
@@ -140,7 +143,19 @@ def described(experiment: Experiment, target: np.ndarray, found: list[Minimum]) 
         model=target[:rows] + residuals,
         residuals=residuals,
         correlated=correlated,
+        in_time=experiment.word == "sample",
     )
+
+
+def _of_instrument(
+    experiment: Experiment, point: np.ndarray, widths: np.ndarray
+) -> dict[str, tuple[float, float]]:
+    """Values and half-widths of 95 % of what was asked of the instrument."""
+    found = {}
+    for name, k in experiment.places.items():
+        scale = experiment.nuisances[k - len(experiment.parameters)].scale
+        found[name] = scale * float(point[k]), scale * float(widths[k])
+    return found
 
 
 def _on_bounds(experiment: Experiment, point: np.ndarray) -> np.ndarray:

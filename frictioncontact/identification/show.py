@@ -10,6 +10,7 @@ from frictioncontact.command import as_table
 from frictioncontact.identification.bootstrap import quantiles
 from frictioncontact.identification.data import Measurements
 from frictioncontact.identification.experiment import Experiment
+from frictioncontact.identification.faults import described
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.parameters import E_FULL, SEPARATION
@@ -25,6 +26,10 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
 
     for text in result.misfits:
         say(f"MISFIT: {text}\n")
+    for text in result.remedies:
+        say(f"PERHAPS {text}\n")
+    if result.judged and not result.misfits:
+        say("The law fits: its differences to the data look like their scatter.\n")
     console.print(_values(result, spread))
     if experiment.word == "row":
         console.print(_rows(experiment, result))
@@ -34,8 +39,15 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
     say(f"misfit: {np.sqrt(np.mean(result.residuals**2)):.3g} N rms over {len(result.residuals)} {word}s")
     if math.isfinite(result.deviation):
         say(f"scatter of one {word}: {result.deviation:.3g} N ({result.degrees} degrees of freedom)")
-    if not result.known and not result.misfits:
-        say("whether the law fits is open: state the uncertainty of the force (uncertain, --uncertain)")
+    if getattr(experiment.rows, "scatter", 0.0):
+        say(f"the measured position scatters by {experiment.rows.scatter:.2g} m, and is smoothed by as much")
+    if asked := described(experiment, result):
+        say(f"instrument: {asked} (95 %)")
+    if not result.judged and not result.misfits:
+        ask = "state the uncertainty of the force (uncertain, --uncertain)"
+        say(f"no misfit is seen, but whether the law fits is open: {ask}")
+    if result.hidden:
+        say(f"these data would not show {' or '.join(result.hidden)} of a tenth: the parameters take it up")
     names = [p.name for p in result.parameters]
     if "contact.stiffnessScale" in names and isinstance(experiment.rows, Measurements):
         scale = result.values[names.index("contact.stiffnessScale")]

@@ -6,14 +6,14 @@ import math
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
-from frictioncontact.fmu import Value, opened
+from frictioncontact.fmu import FrictionFmu, Value, opened
 from frictioncontact.values import numbers_of
 
 if TYPE_CHECKING:
@@ -30,8 +30,8 @@ class FrictionLaw:
     `start` holds the scene. `friction_law` makes it. Use it in one thread only.
     """
 
-    def __init__(self, start: Mapping[str, Value] | None, fmu: str | Path | None) -> None:
-        self._fmu = opened(fmu)
+    def __init__(self, start: Mapping[str, Value] | None, fmu: FrictionFmu) -> None:
+        self._fmu = fmu
         self.start = self._fmu.known.values(start, "scene")
         self._session = self._fmu.session(self.start)
         weakref.finalize(self, self._session.close)
@@ -41,6 +41,15 @@ class FrictionLaw:
 
     def __repr__(self) -> str:
         return f"<friction law of {self.start}>"
+
+    def __reduce__(self) -> tuple[Callable[..., FrictionLaw], tuple[dict[str, Value], FrictionFmu]]:
+        return FrictionLaw, (self.start, self._fmu)
+
+    @overload
+    def __call__(self, V: float, **inputs: float) -> float: ...
+
+    @overload
+    def __call__(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray: ...
 
     def __call__(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
         """The force at velocities.
@@ -56,6 +65,14 @@ class FrictionLaw:
     def transverse(self, V: npt.ArrayLike, **inputs: npt.ArrayLike) -> float | np.ndarray:
         """The force transverse to V, F_y_settled [N]; arguments as in a call."""
         return self._at(V, inputs, lambda: self._session.get(TRANSVERSE))
+
+    @overload
+    def derivative(self, V: float, by: str = "V", *, of: str = FORCE, **inputs: float) -> float: ...
+
+    @overload
+    def derivative(
+        self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
+    ) -> float | np.ndarray: ...
 
     def derivative(
         self, V: npt.ArrayLike, by: str = "V", *, of: str = FORCE, **inputs: npt.ArrayLike
@@ -151,4 +168,4 @@ def friction_law(scene: Mapping[str, Value] | None = None, *, fmu: str | Path | 
         print(law(0.5), law.derivative(0.5))
         print(law(np.linspace(0.1, 2.0, 5), E=[[44.6e9], [58.6e9]]).shape)
     """
-    return FrictionLaw(scene, fmu)
+    return FrictionLaw(scene, opened(fmu))

@@ -4,12 +4,19 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from frictioncontact.columns import MEASURED, columns_of, numbers_below
-from frictioncontact.command import add_fmu, add_set, command_line, new_file, print_frame, say_written
+from frictioncontact.command import (
+    add_column,
+    add_fmu,
+    add_set,
+    command_line,
+    new_file,
+    print_frame,
+    say_written,
+)
 from frictioncontact.files import write_whole
-from frictioncontact.fmu import INPUTS, OUTPUTS, FrictionFmu, opened
+from frictioncontact.fmu import INPUTS, OUTPUTS, opened
 from frictioncontact.simulation.run import simulate
-from frictioncontact.values import csv_rows
+from frictioncontact.values import assignments
 
 DESCRIPTION = """\
 Simulates one scene from time 0 on and prints a row for each step, or writes them to a CSV file, whose
@@ -27,9 +34,10 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--step", type=float, required=True, help="time between two rows, s")
     parser.add_argument(
         "--inputs", type=Path, metavar="CSV",
-        help=f"columns time and any of {', '.join(INPUTS)}, linear between their samples; in SI units, or "
-        "with a unit as 'V [mm/s]'",
+        help=f"columns time and any of {', '.join(INPUTS)}, or position; linear between their samples; in SI "
+        "units, or with a unit as 'V [mm/s]'",
     )  # fmt: skip
+    add_column(parser)
     parser.add_argument(
         "--outputs", nargs="+", default=OUTPUTS, metavar="NAME", help=f"variables ({' '.join(OUTPUTS)})"
     )
@@ -45,7 +53,8 @@ def run(options: argparse.Namespace) -> None:
         scene,
         stop=options.stop,
         step=options.step,
-        inputs=read_inputs(options.inputs, fmu) if options.inputs else None,
+        inputs=options.inputs,
+        columns=assignments(options.column, "--column"),
         outputs=options.outputs,
         fmu=options.fmu,
     )
@@ -54,13 +63,3 @@ def run(options: argparse.Namespace) -> None:
         say_written([options.output])
     else:
         print_frame(table, fmu.known, scene)
-
-
-def read_inputs(path: Path, fmu: FrictionFmu) -> dict[str, list[float]]:
-    """The columns of a CSV file under their names, in SI units; UserError names file, row and column.
-
-    A measured force is left out, so that what identify reads may be simulated too.
-    """
-    lines = list(csv_rows(path))
-    table = numbers_below(path, columns_of(fmu, path, lines), lines[1:])
-    return {name: values for name, values in table.items() if name not in MEASURED}

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from frictioncontact.errors import UserError, did_you_mean, shown
-from frictioncontact.values import LARGEST, numbers_of
+from frictioncontact.errors import UserError, warn
+from frictioncontact.tables import OWN, POSITION, SUFFIX, TIME
+from frictioncontact.tables import table as read
 
 if TYPE_CHECKING:
-    import pandas as pd
-
+    from frictioncontact.tables import Source
+    from frictioncontact.values import Variables
 
 FAR = 1e300  # s, before and after every sample
 
@@ -29,6 +28,12 @@ class Samples:
 
     time: np.ndarray  # s, never falling
     values: dict[str, np.ndarray]
+
+    def preceded(self, part: float, zero: float) -> Samples:
+        """The same, with a velocity before the first sample that is a part of its own; times from zero on."""
+        values = {name: np.concatenate([each[:1], each]) for name, each in self.values.items()}
+        values["V"][0] *= part
+        return Samples(np.concatenate([self.time[:1], self.time]) - zero, values)
 
     def steps(self, ends: np.ndarray) -> np.ndarray:
         """Times [s] from 0 at which a step has to end: the given ends, and the samples between them.
@@ -54,39 +59,53 @@ class Samples:
         return values, rates
 
 
-def samples(table: Mapping[str, npt.ArrayLike] | pd.DataFrame, names: Sequence[str]) -> Samples:
-    """The samples of a table with a column time [s] and any of the named inputs; UserError if it is wrong."""
-    if not isinstance(table, Mapping) and not hasattr(table, "columns"):
-        hint = "; pandas.read_csv reads a file" if isinstance(table, (str, os.PathLike)) else ""
-        raise UserError(
-            f"inputs = {shown(table)}: must be a mapping of names to samples, or a pandas frame{hint}"
-        )
-    columns = {str(name): table[name] for name in table}
-    for name in columns:
-        if name not in ("time", *names):
-            hint = did_you_mean(name, names) or ";"
-            raise UserError(f"inputs: {name} is no input of the FMU{hint} these are: {', '.join(names)}")
-    if "time" not in columns or len(columns) < 2:
-        raise UserError(f"inputs: needs a column time [s] and at least one of {', '.join(names)}")
-    arrays = {name: _numbers(name, column) for name, column in columns.items()}
-    time = arrays.pop("time")
-    for name, array in arrays.items():
-        if len(array) != len(time):
-            raise UserError(f"inputs: {name} has {len(array)} values and time has {len(time)}")
+def moving(time: np.ndarray, values: Mapping[str, np.ndarray], position: np.ndarray | None = None) -> Samples:
+    """Samples of the inputs; of a position its velocity, which between two samples is linear.
+
+    Each piece goes as far as the position, and not to and fro.
+    """
+    if position is None:
+        return Samples(time, dict(values))
+    steps = np.diff(time)
+    mean, V = np.diff(position) / steps, np.gradient(position, time, edge_order=min(2, len(steps)))
+    half = np.clip(0.5 * np.diff(V), -np.abs(mean), np.abs(mean))
+    pieces = {name: np.repeat(each, 2)[1:-1] for name, each in values.items()}
+    return Samples(
+        np.repeat(time, 2)[1:-1], {**pieces, "V": np.column_stack([mean - half, mean + half]).ravel()}
+    )
+
+
+def samples(
+    source: Source, known: Variables, stop: float | None = None, columns: Mapping[str, str] | None = None
+) -> Samples:
+    """The samples of a table with a column time and any inputs, or position; UserError if it is wrong.
+
+    What was measured is left out. stop [s]: warns of samples beyond it. columns: headings of other names.
+    """
+    units = known.units(("input",))
+    names = ", ".join(units)
+    measured = {f"{name}{SUFFIX}": unit for name, unit in OWN.items()}
+    table = read(source, "inputs", {**units, **OWN, **measured}, "input of the FMU", columns)
+    found = {name: each for name, each in table.numbers().items() if name in (*units, TIME, POSITION)}
+    where = table.where
+    if TIME not in found or len(found) < 2:
+        raise UserError(f"{where}: needs a column time [s] and at least one of {names}, {POSITION}")
+    time, position = found.pop(TIME), found.pop(POSITION, None)
     if not len(time):
-        raise UserError("inputs: no samples")
+        raise UserError(f"{where}: no samples")
     backward = np.flatnonzero(np.diff(time) < 0.0)
     if len(backward):
         k = int(backward[0])
-        raise UserError(f"inputs: time falls from {time[k]:g} to {time[k + 1]:g} s at sample {k + 1}")
-    return Samples(time, arrays)
-
-
-def _numbers(name: str, column: npt.ArrayLike) -> np.ndarray:
-    array = numbers_of(column, f"inputs: {name}")
-    if array.ndim != 1:
-        raise UserError(f"inputs: {name} is not a row of numbers")
-    if (abs(array) > LARGEST).any():
-        k = int(np.argmax(abs(array)))
-        raise UserError(f"inputs: {name}, row {k}: {array[k]:g} must be from {-LARGEST:g} to {LARGEST:g}")
-    return array
+        raise UserError(f"{where}: time falls from {time[k]:g} to {time[k + 1]:g} s at sample {k + 1}")
+    beyond = 0 if stop is None else int(np.sum(time > stop * (1.0 + 1e-9)))
+    if beyond:
+        late = f"{beyond} of {len(time)} samples are after stop = {stop:g} s"
+        warn([f"{where}: {late}; the last is at {time[-1]:g} s"])
+    if position is None:
+        return Samples(time, found)
+    if "V" in found or len(time) < 2 or (np.diff(time) <= 0.0).any():
+        raise UserError(f"{where}: position needs two samples, a time that grows, and no V beside it")
+    pieces = moving(time, found, position)
+    ends = {name: np.concatenate([each[:1], each, each[-1:]]) for name, each in pieces.values.items()}
+    ends["V"][[0, -1]] = 0.0  # it rests outside of its samples
+    return Samples(np.concatenate([time[:1], pieces.time, time[-1:]]), ends)

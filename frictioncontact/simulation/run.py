@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 import pandas as pd
 
 from frictioncontact.doubts import warn_of
@@ -18,7 +17,7 @@ from frictioncontact.simulation.inputs import Samples, samples
 from frictioncontact.values import real
 
 if TYPE_CHECKING:
-    Table = Mapping[str, npt.ArrayLike] | pd.DataFrame
+    from frictioncontact.tables import Source
 
 MOST = 10_000_000  # rows
 
@@ -28,7 +27,8 @@ def simulate(
     *,
     stop: float,
     step: float,
-    inputs: Table | None = None,
+    inputs: Source | None = None,
+    columns: Mapping[str, str] | None = None,
     outputs: Sequence[str] = OUTPUTS,
     fmu: str | Path | None = None,
 ) -> pd.DataFrame:
@@ -38,14 +38,17 @@ def simulate(
               its number
     stop      s; the last step is shorter if stop is not a multiple of step
     step      s between two rows; F_t_mean and F_y_mean are means over the time since the row before
-    inputs    a table (mapping or frame) with time [s] and any inputs: linear between the samples, held before
-              the first and after the last; two samples at one time are a jump. Samples need not coincide
-              with steps
+    inputs    a table (CSV file, mapping or frame) with time and any inputs, in SI units or under headings
+              "V [mm/s]": linear between the samples, held before the first and after the last; two samples
+              at one time are a jump. position in place of V: its velocity. Samples need not coincide with
+              steps
+    columns   headings of other names in inputs: "V" or "V [mm/s]" -> the heading there
     outputs   names of the variables to read
     fmu       another .fmu file of this model
     returns   a frame of ceil(stop / step) + 1 rows: the column time [s], and one for each output, SI units
     raises    UserError: a name or a value is wrong; FrictionError: the FMU refuses the scene
-    warns     FrictionWarning: of the FMU's log; of a setting that has no effect; of an unlikely magnitude
+    warns     FrictionWarning: of the FMU's log; of a setting that has no effect; of an unlikely magnitude;
+              of samples after stop
 
         import frictioncontact as fc
         scene = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 4.4e-7}
@@ -57,7 +60,11 @@ def simulate(
         loaded.known.readable(name, "outputs")
     values = loaded.known.values(start, "start")
     ends = _ends(real(stop, "stop"), real(step, "step"))
-    moving = samples(inputs, loaded.known.inputs) if inputs is not None else Samples(np.zeros(1), {})
+    moving = (
+        samples(inputs, loaded.known, float(ends[-1]), columns)
+        if inputs is not None
+        else Samples(np.zeros(1), {})
+    )
     times = moving.steps(ends)
     begins = np.concatenate([[0.0], times[:-1]])
     lengths = times - begins

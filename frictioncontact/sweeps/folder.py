@@ -33,7 +33,7 @@ class Folder:
                 if self.results.exists() or any([*self.parts.glob("*"), *self.failed.glob("*")]):
                     raise UserError(
                         f"{path}: holds another sweep (other scenarios, groups, sampling or FMU); "
-                        "choose another --output, or --fresh to discard it"
+                        "choose another output, or --fresh to discard it"
                     )
                 write_whole(known, record)
 

@@ -107,23 +107,23 @@ def sweep(
     fmu = resources.fmu() if fmu is None else path_of(fmu, "fmu")
     output = path_of(output, "output")
     csv = None if csv is None else path_of(csv, "csv")
-    check_whole(samples, MOST_SAMPLES, "--samples")
-    check_whole(1 if workers is None else workers, MOST_WORKERS, "--workers")
-    content = _content(f"--fmu {fmu}", fmu)
-    variables = Variables(description_and_library(content, f"--fmu {fmu}")[0])
+    check_whole(samples, MOST_SAMPLES, "samples")
+    check_whole(1 if workers is None else workers, MOST_WORKERS, "workers")
+    content = _content(f"fmu {fmu}", fmu)
+    variables = Variables(description_and_library(content, f"fmu {fmu}")[0])
     vary = {name: _listed(name, values) for name, values in pairs(vary, "vary").items()}
     scenarios = _scenarios(variables, vary, random, seed, csv)
     count, rows = scenarios.count, scenarios.rows
     texts = {name: str(value) for name, value in pairs(set, "set").items()}
-    fixed = {name: variables.text(name, text, f"--set {name}") for name, text in texts.items()}
+    fixed = {name: variables.text(name, text, f"set {name}") for name, text in texts.items()}
     for name in fixed.keys() & scenarios.seen:
-        raise UserError(f"--set {name}: is given twice")
+        raise UserError(f"set {name}: is given twice")
     warn_of(variables, {**scenarios.seen, **fixed}, is_over_period=True)
     if group is None:
         group = min(GROUP, -(-count // GROUPS))
-    check_whole(group, MOST_GROUP, "--group")
+    check_whole(group, MOST_GROUP, "group")
     if count > MOST_FILES * group:
-        raise UserError(f"--group {group}: {count} scenarios would be more than {MOST_FILES} files")
+        raise UserError(f"group {group}: {count} scenarios would be more than {MOST_FILES} files")
     record = {
         "fmu": hashlib.sha256(content).hexdigest(),
         "vary": vary, "random": random, "seed": seed,
@@ -166,18 +166,18 @@ def _listed(name: str, values: str | Iterable[Value]) -> str | list[Value]:
     try:
         return values if isinstance(values, str) else list(values)
     except TypeError:
-        raise UserError(f"--vary {name}: {values!r} is neither a text nor a sequence of values") from None
+        raise UserError(f"vary {name}: {values!r} is neither a text nor a sequence of values") from None
 
 
 def _scenarios(
     variables: Variables, vary: Vary, random: int | None, seed: int, csv: Path | None
 ) -> Scenarios:
     if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
-        raise UserError(f"--seed {seed}: must be a whole number from 0")
+        raise UserError(f"seed {seed}: must be a whole number from 0")
     if csv is not None:
         if vary or random is not None:
-            raise UserError("--csv does not go with --vary or --random: the file names all scenarios")
+            raise UserError("csv does not go with vary or random: the file names all scenarios")
         return from_csv(variables, csv)
     if not vary:
-        raise UserError("nothing to sweep: give vary (--vary NAME=VALUES) or csv (--csv FILE)")
+        raise UserError("nothing to sweep: give vary or csv")
     return grid(variables, vary) if random is None else drawn(variables, vary, random, seed)

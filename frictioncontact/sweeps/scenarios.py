@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from frictioncontact.batch.prepare import check_whole
-from frictioncontact.columns import factor, heading, units
 from frictioncontact.errors import UserError, shown
-from frictioncontact.values import Value, Variables, csv_rows, number
+from frictioncontact.tables import table
+from frictioncontact.values import Value, Variables, number
 
 MOST_SCENARIOS = 1_000_000_000
 MOST_VALUES = 10_000_000  # of one variable of a grid, which are held
@@ -72,7 +72,7 @@ def _grid_rows(axes: Mapping[str, np.ndarray], first: int, stop: int) -> dict[st
 
 def drawn(variables: Variables, vary: Vary, count: int, seed: int) -> Scenarios:
     """Each value drawn by itself."""
-    check_whole(count, MOST_SCENARIOS, "--random")
+    check_whole(count, MOST_SCENARIOS, "random")
     values = {name: _values(variables, name, given, "low:high")[0] for name, given in vary.items()}
     ends = {name: each.spaced(2) if isinstance(each, Range) else each for name, each in values.items()}
     return Scenarios(count, partial(_drawn_rows, values, seed), ends)
@@ -91,34 +91,15 @@ def _drawn_rows(
 
 
 def from_csv(variables: Variables, path: Path) -> Scenarios:
-    """A header as in columns.py, then a scenario a row. Errors name row, from 1, and column."""
-    rows = csv_rows(path)
-    _, header = next(rows, (1, []))
-    if not header:
-        raise UserError(f"{path}: is empty; row 1 must name the variables")
-    names, factors = [], []
-    for place, cell in enumerate(header, 1):
-        where = f"{path}: row 1, column {place}"
-        name, unit = heading(cell, where)
-        variable = variables.find(name, where)
-        if name in names:
-            raise UserError(f"{where}: {name} is there twice")
-        names.append(name)
-        factors.append(factor(name, unit, units(variable, variables), where))
-    table = []
-    for row, cells in rows:
-        if len(cells) != len(names):
-            counts = f"{len(cells)} cells where the header has {len(names)}"
-            raise UserError(f"{path}: row {row}: has {counts}; decimals have a point")
-        where = f"{path}: row {row}, column"
-        table.append([variables.text(n, cell, f"{where} {n}") for n, cell in zip(names, cells, strict=True)])
-    if not table:
+    """A scenario a row, under headings as in tables.py."""
+    read = table(path, "csv", variables.units(), "variable of the FMU")
+    if not read.lines:
         raise UserError(f"{path}: has no row below the header")
-    columns = {
-        name: np.array(cells) if variables.items[name] else np.array(cells) * to_SI
-        for name, to_SI, cells in zip(names, factors, zip(*table, strict=True), strict=True)
-    }
-    return Scenarios(len(table), partial(_csv_rows, columns), columns)
+    columns = {}
+    for name, column in read.columns.items():
+        values = [variables.text(name, text, read.place(name, k)) for k, text in enumerate(column.cells)]
+        columns[name] = np.array(values) if variables.items[name] else np.array(values) * column.factor
+    return Scenarios(len(read.lines), partial(_csv_rows, columns), columns)
 
 
 def _csv_rows(columns: Mapping[str, np.ndarray], first: int, stop: int) -> dict[str, np.ndarray]:
@@ -129,7 +110,7 @@ def _values(
     variables: Variables, name: str, given: str | Sequence[Value], form: str
 ) -> tuple[np.ndarray | Range, str]:
     """Of "a,b,c", a sequence of values, or a range "low:high[:count][:log]", whose count it gives too."""
-    where = f"--vary {name}"
+    where = f"vary {name}"
     items = variables.items[variables.find(name, where).name]
     parts = given.split(":") if isinstance(given, str) else []
     if len(parts) < 2:
@@ -157,7 +138,7 @@ def _values(
 
 def _count(text: str, name: str) -> int:
     if not re.fullmatch("[-+]?[0-9]{1,20}", text):
-        raise UserError(f"--vary {name}: the count {shown(text)} is not a whole number")
+        raise UserError(f"vary {name}: the count {shown(text)} is not a whole number")
     count = int(text)
-    check_whole(count, MOST_VALUES, f"--vary {name}: the count")
+    check_whole(count, MOST_VALUES, f"vary {name}: the count")
     return count

@@ -58,7 +58,7 @@ def cluster(job: Job, address: str) -> Iterator[Workers]:
         from distributed.comm import CommClosedError
         from distributed.scheduler import KilledWorker
     except ImportError:
-        raise UserError("--cluster needs Dask: pip install distributed") from None
+        raise UserError("cluster needs Dask: pip install distributed") from None
     for name in ("distributed", "distributed.client", "distributed.comm", "distributed.core",
                  "tornado.application", "asyncio"):  # fmt: skip
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what fails is told in one line
@@ -66,7 +66,7 @@ def cluster(job: Job, address: str) -> Iterator[Workers]:
         client = Client(address, timeout=CONNECT_SECONDS)
     except (OSError, TypeError, ValueError) as error:
         reason = str(error).splitlines()[0] if not isinstance(error, OSError) else "nothing answers there"
-        raise UserError(f"--cluster {address}: {reason}") from None
+        raise UserError(f"cluster {address}: {reason}") from None
     with client:
         try:
             _check(client.get_versions(packages=["frictioncontact", "pyarrow"]), address)
@@ -75,19 +75,19 @@ def cluster(job: Job, address: str) -> Iterator[Workers]:
             count = sum(client.nthreads().values())
             yield Workers(count, lambda group: executor.submit(run_group, shared, group))
         except KilledWorker:
-            raise UserError(f"--cluster {address}: worker after worker died of a group; {GOES_ON}") from None
+            raise UserError(f"cluster {address}: worker after worker died of a group; {GOES_ON}") from None
         except (CommClosedError, FutureCancelledError, CancelledError, OSError):
-            raise UserError(f"--cluster {address}: the connection was lost; {GOES_ON}") from None
+            raise UserError(f"cluster {address}: the connection was lost; {GOES_ON}") from None
 
 
 def _check(found: dict, address: str) -> None:
     """That the scheduler and all workers have what run_group needs."""
     if not found["workers"]:
-        raise UserError(f"--cluster {address}: has no workers")
+        raise UserError(f"cluster {address}: has no workers")
     wanted = version("frictioncontact")
     for where, has in {"scheduler": found["scheduler"], **found["workers"]}.items():
         if has["packages"]["frictioncontact"] != wanted or not has["packages"]["pyarrow"]:
             raise UserError(
-                f"--cluster {address}: {where} lacks frictioncontact {wanted} with its sweeps: "
+                f"cluster {address}: {where} lacks frictioncontact {wanted} with its sweeps: "
                 f"pip install 'frictioncontact[sweep]=={wanted}' there"
             )

@@ -166,7 +166,7 @@ def test_nothing_is_proven_of_other_scenes(values: dict[str, float | str]) -> No
         (["--step", "-1"], "step -1 s: must lie between"),
         (["--inputs", "nowhere.csv"], "nowhere.csv: No such file"),
         ([*OPEN, "friction.limit=Load"], "friction.mu F_n = 0 N: must be above 0 N"),
-        ([*OPEN, "--mass", "1", "--step", "1e-3"], "--mass: sigma = 0 N/m: must be above 0 N/m"),
+        ([*OPEN, "--mass", "1", "--step", "1e-3"], "mass: sigma = 0 N/m: must be above 0 N/m"),
     ],
 )
 def test_bad_questions_get_one_line(

@@ -192,12 +192,12 @@ def test_a_step_that_nothing_makes_stable_is_said() -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--mass", "0", "--step", "1e-4"], "--mass 0 kg: must lie between"),
-        (["--mass", "1e300", "--step", "1e-300"], "--mass 1e+300 kg: must lie between"),
-        (["--mass", "1", "--step", "1e300"], "--step 1e+300 s: must lie between"),
-        (["--mass", "1"], "--mass needs --step"),
-        (["--mass", "1", "--step", "1e-4", "--inputs", "drive.csv"], "--mass does not take --inputs"),
-        (["--mass", "1", "--step", "1e-4", "--linear"], "--mass does not take --linear"),
+        (["--mass", "0", "--step", "1e-4"], "mass 0 kg: must lie between"),
+        (["--mass", "1e300", "--step", "1e-300"], "step 1e-300 s: must lie between"),
+        (["--mass", "1", "--step", "1e300"], "step 1e+300 s: must lie between"),
+        (["--mass", "1"], "mass needs step and takes no inputs"),
+        (["--mass", "1", "--step", "1e-4", "--inputs", "drive.csv"], "mass needs step and takes no inputs"),
+        (["--mass", "1", "--step", "1e-4", "--linear"], "mass needs step and takes no inputs"),
         (["--mass", "1", "--step", "1e-4", "--set", "friction.model=Coulomb"], "Coulomb never sticks"),
     ],
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -25,9 +25,9 @@ from frictioncontact.identification.bootstrap import bootstrap
 from frictioncontact.identification.data import Measurements, Series, Uncertain, read
 from frictioncontact.identification.experiment import Rows
 from frictioncontact.identification.fit import Fit, fit
-from frictioncontact.identification.judge import _trends
 from frictioncontact.identification.parameter import parameter
 from frictioncontact.identification.series import Record
+from frictioncontact.identification.suspicion import CHANCE, suspicion
 from frictioncontact.parameters import STIFFNESS_PRINTED
 from workshop.project import ROOT
 from workshop.report.recovery import (
@@ -233,10 +233,13 @@ GOOD = "20,0.5,31\n40,0.5,33\n"
         ("V [m/s],vibration.V_1 [m/s]\n1,2\n", r"column 'F_t_mean \[N\]' is missing"),
         ("vibration.V_1 [m/s],F_t_mean [N]\n1,2\n", r"column 'V \[m/s\]' is missing"),
         ("V [m/s,F_t_mean [N]\n1,2\n", r"line 1, column 1: heading 'V \[m/s' is not of the form"),
-        ("V [km/h],F_t_mean [N]\n1,2\n", "column 1: V is in m/s or mm/s, not in 'km/h'"),
-        ("V [m/s],F_t_mean [kg]\n1,2\n", "column 2: F_t_mean is in N or mN or kN, not in 'kg'"),
-        ("V [m/s],speed [m/s],F_t_mean [N]\n", "column 2: there is no variable 'speed'"),
-        ("V [m/s],V [mm/s],F_t_mean [N]\n", "column V is there twice"),
+        ("V [km],F_t_mean [N]\n1,2\n", "column 1: V takes a unit like m/s, not 'km'"),
+        ("V [m/s],F_t_mean [kg]\n1,2\n", "column 2: F_t_mean takes a unit like N, not 'kg'"),
+        (
+            "V [m/s],speed [m/s],F_t_mean [N]\n",
+            "column 2: speed is no variable that a table of measurements may hold; these",
+        ),
+        ("V [m/s],V [mm/s],F_t_mean [N]\n", "column 2: V is there twice"),
         (
             HEADER + GOOD + "nan,0.5,3\n",
             r"row 3 \(line 4\), column 'V \[mm/s\]': 'nan' is not a finite number",
@@ -562,27 +565,38 @@ def test_a_fit_of_four_parameters_ends_and_says_what_the_data_leave_open(
     assert "can't tell contact.sigma" not in printed
 
 
-@pytest.mark.parametrize("is_sorted", [True, False])
-def test_differences_with_a_trend_are_a_misfit(fmu_path: Path, tmp_path: Path, is_sorted: bool) -> None:
-    """Of one force, F_C, at eight velocities: measured ones that grow with V, or the same without order."""
-    V = [k / 10 for k in (range(1, 9) if is_sorted else (3, 8, 1, 5, 7, 2, 6, 4))]
-    rows = "".join(f"{v},{50 + k}\n" for k, v in enumerate(V))
-    path = tmp_path / "rows.csv"
-    path.write_text("V,F_t_mean\n" + rows)
-    misfits = fc.identify(path, "F_C", fmu=fmu_path).misfits
-    assert len(misfits) == is_sorted
-    assert all("rows of neighbouring V are alike" in text for text in misfits)
+@pytest.mark.parametrize(
+    ("V", "force", "said"),
+    [
+        (range(1, 9), range(8), "rows of neighbouring V are alike"),
+        ((3, 8, 1, 5, 7, 2, 6, 4), range(8), "have the shape of a drift of the force"),
+        ((3, 8, 1, 5, 7, 2, 6, 4), (2, 4, 0, 5, 1, 3, 7, 6), ""),
+    ],
+)
+def test_differences_with_a_trend_are_a_misfit(
+    fmu_path: Path, V: Sequence[int], force: Sequence[int], said: str
+) -> None:
+    """Of one force, F_C, at eight velocities: measured ones grow with V, from row to row, or with neither."""
+    data = {"V [cm/s]": 10.0 * np.array(V), "F_t_mean": 50.0 + np.array(force)}
+    misfits = fc.identify(data, "F_C", fmu=fmu_path).misfits
+    assert len(misfits) == bool(said)
+    assert all(said in text for text in misfits)
 
 
-def test_scatter_is_seldom_a_trend() -> None:
+def test_scatter_is_seldom_suspicious() -> None:
+    """Of 400 fits of a law that is right, at most so many as a chance of 1 % explains."""
     random = np.random.default_rng(1)
-    rows = SimpleNamespace(names=("V", "d"), conditions=[{"V": k, "d": -abs(k - 3)} for k in range(8)])
+    V, V_1 = np.repeat(np.geomspace(0.01, 1.0, 6), 2), np.tile([0.0, 0.5], 6)
+    conditions = [{"V": v, "vibration.V_1": a} for v, a in zip(V, V_1, strict=True)]
+    rows = Measurements(("V", "vibration.V_1"), conditions, [0.0] * 12, None)
+    slopes = np.stack([np.ones(12), V_1 * np.log(V)], axis=1)
+    experiment = SimpleNamespace(rows=rows, word="row", weight=np.ones(12), force=np.full(12, 50.0))
+    left = np.eye(12) - slopes @ np.linalg.pinv(slopes)
     told = 0
-    for _ in range(1000):
-        miss = random.standard_normal(8)
-        experiment = SimpleNamespace(rows=rows, weight=1.0, force=np.ones(8))
-        told += bool(_trends(experiment, SimpleNamespace(residuals=miss)))
-    assert told <= 10
+    for _ in range(400):
+        result = SimpleNamespace(residuals=left @ random.standard_normal(12), slopes=slopes)
+        told += suspicion(experiment, result, {"of a drift": np.arange(12.0)})[0] < CHANCE
+    assert told <= stats.binom.ppf(0.99, 400, CHANCE)
 
 
 def test_an_interval_that_the_data_do_not_determine_is_not_printed(

@@ -118,9 +118,10 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path, V: str, 
         ({"inputs": {"time": [], "V": []}}, "inputs: no samples"),
         ({"inputs": {"time": np.array(["2026-01-01"], "M8[s]"), "V": [1.0]}}, "inputs: time, row 0: "),
         ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V, row 0: is masked"),
+        ({"inputs": "drive.csv"}, "drive.csv: No such file"),
         (
-            {"inputs": "drive.csv"},
-            "inputs = 'drive.csv': must be a mapping of names to samples, or a pandas frame",
+            {"inputs": 3.0},
+            "inputs = '3.0': must be the path of a CSV file, a mapping of names to values, or a",
         ),
         ({"fmu": "absent.fmu"}, "absent.fmu: No such file"),
         ({"fmu": "."}, ".: Is a directory"),
@@ -166,7 +167,7 @@ def test_the_command_prints_or_writes_the_same_table(
         ("time,V\n0,0.1\n1e-5,x\n", "row 2 (line 3), column 'V': 'x' is not a number"),
         ("time,V\n0,0.1\n1e-5,1_0\n", "row 2 (line 3), column 'V': '1_0' is not a number"),
         ("time,V\n0,\uff11\uff10\n", "row 1 (line 2), column 'V': '\uff11\uff10' is not a number"),
-        ("time [s],V [km/h]\n0,0.1\n", "line 1, column 2: V is in m/s or mm/s"),
+        ("time [s],V [km]\n0,0.1\n", "line 1, column 2: V takes a unit like m/s, not 'km'"),
     ],
 )
 def test_wrong_files_of_inputs(fmu_path: Path, tmp_path: Path, text: str, message: str) -> None:

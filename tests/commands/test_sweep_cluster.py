@@ -104,13 +104,13 @@ def test_cluster_that_loses_a_worker(
 def test_no_workers_or_one_of_another_version(cluster: Cluster, ran: Ran, tmp_path: Path) -> None:
     done = ran(tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", cluster.address)
     assert done.returncode == 1
-    assert done.stderr == f"error: --cluster {cluster.address}: has no workers\n"
+    assert done.stderr == f"error: cluster {cluster.address}: has no workers\n"
     cluster.worker(with_another_version(tmp_path / "other"))
     cluster.wait_for_workers(1)
     done = ran(tmp_path / "sweep", *GRID, "--cluster", cluster.address)
     assert done.returncode == 1
     assert len(done.stderr.splitlines()) == 1, done.stderr
-    assert done.stderr.startswith(f"error: --cluster {cluster.address}: tcp://127.0.0.1:")
+    assert done.stderr.startswith(f"error: cluster {cluster.address}: tcp://127.0.0.1:")
     assert "lacks frictioncontact" in done.stderr
     assert "pip install 'frictioncontact[sweep]==" in done.stderr
     assert not (tmp_path / "sweep").exists()
@@ -127,7 +127,7 @@ def test_no_scheduler(
     done = ran(tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", address)
     assert done.returncode == 1
     assert len(done.stderr.splitlines()) == 1, done.stderr
-    assert done.stderr.startswith(f"error: --cluster {address}: {message}")
+    assert done.stderr.startswith(f"error: cluster {address}: {message}")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -137,7 +137,7 @@ def test_scenario_that_kills_its_workers(cluster: Cluster, monkeypatch: pytest.M
     cluster.wait_for_workers(2)
     monkeypatch.setattr(workers, "run_group", deadly)
     job = Job(b"", None, {}, 1)
-    message = f"^--cluster {cluster.address}: worker after worker died of a group; what was computed is kept"
+    message = f"^cluster {cluster.address}: worker after worker died of a group; what was computed is kept"
     with pytest.raises(UserError, match=message), workers.cluster(job, cluster.address) as staff:
         list(staff.run([(k, k + 1) for k in range(9)]))
 
@@ -157,6 +157,6 @@ def test_scheduler_that_goes_away(cluster: Cluster, fmu_path: Path, tmp_path: Pa
     _, said = sweeping.communicate(timeout=600)
     assert sweeping.returncode == 1
     assert len(said.strip().splitlines()) == 1, said
-    lost = f"error: --cluster {cluster.address}: the connection was lost; what was computed is kept; the same"
+    lost = f"error: cluster {cluster.address}: the connection was lost; what was computed is kept; the same"
     assert said.startswith(lost), said
     assert kept_rows(output) >= 30

@@ -78,16 +78,16 @@ def test_csv_with_units(fmu_path: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("V [km/h]\n1\n", "row 1, column 1: V is in m/s or mm/s, not in 'km/h'"),
-        ("friction.model [mm]\n1\n", "row 1, column 1: friction.model is in 1, not in 'mm'"),
-        ("V [mm/s],V\n1,2\n", "row 1, column 2: V is there twice"),
-        ("V,d\n0.1,14e-6\n0.2,abc\n", "row 3, column d: 'abc' is not a number"),
-        ("V,d\n0.1\n", "row 2: has 1 cells where the header has 2"),
-        ("V,vibration.V1\n1,2\n", "row 1, column 2: vibration.V1 is no variable of the FMU; did you"),
-        (f"V\n{'1' * 131073}\n", "is not a CSV file in UTF-8: field larger than field limit (131072)"),
-        ("V\n", "has no row below the header"),
-        ("", "is empty; row 1 must name the variables"),
-        ('V\n"0.1\n', "is not a CSV file"),
+        ("V [km]\n1\n", ", line 1, column 1: V takes a unit like m/s, not 'km'"),
+        ("friction.model [mm]\n1\n", ", line 1, column 1: friction.model takes no unit, not 'mm'"),
+        ("V [mm/s],V\n1,2\n", ", line 1, column 2: V is there twice"),
+        ("V,d\n0.1,14e-6\n0.2,abc\n", ", row 2 (line 3), column 'd': 'abc' is not a number"),
+        ("V,d\n0.1\n", ", row 1 (line 2), column 'd': no value"),
+        ("V,vibration.V1\n1,2\n", ", line 1, column 2: vibration.V1 is no variable of the FMU; did you"),
+        (f"V\n{'1' * 131073}\n", ": is not a CSV file: field larger than field limit (131072)"),
+        ("V\n", ": has no row below the header"),
+        ("", ": no header row"),
+        ('V\n"0.1\n', ": is not a CSV file"),
     ],
 )  # fmt: skip
 def test_malformed_csv_names_row_and_column(
@@ -95,7 +95,7 @@ def test_malformed_csv_names_row_and_column(
 ) -> None:
     path = tmp_path / "scenarios.csv"
     path.write_text(content)
-    with pytest.raises(UserError, match=re.escape(f"{path}: {message}")):
+    with pytest.raises(UserError, match=re.escape(f"{path}{message}")):
         table(fmu_path, tmp_path / "out", "--csv", str(path))
 
 
@@ -103,31 +103,31 @@ def test_malformed_csv_names_row_and_column(
     ("arguments", "message"),
     [
         ([], "nothing to sweep"),
-        (["--vary", "v=1"], "--vary v: v is no variable of the FMU; did you mean V?"),
+        (["--vary", "v=1"], "vary v: v is no variable of the FMU; did you mean V?"),
         (["--vary", "V"], "--vary V: is not of the form NAME=VALUE"),
         (["--vary", "V=1:2"], "'1:2' is neither low:high:count"),
-        (["--vary", "V=2:1:3"], "--vary V: the range ends at 1, before it begins at 2"),
+        (["--vary", "V=2:1:3"], "vary V: the range ends at 1, before it begins at 2"),
         (["--vary", "V=0:1:3:log"], "must begin above 0"),
         (["--vary", f"V=0:1:{'9' * 5000}"], "is not a whole number"),
-        (["--vary", "V=0:1:1_0"], "--vary V: the count '1_0' is not a whole number"),
-        (["--vary", "V=0.1,1_0"], "--vary V: '1_0' is not a number"),
+        (["--vary", "V=0:1:1_0"], "vary V: the count '1_0' is not a whole number"),
+        (["--vary", "V=0.1,1_0"], "vary V: '1_0' is not a number"),
         (
             ["--vary", "V=1", "--samples", "100000000000"],
-            "--samples 100000000000: must be a whole number from 1 to 1000000",
+            "samples 100000000000: must be a whole number from 1 to 1000000",
         ),
         (["--vary", "V=0:1", "--random", "99999999999"], "must be a whole number from 1 to 1000000000"),
-        (["--vary", "V=0:1", "--random", "5", "--seed", "-1"], "--seed -1: must be a whole number from 0"),
+        (["--vary", "V=0:1", "--random", "5", "--seed", "-1"], "seed -1: must be a whole number from 0"),
         (
             ["--vary", "V=1", "--group", "1000001"],
-            "--group 1000001: must be a whole number from 1 to 1000000",
+            "group 1000001: must be a whole number from 1 to 1000000",
         ),
         (["--random", "100001", "--vary", "V=0:1", "--group", "1"], "would be more than 100000 files"),
         (["--vary", "V=0:1:-3"], "the count -3: must be a whole number from 1 to 10000000"),
         (["--vary", "V=1", "--vary", "V=2"], "--vary V: is given twice"),
         (["--vary", "V=0:1:1000000", "--vary", "d=1:2:1001"], "the most that a sweep runs is 1000000000"),
-        (["--vary", "V=1", "--workers", "0"], "--workers 0: must be a whole number from 1 to 1000"),
+        (["--vary", "V=1", "--workers", "0"], "workers 0: must be a whole number from 1 to 1000"),
         (["--random", "3", "--vary", "V=0:1:3"], "'0:1:3' is neither low:high"),
-        (["--csv", "none.csv", "--vary", "V=1"], "--csv does not go with --vary"),
+        (["--csv", "none.csv", "--vary", "V=1"], "csv does not go with vary"),
         (
             ["--vary", "friction.model=1:4:4"],
             "'1:4:4' is a range, but its values are names: Dahl,Coulomb",
@@ -202,7 +202,7 @@ def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:
     assert made["V"].tolist() == [0.1, 0.1, 0.2, 0.2]
     assert made["friction.model"].tolist() == ["Dahl", "LuGre"] * 2
     assert (swept.good, swept.refused, swept.new, swept.workers) == (4, 0, 4, 1)
-    with pytest.raises(UserError, match="--vary V: has no values"):
+    with pytest.raises(UserError, match=r"^vary V: has no values"):
         sweep(fmu=fmu_path, output=tmp_path / "none", vary={"V": []})
 
 
@@ -210,8 +210,8 @@ def test_values_from_python(fmu_path: Path, tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         ({"vary": ["V"]}, "vary = \"['V']\": must be a mapping of names to values"),
-        ({"vary": {"V": 0.3}}, "--vary V: 0.3 is neither a text nor a sequence of values"),
-        ({"vary": {"V": "0:1"}, "random": 5, "seed": 1.5}, "--seed 1.5: must be a whole number"),
+        ({"vary": {"V": 0.3}}, "vary V: 0.3 is neither a text nor a sequence of values"),
+        ({"vary": {"V": "0:1"}, "random": 5, "seed": 1.5}, "seed 1.5: must be a whole number"),
         ({"vary": {"V": "0:1"}, "random": 5, "set": ["d"]}, "set = \"['d']\": must be a mapping of names"),
     ],
 )

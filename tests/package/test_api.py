@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -14,9 +17,7 @@ from matplotlib.figure import Figure
 import frictioncontact as fc
 from frictioncontact.advice import command as advise_command
 from frictioncontact.command import main
-from frictioncontact.fmu import opened
 from frictioncontact.identification import command as identify_command
-from frictioncontact.simulation.command import read_inputs
 from workshop.project import ROOT
 
 DRY = ROOT / "data" / "dry.csv"
@@ -66,7 +67,7 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
     ("arguments", "message"),
     [
         ({"data": "nowhere.csv"}, "nowhere.csv: No such file"),
-        ({"data": pd.DataFrame({"V [": [1.0]})}, "data, line 1, column 1: heading 'V [' is not of the form"),
+        ({"data": pd.DataFrame({"V [": [1.0]})}, "data: heading 'V [' is not of the form"),
         ({"fit": ["F_t"]}, "F_t can't be fitted; did you mean F_C? these can: V, d"),
         ({"fit": ["contact.sigma", "contact.sigma"]}, "contact.sigma is to be fitted twice"),
         ({"fit": {"contact.sigma": (2.0, 1.0)}}, "contact.sigma = 2..1: the range is empty"),
@@ -79,10 +80,13 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
         ({"fit": []}, "fit: names no parameter"),
         ({"fit": 3}, "fit = 3: must be a name, names, or a mapping of names"),
         ({"fit": {"F_C": (1.0, 2.0, 3.0)}}, "F_C = (1.0, 2.0, 3.0): a range is (low, high)"),
+        ({"data": {"V [m/s]": [1.0]}}, "data: column 'F_t_mean [N]' is missing"),
         (
-            {"data": {"V [m/s]": [1.0]}},
-            "data = \"{'V [m/s]': [1.0]}\": must be the path of a CSV file, or a pandas",
+            {"data": 3},
+            "data = '3': must be the path of a CSV file, a mapping of names to values, or a pandas",
         ),
+        ({"nuisance": ["gain"]}, "nuisance gain: must be one of offset, drift, delay, sign"),
+        ({"nuisance": "delay"}, "nuisance delay: is for a series, with a column 'time [s]'"),
         ({"data": "a\0.csv"}, "data = 'a\\x00.csv': is no path"),
     ],
 )
@@ -115,6 +119,44 @@ def test_advice_is_what_the_command_prints(fmu_path: Path, capsys: pytest.Captur
 def test_wrong_questions_are_one_line(fmu_path: Path, arguments: dict, message: str) -> None:
     with pytest.raises(fc.UserError, match="^" + re.escape(message)):
         fc.advise(**{"fmu": fmu_path, **arguments})
+
+
+def test_a_mass_and_a_master_are_what_the_command_takes(
+    fmu_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = {"contact.model": "Constant", "contact.sigma": 1e6}
+    found = fc.advise(scene, mass=1.0, step=1e-4, master="Jacobi", fmu=fmu_path)
+    words = [f"--set={name}={value}" for name, value in scene.items()]
+    main(advise_command, ["--mass", "1", "--step", "1e-4", *words, "--fmu", str(fmu_path)])
+    assert capsys.readouterr().out.startswith(f"{found}\n")
+    assert 0.0 < found.settings["friction.sigma_1"] < 2.0 * 1e-4 * 1e6
+    assert found.start_values == {**scene, **found.settings}
+    for arguments, message in (
+        ({"mass": 1.0}, "mass needs step and takes no inputs"),
+        ({"mass": 0.0, "step": 1e-4}, "mass 0 kg: must lie"),
+        ({"mass": 1.0, "step": 1e-4, "linear": True}, "mass needs step and takes no inputs"),
+        ({"mass": 1.0, "step": 1e-4, "master": "Gauss"}, "master = 'Gauss': must be one of 'Jacobi', "),
+    ):
+        with pytest.raises(fc.UserError, match="^" + re.escape(message)):
+            fc.advise(scene, fmu=fmu_path, **arguments)
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))])
+def test_every_result_is_copied_and_pickled(
+    dry: fc.Identification, fmu_path: Path, again: Callable[[Any], Any]
+) -> None:
+    fitted = again(dry)
+    assert str(fitted) == str(dry) and fitted.intervals == dry.intervals
+    assert len(fitted.plot().axes) == 2
+    scene = {"V": 0.1, "vibration.V_1": 1.0}
+    law = fc.friction_law(scene, fmu=fmu_path)
+    assert again(law)(0.3) == law(0.3)
+    for result in (
+        fc.advise(scene, fmu=fmu_path),
+        fc.advise(scene, mass=1.0, step=1e-9, fmu=fmu_path),
+        fc.contacts,
+    ):
+        assert str(again(result)) == str(result)
 
 
 CALLS = [
@@ -152,6 +194,5 @@ def test_what_simulate_gives_is_what_identify_takes(fmu_path: Path, tmp_path: Pa
         found = fc.identify(data, "contact.sigma", start=LAW, fmu=fmu_path)
         assert found.values["contact.sigma"] == pytest.approx(4e6, rel=1e-2)
     path.write_text("time [ms],V [mm/s],F_t [kN]\n0,300,0\n1,300,0\n")
-    drive = read_inputs(path, opened(fmu_path))
-    assert drive == {"time": [0.0, pytest.approx(1e-3)], "V": [pytest.approx(0.3), pytest.approx(0.3)]}
-    assert len(fc.simulate(stop=1e-3, step=1e-3, inputs=drive, fmu=fmu_path)) == 2
+    replayed = fc.simulate(stop=1e-3, step=1e-3, inputs=path, outputs=["V"], fmu=fmu_path)
+    assert replayed.to_numpy().tolist() == [[0.0, pytest.approx(0.3)], [1e-3, pytest.approx(0.3)]]

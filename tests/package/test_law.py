@@ -300,16 +300,6 @@ def test_half_precision_is_a_number(fmu_path: Path) -> None:
         fc.simulate_many({"V": np.array([0.1, 0.5], np.float16)}, fmu=fmu_path)
 
 
-@pytest.mark.parametrize(("separator", "kind"), [(";", "semicolons"), ("\t", "tabs")])
-def test_a_file_with_other_separators_is_told_so(tmp_path: Path, separator: str, kind: str) -> None:
-    path = tmp_path / "mine.csv"
-    path.write_text(separator.join(["V", "F_t_mean"]) + "\n" + separator.join(["0.1", "3"]) + "\n")
-    with pytest.raises(
-        fc.UserError, match=f"{re.escape(str(path))}: its columns are separated by {kind}; write"
-    ):
-        fc.identify(path, "F_C")
-
-
 @pytest.mark.parametrize(
     ("call", "message"),
     [

@@ -42,6 +42,26 @@ def test_the_link_restores_the_scene(playground: Playground, offered: list[Prese
         assert playground.page.locator("#changed").inner_text() == "changed"
 
 
+def test_a_refused_value_is_not_copied(playground: Playground, scene: Preset) -> None:
+    """The texts are those of the last accepted scene, and the numbers fade with the figures."""
+    playground.choose(scene)
+    kinds = ("fmpy", "Python", ".ssv", "CSV", "Link")
+    before = {kind: playground.text(kind) for kind in kinds}
+    opacity = "getComputedStyle(document.querySelector('#numbers')).opacity"
+    assert playground.page.evaluate(opacity) == "1"
+    playground.enter("d", "-7")
+    assert "below its minimum" in playground.refusal("d")
+    assert {kind: playground.text(kind) for kind in kinds} == before
+    assert (
+        playground.page.evaluate(opacity)
+        == playground.page.evaluate(opacity.replace("#numbers", ".plot"))
+        != "1"
+    )
+    assert "the last scene that the FMU accepted" in playground.page.locator("#copied").inner_text()
+    playground.enter("d", "13")
+    assert playground.text("Link") != before["Link"] and playground.page.evaluate(opacity) == "1"
+
+
 def test_the_command_runs(
     playground: Playground, fmu: FrictionFmu, fmu_path: Path, scene: Preset, tmp_path: Path
 ) -> None:

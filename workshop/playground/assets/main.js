@@ -12,6 +12,7 @@ class Page {
     this.values = {};
     this.preset = null;
     this.touched = null; // the variable that a person last set
+    this.accepted = null; // the last scene that the FMU took: values and preset
     this.wrong = ""; // what the address says that is no part of a scene
     this.frame = 0;
     this.copyKind = "fmpy";
@@ -157,6 +158,7 @@ class Page {
       control.root.hidden = !control.matters((other) => this.valueOf(other));
     }
     if (this.unlessRefused(() => this.compute())) {
+      this.accepted = { values: { ...this.values }, preset: this.preset };
       document.body.classList.remove("refused");
       setText("refusal", this.wrong);
     }
@@ -298,16 +300,20 @@ class Page {
     this.showCopy();
   }
 
+  // The last accepted scene, which is also what the figures show.
   showCopy() {
-    if (!this.state) return;
-    setText("copied", "");
+    if (!this.accepted) return;
+    const refused = document.body.classList.contains("refused");
+    setText("copied", refused ? "This is the last scene that the FMU accepted." : "");
+    const { values, preset } = this.accepted;
+    const valueOf = (name) => values[name] ?? this.fmu.variables.get(name)?.start;
     document.getElementById("copy-text").value = COPIES[this.copyKind]({
-      name: this.preset?.title ?? "FrictionContact",
-      values: this.values,
-      valueOf: (name) => this.valueOf(name),
+      name: preset?.title ?? "FrictionContact",
+      values,
+      valueOf,
       variables: this.fmu.variables,
-      settles: this.valueOf("initialState") === "Settled",
-      hash: this.hash(),
+      settles: valueOf("initialState") === "Settled",
+      hash: this.hashOf(preset?.id, values),
       wave: this.state.wave,
     });
   }
