@@ -302,7 +302,9 @@ static bool interpolate(Block* block) {
         largest = j > 0 ? fmax(largest, last) : 0.0;
         // The errors fall by a ratio from point to point. If the remaining points are too few for this ratio,
         // the block is refused.
-        const double left = j > 1 ? (j - 1) * log(last / may) / log(largest / last) : 0.0;
+        const double left = j <= 1 || last <= may ? 0.0
+                            : largest > last      ? (j - 1) * log(last / may) / log(largest / last)
+                                                  : HUGE_VAL;
         if (j >= FEWEST_POINTS && !(j + left <= most)) {
             return false;
         }
