@@ -213,6 +213,9 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     return of;
 }
 
+// The part of a velocity that rounding of the phase hides at a reversal: 450 eps, as in model/drive.c.
+static const double ROUNDING_OF_V = 1e-13;
+
 // The centers along a line, in and beside [0, h], in their order.
 static int line_centers(const FcPlane* plane, double h, double tolerance, Center centers[MOST_CENTERS]) {
     const FcDrive* drive = &plane->scene->drive;
@@ -221,10 +224,10 @@ static int line_centers(const FcPlane* plane, double h, double tolerance, Center
     const FcVelocity now = fc_drive_velocity(drive, 0.0);
     const double behind = -fmin(time_of_power(fabs(now.rate), 1, fabs(now.V)),
                                 time_of_power(0.5 * fabs(now.curvature), 2, fabs(now.V)));
-    const bool grows =
-        now.V * now.rate > 0.0 || now.V == 0.0 || (now.rate == 0.0 && now.V * now.curvature > 0.0);
-    if (grows && behind > -h) {
-        centers[count++] = center_at(plane, fmin(behind, 0.0), 0.0, true, h, tolerance);
+    const bool is_reversal = fabs(now.V) <= ROUNDING_OF_V * (fabs(drive->V.value) + drive->vibration.V_1);
+    const bool grows = now.V * now.rate > 0.0 || (now.rate == 0.0 && now.V * now.curvature > 0.0);
+    if (is_reversal || (grows && behind > -h)) {
+        centers[count++] = center_at(plane, is_reversal ? 0.0 : behind, 0.0, true, h, tolerance);
     }
     for (double t = 0.0; t < h && count < MOST_CENTERS;) {
         const double horizon = h + (h - t);
@@ -252,8 +255,10 @@ static int plane_centers(const FcPlane* plane, double h, double tolerance, Cente
 
 // ---- parts ----
 
-// The part of the interval that is not worth a panel. Rounding of the middles: 4500 eps.
+// The part of the interval that is not worth a panel. Rounding of the middles and the minima: 4500 eps; of a reversal, which
+// is a root: 64 eps.
 static const double ROUNDING = 1e-12;
+static const double SAME_TIME = 0x1p-46;
 
 static FcPart part_of(double start, double end, const Center* center, bool is_beyond, int side) {
     const double length = is_beyond ? center->beyond : center->length;
@@ -325,7 +330,7 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
     for (int i = 0; i <= found && start < h && count + 4 <= FC_MOST_PARTS; i++) {
         const bool has_after = i < found;
         const double end = has_after ? fmin(fmax(centers[i].time, start), h) : h;
-        if (end - start > (plane->on_line ? 0.0 : ROUNDING * h)) {
+        if (end - start > (plane->on_line ? SAME_TIME : ROUNDING) * h) {
             count = add_gap(plane, parts, count, start, end, h, i > 0 ? &centers[i - 1] : NULL,
                             has_after ? &centers[i] : NULL);
             start = end;

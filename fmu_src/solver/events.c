@@ -63,8 +63,7 @@ static double rounding_of_push(const FcCrossing* crossing, const double push[POI
     return ROUNDING_OF_PUSH * largest;
 }
 
-// Whether a bristle that slips in the direction n is not pushed now. A push of 0 decides just after.
-static bool falls_behind(const FcCrossing* crossing, FcVector n) {
+bool fc_falls_behind(const FcCrossing* crossing, FcVector n) {
     const FcInterval* interval = crossing->interval;
     const double t = crossing->at.t;
     const double push = push_at(crossing, n, t);
@@ -115,7 +114,7 @@ bool fc_begin_slip(FcCrossing* crossing, bool surely) {
     fc_set_delta(crossing, (FcVector){D * of.n.x, D * of.n.y});
     crossing->meetings++;
     crossing->touches = crossing->slips != 0 || !has_static_friction(crossing);
-    crossing->is_slipping = surely || fc_plane_push(crossing->plane, &of.at, &of.kinetic, of.n) > 0.0;
+    crossing->is_slipping = surely || !fc_falls_behind(crossing, of.n);
     crossing->slips = crossing->is_slipping;
     crossing->h = 0.0;
     // In the plane its direction relaxes.
@@ -309,7 +308,7 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
 
 void fc_free_until_event(FcCrossing* crossing) {
     assert(!crossing->is_slipping);
-    if (crossing->slips != 0 && falls_behind(crossing, direction_of(crossing))) {
+    if (crossing->slips != 0 && fc_falls_behind(crossing, direction_of(crossing))) {
         fc_end_slip(crossing);
         return;
     }
@@ -450,7 +449,7 @@ void fc_slip_until_event(FcCrossing* crossing) {
     // A push of 0 at the start decides just after.
     double ends = end_of_push(crossing, panel.to_bound);
     if (ends > 0.0 && panel.to_bound[START] <= rounding_of_push(crossing, panel.to_bound) &&
-        falls_behind(crossing, direction_of(crossing))) {
+        fc_falls_behind(crossing, direction_of(crossing))) {
         ends = 0.0;
     }
     const bool is_cut = cut_at_end_of_push(crossing, &nodes, &panel, &h, &ends);

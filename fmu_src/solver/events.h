@@ -19,6 +19,8 @@ void fc_slip_until_event(FcCrossing* crossing);
 // A free bristle at its bound slips if it is pushed, or surely; one with static friction breaks away. False if it is
 // not pushed.
 bool fc_begin_slip(FcCrossing* crossing, bool surely);
+// Whether a bristle that slips in the direction n is not pushed now. A push of 0 is decided just after.
+bool fc_falls_behind(const FcCrossing* crossing, FcVector n);
 void fc_end_slip(FcCrossing* crossing);
 
 #endif

@@ -10,6 +10,25 @@
 #include "solver/events.h"
 #include "solver/still.h"
 
+// Whether the bound may fall.
+static bool may_fall(const FcScene* bound) {
+    const FcDrive* drive = &bound->drive;
+    const bool stands = fc_scene_stiffness_is_constant(bound) && fc_scene_limit_is_constant(bound);
+    if (stands || (fc_scene_ratio_is_constant(bound) && drive->E.rate == 0.0)) {
+        return false;
+    }
+    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {
+        return true;
+    }
+    const double apart = bound->floats ? -drive->load.rate : drive->d.rate; // the way that d goes
+    const bool rises_with_d = bound->at_E.model != FC_CONTACT_CONSTANT;     // D = g / sigma
+    return rises_with_d ? apart < 0.0 : apart > 0.0;
+}
+
+static bool may_meet(const FcScene* scene, const FcScene* bound) {
+    return fc_is_bounded(scene->friction) && (scene->friction->model == FC_ELASTIC_PLASTIC || may_fall(bound));
+}
+
 // The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
 // minus its change in the time 1 / r.
 static double first_transient(const FcCrossing* crossing, FcVector delta, double scale) {
@@ -35,10 +54,20 @@ static void start_control(FcCrossing* crossing, double scale) {
     crossing->control.is_bounded = crossing->is_bounded;
 }
 
+// The least progress over the part, in u. Derived: more than 12 events within it are rounding.
+static const double PROGRESS = 0x1p-40;
+
 // Panels in a row that do not get on, at an event that rounding hides.
-static void pass_over_rounding(FcCrossing* crossing, double before) {
+// After FC_MOST_TRIES of them the march passes over 2^-50 of the part, and then over twice as much each time. Over more than
+// 2^-20 it gives up, and the step is refused.
+static void pass_over_rounding(FcCrossing* crossing, double before, int stalled) {
+    const int doublings = stalled - FC_MOST_TRIES;
+    if (doublings > 30) {
+        crossing->along.offset = NAN;
+        return;
+    }
     crossing->at.u =
-        fmin(crossing->end, before + 0x1p-50 * (fabs(before) + crossing->end - before));
+        fmin(crossing->end, fmax(crossing->at.u, before + ldexp(0x1p-50, doublings) * (fabs(before) + crossing->end - before)));
     crossing->at.t = fc_part_time(&crossing->part, crossing->at.u);
 }
 
@@ -58,9 +87,10 @@ static void cross_part(FcCrossing* crossing, int number) {
                 fc_free_until_event(crossing);
             }
         }
-        stalled = crossing->at.u > before ? 0 : stalled + 1;
+        const double least = PROGRESS * (crossing->end - fc_straight_place(&crossing->part.in, crossing->part.start));
+        stalled = crossing->at.u - before > least ? 0 : stalled + 1;
         if (stalled > FC_MOST_TRIES) {
-            pass_over_rounding(crossing, before);
+            pass_over_rounding(crossing, before, stalled);
         }
     }
 }
@@ -147,6 +177,7 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     FcRoom room;
     FcCrossing crossing;
     fc_crossing_start(&crossing, &room, &plane, &interval, result->evaluations);
+    crossing.is_bounded = may_meet(scene, &plane.of_static_limit);
     fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
     choose_rigid(&crossing);
     if (fc_kind(&crossing) == FC_NO_BRISTLE) { // the deflection stands meanwhile
@@ -183,24 +214,8 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
     return crossing.along;
 }
 
-// Whether the bound may fall.
-static bool may_fall(const FcScene* bound) {
-    const FcDrive* drive = &bound->drive;
-    const bool stands = fc_scene_stiffness_is_constant(bound) && fc_scene_limit_is_constant(bound);
-    if (stands || (fc_scene_ratio_is_constant(bound) && drive->E.rate == 0.0)) {
-        return false;
-    }
-    if (drive->vibration.a_d != 0.0 || drive->E.rate != 0.0) {
-        return true;
-    }
-    const double apart = bound->floats ? -drive->load.rate : drive->d.rate; // the way that d goes
-    const bool rises_with_d = bound->at_E.model != FC_CONTACT_CONSTANT;     // D = g / sigma
-    return rises_with_d ? apart < 0.0 : apart > 0.0;
-}
-
 bool fc_march_may_meet(const FcScene* scene) {
     FcFriction friction;
     const FcScene bound = fc_scene_of_bound(scene, 0, &friction); // of the static limit, without a curve
-    return fc_is_bounded(scene->friction) &&
-           (scene->friction->model == FC_ELASTIC_PLASTIC || may_fall(&bound));
+    return may_meet(scene, &bound);
 }

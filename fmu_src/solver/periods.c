@@ -414,6 +414,8 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     const bool is_linear = fc_drive_is_linear(&scene->drive);
     const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
     const double rest = periods > 0.0 ? fmax(0.0, fma(h, f, -periods) / f) : h;
+    // A rest of no more than the rounding of h could take a slip off its bound.
+    const bool has_rest = rest > 4.0 * DBL_EPSILON * h;
     assert(h >= 0.0 && rest <= h);
     FcSolverOptions until_end;
     if (is_linear && (periods >= 2.0 || fc_scene_has_pieces(scene))) {
@@ -431,8 +433,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
         fc_take_pieces(law, scene, options, h, result);
     } else if (is_linear) {
         fc_leap(law, scene, options, periods, result);
-        // A rest of no more than the rounding of h could take a slip off its bound.
-        if (rest > 4.0 * DBL_EPSILON * h) {
+        if (has_rest) {
             const FcScene later = fc_scene_later(scene, periods / f);
             fc_take_pieces(law, &later, options, rest, result);
         }
@@ -440,7 +441,9 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
         fc_loose_step(result);
     } else {
         step_over_equal_periods(law, scene, options, periods, result);
-        fc_take_pieces(law, scene, options, rest, result);
+        if (has_rest) {
+            fc_take_pieces(law, scene, options, rest, result);
+        }
     }
     if (result->evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(

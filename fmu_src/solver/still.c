@@ -92,9 +92,9 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
     if (!(crossing->is_bounded && moves > *way)) {
         return false;
     }
-    // One with static friction that is at its bound breaks away if it is pushed there, or goes on in the next part.
+    // One with static friction that is at its bound and hardly moves breaks away only if it is pushed.
     if (fc_has_static_friction(interval->scene->friction) && *way <= 1e-13 * D && moves <= 1e-9 * D &&
-        crossing->part.end < interval->duration && !(fc_push(interval->scene, interval->scene, t, side) > 0.0)) {
+        fc_falls_behind(crossing, (FcVector){side, 0.0})) {
         return false;
     }
     if (*way == 0.0) {
