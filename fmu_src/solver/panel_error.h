@@ -32,16 +32,15 @@ FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double he
 }
 
 // Sets the errors of the end and the mean due to an unresolved part of the slope, which acts as that force [N] times it,
-// and to the quadrature. z_first and z_last are the relaxations by the rates at the panel's ends. Relaxation damps a defect: inside
-// by the least rate of the panel, at the end by the rate there. The defect vanishes there with the slope 9 of its value at
-// the start in half a panel, so that a stiff panel ends with 9 / z^2 of it.
+// and to the quadrature. z_first and z_last are the relaxations by the rates at the panel's ends. Relaxation damps a defect: at the
+// end by the rate there, inside by the least rate of the panel.
 FC_INLINE void fc_set_errors(FcPanel* panel, double z_first, double z_last, double force, double unresolved,
                    double quadrature) {
     const double whole = fc_most(0.0, panel->z);
     const double z_end = fc_most(0.0, fc_least(z_last, whole));
     const double z_least = fc_most(fc_least(z_end, z_first), fc_least(whole, sqrt(whole)));
     const double weight = FC_RADAU.weight[FC_STAGES - 1];
-    panel->end_error = force * unresolved / (1.0 + z_end + z_end * z_end / FC_STAGES);
+    panel->end_error = force * unresolved / (1.0 + z_end);
     panel->mean_error = quadrature + FC_MEAN_OF_DEFECT * force * unresolved *
                                          fc_most(1.0 / (1.0 + z_least), weight / (1.0 + z_end));
 }

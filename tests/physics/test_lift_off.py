@@ -112,7 +112,8 @@ def test_a_lift_off_and_back(
             assert session.get("solver.evaluations") - cost < 2e5
             ends = (max(now, 0.0), max(after, 0.0)) if linear else (max(after, 0.0),) * 2
             mean = coulomb(law, *ends, exponential=by == "d") if max(ends) > NOTHING else 0.0
-            check(session, contact == "Constant", limit, mean, max(ends))
+            opens = max(ends) > NOTHING >= min(ends)  # within the step, which no closed form here has
+            check(session, contact == "Constant" and not opens, limit, mean, max(ends))
             now = after
         session.step(H)
         assert session.get("F_n") == pytest.approx(START, rel=1e-9)
