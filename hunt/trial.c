@@ -290,11 +290,12 @@ static bool take_first(TrialStep* taken, const Sequence* sequence, FcMessage* me
 
 void trial_near_line(Trial* trial, const Sequence* sequence, double V_y) {
     *trial = (Trial){0};
-    if (sequence->steps == 0) {
-        return;
-    }
     TrialStep line = {.scene = sequence->step[0]};
     ReferenceScene* scene = &line.scene;
+    const bool moves = scene->V != 0.0 || scene->V_rate != 0.0 || scene->V_1 != 0.0;
+    if (sequence->steps == 0 || !moves) {
+        return;
+    }
     scene->h = vibrates(scene) ? fmin(scene->h, NEAR_LINE_PERIODS / scene->f) : scene->h;
     TrialStep* near = &trial->taken[0];
     *near = line;
@@ -314,6 +315,8 @@ void trial_near_line(Trial* trial, const Sequence* sequence, double V_y) {
         range[0].result[k] = fmin(found, moved);
         range[1].result[k] = fmax(found, moved);
     }
-    near->verdict = verdict_outside(near, range, 2.0 * sequence->tolerance);
+    const Verdict apart = verdict_outside(near, range, 2.0 * sequence->tolerance);
+    trial->unknown = !(apart.ratio <= 1.0) && is_outside(&near->scene, &near->scene);
+    near->verdict = trial->unknown > 0 ? near->verdict : apart;
     trial->worst = near->verdict.ratio;
 }
