@@ -174,3 +174,22 @@ def test_velocities_near_the_amplitude(fmu: FrictionFmu, law: str, planar: bool)
                 if not off <= tolerance + ROUNDING:
                     missed.append(f"{off:.2e} at {tolerance:g}: V {V!r}, sigma {stiffness:g}")
     assert not missed, "\n".join(missed)
+
+
+# ---- the order ----
+
+
+@pytest.mark.parametrize(("kappa", "V"), [(3.0, 2.0), (1e5, 0.3)], ids=["soft", "stiff"])
+def test_order(fmu: FrictionFmu, kappa: float, V: float) -> None:
+    """Errors fall with the power 17 of the evaluations or more: the order of Radau IIA of nine stages is 17."""
+    evaluations, errors = np.zeros(len(TOLERANCES)), np.zeros(len(TOLERANCES))
+    for phase in np.arange(12) / 12:
+        now = scene(law="Dahl", contact="Constant", V_1=0.9, V=V, f=F, start=phase / F, h=1.9 / F)
+        now.contact_sigma = kappa * 2 * math.pi * F * now.F_C / now.V_1
+        truth = step(now)
+        for k, tolerance in enumerate(TOLERANCES):
+            found = results(fmu, now, tolerance)
+            evaluations[k] += found["evaluations"]
+            errors[k] += abs(found["F_t_mean"] - truth.F_t_mean) / truth.S
+    order = -np.polyfit(np.log(evaluations), np.log(errors), 1)[0]
+    assert order > 14

@@ -143,6 +143,52 @@ static void maps_are_the_closed_form(void) {
     }
 }
 
+// What is left of a start after a panel of constant coefficients over z.
+static double left_after(double z) {
+    const double sigma = 1e6;
+    FcContactParameters contact = soft_contact();
+    contact.model = FC_CONTACT_CONSTANT;
+    contact.sigma = sigma;
+    const FcScene scene = scene_of(&contact, &DAHL, (FcVibration){.f = 20e3}, (FcLinearInput){0.2, 0.0},
+                                   (FcLinearInput){14e-6, 0.0}, (FcLinearInput){58e9, 0.0});
+    FcPlane plane;
+    fc_plane_make(&plane, &scene);
+    plane.on_line = true;
+    const FcPart part = part_of(0.0, z * 55.0 / (sigma * 0.2), (FcStraight){0.0, INFINITY}, 1);
+    const FcNodes nodes = nodes_over(&plane, &part);
+    const FcFrom from = {.delta = {1e-5, 0.0}, .speed = 0.2, .push = 0.2, .for_any = true};
+    FcPanel panel;
+    fc_free_panel(&plane, &nodes, &from, &panel);
+    return 1.0 - panel.along.relaxation;
+}
+
+// Radau IIA of s stages is the approximation of Pade (s - 1, s) of e^-z, with P / Q,
+//
+//     P = sum over j < s of binomial(s - 1, j) (2 s - 1 - j)! / (2 s - 1)! (-z)^j,      Q with s in place of s - 1, and +z
+//
+// It is off by s! (s - 1)! / ((2 s - 1)! (2 s)!) z^2s, order 2 s - 1 = 17, and goes to 0 as s / z.
+static double pade(double z) {
+    const int s = FC_STAGES;
+    double above = 0.0;
+    double below = 0.0;
+    for (int j = 0; j <= s; j++) {
+        const double falls = exp(lgamma(2.0 * s - j) - lgamma(2.0 * s));
+        const double term = falls * pow(z, j) * exp(lgamma(s + 1.0) - lgamma(j + 1.0) - lgamma(s - j + 1.0));
+        below += term;
+        above += term * (s - j) / s * (j % 2 ? -1.0 : 1.0);
+    }
+    return above / below;
+}
+
+static void panels_are_of_order_17(void) {
+    for (double z = 0.1; z < 1e4; z *= 1.3) {
+        CHECK_WITHIN(left_after(z), pade(z), 1e-13);
+    }
+    // So that the difference of this approximation from e^-z is seen, too.
+    CHECK_NEAR(left_after(5.0) - exp(-5.0), pade(5.0) - exp(-5.0), 1e-4);
+    CHECK_NEAR(fabs(left_after(1e6)), FC_STAGES / 1e6, 1e-3);
+}
+
 // A panel after a reversal, in the variable of its layer, against itself in 16 pieces. The controller accepts the
 // estimates up to the allowed error times these shares.
 static void check_errors(double length, double stiffness) {
@@ -195,6 +241,7 @@ static void estimates_bound_the_errors(void) {
 int main(void) {
     nodes_are_the_scene();
     maps_are_the_closed_form();
+    panels_are_of_order_17();
     estimates_bound_the_errors();
     return check_result();
 }
