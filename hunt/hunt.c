@@ -195,10 +195,11 @@ static double number_of(const char* text) {
 
 static Options read_options(int argc, char** argv) {
     enum { SEED, SCENES, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY, PLANE, NEAR_LINE };
-    static const struct option NAMES[] = {
-        {"seed", 1, NULL, SEED},      {"scenes", 1, NULL, SCENES},     {"minutes", 1, NULL, MINUTES},
-        {"jobs", 1, NULL, JOBS},      {"minimize", 1, NULL, MINIMIZE}, {"plane", 0, NULL, PLANE},
-        {"file", 1, NULL, FILE_NAME}, {"replay", 1, NULL, REPLAY},     {"near-line", 0, NULL, NEAR_LINE}, {0}};
+    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},           {"scenes", 1, NULL, SCENES},
+                                          {"minutes", 1, NULL, MINUTES},     {"jobs", 1, NULL, JOBS},
+                                          {"minimize", 1, NULL, MINIMIZE},   {"plane", 0, NULL, PLANE},
+                                          {"file", 1, NULL, FILE_NAME},      {"replay", 1, NULL, REPLAY},
+                                          {"near-line", 0, NULL, NEAR_LINE}, {0}};
     Options o = {.seed = 1.0, .minutes = INFINITY, .jobs = 1.0};
     double* const numbers[] = {&o.seed, &o.scenes, &o.minutes, &o.jobs, &o.minimize};
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {

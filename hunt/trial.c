@@ -9,10 +9,10 @@
 const char* const GRADE_NAMES[GRADES] = {"F_t", "F_y", "F_t_mean", "F_y_mean", "F_t_start", "F_y_start",
                                          "W_f", "Q_f", "side",     "delta",    "delta_y",   "settled"};
 
-static const double ROUNDING = 1e-11; // of S, beside the tolerance
-static const double DIGITS = 1e-13;   // of a deflection: so near to its bound a bristle is on it
+static const double ROUNDING = 1e-11;        // of S, beside the tolerance
+static const double DIGITS = 1e-13;          // of a deflection: so near to its bound a bristle is on it
 static const double NEAR_LINE_PERIODS = 3.3; // of a step at the most, for the reference's sake
-static const double LEAST_S = 1e-20;  // N, and J: S and the path are 0 if nothing acts
+static const double LEAST_S = 1e-20;         // N, and J: S and the path are 0 if nothing acts
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The FMU

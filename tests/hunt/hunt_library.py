@@ -25,7 +25,9 @@ FMU_NAMES = {
     **{name: f"vibration.{name}" for name in ("f", "V_1", "a_d", "phase_d", "V_2", "phase_2")},
     **{name: f"friction.{name}" for name in ("mu", "staticRatio", "V_S", "sigma_1", "sigma_2", "limit")},
     **{name: f"contact.{name}" for name in "stiffnessScale R_q R eta A_n nu Y c lambda input".split()},
-    **{"contact_sigma": "contact.sigma", "law": "friction.model", "contact": "contact.model"},
+    "contact_sigma": "contact.sigma",
+    "law": "friction.model",
+    "contact": "contact.model",
 }
 NO_START_VALUES = ("start", "h", "initial", "slips")
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")

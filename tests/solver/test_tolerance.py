@@ -1,4 +1,4 @@
-"""The default method errs by the tolerance at most, over laws, limits and stiffnesses, along a line and in the plane.
+"""The default method errs by the tolerance at most: every law and limit, along a line and in the plane.
 
 Against hunt/reference.c. Errors are relative to S, the largest force of the step, and to S times the path, as
 docs/numerics.md promises.
@@ -19,7 +19,14 @@ from frictioncontact.fmu import FrictionFmu
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 ROUNDING = 1e-11
 F = 20e3  # Hz
-OF_FMU = {"F_t": "F_t", "F_y": "F_y", "F_t_mean": "F_t_mean", "F_y_mean": "F_y_mean", "work": "W_f", "heat": "Q_f"}
+OF_FMU = {
+    "F_t": "F_t",
+    "F_y": "F_y",
+    "F_t_mean": "F_t_mean",
+    "F_y_mean": "F_y_mean",
+    "work": "W_f",
+    "heat": "Q_f",
+}
 RATES = ("V", "d", "E", "load", "V_y")
 Results = dict[str, float]
 
@@ -142,7 +149,7 @@ def turned_back(found: Results, angle: float) -> Results:
 @pytest.mark.parametrize("side", [-1, 1])
 @pytest.mark.parametrize("law", CHOICES["law"])
 def test_a_near_zero_of_any_direction(fmu: FrictionFmu, law: str, side: int) -> None:
-    """Along a line V passes 0 twice around an extremum of the vibration. So does it with V_y = 1e-9 m/s across."""
+    """V passes 0 twice around an extremum of the vibration, exactly or with V_y = 1e-9 m/s across."""
     missed = []
     for away in AWAY:
         for phase in PHASES:
@@ -181,7 +188,7 @@ def test_velocities_near_the_amplitude(fmu: FrictionFmu, law: str, planar: bool)
 
 @pytest.mark.parametrize(("kappa", "V"), [(3.0, 2.0), (1e5, 0.3)], ids=["soft", "stiff"])
 def test_order(fmu: FrictionFmu, kappa: float, V: float) -> None:
-    """Errors fall with the power 17 of the evaluations or more: the order of Radau IIA of nine stages is 17."""
+    """Errors fall at least with the power 17 of the evaluations: the order of Radau IIA of nine stages."""
     evaluations, errors = np.zeros(len(TOLERANCES)), np.zeros(len(TOLERANCES))
     for phase in np.arange(12) / 12:
         now = scene(law="Dahl", contact="Constant", V_1=0.9, V=V, f=F, start=phase / F, h=1.9 / F)

@@ -44,9 +44,9 @@ static void nodes_are_of_scene(const FcScene* scene, double h, FcStraight in, bo
     const FcPart part = part_of(START, START + h, in, on_line ? 1 : 0);
     const FcNodes nodes = nodes_over(&plane, &part);
     for (int i = 0; i < FC_POINTS; i++) {
-        const double u = fc_straight_place(&in, START) +
-                         (0.5 + FC_RADAU.node[i]) *
-                             (fc_straight_place(&in, START + h) - fc_straight_place(&in, START));
+        const double u =
+            fc_straight_place(&in, START) +
+            (0.5 + FC_RADAU.node[i]) * (fc_straight_place(&in, START + h) - fc_straight_place(&in, START));
         CHECK_WITHIN(nodes.t[i], fc_straight_time(&in, u), 1e-14 * (START + h));
         const FcCoefficients exact = fc_scene_coefficients(scene, nodes.t[i]);
         const double moved = fc_drive_displacement(&scene->drive, START, nodes.t[i]);
@@ -119,8 +119,8 @@ static void maps_are_the_closed_form(void) {
         FcPlane plane;
         fc_plane_make(&plane, &scene);
         plane.on_line = on_line;
-        const FcPart part =
-            part_of(0.0, z * 55.0 / (1e6 * fabs(V)), (FcStraight){0.0, INFINITY}, on_line ? (V < 0.0 ? -1 : 1) : 0);
+        const FcPart part = part_of(0.0, z * 55.0 / (1e6 * fabs(V)), (FcStraight){0.0, INFINITY},
+                                    on_line ? (V < 0.0 ? -1 : 1) : 0);
         const FcNodes nodes = nodes_over(&plane, &part);
         const FcFrom from = {.delta = {1e-5, on_line ? 0.0 : 2e-5},
                              .speed = fabs(V),
@@ -214,7 +214,8 @@ static void check_errors(double length, double stiffness) {
     for (int i = 0; i < 16; i++) {
         const FcPart piece = part_of(h * i / 16.0, h * (i + 1) / 16.0, in, 1);
         const FcNodes there = nodes_over(&plane, &piece);
-        const FcFrom now = {.delta = {exact.delta, 0.0}, .speed = from.speed, .push = from.push, .for_any = true};
+        const FcFrom now = {
+            .delta = {exact.delta, 0.0}, .speed = from.speed, .push = from.push, .for_any = true};
         FcPanel fine;
         fc_free_panel(&plane, &there, &now, &fine);
         fc_map_apply(&fine.along, &exact);

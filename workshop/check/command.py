@@ -195,7 +195,8 @@ def check_hunt(extent: Extent) -> None:
 def check_near_line(extent: Extent) -> None:
     """Random scenes along a line, and with V_y = 1e-9 m/s: they differ by two tolerances at the most."""
     folder = build_targets("default", ["hunt"])
-    words = ["--seed", str(extent.seed), "--scenes", str(extent.near_line), "--jobs", str(os.cpu_count() or 1)]
+    options = {"seed": extent.seed, "scenes": extent.near_line, "jobs": os.cpu_count() or 1}
+    words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
     _run([str(folder / "hunt/hunt"), "--near-line", *words])
 
 

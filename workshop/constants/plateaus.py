@@ -1,11 +1,11 @@
-"""How far the constants of fmu_src/solver/tuning.h may be off: evaluations and errors at half and twice of each.
+"""The plateaus of the constants of fmu_src/solver/tuning.h: evaluations and errors at half and twice.
 
     .venv/bin/python -m workshop.constants.plateaus            all, a quarter of an hour
     .venv/bin/python -m workshop.constants.plateaus FC_SAFETY  these
 
-The core is built anew with one number changed, and takes the scenes of the benchmarks. Evaluations are the geometric
-mean over all of them, over that of today's numbers. The error is the worst one of F_t and its mean, over the tolerance
-and the limit, against workshop.reference.
+The core is built anew with one number changed, and takes the scenes of the benchmarks. Evaluations are the
+geometric mean over all of them, over that of today's numbers. The error is the worst one of F_t and its mean,
+over the tolerance and the limit, against workshop.reference.
 """
 
 import argparse
@@ -41,7 +41,9 @@ SETTINGS: Mapping[str, Mapping[str, Value]] = {
     "Dahl, load": {"friction.limit": "Load"},
 }
 TOLERANCES = (1e-3, 1e-6, 1e-8)
-OPTIONS = "-std=c11 -O1 -w -DNDEBUG -ffp-contract=off -fno-math-errno -fPIC -shared -fvisibility=hidden".split()
+OPTIONS = (
+    "-std=c11 -O1 -w -DNDEBUG -ffp-contract=off -fno-math-errno -fPIC -shared -fvisibility=hidden".split()
+)
 
 
 def constants() -> dict[str, float]:
@@ -119,9 +121,13 @@ def row(name: str, evaluations: float, worst: float, where: str) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Plateaus of the solver's constants.")
-    parser.add_argument("constants", nargs="*", default=list(constants()), choices=list(constants()))
-    wanted = parser.parse_args().constants
-    with progress_bar() as progress, tempfile.TemporaryDirectory() as temporary, open_bench(progress) as bench:
+    parser.add_argument("constants", nargs="*", metavar="CONSTANT")
+    wanted = parser.parse_args().constants or list(constants())
+    with (
+        progress_bar() as progress,
+        tempfile.TemporaryDirectory() as temporary,
+        open_bench(progress) as bench,
+    ):
         scenes = Scenes(progress)
         print("| constant | evaluations | worst error | in |\n|---|---|---|---|")
         bench.library = built(Path(temporary), {})
