@@ -123,6 +123,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Plateaus of the solver's constants.")
     parser.add_argument("constants", nargs="*", metavar="CONSTANT")
     wanted = parser.parse_args().constants or list(constants())
+    for name in wanted:
+        if name not in constants():
+            parser.error(f"{name} is no constant of {TUNING.name}; there are: {', '.join(constants())}")
     with (
         progress_bar() as progress,
         tempfile.TemporaryDirectory() as temporary,
