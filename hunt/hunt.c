@@ -20,11 +20,12 @@
 #include "trial.h"
 
 enum { MOST_JOBS = 64, LAWS = 4 };
+static const double NEARLY_NONE = 1e-9; // m/s, across
 
 typedef struct {
     double seed, scenes, minutes, jobs;
     double minimize; // misses that are made plain, at most
-    bool plane;
+    bool plane, near_line;
     const char *replay, *file;
 } Options;
 
@@ -54,7 +55,7 @@ static void print_miss(Hunt* hunt, const Sequence* sequence, const char* text, c
                        int step) {
     printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e: %s\n", LAW_NAMES[taken->scene.law - 1],
            taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], step + 1, scene_kappa(&taken->scene), text);
-    if (hunt->options.minimize > 0 && still_misses(sequence)) {
+    if (hunt->options.minimize > 0 && !hunt->options.near_line && still_misses(sequence)) {
         hunt->options.minimize--;
         char plain[SEQUENCE_TEXT];
         snprintf(plain, sizeof plain, "%s", text);
@@ -83,7 +84,11 @@ static void try_sequence(Hunt* hunt, Sequence sequence) {
     Trial trial;
     char text[SEQUENCE_TEXT];
     sequence_text(&sequence, text, sizeof text);
-    trial_run(&trial, &sequence);
+    if (hunt->options.near_line) {
+        trial_near_line(&trial, &sequence, NEARLY_NONE);
+    } else {
+        trial_run(&trial, &sequence);
+    }
     pthread_mutex_lock(&hunt->lock);
     hunt->sequences++;
     hunt->unknown += trial.unknown;
@@ -168,10 +173,12 @@ static long print_sums(const Hunt* hunt) {
 
 static void usage(void) {
     fprintf(stderr,
-            "hunt [--seed S] [--scenes N] [--minutes M] [--jobs J] [--minimize K] [--plane]\n"
+            "hunt [--seed S] [--scenes N] [--minutes M] [--jobs J] [--minimize K] [--plane] [--near-line]\n"
             "     [--replay \"NAME=VALUE ..\"] [--file FILE]\n"
             "--minimize: makes K misses plain.\n"
             "--plane: scenes that slide, or vibrate, across.\n"
+            "--near-line: the first step along a line, and once more with V_y = 1e-9 m/s: within two "
+            "tolerances.\n"
             "--replay: one sequence, with the results of its steps. --file: the sequences of a file, one a "
             "line.\n");
     exit(2);
@@ -187,11 +194,12 @@ static double number_of(const char* text) {
 }
 
 static Options read_options(int argc, char** argv) {
-    enum { SEED, SCENES, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY, PLANE };
-    static const struct option NAMES[] = {
-        {"seed", 1, NULL, SEED},      {"scenes", 1, NULL, SCENES},     {"minutes", 1, NULL, MINUTES},
-        {"jobs", 1, NULL, JOBS},      {"minimize", 1, NULL, MINIMIZE}, {"plane", 0, NULL, PLANE},
-        {"file", 1, NULL, FILE_NAME}, {"replay", 1, NULL, REPLAY},     {0}};
+    enum { SEED, SCENES, MINUTES, JOBS, MINIMIZE, FILE_NAME, REPLAY, PLANE, NEAR_LINE };
+    static const struct option NAMES[] = {{"seed", 1, NULL, SEED},           {"scenes", 1, NULL, SCENES},
+                                          {"minutes", 1, NULL, MINUTES},     {"jobs", 1, NULL, JOBS},
+                                          {"minimize", 1, NULL, MINIMIZE},   {"plane", 0, NULL, PLANE},
+                                          {"file", 1, NULL, FILE_NAME},      {"replay", 1, NULL, REPLAY},
+                                          {"near-line", 0, NULL, NEAR_LINE}, {0}};
     Options o = {.seed = 1.0, .minutes = INFINITY, .jobs = 1.0};
     double* const numbers[] = {&o.seed, &o.scenes, &o.minutes, &o.jobs, &o.minimize};
     for (int name; (name = getopt_long(argc, argv, "", NAMES, NULL)) != -1;) {
@@ -201,6 +209,8 @@ static Options read_options(int argc, char** argv) {
             o.replay = optarg;
         } else if (name == PLANE) {
             o.plane = true;
+        } else if (name == NEAR_LINE) {
+            o.near_line = true;
         } else if (name <= MINIMIZE) {
             *numbers[name] = number_of(optarg);
         } else {

@@ -20,6 +20,16 @@ CHOICES = {
 }
 RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start work heat slips
     delta delta_y S path""".split()
+# Of the FMU, where its name is not the reference's.
+FMU_NAMES = {
+    **{name: f"vibration.{name}" for name in ("f", "V_1", "a_d", "phase_d", "V_2", "phase_2")},
+    **{name: f"friction.{name}" for name in ("mu", "staticRatio", "V_S", "sigma_1", "sigma_2", "limit")},
+    **{name: f"contact.{name}" for name in "stiffnessScale R_q R eta A_n nu Y c lambda input".split()},
+    "contact_sigma": "contact.sigma",
+    "law": "friction.model",
+    "contact": "contact.model",
+}
+NO_START_VALUES = ("start", "h", "initial", "slips")
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 
 
@@ -34,10 +44,15 @@ class Step(ctypes.Structure):
     _fields_ = [*((name, ctypes.c_double) for name in RESULTS), ("known", ctypes.c_bool)]
 
 
+class Rest(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_double) for name in ("d", "limit", "sigma")]
+
+
 @cache
 def library() -> Any:
     found = ctypes.CDLL(str(build_targets("default", ["hunt_reference"]) / "hunt/libhunt_reference.so"))
     found.start_values.restype = Scene
+    found.reference_rest.restype = Rest
     found.reference_settled_force.restype = ctypes.c_bool
     return found
 
@@ -47,6 +62,18 @@ def scene(**values: Any) -> Scene:
     for name, value in values.items():
         setattr(made, name, 1 + CHOICES[name].index(value) if name in CHOICES else value)
     return made
+
+
+def start_values(of: Scene) -> dict[str, Any]:
+    """Of the FMU, but for the rates of its inputs."""
+    names = [n for n, _ in Scene._fields_ if n not in NO_START_VALUES and not n.endswith("_rate")]
+    return {FMU_NAMES.get(name, name): getattr(of, name) for name in names}
+
+
+def rest(now: Scene) -> tuple[float, float]:
+    """The limit [N] and the stiffness [N/m] at the start, without vibration."""
+    found = library().reference_rest(ctypes.byref(now))
+    return found.limit, found.sigma
 
 
 def step(now: Scene, before: Scene | None = None, fineness: int = 1) -> Any:

@@ -1,42 +1,72 @@
-"""The tables of the panels are what their program makes, and its nodes and weights are scipy's."""
+"""The table of the panels is what its program makes, and follows from other formulas."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.special import roots_jacobi, roots_legendre
+from scipy.interpolate import BarycentricInterpolator
+from scipy.special import roots_jacobi
 
-from workshop.constants.panel_tables import GAUSS, HEADER, RADAU, Rule, gauss_nodes, radau_nodes, tables
+from workshop.constants.panel_tables import (
+    HEADER,
+    SAMPLES,
+    STAGES,
+    Rule,
+    barycentric_weights,
+    mpf,
+    radau_nodes,
+    tables,
+    values_at,
+)
+
+RULE = Rule(radau_nodes(STAGES))
+POINTS = [*RULE.nodes, mpf(0)]
 
 
 def test_the_header_is_what_the_program_writes() -> None:
     assert HEADER.read_text(encoding="utf-8") == tables()
 
 
-@pytest.mark.parametrize("n", [*GAUSS, -RADAU])
-def test_nodes_and_weights(n: int) -> None:
-    """On [-1, 1]. Radau's nodes besides 1 are the roots of a Jacobi polynomial, with the weight 1 - x."""
-    rule = Rule(gauss_nodes(n) if n > 0 else radau_nodes(-n))
-    if n > 0:
-        x, w = roots_legendre(n)
-    else:
-        x, w = roots_jacobi(-n - 1, 1, 0)
-        x, w = np.append(x, 1.0), np.append(w / (1.0 - x), 2.0 / n**2)
-    assert np.array(rule.nodes, float) == pytest.approx((1.0 + x) / 2.0, rel=1e-13)
-    assert np.array(rule.weights, float) == pytest.approx(w / 2.0, rel=1e-12)
+def test_nodes_and_weights() -> None:
+    """On [-1, 1] the nodes besides 1 are the roots of a Jacobi polynomial, with the weight 1 - x."""
+    x, w = roots_jacobi(STAGES - 1, 1, 0)
+    x, w = np.append(x, 1.0), np.append(w / (1.0 - x), 2.0 / STAGES**2)
+    assert np.array(RULE.nodes, float) == pytest.approx((1.0 + x) / 2.0, rel=1e-13)
+    assert np.array(RULE.weights, float) == pytest.approx(w / 2.0, rel=1e-12)
 
 
-@pytest.mark.parametrize("k", range(RADAU))
+@pytest.mark.parametrize("k", range(2 * STAGES))
+def test_the_quadrature_has_the_degree_16(k: int) -> None:
+    error = abs(sum(w * c**k for w, c in zip(RULE.weights, RULE.nodes, strict=True)) - mpf(1) / (k + 1))
+    assert error < 1e-50 if k < 2 * STAGES - 1 else error > 1e-12
+
+
+@pytest.mark.parametrize("k", range(STAGES))
 def test_polynomials(k: int) -> None:
-    """c^k at the nodes: its integral, its slope, its value at 0, its tail of Legendre coefficients."""
-    c = np.array(radau_nodes(RADAU), float)
-    rule = Rule(radau_nodes(RADAU))
-    integral, slope = (np.array(matrix.tolist(), float) for matrix in (rule.integral, rule.slope))
+    """c^k at the nodes: its integral, its value at 0, its tail of Legendre coefficients."""
+    c = np.array(RULE.nodes, float)
+    integral = np.array(RULE.integral.tolist(), float)
     assert integral @ c**k == pytest.approx(c ** (k + 1) / (k + 1), rel=1e-12)
-    assert slope @ c**k == pytest.approx(k * c ** (k - 1.0), rel=1e-9, abs=1e-9)
-    assert np.array(rule.start, float) @ c**k == pytest.approx(float(k == 0), abs=1e-9)
+    assert np.array(RULE.start, float) @ c**k == pytest.approx(float(k == 0), abs=1e-9)
     series = np.polynomial.Polynomial([0.0] * k + [1.0], domain=[-1, 1], window=[-1, 1])
     shifted = series(np.polynomial.Polynomial([0.5, 0.5]))  # c = (1 + x) / 2
-    legendre = np.zeros(RADAU)
+    legendre = np.zeros(STAGES)
     legendre[: k + 1] = np.polynomial.legendre.poly2leg(shifted.coef)
-    assert c**k @ np.array(rule.tail, float) == pytest.approx(legendre[:-5:-1], abs=1e-12)
+    assert c**k @ np.array(RULE.tail, float) == pytest.approx(legendre[:-5:-1], abs=1e-12)
+
+
+def test_barycentric_weights() -> None:
+    """scipy's, but for a common factor."""
+    points = np.array(POINTS, float)
+    ratio = np.array(barycentric_weights(POINTS), float) / BarycentricInterpolator(points).wi
+    assert ratio == pytest.approx(ratio[0], rel=1e-11)
+
+
+@pytest.mark.parametrize("k", range(STAGES + 1))
+def test_samples(k: int) -> None:
+    """A polynomial of degree 9 is that of its values at the ten points."""
+    for i in range(SAMPLES + 1):
+        x = mpf(i) / SAMPLES
+        weights = values_at(POINTS, x)
+        value = sum(w * (point - mpf("0.3")) ** k for w, point in zip(weights, POINTS, strict=True))
+        assert abs(value - (x - mpf("0.3")) ** k) < 1e-50

@@ -4,6 +4,7 @@
     scripts/check fuzz soak        these
     scripts/check --quick ...      minutes
     scripts/check hunt --minutes 10 --seed 1
+    scripts/check near-line
     scripts/check --ci             sanitizers, valgrind and fuzzers in under four minutes
 
 Each prints its figures and the command behind them. docs/reliability.md says what they found.
@@ -48,15 +49,16 @@ class Extent:
     fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
+    near_line: int  # scenes
     watched: str  # calls
-    seed: int = 0  # of the hunt and the watchdog
+    seed: int = 0  # of the hunts and the watchdog
 
 
-FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, "1000000")
+FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, 20_000, "1000000")
 QUICK = Extent(
-    ("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, "100000"
+    ("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, 1000, "100000"
 )
-CI = Extent(("tests/fmi2", "-m", "not slow"), 5, 10_000_000, ("1e6", "1e2"), 0.2, "20000")
+CI = Extent(("tests/fmi2", "-m", "not slow"), 5, 10_000_000, ("1e6", "1e2"), 0.2, 300, "20000")
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -190,6 +192,14 @@ def check_hunt(extent: Extent) -> None:
         _run([str(folder / "hunt/hunt"), *words, *plane])
 
 
+def check_near_line(extent: Extent) -> None:
+    """Random scenes along a line, and with V_y = 1e-9 m/s: they differ by two tolerances at the most."""
+    folder = build_targets("default", ["hunt"])
+    options = {"seed": extent.seed, "scenes": extent.near_line, "jobs": os.cpu_count() or 1}
+    words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
+    _run([str(folder / "hunt/hunt"), "--near-line", *words])
+
+
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
     valgrind = _tool("valgrind", "valgrind")
@@ -224,6 +234,7 @@ CHECKS: dict[str, Callable[[Extent], None]] = {
     "fuzz-many": check_fuzz_many,
     "soak": check_soak,
     "hunt": check_hunt,
+    "near-line": check_near_line,
     "watchdog": check_watchdog,
     "leaks": check_leaks,
     "coverage": check_coverage,
@@ -246,7 +257,7 @@ def main() -> None:
         "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
     )
     parser.add_argument("--minutes", type=float, help="of the hunt")
-    parser.add_argument("--seed", type=int, help="of the hunt and the watchdog; drawn anew when not given")
+    parser.add_argument("--seed", type=int, help="of the hunts and the watchdog; drawn anew when not given")
     arguments = parser.parse_args()
     for name in arguments.checks:
         if name not in CHECKS:

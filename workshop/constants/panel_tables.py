@@ -4,8 +4,8 @@
 
 They are kept with the sources, so that a build needs no mpmath. tests/solver/test_panel_tables.py has
 other formulas. All follow from the nodes c_i on [0, 1], the roots of P_n - P_(n-1) with the Legendre
-polynomials P_n(2 c - 1): the integrals of the polynomials through values at the nodes, their Legendre coefficients,
-their values at 0 and, with the panel's start as a tenth point, at 32 equal steps.
+polynomials P_n(2 c - 1): the integrals of the polynomials through values at the nodes, their Legendre
+coefficients, their values at 0 and, with the panel's start as a tenth point, at 32 equal steps.
 """
 
 import numpy as np
@@ -105,7 +105,7 @@ static const FcRadauRule FC_RADAU = {{
 }};
 
 #endif  // FC_SOLVER_PANEL_TABLES_H
-"""
+"""  # noqa: E501
 
 
 def main() -> None:

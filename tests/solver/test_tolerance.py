@@ -1,0 +1,202 @@
+"""The default method errs by the tolerance at most: every law and limit, along a line and in the plane.
+
+Against hunt/reference.c. Errors are relative to S, the largest force of the step, and to S times the path, as
+docs/numerics.md promises.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+import numpy as np
+import pytest
+from hunt.hunt_library import CHOICES, Scene, rest, scene, start_values, step
+
+from frictioncontact.fmu import FrictionFmu
+
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+ROUNDING = 1e-11
+F = 20e3  # Hz
+OF_FMU = {
+    "F_t": "F_t",
+    "F_y": "F_y",
+    "F_t_mean": "F_t_mean",
+    "F_y_mean": "F_y_mean",
+    "work": "W_f",
+    "heat": "Q_f",
+}
+RATES = ("V", "d", "E", "load", "V_y")
+Results = dict[str, float]
+
+
+def results(fmu: FrictionFmu, now: Scene, tolerance: float) -> Results:
+    with fmu.session(start_values(now) | {"solver.tolerance": tolerance}, now.start) as session:
+        session.set_rates(**{name: getattr(now, f"{name}_rate") for name in RATES})
+        session.step(now.h)
+        found = {name: session.get(variable) for name, variable in OF_FMU.items()}
+        return found | {"evaluations": session.get("solver.evaluations")}
+
+
+def error(now: Scene, found: Results, truth: Any) -> float:
+    """The largest one, over S or S times the path. Rounding of the deflection counts to the path."""
+    moved = math.hypot(truth.delta - now.delta_0, truth.delta_y - now.delta_y_0)
+    size = math.hypot(truth.delta, truth.delta_y) + math.hypot(now.delta_0, now.delta_y_0)
+    of_energy = truth.S * (truth.path + moved)
+    rounding = (1e-13 + 20 * np.finfo(float).eps * now.h * now.f) * size * truth.S
+    errors = []
+    for name in OF_FMU:
+        apart = abs(found[name] - getattr(truth, name))
+        is_energy = name in ("work", "heat")
+        errors.append(max(0.0, apart - rounding) / of_energy if is_energy else apart / truth.S)
+    return max(errors)
+
+
+# ---- the sweep ----
+
+
+def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
+    """kappa of 1e-3 to 1e8, any contact, V and the inputs held or linear, near a reversal and far from it."""
+    V_1, f = 10 ** rng.uniform(-2, 0.5), 10 ** rng.uniform(2, 4.7)
+    contact = rng.choice(CHOICES["contact"])
+    nearly = V_1 * rng.choice((-1, 1)) * (1 + rng.choice((-1, 1)) * 10 ** rng.uniform(-8, -1))
+    now = scene(
+        law=law,
+        limit=limit,
+        contact=contact,
+        V_1=V_1,
+        V=rng.choice((V_1 * rng.uniform(-2, 2), nearly)),
+        f=f,
+        h=rng.uniform(0.02, 2.5) / f,
+        start=rng.random() / f,
+        a_d=rng.choice((0.0, 10 ** rng.uniform(-8, -6))),
+        phase_d=rng.uniform(-3, 3),
+        F_C=10 ** rng.uniform(0, 2),
+    )
+    if rng.random() < 0.4:
+        now.V_rate, now.d_rate = rng.uniform(-2, 2) * V_1 / now.h, rng.uniform(-5e-7, 5e-7) / now.h
+    if planar:
+        now.V_y = V_1 * rng.choice((-1, 1)) * 10 ** rng.uniform(-12, 0)
+        now.V_2, now.phase_2 = rng.choice((0.0, V_1 * rng.random())), rng.uniform(-3, 3)
+    if law in ("LuGre", "ElasticPlastic"):
+        # Break-away that sticks at once multiplies errors if V_S is small beside the way over the bound.
+        now.staticRatio, now.V_S = rng.choice((1.0, rng.uniform(1, 2))), V_1 * 10 ** rng.uniform(-1, 1)
+    if law != "Coulomb":
+        now.sigma_1 = rng.choice((0.0, 0.2 * now.F_C / V_1))
+    now.sigma_2 = rng.choice((0.0, 0.2 * now.F_C / V_1))
+    limit_0, sigma_0 = rest(now)
+    stiffness = 10 ** rng.uniform(-3, 8) * 2 * math.pi * f * limit_0 / V_1
+    now.contact_sigma, now.stiffnessScale = stiffness, now.stiffnessScale * stiffness / sigma_0
+    if law != "Coulomb":
+        angle, size = rng.uniform(-3, 3) if planar else 0.0, rng.uniform(-0.9, 0.9) * limit_0 / stiffness
+        now.delta_0, now.delta_y_0 = size * math.cos(angle), size * math.sin(angle)
+    return now
+
+
+@pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
+@pytest.mark.parametrize("limit", CHOICES["limit"])
+@pytest.mark.parametrize("law", CHOICES["law"])
+def test_sweep(fmu: FrictionFmu, law: str, limit: str, planar: bool) -> None:
+    rng = random.Random(f"{law} {limit} {planar}")
+    missed = []
+    for _ in range(60):
+        now = drawn(rng, law, limit, planar)
+        truth = step(now)
+        for tolerance in TOLERANCES:
+            off = error(now, results(fmu, now, tolerance), truth)
+            if not off <= tolerance + ROUNDING:
+                missed.append(f"{off:.2e} at {tolerance:g}: {start_values(now)}")
+    assert not missed, "\n".join(missed)
+
+
+# ---- where V nearly touches 0 ----
+
+AWAY = (0.06, 0.02, 1e-2, 1e-3, 1e-4)  # 1 - |V / V_1|
+PHASES = (0.0, 0.13, 0.5, 0.77)  # of the step's start, in periods
+ANGLES = (0.0, 0.3, math.pi / 2, 2.0, math.pi, 4.1)  # of the sliding in the plane
+ACROSS = (0.0, 1e-12, 1e-9)  # m/s
+
+
+def near_zero(law: str, V: float, phase: float) -> Scene:
+    made = scene(law=law, contact="Constant", V_1=1.0, V=V, F_C=8.5, f=F, contact_sigma=1.6e7)
+    made.start, made.h = phase / F, 1 / F
+    if law in ("LuGre", "ElasticPlastic"):
+        made.staticRatio, made.V_S = 1.3, 0.1
+    return made
+
+
+def turned(now: Scene, angle: float, V_y: float) -> Scene:
+    """The same motion in that direction, and V_y across it."""
+    x, y = math.cos(angle), math.sin(angle)
+    made = Scene.from_buffer_copy(now)
+    made.V, made.V_y = now.V * x - V_y * y, now.V * y + V_y * x
+    made.V_1, made.V_2, made.phase_2 = now.V_1 * abs(x), now.V_1 * abs(y), 0.0 if x * y >= 0 else math.pi
+    if x < 0:  # amplitudes are not negative: half a period later
+        made.start += 0.5 / now.f
+    return made
+
+
+def turned_back(found: Results, angle: float) -> Results:
+    x, y = math.cos(angle), math.sin(angle)
+    back = dict(found)
+    for along, across in (("F_t", "F_y"), ("F_t_mean", "F_y_mean")):
+        back[along] = found[along] * x + found[across] * y
+        back[across] = found[across] * x - found[along] * y
+    return back
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("law", CHOICES["law"])
+def test_a_near_zero_of_any_direction(fmu: FrictionFmu, law: str, side: int) -> None:
+    """V passes 0 twice around an extremum of the vibration, exactly or with V_y = 1e-9 m/s across."""
+    missed = []
+    for away in AWAY:
+        for phase in PHASES:
+            now = near_zero(law, side * (1 - away), phase)
+            for V_y in (sign * V for V in ACROSS for sign in (-1, 1)):
+                truth = step(turned(now, 0.0, V_y))
+                for angle in ANGLES:
+                    found = results(fmu, turned(now, angle, V_y), 1e-6)
+                    off = error(now, turned_back(found, angle), truth)
+                    if not off <= 1e-6 + ROUNDING:
+                        missed.append(f"{off:.2e}: V {now.V}, V_y {V_y}, turned {angle}, phase {phase}")
+    assert not missed, "\n".join(missed)
+
+
+@pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
+@pytest.mark.parametrize("law", CHOICES["law"])
+def test_velocities_near_the_amplitude(fmu: FrictionFmu, law: str, planar: bool) -> None:
+    """|V| = (1 +- 1e-1 .. 1e-12) V_1: two reversals that come near to each other, touch, and are a dip."""
+    missed = []
+    for k, stiffness in ((k, sigma) for k in range(1, 13) for sigma in (1e4, 1e7, 1e10)):
+        for V in (side * (1 + way * 10.0**-k) for side in (-1, 1) for way in (-1, 1)):
+            now = near_zero(law, V, 0.1 + 0.07 * k)
+            now.contact_sigma, now.h = stiffness, 0.93 / F
+            if planar:
+                now.V_2, now.V_y, now.phase_2 = 0.5, -0.5 * math.copysign(1, V) * (1 - 10.0**-k), 0.0
+            truth = step(now)
+            for tolerance in TOLERANCES:
+                off = error(now, results(fmu, now, tolerance), truth)
+                if not off <= tolerance + ROUNDING:
+                    missed.append(f"{off:.2e} at {tolerance:g}: V {V!r}, sigma {stiffness:g}")
+    assert not missed, "\n".join(missed)
+
+
+# ---- the order ----
+
+
+@pytest.mark.parametrize(("kappa", "V"), [(3.0, 2.0), (1e5, 0.3)], ids=["soft", "stiff"])
+def test_order(fmu: FrictionFmu, kappa: float, V: float) -> None:
+    """Errors fall at least with the power 17 of the evaluations: the order of Radau IIA of nine stages."""
+    evaluations, errors = np.zeros(len(TOLERANCES)), np.zeros(len(TOLERANCES))
+    for phase in np.arange(12) / 12:
+        now = scene(law="Dahl", contact="Constant", V_1=0.9, V=V, f=F, start=phase / F, h=1.9 / F)
+        now.contact_sigma = kappa * 2 * math.pi * F * now.F_C / now.V_1
+        truth = step(now)
+        for k, tolerance in enumerate(TOLERANCES):
+            found = results(fmu, now, tolerance)
+            evaluations[k] += found["evaluations"]
+            errors[k] += abs(found["F_t_mean"] - truth.F_t_mean) / truth.S
+    order = -np.polyfit(np.log(evaluations), np.log(errors), 1)[0]
+    assert order > 14

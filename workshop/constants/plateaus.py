@@ -1,0 +1,149 @@
+"""The plateaus of the constants of fmu_src/solver/tuning.h: evaluations and errors at half and twice.
+
+    .venv/bin/python -m workshop.constants.plateaus            all, a quarter of an hour
+    .venv/bin/python -m workshop.constants.plateaus FC_SAFETY  these
+
+The core is built anew with one number changed, and takes the scenes of the benchmarks. Evaluations are the
+geometric mean over all of them, over that of today's numbers. The error is the worst one of F_t and its mean,
+over the tolerance and the limit, against workshop.reference.
+"""
+
+import argparse
+import math
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import fmpy
+import numpy as np
+from rich.progress import Progress
+
+from frictioncontact.command import progress_bar
+from frictioncontact.errors import UserError
+from frictioncontact.fmu import Value
+from workshop.bench.cases import Case, cases
+from workshop.bench.driver import Bench, open_bench
+from workshop.project import ROOT
+from workshop.reference import solution as reference
+from workshop.reference.arithmetic import MP
+
+TUNING = Path("solver") / "tuning.h"
+CONSTANT = re.compile(r"static const double (FC_\w+) = ([0-9.e-]+);")
+SETTINGS: Mapping[str, Mapping[str, Value]] = {
+    "Dahl": {},
+    "LuGre": {"friction.model": "LuGre", "friction.staticRatio": 1.3},
+    "ElasticPlastic": {"friction.model": "ElasticPlastic"},
+    "ElasticPlastic, static": {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.3},
+    "Dahl, load": {"friction.limit": "Load"},
+}
+TOLERANCES = (1e-3, 1e-6, 1e-8)
+OPTIONS = (
+    "-std=c11 -O1 -w -DNDEBUG -ffp-contract=off -fno-math-errno -fPIC -shared -fvisibility=hidden".split()
+)
+
+
+def constants() -> dict[str, float]:
+    text = (ROOT / "fmu_src" / TUNING).read_text(encoding="utf-8")
+    return {name: float(value) for name, value in CONSTANT.findall(text)}
+
+
+def built(folder: Path, changed: Mapping[str, float]) -> Path:
+    """The library of the core with those constants."""
+    sources = folder / "sources"
+    shutil.rmtree(sources, ignore_errors=True)
+    shutil.copytree(ROOT / "fmu_src", sources)
+    text = (sources / TUNING).read_text(encoding="utf-8")
+    for name, value in changed.items():
+        text = re.sub(rf"(double {name} = )[0-9.e-]+;", rf"\g<1>{value!r};", text)
+    (sources / TUNING).write_text(text, encoding="utf-8")
+    headers = Path(fmpy.__file__).parent / "c-code"
+    files = [*sources.rglob("*.c"), ROOT / "build/generated/variables.c"]
+    library = folder / "changed.so"
+    include = [f"-I{where}" for where in (sources, sources / "fmi2", headers)]
+    command = ["gcc", *OPTIONS, *include, *map(str, files), "-o", str(library), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise UserError(f"gcc: {done.stderr.strip()}")
+    return library
+
+
+def right(case: Case, start: float) -> tuple[np.ndarray, np.ndarray]:
+    """F_t at the end of each step and its mean over the step [N], of any law."""
+    H, delta, slips, F, mean = MP.mpf(case.step), 0, 0, [], []
+    for k in range(case.count):
+        begin, scene = MP.mpf(start) + k * H, case.scene_at(k, start)
+        step = reference.advance(scene, begin, H, delta, slips=slips)
+        delta, slips = step.delta, step.slips
+        F.append(float(reference.force(scene, begin + H, delta, slips)))
+        mean.append(float(step.impulse) / case.step)
+    return np.array(F), np.array(mean)
+
+
+class Scenes:
+    """The scenes with what is right in them."""
+
+    def __init__(self, progress: Progress) -> None:
+        of = [
+            replace(case, name=f"{name}, {case.name}", start_values={**case.start_values, **setting})
+            for name, setting in SETTINGS.items()
+            for case in cases()
+        ]
+        task = progress.add_task("The reference", total=len(of))
+        self.right = []
+        for case in of:
+            start = case.starts[-1]  # not at a whole phase
+            self.right.append((case, start, *right(case, start)))
+            progress.advance(task)
+
+    def take(self, bench: Bench) -> tuple[np.ndarray, float, str]:
+        """Evaluations of all runs, and the worst error over the tolerance, with its run."""
+        evaluations, worst, where = [], 0.0, ""
+        for case, start, F, mean in self.right:
+            limit = case.F_C * float(case.start_values.get("friction.staticRatio", 1.0))
+            for tolerance in TOLERANCES:
+                outcome = bench.run(case.job(start, 0.0, solver__tolerance=tolerance))
+                if outcome.failure:
+                    raise UserError(f"{case.name}: {outcome.failure}")
+                evaluations.append(outcome.evaluations)
+                off = max(np.abs(outcome.F - F).max(), np.abs(outcome.F_mean - mean).max())
+                if off / (limit * tolerance) > worst:
+                    worst, where = off / (limit * tolerance), f"{case.name} at {tolerance:g}"
+        return np.array(evaluations), worst, where
+
+
+def row(name: str, evaluations: float, worst: float, where: str) -> str:
+    return f"| {name} | {evaluations:.3f} | {worst:.3f} | {where} |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Plateaus of the solver's constants.")
+    parser.add_argument("constants", nargs="*", metavar="CONSTANT")
+    wanted = parser.parse_args().constants or list(constants())
+    for name in wanted:
+        if name not in constants():
+            parser.error(f"{name} is no constant of {TUNING.name}; there are: {', '.join(constants())}")
+    with (
+        progress_bar() as progress,
+        tempfile.TemporaryDirectory() as temporary,
+        open_bench(progress) as bench,
+    ):
+        scenes = Scenes(progress)
+        print("| constant | evaluations | worst error | in |\n|---|---|---|---|")
+        bench.library = built(Path(temporary), {})
+        today, worst, where = scenes.take(bench)
+        print(row("today", 1.0, worst, where), flush=True)
+        for name in wanted:
+            for factor in (0.5, 2.0):
+                value = factor * constants()[name]
+                bench.library = built(Path(temporary), {name: value})
+                changed, worst, where = scenes.take(bench)
+                ratio = math.exp(float(np.log(changed / today).mean()))
+                print(row(f"{name} = {value:g}", ratio, worst, where), flush=True)
+
+
+if __name__ == "__main__":
+    main()
