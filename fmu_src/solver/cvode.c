@@ -33,7 +33,7 @@
 // A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that
 // steps approach the peak geometrically, and on the peak by this part of V_S.
 #define STRIBECK_STEP 0.25
-#define MOST_PERIODS 1e5 // of the vibration in one communication step: a minute of computing
+#define MOST_PERIODS 1e5 // of the vibration in one communication step: minutes of computing
 
 // The states: the deflection, and the integrals of FcStepResult.
 enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, STATES };
@@ -170,12 +170,15 @@ static double periods_of(const FcDrive* drive, double h) {
 }
 
 // The allowed local errors of the states over a step of h [s]: that of the force, times the integrals. Errors add
-// up over the vibration periods.
+// up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma.
 static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h) {
-    const double periods = fmax(1.0, periods_of(&scene->drive, h));
-    const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
-    const double delta = force / fc_scene_largest_stiffness(scene, h);
+    const double stiffness = fc_scene_largest_stiffness(scene, h);
     const double path = fc_drive_largest_speed(&scene->drive, h) * h;
+    const double forgets =
+        scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
+    const double periods = fmax(1.0, periods_of(&scene->drive, h) / fmax(1.0, forgets));
+    const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
+    const double delta = force / stiffness;
     const double of[STATES] = {delta,        delta,        force * h,       force * h,
                                force * path, force * path, delta * path / h};
     for (int k = 0; k < STATES; k++) {
@@ -201,10 +204,8 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
     solver->start = t;
     const FcScene scene = scene_at(solver, 0.0);
     fc_take_onto_bound(&scene, now);
-    if (now->slips != 0 &&
-        !(fc_push_in_plane(&scene, fc_bristle_of(now)) > 0.0)) { // the event of a push of 0
-        now->slips = 0;
-    }
+    const bool slips = now->slips != 0 && fc_push_in_plane(&scene, fc_bristle_of(now)) > 0.0;
+    now->slips = slips ? now->slips : 0; // at the event of a push of 0
     solver->slips = now->slips;
     solver->regime = fc_regime(&scene, fc_bristle_of(now));
     now->on_bound = solver->regime != FC_FREE;
@@ -218,8 +219,8 @@ static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
 static double integrate_regime(FcCvode* solver, double duration) {
     void* cvode = solver->cvode;
     const double parts = STEPS_PER_PERIOD * periods_of(&solver->scene->drive, duration);
-    snprintf(solver->reason, sizeof solver->reason, "%s", "too many evaluations in one step");
-    if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
+    snprintf(solver->reason, sizeof solver->reason, "%s", "too much work in one step");
+    if (!(duration > 0.0) || CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSVtolerances(cvode, SMALLEST_LOCAL_ERROR, solver->allowed) != CV_SUCCESS ||
         CVodeSetMaxStep(cvode, duration / fmax(1.0, parts)) != CV_SUCCESS) {
         return NAN;
