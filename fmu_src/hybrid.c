@@ -9,10 +9,6 @@
 #include "model/plane.h"
 #include "model/root.h"
 
-// The hysteresis of an event, over the bound and over the velocities: far above rounding, far below the
-// tolerance of a host's integrator. Half or twice of it moves the events by as little.
-static const double HYSTERESIS = 1e-10;
-
 // The part of its bound below which a bristle of ElasticPlastic that turns back does not meet it. Half of it
 // makes more events; a value nearer to 1 trusts that the inputs stay.
 static const double NEAR_THE_BOUND = 0.9;
@@ -141,20 +137,6 @@ bool fc_hybrid_refresh(FcFrictionContact* contact, FcMessage* message) {
     return true;
 }
 
-// For a bounded bristle of a closed contact.
-static void find_indicators_of_bound(const View* view, FcRegime regime, FcBristle bristle, double* z) {
-    const FcBound bound = fc_bound_in_plane(&view->bound, 0.0);
-    const bool has_side = view->side != 0 && !fc_is_planar(&view->scene, bristle);
-    if (regime == FC_FREE) {
-        const double size = has_side ? view->side * bristle.delta : fc_size(bristle);
-        z[1] = (1.0 - size / bound.D) + HYSTERESIS;
-    }
-    if (view->side != 0) {
-        const double speed = fc_drive_largest_speed(&view->scene.drive, 0.0) + fabs(bound.rate);
-        z[2] = fc_push_in_plane(&view->scene, bristle) + HYSTERESIS * speed;
-    }
-}
-
 bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATOR_COUNT],
                           FcMessage* message) {
     if (!fc_friction_contact_check(contact, message)) {
@@ -174,9 +156,7 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATO
             const FcDrive* drive = &now.scene.drive;
             z[0] = fc_drive_V(drive, 0.0) + SLANT * fc_drive_V_y(drive, 0.0);
         }
-        if (fc_is_bounded(&v->friction)) {
-            find_indicators_of_bound(&now, regime_of(contact), bristle, z);
-        }
+        fc_regime_indicators(&now.scene, regime_of(contact), bristle, &z[1]);
     }
     for (int i = 0; i < FC_EVENT_INDICATOR_COUNT; i++) {
         if (!isfinite(z[i])) {

@@ -147,6 +147,30 @@ FcRegime fc_regime(const FcScene* scene, FcBristle bristle) {
     return on_bound && push(&of) > 0.0 ? (FcRegime)fc_side(bristle) : FC_FREE;
 }
 
+// The hysteresis of an event, over the bound and over the velocities: far above rounding, far below the
+// tolerance of an integrator. Half or twice of it moves the events by as little.
+static const double HYSTERESIS = 1e-10;
+
+void fc_regime_indicators(const FcScene* scene, FcRegime regime, FcBristle bristle, double z[2]) {
+    z[0] = z[1] = 1.0;
+    if (!fc_is_bounded(scene->friction) || fc_scene_is_loose(scene)) {
+        return;
+    }
+    FcFriction law;
+    const FcScene of_bound = fc_scene_of_bound(scene, bristle.slips, &law);
+    const FcBound bound = fc_bound_in_plane(&of_bound, 0.0);
+    const int side = bristle.slips != 0 ? bristle.slips : (int)regime; // 0 for either
+    if (regime == FC_FREE) {
+        const bool has_side = side != 0 && !fc_is_planar(scene, bristle);
+        const double size = has_side ? side * bristle.delta : fc_size(bristle);
+        z[0] = (1.0 - size / bound.D) + HYSTERESIS;
+    }
+    if (side != 0) {
+        const double speed = fc_drive_largest_speed(&scene->drive, 0.0) + fabs(bound.rate);
+        z[1] = fc_push_in_plane(scene, bristle) + HYSTERESIS * speed;
+    }
+}
+
 // The coefficients of the bristle's equation at the start of a scene.
 typedef struct {
     FcVector V;   // m/s

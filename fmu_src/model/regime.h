@@ -63,6 +63,10 @@ FcBristle fc_onto_bound(const FcScene* scene, FcBristle bristle);
 // The regime of a bristle that is within its bound.
 FcRegime fc_regime(const FcScene* scene, FcBristle bristle);
 
+// The indicators of the events that end a regime at the start of a scene, above 0 before the event: z[0] a
+// bristle meets its bound, z[1] a slipping bristle is no longer pushed. 1 if there is no such event.
+void fc_regime_indicators(const FcScene* scene, FcRegime regime, FcBristle bristle, double z[2]);
+
 // fc_push at the start, on a line or in the plane, at any distance from the bound: in the direction of the
 // deflection, or along a line in that in which the bristle slips.
 double fc_push_in_plane(const FcScene* scene, FcBristle bristle);

@@ -1,16 +1,10 @@
-// SUNDIALS CVODE: variable-order BDF with the exact Jacobian.
+// SUNDIALS CVODE: variable-order BDF of the contact as model exchange states it (model/regime.h): its motion,
+// whose derivatives are the Jacobian, and the events that end a regime.
 //
-//     y = delta / L,     y' = (a(t) delta + V(t)) / L,     a = -sigma |V| / g          (Eq. 2)
-//
-// L is g / sigma at the stiffest moment of the step, so that an error of y is at least as large as the error
-// of F_t / F_C. L is smaller if the surfaces move less than g / sigma. The step is cut at the reversals of V.
-// CVODE is started anew on every piece, in a time that begins at 0: it never steps over a kink, and no
-// history outlives a step. The error of y has an absolute bound, because y is large in a soft contact, and an
-// error made there is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0:
-// steps shrink with |V| so that none passes it unseen.
-//
-// Impulse, work, heat and drag are states besides. Each has its own scale, so that all errors are bounded
-// alike.
+// CVODE is started anew at every event and at the reversals of V, in a time that begins at 0: it never steps
+// over a kink, and no history outlives a step. The errors have absolute bounds, because an error of the
+// deflection is multiplied when the contact stiffens. A Stribeck curve is a bump of g around V = 0: steps
+// shrink with |V| so that none passes it unseen.
 #include <stdio.h>
 
 #include "solver/methods.h"
@@ -27,26 +21,28 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-// All are chosen empirically but for the rules of quadrature: half of a fraction costs steps, twice of it
-// doubles the error that passes (tests/solver/test_cvode.py). CVODE bounds the local error of one step. This
-// fraction of solver.tolerance keeps the sum of the errors within it.
-#define LOCAL_ERROR_FRACTION 0.01
-// Below the smallest, 45 eps, rounding limits the accuracy: the true error stops following solver.tolerance
-// between 1e-10 and 1e-12. Above the largest an error is not small beside the force.
+#include "model/regime.h"
+#include "solver/pieces.h"
+
+// Each is chosen empirically: half of it costs steps, twice of it doubles the error that passes
+// (tests/solver/test_cvode.py). The part of solver.tolerance that bounds the local error of one step, so that the
+// sum of the errors is within it, and that of a state, for its rounding.
+#define LOCAL_ERROR_FRACTION 0.003
 #define SMALLEST_LOCAL_ERROR 1e-14
-#define LARGEST_LOCAL_ERROR 1e-3
-
-#define MOST_PERIODS 1e5     // vibration periods in one communication step: minutes of computing
 #define STEPS_PER_PERIOD 8.0 // at least: the vibration can't slip between two steps
-#define MOST_FAILED_TRIES 50 // error test or convergence failures of one step of CVODE
-
 // A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that
-// steps approach the peak geometrically, and on the peak by this fraction of V_S.
+// steps approach the peak geometrically, and on the peak by this part of V_S.
 #define STRIBECK_STEP 0.25
-#define SHORTEST_STRIBECK_STEP 1e-10 // of the piece: a peak that takes less time is not resolved
+#define MOST_PERIODS 1e5 // of the vibration in one communication step: minutes of computing
 
-// The states: y, and the integrals of FcStepResult.
-enum { DEFLECTION, IMPULSE, WORK, HEAT, DRAG, STATES };
+// The states: the deflection, and the integrals of FcStepResult.
+enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, STATES };
+
+static double* state(FcStepResult* of, int k) {
+    double* const all[STATES] = {&of->delta, &of->delta_y, &of->impulse, &of->impulse_y,
+                                 &of->work,  &of->heat,    &of->drag};
+    return all[k];
+}
 
 struct FcCvode {
     SUNContext context;
@@ -55,53 +51,61 @@ struct FcCvode {
     SUNMatrix matrix;
     SUNLinearSolver linear_solver;
     void* cvode;
-    // The present piece, for the callbacks.
-    const FcScene* scene;
-    double start;       // s, local time at which the piece starts; CVODE's time is 0 there
-    double L;           // m
-    double evaluations; // of a(t), b(t)
-    double last_tau;    // of the last evaluation on this piece; NaN before the first
-    FcCoefficients last;
-    char reason[160]; // CVODE's last error message
+    // The present regime, for the callbacks.
+    const FcScene* scene; // without damping
+    double start;         // s, local time at which the regime starts; CVODE's time is 0 there
+    FcRegime regime;
+    int slips;
+    double evaluations; // of the motion
+    char reason[160];   // CVODE's last error message
 };
 
-// CVODE asks for the right-hand side and for its Jacobian at the same time, one after the other.
-static FcCoefficients coefficients_at(FcCvode* solver, double tau) {
-    if (tau != solver->last_tau) {
-        solver->evaluations += 1.0;
-        solver->last_tau = tau;
-        solver->last = fc_scene_coefficients(solver->scene, solver->start + tau);
-    }
-    return solver->last;
+static FcScene scene_at(const FcCvode* solver, double tau) {
+    return fc_scene_from(solver->scene, solver->start + tau);
 }
 
-static int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* user) {
+static FcBristle bristle_of(const FcCvode* solver, N_Vector y) {
+    return (FcBristle){.delta = NV_Ith_S(y, DELTA), .slips = solver->slips, .delta_y = NV_Ith_S(y, DELTA_Y)};
+}
+
+// Of a motion, or of its derivative by the deflection.
+static void set_rates(const FcScene* now, const FcMotion* motion, double rate[STATES]) {
+    rate[DELTA] = motion->rates.delta;
+    rate[DELTA_Y] = motion->rates.delta_y;
+    rate[IMPULSE] = motion->force.x;
+    rate[IMPULSE_Y] = motion->force.y;
+    rate[WORK] = motion->rates.W_f;
+    rate[HEAT] = motion->rates.Q_f;
+    rate[DRAG] = motion->rates.delta * fc_drive_V(&now->drive, 0.0) +
+                 motion->rates.delta_y * fc_drive_V_y(&now->drive, 0.0);
+}
+
+static int right_hand_side(realtype tau, N_Vector y, N_Vector rates, void* user) {
     FcCvode* solver = user;
-    const FcCoefficients at = coefficients_at(solver, tau);
-    const double delta = solver->L * NV_Ith_S(y, DEFLECTION);
-    const double F = at.sigma * delta;
-    const double slip = fc_relaxation_rate(&at) * delta; // V - delta'
-    NV_Ith_S(slope, DEFLECTION) = (at.V - slip) / solver->L;
-    NV_Ith_S(slope, IMPULSE) = F;
-    NV_Ith_S(slope, WORK) = F * at.V;
-    NV_Ith_S(slope, HEAT) = F * slip;
-    NV_Ith_S(slope, DRAG) = (at.V - slip) * at.V;
+    const FcScene now = scene_at(solver, tau);
+    const FcMotion motion = fc_motion(&now, solver->regime, bristle_of(solver, y));
+    solver->evaluations += 1.0;
+    set_rates(&now, &motion, NV_DATA_S(rates));
     return 0;
 }
 
-// Only the deflection acts on the rates.
-static int jacobian(realtype tau, N_Vector y, N_Vector slope, SUNMatrix J, void* user, N_Vector t1,
+static int jacobian(realtype tau, N_Vector y, N_Vector rates, SUNMatrix J, void* user, N_Vector t1,
                     N_Vector t2, N_Vector t3) {
-    (void)slope, (void)t1, (void)t2, (void)t3;
-    FcCvode* solver = user;
-    const FcCoefficients at = coefficients_at(solver, tau);
-    const double r = fc_relaxation_rate(&at);
-    const double F_rate = at.sigma * solver->L; // of F over y
-    SM_ELEMENT_D(J, DEFLECTION, DEFLECTION) = -r;
-    SM_ELEMENT_D(J, IMPULSE, DEFLECTION) = F_rate;
-    SM_ELEMENT_D(J, WORK, DEFLECTION) = F_rate * at.V;
-    SM_ELEMENT_D(J, HEAT, DEFLECTION) = 2.0 * F_rate * r * solver->L * NV_Ith_S(y, DEFLECTION);
-    SM_ELEMENT_D(J, DRAG, DEFLECTION) = -r * solver->L * at.V;
+    (void)rates, (void)t1, (void)t2, (void)t3;
+    const FcCvode* solver = user;
+    const FcScene now = scene_at(solver, tau);
+    const FcDirection along[] = {{.delta = 1.0}, {.delta_y = 1.0}};
+    for (int k = DELTA; k <= DELTA_Y; k++) {
+        const FcMotion by = fc_motion_along(&now, solver->regime, bristle_of(solver, y), &along[k]);
+        set_rates(&now, &by, SM_COLUMN_D(J, k));
+    }
+    return 0;
+}
+
+static int indicators(realtype tau, N_Vector y, realtype* z, void* user) {
+    const FcCvode* solver = user;
+    const FcScene now = scene_at(solver, tau);
+    fc_regime_indicators(&now, solver->regime, bristle_of(solver, y), z);
     return 0;
 }
 
@@ -123,24 +127,18 @@ static bool set_up(FcCvode* solver) {
     if (!solver->y || !solver->allowed || !solver->matrix) {
         return false;
     }
+    void* cvode = solver->cvode = CVodeCreate(CV_BDF, solver->context);
     solver->linear_solver = SUNLinSol_Dense(solver->y, solver->matrix, solver->context);
-    solver->cvode = CVodeCreate(CV_BDF, solver->context);
-    if (!solver->linear_solver || !solver->cvode) {
+    if (!cvode || !solver->linear_solver) {
         return false;
     }
     N_VConst(0.0, solver->y);
-    void* cvode = solver->cvode;
     return CVodeSetErrHandlerFn(cvode, keep_reason, solver) == CV_SUCCESS &&
            CVodeInit(cvode, right_hand_side, 0.0, solver->y) == CV_SUCCESS &&
            CVodeSetUserData(cvode, solver) == CV_SUCCESS &&
+           CVodeRootInit(cvode, 2, indicators) == CV_SUCCESS &&
            CVodeSetLinearSolver(cvode, solver->linear_solver, solver->matrix) == CVLS_SUCCESS &&
-           CVodeSetJacFn(cvode, jacobian) == CVLS_SUCCESS &&
-           // A fresh Jacobian costs no more than an iteration.
-           CVodeSetLSetupFrequency(cvode, 1) == CV_SUCCESS &&
-           CVodeSetJacEvalFrequency(cvode, 1) == CVLS_SUCCESS &&
-           CVodeSetMaxErrTestFails(cvode, MOST_FAILED_TRIES) == CV_SUCCESS &&
-           CVodeSetMaxConvFails(cvode, MOST_FAILED_TRIES) == CV_SUCCESS &&
-           CVodeSetMaxHnilWarns(cvode, -1) == CV_SUCCESS;
+           CVodeSetJacFn(cvode, jacobian) == CVLS_SUCCESS;
 }
 
 FcCvode* fc_cvode_new(FcMessage* message) {
@@ -158,53 +156,34 @@ void fc_cvode_free(FcCvode* solver) {
         return;
     }
     CVodeFree(&solver->cvode);
-    if (solver->linear_solver) {
-        SUNLinSolFree(solver->linear_solver);
-    }
-    if (solver->matrix) {
-        SUNMatDestroy(solver->matrix);
-    }
-    if (solver->allowed) {
-        N_VDestroy(solver->allowed);
-    }
-    if (solver->y) {
-        N_VDestroy(solver->y);
-    }
+    SUNLinSolFree(solver->linear_solver);
+    SUNMatDestroy(solver->matrix);
+    N_VDestroy(solver->allowed);
+    N_VDestroy(solver->y);
     SUNContext_Free(&solver->context);
     free(solver);
 }
 
-static bool failed(const FcCvode* solver, double tau, double h, const char* reason, FcMessage* message) {
-    return fc_message_set(message,
-                          "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s",
-                          solver->start + tau, h, reason);
+// Of the vibration in h [s].
+static double periods_of(const FcDrive* drive, double h) {
+    return fc_drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
 }
 
-// The deflection's scale over a step of h [s] from delta_0, see the head of this file.
-static double deflection_scale(const FcScene* scene, double h, double delta_0) {
-    const double saturated = fc_scene_smallest_saturation(scene, h);
-    const double moved = fabs(delta_0) + fc_drive_largest_speed(&scene->drive, h) * h;
-    const double L = moved > 0.0 ? fmin(saturated, moved) : saturated;
-    return isfinite(L) && L > 0.0 ? L : 1.0;
-}
-
-// The errors of as many vibration periods as the bristle remembers, a path of L, add up in its deflection.
-static double local_error_bound(const FcScene* scene, double tolerance, double h, double L) {
-    const FcDrive* drive = &scene->drive;
-    const double memory = fmin(h, L / fc_drive_largest_speed(drive, h));
-    const double periods = fc_drive_vibrates(drive) ? fmax(1.0, memory * drive->vibration.f) : 1.0;
-    const double local_error = LOCAL_ERROR_FRACTION * tolerance / periods;
-    return fmin(fmax(local_error, SMALLEST_LOCAL_ERROR), LARGEST_LOCAL_ERROR);
-}
-
-// First step on a piece: backward Euler has the required error with it in the layer of width w, which is
-// sqrt(2 F_C / (sigma |V'|)) after a reversal and F_C / (sigma |V|) elsewhere.
-static double initial_step(FcCvode* solver, double duration, double local_error) {
-    const FcCoefficients at = coefficients_at(solver, 0.0);
-    const double V_rate = fabs(fc_drive_V_rate(&solver->scene->drive, solver->start));
-    const double ramp = at.sigma * V_rate / (2.0 * at.limit);
-    const double inverse_width = fmax(fc_relaxation_rate(&at), sqrt(ramp));
-    return fmin(duration, sqrt(local_error) / fmax(inverse_width, 1.0 / duration));
+// The allowed local errors of the states over a step of h [s]: that of the force, times the integrals. Errors add
+// up over the vibration periods that the bristle remembers: Dahl and LuGre forget a path of g / sigma.
+static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h) {
+    const double stiffness = fc_scene_largest_stiffness(scene, h);
+    const double path = fc_drive_largest_speed(&scene->drive, h) * h;
+    const double forgets =
+        scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
+    const double periods = fmax(1.0, periods_of(&scene->drive, h) / fmax(1.0, forgets));
+    const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
+    const double delta = force / stiffness;
+    const double of[STATES] = {delta,        delta,        force * h,       force * h,
+                               force * path, force * path, delta * path / h};
+    for (int k = 0; k < STATES; k++) {
+        NV_Ith_S(solver->allowed, k) = of[k] >= DBL_MIN ? of[k] : DBL_MIN; // CVODE refuses 0
+    }
 }
 
 // Longest step [s] from the time t [s] that can't go over the peak of a Stribeck curve; INFINITY without one.
@@ -213,105 +192,87 @@ static double stribeck_step(const FcScene* scene, double t) {
         return INFINITY;
     }
     const FcDrive* drive = &scene->drive;
-    const double V_rate = fabs(drive->V.rate) + drive->omega * fabs(drive->vibration.V_1); // at most
-    const double change = fmax(STRIBECK_STEP * scene->friction->V_S, 0.5 * fabs(fc_drive_V(drive, t)));
-    return V_rate > 0.0 ? change / V_rate : INFINITY;
+    const FcVibration* vibration = &drive->vibration;
+    const double rate = hypot(drive->V.rate, drive->V_y.rate) +
+                        drive->omega * hypot(vibration->V_1, vibration->V_2); // at most
+    const double speed = hypot(fc_drive_V(drive, t), fc_drive_V_y(drive, t));
+    return fmax(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed) / rate;
 }
 
-// The allowed local errors of the states over a step of h [s]: that of y, times the integrals of a force of
-// the size of the tolerance's scale. |delta'| is at most about |V| whenever it counts.
-static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
-                        double local_error) {
-    const double speed = fc_drive_largest_speed(&scene->drive, h);
-    const double force = local_error * options->force;
-    const double of[STATES] = {[DEFLECTION] = local_error,
-                               [IMPULSE] = force * h,
-                               [WORK] = force * speed * h,
-                               [HEAT] = force * speed * h,
-                               [DRAG] = local_error * speed * speed * h};
+// Begins the regime that the bristle has at the time t [s].
+static void begin_regime(FcCvode* solver, double t, FcStepResult* now) {
+    solver->start = t;
+    const FcScene scene = scene_at(solver, 0.0);
+    fc_take_onto_bound(&scene, now);
+    const bool slips = now->slips != 0 && fc_push_in_plane(&scene, fc_bristle_of(now)) > 0.0;
+    now->slips = slips ? now->slips : 0; // at the event of a push of 0
+    solver->slips = now->slips;
+    solver->regime = fc_regime(&scene, fc_bristle_of(now));
+    now->on_bound = solver->regime != FC_FREE;
     for (int k = 0; k < STATES; k++) {
-        NV_Ith_S(solver->allowed, k) = fmax(of[k], DBL_MIN); // CVODE refuses 0
+        NV_Ith_S(solver->y, k) = *state(now, k);
     }
 }
 
-// Integrates solver->y from solver->start for duration [s], between two reversals.
-static bool integrate_piece(FcCvode* solver, double duration, double local_error, double h,
-                            FcMessage* message) {
+// Integrates from the start of the regime up to its end, or for duration [s]; returns the time taken [s], NaN
+// if CVODE fails.
+static double integrate_regime(FcCvode* solver, double duration) {
     void* cvode = solver->cvode;
-    const FcDrive* drive = &solver->scene->drive;
-    const double longest =
-        fc_drive_vibrates(drive) ? 1.0 / (STEPS_PER_PERIOD * drive->vibration.f) : duration;
-    const double end = duration;
-    solver->last_tau = NAN;
-    solver->reason[0] = '\0';
-    if (CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
+    const double parts = STEPS_PER_PERIOD * periods_of(&solver->scene->drive, duration);
+    snprintf(solver->reason, sizeof solver->reason, "%s", "too much work in one step");
+    if (!(duration > 0.0) || CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSVtolerances(cvode, SMALLEST_LOCAL_ERROR, solver->allowed) != CV_SUCCESS ||
-        CVodeSetMaxStep(cvode, longest) != CV_SUCCESS ||
-        CVodeSetInitStep(cvode, initial_step(solver, duration, local_error)) != CV_SUCCESS) {
-        return failed(solver, 0.0, h, solver->reason, message);
+        CVodeSetMaxStep(cvode, duration / fmax(1.0, parts)) != CV_SUCCESS) {
+        return NAN;
     }
     double tau = 0.0;
-    while (tau < end) {
+    int flag = CV_SUCCESS;
+    while (tau < duration && flag != CV_ROOT_RETURN) {
         const double step = stribeck_step(solver->scene, solver->start + tau);
-        const double stop = tau + fmax(step, SHORTEST_STRIBECK_STEP * end);
-        if (CVodeSetStopTime(cvode, fmin(stop, end)) != CV_SUCCESS ||
-            CVode(cvode, end, solver->y, &tau, CV_ONE_STEP) < 0) {
-            return failed(solver, tau, h, solver->reason, message);
-        }
-        if (solver->evaluations > FC_MOST_EVALUATIONS) {
-            return failed(solver, tau, h, "too many evaluations in one step", message);
+        CVodeSetStopTime(cvode, fmin(tau + step, duration));
+        flag = CVode(cvode, duration, solver->y, &tau, CV_ONE_STEP);
+        if (flag < 0 || solver->evaluations > FC_MOST_EVALUATIONS) {
+            return NAN;
         }
     }
-    return true;
+    return tau;
 }
 
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message) {
     assert(solver && h >= 0.0 && options->tolerance > 0.0);
-    const FcDrive* drive = &scene->drive;
-    const double periods = fc_drive_vibrates(drive) ? h * drive->vibration.f : 0.0;
+    const double periods = periods_of(&scene->drive, h);
     if (!(periods <= MOST_PERIODS)) {
-        fc_message_set(
+        return fc_message_set(
             message,
-            "solver.method = cvode: the communication step of %.5g s holds %.5g periods of vibration.f "
-            "= %.5g Hz; "
-            "at most %.0e are allowed; use smaller steps or collocation",
-            h, periods, drive->vibration.f, MOST_PERIODS);
-        return false;
+            "solver.method = cvode: the communication step of %.5g s holds %.5g periods of the "
+            "vibration; at most %.0e are allowed; use smaller steps or collocation",
+            h, periods, MOST_PERIODS);
     }
-    solver->scene = scene;
-    solver->L = deflection_scale(scene, h, result->delta);
-    const double local_error = local_error_bound(scene, options->tolerance, h, solver->L);
-    set_allowed(solver, scene, options, h, local_error);
+    FcFriction friction = *scene->friction; // the damping is not a part of the result
+    friction.sigma_1 = friction.sigma_2 = 0.0;
+    FcScene undamped = *scene;
+    undamped.friction = &friction;
+    solver->scene = &undamped;
     solver->evaluations = 0.0;
-    N_VConst(0.0, solver->y);
-    NV_Ith_S(solver->y, DEFLECTION) = result->delta / solver->L;
-
-    double t = 0.0;
-    while (t < h) {
-        const double t_next = fc_drive_next_event(drive, t, h).time;
-        solver->start = t;
-        if (!(t_next > t)) {
-            return failed(solver, 0.0, h, "no next reversal found", message);
+    set_allowed(solver, scene, options, h);
+    FcStepResult now = *result;
+    for (double t = 0.0; t < h;) {
+        begin_regime(solver, t, &now);
+        const double stop = fc_drive_next_event(&scene->drive, t, h).time;
+        const double taken = integrate_regime(solver, stop - t);
+        if (!isfinite(taken)) {
+            return fc_message_set(
+                message, "solver.method = cvode failed %.9g s into the communication step of %.5g s: %s", t,
+                h, solver->reason);
         }
-        if (!integrate_piece(solver, t_next - t, local_error, h, message)) {
-            return false;
-        }
-        t = t_next;
-    }
-    const double* y = NV_DATA_S(solver->y);
-    for (int k = 0; k < STATES; k++) {
-        if (!isfinite(y[k])) {
-            return failed(solver, 0.0, h, "the deflection, the impulse or the work is not a finite number",
-                          message);
+        t = taken < stop - t ? t + taken : stop;
+        for (int k = 0; k < STATES; k++) {
+            *state(&now, k) = NV_Ith_S(solver->y, k);
         }
     }
-    result->delta = solver->L * y[DEFLECTION];
-    result->impulse += y[IMPULSE];
-    result->work += y[WORK];
-    result->heat += y[HEAT];
-    result->drag += y[DRAG];
-    result->evaluations += solver->evaluations;
+    now.evaluations += solver->evaluations;
+    *result = now;
     return true;
 }
 
@@ -320,8 +281,7 @@ bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions*
 FcCvode* fc_cvode_new(FcMessage* message) {
     fc_message_set(message,
                    "solver.method = cvode is not in this build (built without SUNDIALS); rebuild with "
-                   "-DWITH_SUNDIALS=ON "
-                   "or use collocation");
+                   "-DWITH_SUNDIALS=ON or use collocation");
     return NULL;
 }
 

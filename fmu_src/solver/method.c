@@ -36,8 +36,9 @@ static bool is_affine(const FcScene* scene) {
 
 // Whether the method leaves the scene to the default.
 static bool takes_default(const FcScene* scene, FcMethod method) {
-    return !is_affine(scene) || method == FC_METHOD_COLLOCATION ||
-           (method == FC_METHOD_CVODE && fc_march_may_meet(scene));
+    const int model = scene->friction->model;
+    return method == FC_METHOD_COLLOCATION || model == FC_COULOMB ||
+           (method != FC_METHOD_CVODE && model == FC_ELASTIC_PLASTIC);
 }
 
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
@@ -57,9 +58,8 @@ bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const
     *result = fc_result_from(from, 0.0);
     const bool is_planar = fc_is_planar(scene, from);
     if (!takes_default(scene, method)) {
-        if (is_planar) {
+        if (is_planar && method != FC_METHOD_CVODE) {
             static const char* const NAME[] = {
-                [FC_METHOD_CVODE] = "cvode",
                 [FC_METHOD_BACKWARD_EULER] = "backwardEuler",
                 [FC_METHOD_TRAPEZOID] = "trapezoid",
                 [FC_METHOD_RK4] = "rk4",

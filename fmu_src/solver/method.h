@@ -11,10 +11,9 @@
 bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, FcMethod method, double h,
                        FcBristle from, FcStepResult* result);
 
-// The step [0, h], h [s] >= 0, from a bristle that is within its bound (fc_reach). Any method solves Coulomb
-// and ElasticPlastic as the default does: exactly, or to the tolerance if sigma or g moves. cvode also leaves
-// a bristle that may meet its bound to the default. cvode is the solver of FC_METHOD_CVODE, unused by the
-// others. Returns false, with *message filled, if the method refuses.
+// The step [0, h], h [s] >= 0, from a bristle that is within its bound (fc_reach). Any method leaves Coulomb's
+// law to the default, and the fixed-step methods leave ElasticPlastic. cvode is the solver of FC_METHOD_CVODE,
+// unused by the others. Returns false, with *message filled, if the method refuses.
 bool fc_method_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                     double h, FcBristle from, FcStepResult* result, FcMessage* message);
 

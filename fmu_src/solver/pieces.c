@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/regime.h"
+
 void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
     assert(whole >= 0.0);
     pieces->of = scene;
@@ -43,6 +45,22 @@ void fc_loose_step(FcStepResult* result) {
     result->on_bound = false;
 }
 
+void fc_take_onto_bound(const FcScene* scene, FcStepResult* result) {
+    const FcBristle bristle = fc_bristle_of(result);
+    const FcBristle reached = fc_reach(scene, bristle);
+    const double size = fc_size(bristle);
+    const double D = fc_size(reached);
+    if (D < size) {
+        const FcDrive* drive = &scene->drive;
+        result->heat += 0.5 * fc_scene_contact(scene, 0.0).sigma * (size - D) * (size + D);
+        result->drag += (reached.delta - bristle.delta) * fc_drive_V(drive, 0.0) +
+                        (reached.delta_y - bristle.delta_y) * fc_drive_V_y(drive, 0.0);
+    }
+    result->delta = reached.delta;
+    result->delta_y = reached.delta_y;
+    result->slips = reached.slips;
+}
+
 // A limit that falls by decades is too small at the step's end for the scale of the whole step: a piece has
 // its own.
 static FcSolverOptions options_of_piece(const FcSolverOptions* options, const FcPieces* pieces) {
@@ -57,7 +75,7 @@ static FcSolverOptions options_of_piece(const FcSolverOptions* options, const Fc
 }
 
 void fc_take_pieces(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double duration,
-                     FcStepResult* total) {
+                    FcStepResult* total) {
     FcPieces pieces;
     fc_pieces_start(&pieces, scene, duration);
     while (total->evaluations <= FC_MOST_EVALUATIONS && fc_next_piece(&pieces)) {

@@ -25,6 +25,10 @@ bool fc_next_piece(FcPieces* pieces);
 // bound has fallen to 0 before, else the stiffness has.
 void fc_loose_step(FcStepResult* result);
 
+// The bristle of the result at the start of the scene, beyond whose bound a step has taken it: fc_reach. The
+// energy that it loses is heat.
+void fc_take_onto_bound(const FcScene* scene, FcStepResult* result);
+
 // Takes *result over [0, duration] of the scene and adds the interval's integrals.
 typedef void (*FcStep)(const FcScene* scene, const FcSolverOptions* options, double duration,
                        FcStepResult* result);

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import pytest
+from model_exchange.exchange_scenes import drawn, errors, stepped
+from physics.course import Course
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import solution as reference
@@ -43,8 +46,8 @@ def test_error_follows_the_tolerance(fmu: FrictionFmu, scale: float, tolerance: 
 def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
     """A settled bristle hardly feels a small one, which counts in the work all the same.
 
-    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. Eight
-    steps a period take one evaluation each, or two.
+    The force depends on the way x alone, F_C (1 - e^(-x / D)), D = F_C / sigma, and so does the work. Each of
+    eight steps a period takes one evaluation at least.
     """
     V, V_1, sigma, F_C, f = 1.0, 1e-3, 1e8, 55.0, 20e3
     start = {
@@ -62,7 +65,7 @@ def test_a_vibration_does_not_slip_between_two_steps(fmu: FrictionFmu) -> None:
     x = V * periods / f + V_1 / (2.0 * math.pi * f)  # the sine is 1
     D = F_C / sigma
     assert W_f == pytest.approx(F_C * (x + D * math.expm1(-x / D)), rel=1e-6)
-    assert 8 <= evaluations / periods <= 8 * 2
+    assert evaluations / periods >= 8
     assert evaluations == round(evaluations)
 
 
@@ -109,3 +112,51 @@ def test_no_step_goes_over_a_stribeck_peak(fmu: FrictionFmu, V: float, V_S: floa
             bound = tolerance * scene.F_C
             assert F_t == pytest.approx(float(reference.force(scene, h, delta)), abs=bound)
             assert F_t_mean == pytest.approx(float(multiprecision(impulse) / MP.mpf(h)), abs=bound)
+
+
+@pytest.mark.parametrize("number", range(24))
+def test_every_law_and_limit_along_a_line(fmu: FrictionFmu, number: int) -> None:
+    scene = drawn(number, fmu)
+    truth = Course(scene.scene, scene.delta_0).step(scene.scene, scene.h)
+    for tolerance in (1e-4, 1e-6, 1e-8):
+        found = stepped(scene, fmu, {"solver.method": "cvode", "solver.tolerance": tolerance})
+        assert max(errors(truth, found)) < tolerance
+
+
+@pytest.mark.parametrize("law", ["Dahl", "LuGre", "ElasticPlastic"])
+@pytest.mark.parametrize("speed", [0.4, 3.0])
+def test_every_law_on_a_circle(fmu: FrictionFmu, law: str, speed: float) -> None:
+    """V turns at the rate omega, and |V| is speed times omega D, with D = F_C / sigma.
+
+    Of Dahl and LuGre delta' = V e^(i omega t) - r delta has a constant r. ElasticPlastic sticks up to D, and
+    comes to slip behind V by the angle asin(1 / speed).
+    """
+    f, F_C, sigma, tolerance = 20e3, 55.0, 1e8, 1e-6
+    omega, D = 2.0 * math.pi * f, F_C / sigma
+    V = speed * omega * D
+    ratio = 1.5 if law == "LuGre" else 1.0
+    start = {
+        "friction.model": law,
+        "friction.staticRatio": ratio,
+        "friction.V_S": V,
+        "V": 0.0,
+        "vibration.V_1": V,
+        "vibration.V_2": V,
+        "vibration.phase_2": -math.pi / 2.0,
+        "contact.model": "Constant",
+        "contact.sigma": sigma,
+        "solver.method": "cvode",
+        "solver.tolerance": tolerance,
+    }
+    r = V / D / (1.0 + (ratio - 1.0) / math.e)
+    with fmu.session(start) as session:
+        for part in (0.02, 7.9):
+            session.step(part / f)
+            turn = cmath.exp(1j * omega * session.time)
+            delta = V * (turn - math.exp(-r * session.time)) / (1j * omega + r)
+            if law == "ElasticPlastic":
+                delta = V * (turn - 1.0) / (1j * omega)
+                if abs(delta) > D:
+                    delta = D * turn * cmath.exp(-1j * math.asin(1.0 / speed))
+            found = complex(session.get("F_t"), session.get("F_y"))
+            assert abs(found - sigma * delta) < tolerance * F_C
