@@ -1,4 +1,4 @@
-"""The pictures of docs/solver.md: panels of a period in u, regimes of a bristle, a period as a clamped map."""
+"""The pictures of docs/solver.md: panels of a period in u, regimes of a bristle, a period as a map."""
 
 import subprocess
 from dataclasses import dataclass
