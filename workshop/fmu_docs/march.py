@@ -89,7 +89,7 @@ ARROWS = (
     ("slips", "free", 0.58, 0.58, 0.0, "push = 0", (0.60, 0.51), "left"),
     ("slips", "inside", 0.42, 0.42, 0.0, "an input jumps", (0.40, 0.21), "right"),
     ("inside", "slips", 0.58, 0.58, 0.0, "meets D", (0.60, 0.21), "left"),
-    ("inside", "free", 0.80, 0.80, 0.5, "push < 0", (0.83, 0.50), "left"),
+    ("inside", "free", 0.80, 0.80, 0.5, "push < 0", (0.945, 0.37), "right"),
 )
 WIDTH, HEIGHT = 0.60, 0.10  # of a box
 
