@@ -20,7 +20,7 @@
 #include "solver/march.h"
 #include "trial.h"
 
-static bool lists = false;      // while a step is taken
+static bool lists = false;       // while a step is taken
 static double evaluations = 0.0; // up to the last panel
 
 static const char* const KINDS[] = {
@@ -50,8 +50,8 @@ static void print_panel(const FcCrossing* crossing, From from, const FcPanel* pa
 static void begin_interval(const char* name, double duration, double before) {
     evaluations = before;
     if (lists) {
-        printf("%s of %.9g s\n%15s %15s %13s %13s %10s %9s %8s %8s %4s kind\n", name, duration, "t", "t_end", "u", "u_end", "L",
-               "z", "of_end", "of_mean", "made");
+        printf("%s of %.9g s\n%15s %15s %13s %13s %10s %9s %8s %8s %4s kind\n", name, duration, "t", "t_end",
+               "u", "u_end", "L", "z", "of_end", "of_mean", "made");
     }
 }
 
@@ -106,7 +106,8 @@ bool __wrap_fc_friction_contact_advance(FcFrictionContact* contact, double t, do
 
 int main(int argc, char** argv) {
     if (argc != 2) {
-        fprintf(stderr, "panels \"NAME=VALUE ..\": lists the panels of a sequence, as hunt --replay reads it\n");
+        fprintf(stderr,
+                "panels \"NAME=VALUE ..\": lists the panels of a sequence, as hunt --replay reads it\n");
         return 2;
     }
     static Trial trial;

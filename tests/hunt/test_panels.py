@@ -26,7 +26,9 @@ def test_panels_fill_the_step(fmu: FrictionFmu, kind: str) -> None:
     words, values = SCENES[kind]
     sequence = f"tolerance=1e-6 V=0.5 V_1=1.44 a_d=1.1e-6 stiffnessScale=1e-6 h={STEP!r} {words}"
     program = build_targets("default", ["panels"]) / "hunt" / "panels"
-    lines = subprocess.run([program, sequence], check=True, capture_output=True, text=True).stdout.splitlines()
+    lines = subprocess.run(
+        [program, sequence], check=True, capture_output=True, text=True
+    ).stdout.splitlines()
     rows = [line.split() for line in lines if line[0].isdigit()]
     start, end = np.array([row[:2] for row in rows], float).T
     assert start[0] == 0.0 and end[-1] == pytest.approx(STEP, rel=1e-9)
