@@ -41,9 +41,9 @@ def test_every_variable_is_described(page: str) -> None:
 
 
 def test_starts_are_given_in_display_units(page: str) -> None:
-    row = re.search(r"<code>d</code></th>(.*)</tr>", page)
+    row = re.search(r"<code>contact.R_q</code></th>(.*)</tr>", page)
     assert row is not None
-    assert ">14 µm<" in row[1] and ">≥ 1e-12<" in row[1]
+    assert ">6 µm<" in row[1] and ">≥ 1e-12<" in row[1]
     row = re.search(r"<code>solver.method</code></th>(.*)", page)
     assert row is not None
     assert ">collocation<" in row[1] and ">1 … 6<" in row[1]

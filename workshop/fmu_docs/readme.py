@@ -20,7 +20,7 @@ from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
 from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
-from workshop.fmu_docs import directions, laws, stretch
+from workshop.fmu_docs import directions, laws, march
 from workshop.fmu_docs.tutorial import PAGES, blocks
 from workshop.project import ROOT
 
@@ -179,7 +179,9 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "step_sizes": partial(step_sizes, fmu),
         "physics-open-contact": partial(laws.open_contact, fmu),
         "physics-static-friction": partial(laws.static_friction, fmu),
-        "solver-stretch": stretch.draw,
+        "solver-panels": march.draw_panels,
+        "solver-regimes": march.draw_regimes,
+        "solver-period": partial(march.draw_map, fmu),
         "three-directions": partial(directions.draw, fmu),
     }
     paths = [folder / f"{name}.png" for name in drawings]

@@ -1,0 +1,120 @@
+// Lists the panels of the steps of a sequence, as the march takes them: for a look at a miss, and for the picture of
+// docs/solver.md.
+//
+//     cmake --build --preset default --target panels
+//     build/hunt/panels "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3"
+//
+// A line a panel: the times and the places in u of its ends, L of t = t_c + L sinh u (inf for t = u), z, the estimated
+// errors of its end and of its mean over the allowed force, how often it was made, and what it is:
+//
+//     relaxes, sticks, slips, coulomb    the motion
+//     known                              a closed form, which has neither z nor errors
+//
+// The linker puts the functions __wrap_... between the march and its own (CMakeLists.txt).
+#include <math.h>
+#include <stdio.h>
+
+#include "friction_contact.h"
+#include "sequence.h"
+#include "solver/crossing.h"
+#include "solver/march.h"
+#include "trial.h"
+
+static bool lists = false;       // while a step is taken
+static double evaluations = 0.0; // up to the last panel
+
+static const char* const KINDS[] = {
+    [FC_RELAXES] = "relaxes", [FC_STICKS] = "sticks", [FC_SLIPS] = "slips", [FC_NO_BRISTLE] = "coulomb"};
+
+// The place from which a panel is taken, and its kind, which an event at its end may change.
+typedef struct {
+    double t, u;
+    const char* kind;
+} From;
+
+static From from_of(const FcCrossing* crossing, const char* kind) {
+    return (From){crossing->at.t, crossing->at.u, kind};
+}
+
+static void print_panel(const FcCrossing* crossing, From from, const FcPanel* panel) {
+    const double allowed = fc_allowed_force(crossing->interval);
+    const double made = (crossing->evaluations - evaluations) / FC_STAGES;
+    evaluations = crossing->evaluations;
+    if (lists) {
+        printf("%.9e %.9e %13.6e %13.6e %10.3e %9.2e %8.1e %8.1e %4.0f %s\n", from.t, crossing->at.t, from.u,
+               crossing->at.u, crossing->part.in.length, panel->z, panel->end_error / allowed,
+               panel->mean_error / allowed, made, from.kind);
+    }
+}
+
+static void begin_interval(const char* name, double duration, double before) {
+    evaluations = before;
+    if (lists) {
+        printf("%s of %.9g s\n%15s %15s %13s %13s %10s %9s %8s %8s %4s kind\n", name, duration, "t", "t_end",
+               "u", "u_end", "L", "z", "of_end", "of_mean", "made");
+    }
+}
+
+// ---- between the march and its functions ----
+
+void __real_fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h);
+void __wrap_fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h);
+void __wrap_fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
+    const From from = from_of(crossing, KINDS[fc_kind(crossing)]);
+    __real_fc_append_panel(crossing, nodes, panel, h);
+    print_panel(crossing, from, panel);
+}
+
+void __real_fc_append_known(FcCrossing* crossing, const FcMap* map, double t);
+void __wrap_fc_append_known(FcCrossing* crossing, const FcMap* map, double t);
+void __wrap_fc_append_known(FcCrossing* crossing, const FcMap* map, double t) {
+    const From from = from_of(crossing, "known");
+    const FcPanel none = {.z = NAN, .end_error = NAN, .mean_error = NAN};
+    __real_fc_append_known(crossing, map, t);
+    print_panel(crossing, from, &none);
+}
+
+void __real_fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                          FcStepResult* result);
+void __wrap_fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                          FcStepResult* result);
+void __wrap_fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
+                          FcStepResult* result) {
+    begin_interval("march", duration, result->evaluations);
+    __real_fc_march_step(scene, options, duration, result);
+}
+
+FcMap __real_fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
+                          FcMap* across, double* before);
+FcMap __wrap_fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
+                          FcMap* across, double* before);
+FcMap __wrap_fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
+                          FcMap* across, double* before) {
+    begin_interval("map", duration, *before);
+    return __real_fc_march_map(scene, options, duration, start, across, before);
+}
+
+bool __real_fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
+bool __wrap_fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
+bool __wrap_fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
+    lists = true;
+    printf("step from %.17g s of %.17g s\n", t, h);
+    const bool is_taken = __real_fc_friction_contact_advance(contact, t, h, message);
+    lists = false;
+    return is_taken;
+}
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        fprintf(stderr,
+                "panels \"NAME=VALUE ..\": lists the panels of a sequence, as hunt --replay reads it\n");
+        return 2;
+    }
+    static Trial trial;
+    const Sequence sequence = sequence_read(argv[1]);
+    trial_run(&trial, &sequence);
+    if (trial.refused) {
+        printf("refused: %s\n", trial.message.text);
+    }
+    return trial.refused;
+}
