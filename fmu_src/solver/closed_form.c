@@ -55,8 +55,8 @@ FcBristle fc_slides_for_ever(const FcScene* scene, FcBristle from, FcVector* for
     const FcPlaneCoefficients at = at_start(scene);
     const bool has_bristle = scene->friction->model != FC_COULOMB;
     if (at.speed == 0.0 || !isfinite(at.limit / at.sigma)) {
-        *force = has_bristle ? (FcVector){at.sigma * from.delta, at.sigma * from.delta_y}
-                             : fc_plane_coulomb(&at);
+        *force =
+            has_bristle ? (FcVector){at.sigma * from.delta, at.sigma * from.delta_y} : fc_plane_coulomb(&at);
         return from;
     }
     *force = fc_plane_coulomb(&at);

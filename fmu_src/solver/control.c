@@ -179,8 +179,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
                           : graded_length(control, part, at, kind, behind, span, longest, h);
     if (z < INFINITY && at->rate > 0.0) { // |V| may grow as e^u
         const double straight = z / at->rate;
-        const double grows =
-            isinf(in->length) ? 0.0 : 2.0 * straight / sqrt(in->length * in->length + x * x);
+        const double grows = isinf(in->length) ? 0.0 : 2.0 * straight / sqrt(in->length * in->length + x * x);
         h = fc_least(h, isinf(in->length) ? straight
                         : grows < 1.0     ? 0.5 * grows / (1.0 + 0.5 * grows)
                                           : 0.5 * rough_log(1.0 + grows));

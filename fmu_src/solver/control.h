@@ -38,7 +38,7 @@ double fc_control_length(const FcControl* control, const FcPart* part, const FcR
                          double end, double proposed);
 
 // The factor by which the panel's errors are too large. At the end they fade along the path left [m] to the
-// interval's end, which fc_path_left of the context gives; it is called only if that decides.
+// interval's end, which path_left gives; it is called only if that decides.
 typedef double (*FcPathLeft)(void* context, double t);
 double fc_control_excess(const FcControl* control, const FcPart* part, const FcNodes* nodes,
                          const FcPanel* panel, FcKind kind, FcPathLeft path_left, void* context);

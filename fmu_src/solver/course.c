@@ -68,8 +68,7 @@ static bool has_least(FcDrive* drive, Sample a, Sample b, double* center) {
         return has_least_where_up(drive, a, b, center);
     }
     double none = 0.0;
-    const double turn =
-        fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, 0.0, &none);
+    const double turn = fc_root_between(bend_of_square, drive, a.t, a.bend, b.t, b.bend, 0.0, 0.0, &none);
     Sample flat = sample_at(drive, turn);
     flat.bend = 0.0;
     return a.bend > 0.0 ? has_least_where_up(drive, a, flat, center)
@@ -94,8 +93,8 @@ static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
         // Between two minima it bends down, most where the twist changes sign.
         if (a.twist < 0.0 && b.twist > 0.0) {
             double none = 0.0;
-            const Sample between = sample_at(&drive, fc_root_between(twist_of_square, &drive, a.t, a.twist, b.t,
-                                                                     b.twist, 0.0, 0.0, &none));
+            const Sample between = sample_at(&drive, fc_root_between(twist_of_square, &drive, a.t, a.twist,
+                                                                     b.t, b.twist, 0.0, 0.0, &none));
             if (between.bend < 0.0) {
                 count += has_least(&drive, a, between, &times[count]);
                 a = between;
@@ -111,23 +110,22 @@ static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
 
 // A center, with its variable and that beyond a Stribeck curve.
 typedef struct {
-    double time;             // s
-    double length, beyond;   // s
-    double edge;             // s, the distance at which the curve has ended; infinite if no part is cut
+    double time;           // s
+    double length, beyond; // s
+    double edge;           // s, the distance at which the curve has ended; infinite if no part is cut
     double narrow, narrow_beyond;
-    double most[4];          // as in FcPart
+    double most[4]; // as in FcPart
 } Center;
 
-static const Center NONE = {.length = INFINITY, .beyond = INFINITY, .edge = INFINITY, .narrow = 1.0,
-                            .narrow_beyond = 1.0};
+static const Center NONE = {
+    .length = INFINITY, .beyond = INFINITY, .edge = INFINITY, .narrow = 1.0, .narrow_beyond = 1.0};
 
 // |V| at a time, and the norms of its derivatives over n!.
 static void find_most(const FcPlane* plane, double t, double most[4]) {
     const FcDrive* drive = &plane->scene->drive;
     const FcPhase phase = fc_drive_phase(drive, t);
     const FcVelocity x = fc_drive_velocity_at_phase(drive, t, phase);
-    const FcVelocity y =
-        plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
+    const FcVelocity y = plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, t, phase);
     most[0] = hypot(x.V, y.V);
     most[1] = hypot(x.rate, y.rate);
     most[2] = hypot(x.curvature, y.curvature) / 2.0;
@@ -193,8 +191,7 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     of.beyond = of.length;
     // A Stribeck curve, if V comes into it.
     const double V_S = scene->friction->V_S;
-    const bool has_curve =
-        fc_has_stribeck_curve(scene->friction) && of.most[0] < FC_END_OF_CURVE * V_S;
+    const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.most[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
         const double of_curve = fmax(time_of_change(of.most, V_S), plane->on_line ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
@@ -305,8 +302,7 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MOST_PARTS], int count,
                    double h, const Center* before, const Center* after) {
     const Center left = seen_from_gap(before, start, end);
     const Center right = seen_from_gap(after, start, end);
-    const int side =
-        plane->on_line ? (int)fc_sign(fc_drive_V(&plane->scene->drive, 0.5 * (start + end))) : 0;
+    const int side = plane->on_line ? (int)fc_sign(fc_drive_V(&plane->scene->drive, 0.5 * (start + end))) : 0;
     double middle = isinf(right.length)  ? end
                     : isinf(left.length) ? start
                                          : fmin(fmax(0.5 * (left.time + right.time), start), end);

@@ -147,8 +147,7 @@ double fc_path_left(FcCrossing* crossing, double t) {
         }
         crossing->has_ways = true;
     }
-    return crossing->way[crossing->number] +
-           least_path(crossing, &crossing->part, t, crossing->part.end);
+    return crossing->way[crossing->number] + least_path(crossing, &crossing->part, t, crossing->part.end);
 }
 
 static double path_left(void* context, double t) { return fc_path_left(context, t); }
@@ -175,7 +174,8 @@ double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
 }
 
 void fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
-    if (fc_kind(crossing) == FC_STICKS) { // it moves with the surfaces: a drift over many periods is exact to rounding
+    if (fc_kind(crossing) ==
+        FC_STICKS) { // it moves with the surfaces: a drift over many periods is exact to rounding
         const FcVector from = crossing->for_any ? (FcVector){0.0, 0.0} : fc_crossing_delta(crossing);
         panel->along.offset = from.x + nodes->moved[LAST];
         panel->across.offset = from.y + nodes->moved_y[LAST];

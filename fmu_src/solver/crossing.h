@@ -15,9 +15,9 @@ typedef struct {
     int count, number;
     FcPart part; // the present one, in the variable of the present motion
     FcReached at;
-    double end;       // of the part, in u
-    double h;         // of the next panel, in u; 0 if nothing proposes one
-    double* way;      // m, the path after each part, at the least
+    double end;  // of the part, in u
+    double h;    // of the next panel, in u; 0 if nothing proposes one
+    double* way; // m, the path after each part, at the least
     bool has_ways;
     // The bristle, and the sums.
     FcMap along, across_map;

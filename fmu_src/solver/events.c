@@ -37,7 +37,8 @@ typedef struct {
 
 static Beside beside_bound(const FcCrossing* crossing, FcVector delta, double t) {
     const FcPhase phase = fc_drive_phase(&crossing->interval->scene->drive, t);
-    Beside of = {.t = t, .at = fc_plane_coefficients(crossing->plane, t, phase), .size = hypot(delta.x, delta.y)};
+    Beside of = {
+        .t = t, .at = fc_plane_coefficients(crossing->plane, t, phase), .size = hypot(delta.x, delta.y)};
     of.kinetic = fc_plane_bound(crossing->plane, &of.at, 1, t, phase);
     of.held = has_static_friction(crossing)
                   ? fc_plane_bound(crossing->plane, &of.at, crossing->slips, t, phase)
@@ -120,8 +121,7 @@ bool fc_begin_slip(FcCrossing* crossing, bool surely) {
     // In the plane its direction relaxes.
     const double turning = of.at.sigma * D * fabs(fc_across(of.n, of.at.V));
     if (turning > 0.0) {
-        crossing->control.log_transient =
-            log(turning / (of.at.speed * fc_allowed_force(crossing->interval)));
+        crossing->control.log_transient = log(turning / (of.at.speed * fc_allowed_force(crossing->interval)));
     }
     return true;
 }
@@ -211,12 +211,13 @@ static double meeting_of_stuck(FcCrossing* crossing, double h, double a, double 
     const double f_1 = stuck_to_bound(crossing, x_1);
     const double x_2 = f_1 != f_0 ? x_1 - f_1 * (x_1 - x_0) / (f_1 - f_0) : x_1;
     crossing->evaluations += 2.0;
-    const bool converges =
-        fabs(f_0) < 1e-3 * (at_b - at_a) && fabs(f_1) <= 1e-3 * fabs(f_0) + over && x_2 > u + a * h && x_2 < u + b * h;
+    const bool converges = fabs(f_0) < 1e-3 * (at_b - at_a) && fabs(f_1) <= 1e-3 * fabs(f_0) + over &&
+                           x_2 > u + a * h && x_2 < u + b * h;
     return converges ? (x_2 - u) / h
                      : (fc_root_between(stuck_to_bound, crossing, u + a * h, at_a, u + b * h, at_b, over, 0.0,
                                         &crossing->evaluations) -
-                        u) / h;
+                        u) /
+                           h;
 }
 
 // The shortest part to which a panel is cut whose points do not resolve the motion near its start.
@@ -224,8 +225,8 @@ static const double SHORTENED_BY = 1.0 / 32.0;
 
 // The place in a panel of the length h, over it, at which it is cut: where it meets its bound. That of a stuck
 // bristle is exact, if a point of the panel lies beyond the bound.
-static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, double h, double meets, double over,
-                               bool* is_exact) {
+static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, double h, double meets,
+                               double over, bool* is_exact) {
     const double* f = panel->to_bound;
     double a = 0.0;
     double at_a = f[START];
@@ -264,13 +265,12 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
             const FcVector delta = panel->delta[i];
             const double size = fmax(hypot(delta.x, delta.y), DBL_MIN);
             const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
-            const FcPlaneBound bound =
-                fc_plane_bound(crossing->plane, &at, 1, nodes->t[i], nodes->phase[i]);
-            push[i] =
-                fc_plane_push(crossing->plane, &at, &bound, (FcVector){delta.x / size, delta.y / size});
+            const FcPlaneBound bound = fc_plane_bound(crossing->plane, &at, 1, nodes->t[i], nodes->phase[i]);
+            push[i] = fc_plane_push(crossing->plane, &at, &bound, (FcVector){delta.x / size, delta.y / size});
         }
         const double ends = end_of_push(crossing, push);
-        if (ends > 1.0 - LITTLE_PUSH || cuts >= 4) { // a push of 0 at the end is decided by the motion after it
+        if (ends > 1.0 - LITTLE_PUSH ||
+            cuts >= 4) { // a push of 0 at the end is decided by the motion after it
             return cuts > 0;
         }
         *h *= fmax(ends, LITTLE_PUSH);
@@ -413,7 +413,8 @@ static double end_of_known_push(FcCrossing* crossing, const FcNodes* nodes, cons
 
 // Cuts a panel that slips where its push ends; false if it does not. Along a line the end is exact; in the plane
 // the panel's own points show it better from cut to cut.
-static bool cut_at_end_of_push(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h, double* ends) {
+static bool cut_at_end_of_push(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, double* h,
+                               double* ends) {
     const bool on_line = crossing->plane->on_line;
     bool is_cut = *ends < 1.0;
     for (int cuts = 0; cuts < MOST_CUTS && *ends > 0.0 && *ends < 1.0; cuts++) {

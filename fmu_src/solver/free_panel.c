@@ -191,8 +191,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     double FC_PAIRED rate[POINTS]; // r times the duration
     double FC_PAIRED weight[POINTS];
     for (int i = 0; i < POINTS; i++) {
-        const double r =
-            relaxes ? nodes->sigma[i] * nodes->speed[i] / fc_most(nodes->limit[i], 1e-300) : 0.0;
+        const double r = relaxes ? nodes->sigma[i] * nodes->speed[i] / fc_most(nodes->limit[i], 1e-300) : 0.0;
         z[i] = nodes->tau[i] * r;
         rate[i] = nodes->duration * r;
         weight[i] = FC_RADAU.weight[i] * nodes->tau[i] * over_duration;
@@ -257,7 +256,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
         for (int i = 0; i < POINTS; i++) {
             F[i] = nodes->sigma[i] * y[i];
             slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
-            }
+        }
         defect += has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
         quadrature += fc_error_of_force(nodes, speed, 0.0, F, nodes->V_y);
     }

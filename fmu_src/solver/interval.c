@@ -34,8 +34,7 @@ FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolve
     assert(duration >= 0.0 && options->tolerance > 0.0 && options->force >= 0.0);
     const double stiffness = fc_scene_largest_stiffness(scene, duration);
     // An error of the deflection becomes one of the force, which grows with sigma up to the step's end.
-    const double grows =
-        options->stiffness_at_end > stiffness ? options->stiffness_at_end / stiffness : 1.0;
+    const double grows = options->stiffness_at_end > stiffness ? options->stiffness_at_end / stiffness : 1.0;
     return (FcInterval){.scene = scene,
                         .duration = duration,
                         .tolerance = options->tolerance,

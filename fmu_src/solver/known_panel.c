@@ -56,8 +56,7 @@ void fc_line_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom
     }
     const double D_start = bound[START].D;
     const double D_end = bound[LAST].D;
-    map->heat_offset -=
-        0.5 * (nodes->sigma[LAST] * D_end * D_end - nodes->sigma[START] * D_start * D_start);
+    map->heat_offset -= 0.5 * (nodes->sigma[LAST] * D_end * D_end - nodes->sigma[START] * D_start * D_start);
     map->offset = side * D_end;
     panel->sigma = nodes->sigma[LAST];
     panel->limit = nodes->limit[LAST];

@@ -3,8 +3,8 @@
 #include <float.h>
 #include <math.h>
 
-#include "solver/tuning.h"
 #include "solver/leap_block.h"
+#include "solver/tuning.h"
 
 // The fewest periods of a block. Chosen empirically: a block costs about as many. Fewer periods are computed
 // one by one.

@@ -142,10 +142,9 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
         return sample_of_slips(block, &scene, k, numbers);
     }
     if (block->of->side == 0) {
-        numbers->map = block->of->law->free_map(&scene, block->of->options, block->period,
-                                                fc_size(block->start),
-                                                block->of->law->is_planar ? &numbers->across : NULL,
-                                                block->evaluations);
+        numbers->map =
+            block->of->law->free_map(&scene, block->of->options, block->period, fc_size(block->start),
+                                     block->of->law->is_planar ? &numbers->across : NULL, block->evaluations);
         return true;
     }
     const FcBristle start = on_bound(&scene, block->of->side);

@@ -26,7 +26,8 @@ static bool may_fall(const FcScene* bound) {
 }
 
 static bool may_meet(const FcScene* scene, const FcScene* bound) {
-    return fc_is_bounded(scene->friction) && (scene->friction->model == FC_ELASTIC_PLASTIC || may_fall(bound));
+    return fc_is_bounded(scene->friction) &&
+           (scene->friction->model == FC_ELASTIC_PLASTIC || may_fall(bound));
 }
 
 // The transient [N] at the start: the difference of the force from its limit. The limit is Coulomb's force,
@@ -67,7 +68,8 @@ static void pass_over_rounding(FcCrossing* crossing, double before, int stalled)
         return;
     }
     crossing->at.u =
-        fmin(crossing->end, fmax(crossing->at.u, before + ldexp(0x1p-50, doublings) * (fabs(before) + crossing->end - before)));
+        fmin(crossing->end, fmax(crossing->at.u, before + ldexp(0x1p-50, doublings) *
+                                                              (fabs(before) + crossing->end - before)));
     crossing->at.t = fc_part_time(&crossing->part, crossing->at.u);
 }
 
@@ -87,7 +89,8 @@ static void cross_part(FcCrossing* crossing, int number) {
                 fc_free_until_event(crossing);
             }
         }
-        const double least = PROGRESS * (crossing->end - fc_straight_place(&crossing->part.in, crossing->part.start));
+        const double least =
+            PROGRESS * (crossing->end - fc_straight_place(&crossing->part.in, crossing->part.start));
         stalled = crossing->at.u - before > least ? 0 : stalled + 1;
         if (stalled > FC_MOST_TRIES) {
             pass_over_rounding(crossing, before, stalled);

@@ -173,8 +173,7 @@ FC_INLINE bool with_series(const FcPlane* plane, const FcPart* part, double u, d
     }
     for (int i = 0; i < POINTS; i++) {
         nodes->t[i] = fc_least(fc_most(middle + x[i], part->start), part->end);
-        nodes->phase[i] =
-            (FcPhase){s + (s * cosine[i] + c * sine[i]), c + (c * cosine[i] - s * sine[i])};
+        nodes->phase[i] = (FcPhase){s + (s * cosine[i] + c * sine[i]), c + (c * cosine[i] - s * sine[i])};
         nodes->sigma[i] = scene->at_E.stiffness_0;
         nodes->static_limit[i] = scene->F_C;
     }
@@ -231,8 +230,7 @@ static void with_library(const FcPlane* plane, const FcPart* part, double u, dou
     }
 }
 
-FC_WITH_AVX void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h,
-                               FcNodes* nodes) {
+FC_WITH_AVX void fc_nodes_make(const FcPlane* plane, const FcPart* part, double u, double h, FcNodes* nodes) {
     assert(h > 0.0 && (plane->on_line ? part->side * part->side <= 1 : part->side == 0));
     if (!with_series(plane, part, u, h, nodes)) {
         with_library(plane, part, u, h, nodes);

@@ -21,11 +21,11 @@ typedef struct {
 } FcFrom;
 
 typedef struct {
-    FcMap along, across;        // of delta and delta_y
-    double z;                   // integral of r = sigma |V| / g over the panel
-    double rate, sigma, limit;  // r [1/s], sigma [N/m] and g [N] at the end
-    double end_error;           // N, estimated, of the force at the end
-    double mean_error;          // N, estimated, of the mean force over the panel, and of its work over the path
+    FcMap along, across;       // of delta and delta_y
+    double z;                  // integral of r = sigma |V| / g over the panel
+    double rate, sigma, limit; // r [1/s], sigma [N/m] and g [N] at the end
+    double end_error;          // N, estimated, of the force at the end
+    double mean_error; // N, estimated, of the mean force over the panel, and of its work over the path
     FcVector delta[FC_POINTS];  // m, of a bounded law
     double to_bound[FC_POINTS]; // m2, |delta|^2 - D^2 of a free panel; m/s, the push of one that slips
 } FcPanel;

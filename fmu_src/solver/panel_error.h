@@ -18,7 +18,8 @@ FC_INLINE double fc_error_of_mean(const FcNodes* nodes, const double* f) {
 // The error of the mean over the panel of a force [N], its work over the largest speed [m/s], and its heat, together: one
 // function for all three, (F - held) (1 + v + (F + held) |v| / g), v = V / speed. The integrals of the constant force
 // `held` [N] are exact.
-FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double held, const double* F, const double* V) {
+FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double held, const double* F,
+                                   const double* V) {
     double FC_PAIRED f[FC_POINTS];
     const double over_duration = 1.0 / nodes->duration;
     const double over_speed = 1.0 / speed;
@@ -35,7 +36,7 @@ FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double he
 // and to the quadrature. z_first and z_last are the relaxations by the rates at the panel's ends. Relaxation damps a defect: at the
 // end by the rate there, inside by the least rate of the panel.
 FC_INLINE void fc_set_errors(FcPanel* panel, double z_first, double z_last, double force, double unresolved,
-                   double quadrature) {
+                             double quadrature) {
     const double whole = fc_most(0.0, panel->z);
     const double z_end = fc_most(0.0, fc_least(z_last, whole));
     const double z_least = fc_most(fc_least(z_end, z_first), fc_least(whole, sqrt(whole)));

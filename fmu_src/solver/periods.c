@@ -63,9 +63,9 @@ static double size_of(const FcStepResult* result) { return fc_size(fc_bristle_of
 
 static FcMap free_map_of(Walk* walk) {
     if (!walk->has_free_map) {
-        walk->free_map = walk->law.free_map(
-            walk->scene, walk->options, walk->period, size_of(&walk->total),
-            walk->law.is_planar ? &walk->free_map_across : NULL, &walk->total.evaluations);
+        walk->free_map =
+            walk->law.free_map(walk->scene, walk->options, walk->period, size_of(&walk->total),
+                               walk->law.is_planar ? &walk->free_map_across : NULL, &walk->total.evaluations);
         if (walk->scene->friction->model == FC_ELASTIC_PLASTIC) { // to the last digit
             walk->free_map.offset = walk->scene->drive.V.value * walk->period;
             walk->free_map_across.offset = walk->scene->drive.V_y.value * walk->period;

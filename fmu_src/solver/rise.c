@@ -33,13 +33,13 @@ static double root_between(double* f, double a, double b, double at_b) {
                       : a + 0x1p-50 * (b - a);
 }
 
-double fc_first_rise(const double given[FC_POINTS], double over) {
+double fc_first_rise(const double at_points[FC_POINTS], double over) {
     assert(over >= 0.0);
     double FC_PAIRED f[POINTS];
-    double largest = given[0];
-    double smallest = given[0];
+    double largest = at_points[0];
+    double smallest = at_points[0];
     for (int i = 0; i < POINTS; i++) {
-        f[i] = given[i];
+        f[i] = at_points[i];
         largest = fc_most(largest, f[i]);
         smallest = fc_least(smallest, f[i]);
     }

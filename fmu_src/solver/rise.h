@@ -6,6 +6,6 @@
 
 // The place in a panel, over its length, at which a function that is known at its points rises above 0, and
 // then above `over` >= 0; 2 if there is none. A function that begins above `over` must fall first.
-double fc_first_rise(const double f[FC_POINTS], double over);
+double fc_first_rise(const double at_points[FC_POINTS], double over);
 
 #endif

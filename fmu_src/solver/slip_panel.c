@@ -88,8 +88,7 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
     return false;
 }
 
-bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from,
-                         FcPanel* panel) {
+bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
     assert(!plane->on_line && from->push > 0.0);
     FcPlaneCoefficients at[POINTS];
     FcPlaneBound bound[POINTS];
@@ -149,7 +148,6 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFro
     const double quadrature = fc_error_of_force(nodes, from->speed, 0.0, F_x, nodes->V) +
                               fc_error_of_force(nodes, from->speed, 0.0, F_y, nodes->V_y) +
                               fc_error_of_mean(nodes, heat);
-    fc_set_errors(panel, 0.0, z[LAST], force,
-                        fc_radau_unresolved(slope, fmax(0.0, panel->z)), quadrature);
+    fc_set_errors(panel, 0.0, z[LAST], force, fc_radau_unresolved(slope, fmax(0.0, panel->z)), quadrature);
     return true;
 }

@@ -1,7 +1,8 @@
 """A contact at 2.5 MN/m and 20 kHz that is lifted from 300 N until it is open, and set down again.
 
-kappa = sigma V_1 / (2 pi f mu F_n) runs from 0.5 up to 1e100 on the way if the stiffness stays. Beyond 1e12 the bristle is
-shorter than rounding can see, and the force is Coulomb's, mu F_n(t) s(V) sgn V, with Stribeck's curve s.
+kappa = sigma V_1 / (2 pi f mu F_n) runs from 0.5 up to 1e100 on the way if the stiffness stays. Beyond 1e12
+the bristle is shorter than rounding can see, and the force is Coulomb's, mu F_n(t) s(V) sgn V, with Stribeck's
+curve s.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ def check(session: Session, constant: bool, limit: str, mean: float, largest: fl
 def test_a_lift_off_and_back(
     fmu: FrictionFmu, law: str, contact: str, limit: str, by: str, linear: bool
 ) -> None:
-    """No step is refused, however light the contact is on the way, and none costs more than the stiff ones."""
+    """No step is refused, however light the contact is on the way, and none costs more than stiff ones."""
     start = start_values(fmu, law, contact, limit, by)
     d_0 = separation(fmu, 1.0)
     up = [START, *way()]
