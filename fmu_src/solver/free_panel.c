@@ -13,7 +13,11 @@
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
 
-#ifdef __clang__
+// The lengths of the loops below are known only once the outer one is unrolled; then they become vector
+// instructions.
+#ifdef FC_NO_UNROLLING
+#define UNROLL
+#elif defined __clang__
 #define UNROLL _Pragma("unroll")
 #else
 #define UNROLL _Pragma("GCC unroll 16")
