@@ -7,7 +7,6 @@ static const double TURN = 6.283185307179586;
 static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the sequences in turn
 // The domain of docs/numerics.md.
 static const double MOST_KAPPA = 1e8;
-static const double LEAST_PLANAR_KAPPA = 1e-2, MOST_PLANAR_KAPPA = 1e6;
 static const double MOST_PLANAR = 30.0;   // periods of a step,
 static const double LONG_PLANAR = 150.0;  // and of some
 static const double SHORTEST = 1e-9;      // s, of a step
@@ -132,10 +131,8 @@ static void friction(Draw* draw, ReferenceScene* s) {
     s->contact = 1 + pick(draw, 3);
     s->input = chance(draw, 0.45) ? INPUT_LOAD : INPUT_SEPARATION;
     s->load = log_between(draw, 1e-1, 1e3);
-    const bool plane = s->V_2 != 0.0;
-    const double least = plane ? LEAST_PLANAR_KAPPA : LEAST_KAPPA,
-                 most = plane ? MOST_PLANAR_KAPPA : MOST_KAPPA;
-    const double scale = log_between(draw, least, chance(draw, 0.5) ? 1e3 : most) / scene_kappa(s);
+    const double most = chance(draw, 0.5) ? 1e3 : MOST_KAPPA;
+    const double scale = log_between(draw, LEAST_KAPPA, most) / scene_kappa(s);
     *(s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
         s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
