@@ -153,7 +153,7 @@ static double close_to_bound(const FcCrossing* crossing, double D) {
                            fmin(1.0, interval->speed * interval->duration / D);
     const double of_time =
         fabs(crossing->at.u) * fc_straight_pace(&crossing->part.in, crossing->at.u) + interval->duration;
-    const double rounding = 1e-14 * D + 4e-16 * fc_largest_push(crossing) * of_time;
+    const double rounding = 1e-13 * D + 4e-16 * fc_largest_push(crossing) * of_time;
     return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
 }
 
@@ -468,4 +468,36 @@ void fc_slip_until_event(FcCrossing* crossing) {
     if (is_over) {
         fc_end_slip(crossing);
     }
+}
+
+// Whether the push of a slip is rounding, or little beside the motion, at all points of a panel.
+static bool is_neutral(const FcCrossing* crossing, const FcPanel* panel) {
+    double largest = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        largest = fmax(largest, fabs(panel->to_bound[i]));
+    }
+    return largest <= LITTLE_PUSH * fc_largest_push(crossing);
+}
+
+bool fc_slip_neutrally(FcCrossing* crossing) {
+    const Beside of = beside_bound(crossing, fc_crossing_delta(crossing), crossing->at.t);
+    if (!crossing->is_bounded || !(fabs(of.size - of.kinetic.D) <= LITTLE_PUSH * of.kinetic.D)) {
+        return false;
+    }
+    const bool was_slipping = crossing->is_slipping;
+    crossing->is_slipping = true;
+    FcNodes nodes;
+    FcPanel panel;
+    double h = fc_take_accurate(crossing, &nodes, &panel);
+    for (int cuts = 0; cuts < MOST_CUTS && !is_neutral(crossing, &panel); cuts++) {
+        h *= 0.25;
+        fc_make_again(crossing, h, &nodes, &panel);
+    }
+    if (!is_neutral(crossing, &panel)) {
+        crossing->is_slipping = was_slipping;
+        return false;
+    }
+    fc_append_panel(crossing, &nodes, &panel, h);
+    crossing->meetings += !was_slipping;
+    return true;
 }

@@ -162,15 +162,18 @@ FC_INLINE void integrate(const double* weight, const double* P, const double* Q,
     map->heat_offset = fc_pair_sum(heat_offset);
 }
 
-// Work and heat of a bristle with constant sigma and g: F V = sigma D (V - delta'), less the change of sigma delta^2 / 2.
-FC_INLINE void known_energies(const FcFrom* from, double sigma, double D, double X, FcMap* map) {
-    const double start = from->for_any ? 0.0 : from->delta.x; // of the offsets
-    const double kept = from->for_any ? 1.0 - map->relaxation : 0.0;
-    map->work_slope = from->for_any ? sigma * D * map->relaxation : 0.0;
-    map->work_offset = sigma * D * (X - (map->offset - start));
-    map->heat_square = from->for_any ? 0.5 * sigma * (1.0 - kept * kept) : 0.0;
-    map->heat_slope = map->work_slope - sigma * kept * map->offset;
-    map->heat_offset = map->work_offset - 0.5 * sigma * (map->offset - start) * (map->offset + start);
+// Deflection, work and heat of a bristle with constant sigma and g are closed forms of the path; the impulse is the
+// quadrature's.
+FC_INLINE void take_path(const FcFrom* from, double sigma, double limit, double X, FcMap* map) {
+    const FcMap path = fc_map_of_path(sigma, limit, X);
+    const double start = from->for_any ? 0.0 : from->delta.x;
+    map->relaxation = from->for_any ? path.relaxation : 1.0;
+    map->offset = start - path.relaxation * start + path.offset;
+    map->work_slope = from->for_any ? path.work_slope : 0.0;
+    map->work_offset = path.work_slope * start + path.work_offset;
+    map->heat_square = from->for_any ? path.heat_square : 0.0;
+    map->heat_slope = from->for_any ? path.heat_slope : 0.0;
+    map->heat_offset = (path.heat_square * start + path.heat_slope) * start + path.heat_offset;
 }
 
 // The integrals of the constant force `held` are those of its quadrature: replaces them by exact ones. So a settled force
@@ -247,7 +250,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     double speed = from->speed;
     double held = 0.0;
     if (is_known) {
-        known_energies(from, panel->sigma, D, nodes->moved[LAST], &panel->along);
+        take_path(from, panel->sigma, panel->limit, nodes->moved[LAST], &panel->along);
         speed = INFINITY;
     } else if (from->limit_stands && !planar && relaxes) {
         held = F[LAST];

@@ -92,7 +92,7 @@ static void cross_part(FcCrossing* crossing, int number) {
         const double least =
             PROGRESS * (crossing->end - fc_straight_place(&crossing->part.in, crossing->part.start));
         stalled = crossing->at.u - before > least ? 0 : stalled + 1;
-        if (stalled > FC_MOST_TRIES) {
+        if (stalled > FC_MOST_TRIES && !fc_slip_neutrally(crossing)) {
             pass_over_rounding(crossing, before, stalled);
         }
     }
@@ -105,7 +105,8 @@ static const double RIGID = DBL_EPSILON;
 // Whether the force is Coulomb's, but for what rounding cannot see. Then the motion ends on the bound.
 static void choose_rigid(FcCrossing* crossing) {
     const FcInterval* interval = crossing->interval;
-    if (interval->saturation <= RIGID * interval->speed * interval->duration) { // at the most
+    if (interval->scene->friction->model != FC_COULOMB &&
+        interval->saturation <= RIGID * interval->speed * interval->duration) { // at the most
         fc_begin_part(crossing, 0);
         crossing->is_rigid = interval->saturation <= RIGID * fc_path_left(crossing, 0.0);
     }
