@@ -196,7 +196,7 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
     const FcScene scene = fc_friction_contact_scene(&held);
     const double force = fc_scene_mean_limit(&scene, 0.0);
     double range = first_range(&held, &scene, variable);
-    const double usual = force / fabs(range);
+    const double usual = range != 0.0 ? force / fabs(range) : 0.0;
     double least = INFINITY;
     const bool is_flat =
         range == 0.0 || fc_scene_is_loose(&scene); // an input that counts for nothing, or no contact

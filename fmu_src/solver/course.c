@@ -81,7 +81,7 @@ static int minima(const FcDrive* of, double h, double times[MOST_CENTERS]) {
     int count = 0;
     if (drive.vibration.V_1 == 0.0 && drive.vibration.V_2 == 0.0) {
         const Sample at = sample_at(&drive, 0.0);
-        if (at.bend > 0.0 && fabs(at.rate) < at.bend * DBL_MAX) {
+        if (at.bend > 0.0 && 1e-300 * fabs(at.rate) < at.bend) {
             times[count++] = -at.rate / at.bend;
         }
         return count;

@@ -196,7 +196,8 @@ static double stribeck_step(const FcScene* scene, double t) {
     const double rate = hypot(drive->V.rate, drive->V_y.rate) +
                         drive->omega * hypot(vibration->V_1, vibration->V_2); // at most
     const double speed = hypot(fc_drive_V(drive, t), fc_drive_V_y(drive, t));
-    return fmax(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed) / rate;
+    const double change = fmax(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
+    return rate > 0.0 ? change / rate : INFINITY;
 }
 
 // Begins the regime that the bristle has at the time t [s].

@@ -288,8 +288,10 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
     bool is_exact = false;
     for (int cuts = 0; cuts < MOST_CUTS; cuts++) {
         find_to_bound(crossing, nodes, panel);
-        if (crossing->touches) { // by rounding it may begin beyond
-            panel->to_bound[START] = fmin(panel->to_bound[START], 0.0);
+        const FcPlaneCoefficients begin = fc_nodes_at(nodes, START);
+        const double D_begin = fc_plane_radius(crossing->plane, &begin, crossing->slips);
+        if (crossing->touches && panel->to_bound[START] <= 4.0 * FC_ROUNDING_OF_BOUND * D_begin * D_begin) {
+            panel->to_bound[START] = fmin(panel->to_bound[START], 0.0); // by rounding it may begin beyond
         }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
         *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));

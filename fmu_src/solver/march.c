@@ -170,7 +170,7 @@ static void put_result(const FcCrossing* crossing, FcStepResult* result) {
 
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result) {
-    if (!(duration > 0.0)) {
+    if (!(duration > 0.0) || isnan(result->delta)) { // no number of an earlier interval
         return;
     }
     const FcBristle bristle = fc_bristle_of(result);

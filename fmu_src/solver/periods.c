@@ -279,7 +279,7 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         return false;
     }
     *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
-    const double part = fmin(1.0, MOST_OF_NEWTON * size_of(total) / length);
+    const double part = length > 0.0 ? fmin(1.0, MOST_OF_NEWTON * size_of(total) / length) : 1.0;
     const FcBristle reached = fc_reach(scene, (FcBristle){.delta = met->from.x + part * start.x,
                                                           .delta_y = met->from.y + part * start.y,
                                                           .slips = total->slips});

@@ -1,4 +1,4 @@
-"""Every call returns within a second, whatever the numbers; usual scenes raise no floating-point exception."""
+"""Every call returns within a second, whatever the numbers; usual scenes raise no floating-point trap."""
 
 from __future__ import annotations
 

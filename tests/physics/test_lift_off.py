@@ -1,7 +1,7 @@
 """A contact at 2.5 MN/m and 20 kHz that is lifted from 300 N until it is open, and set down again.
 
 kappa = sigma V_1 / (2 pi f mu F_n) runs from 0.5 up to 1e100 on the way if the stiffness stays. Beyond 1e12
-the bristle is shorter than rounding can see, and the force is Coulomb's, mu F_n(t) s(V) sgn V, with Stribeck's
+the bristle is shorter than rounding can see. The force is Coulomb's, mu F_n(t) s(V) sgn V, with Stribeck's
 curve s.
 """
 

@@ -102,7 +102,7 @@ static void a_billion_periods_cost_one_interval(void) {
     FcStepResult result = {.delta = 1.0};
     FcMessage message;
     CHECK(step((Case){0.0, 1.0, 0x1p30 * PERIOD}, &result, &message));
-    CHECK(asked.maps == 1 && asked.steps == 0); // no rest
+    CHECK(asked.maps == 1 && asked.steps == 0);    // no rest
     CHECK_NEAR(result.delta, 8.0 * PERIOD, 1e-15); // where 1/4 delta = V / F
     // and what the start, 1 - 8 PERIOD away, decays by adds 4 periods of it
     const double transient = 3.0 * PERIOD * 4.0 * (1.0 - 8.0 * PERIOD);
