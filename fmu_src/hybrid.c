@@ -317,6 +317,9 @@ static double part_of_period(const View* view, double t, double period) {
 
 // The first local time up to `end` at which the push towards the bound of that side ends; else `end`.
 static double first_turn(const View* view, int side, double start, double period, double end) {
+    if (!(start < end)) { // an input may be 0 at the start
+        return end;
+    }
     FcPushed of = {&view->scene, &view->bound, side};
     double evaluations = 0.0;
     double before = fc_push_at(&of, start);

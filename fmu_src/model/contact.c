@@ -69,6 +69,15 @@ FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E)
     return at;
 }
 
+// A vibration may pull the surfaces apart without end. The floor keeps sigma, its ratio to F_n and their squares numbers; it
+// is far below the 1e-100 N at which a contact opens (scene.c).
+static const double FARTHEST = 0x1p-465; // 1e-140
+
+double fc_contact_decayed(const FcContactAtModulus* c, double d) {
+    const double e = exp(-c->decay * d);
+    return e < FARTHEST ? FARTHEST : e; // NaN passes
+}
+
 static double stiffness(const FcContactAtModulus* c, double d, double e) {
     switch (c->model) {
     case FC_CONTACT_CONSTANT:
@@ -82,12 +91,12 @@ static double stiffness(const FcContactAtModulus* c, double d, double e) {
 
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d) {
     assert(!(d <= 0.0) || (d == 0.0 && c->model == FC_CONTACT_CONSTANT)); // NaN passes
-    const double e = exp(-c->decay * d);
+    const double e = fc_contact_decayed(c, d);
     return (FcContactResponse){.sigma = stiffness(c, d, e), .A_r = c->area_0 * e, .F_n = c->load_0 * e};
 }
 
 double fc_contact_stiffness(const FcContactAtModulus* c, double d) {
-    return c->model == FC_CONTACT_CONSTANT ? c->stiffness_0 : stiffness(c, d, exp(-c->decay * d));
+    return c->model == FC_CONTACT_CONSTANT ? c->stiffness_0 : stiffness(c, d, fc_contact_decayed(c, d));
 }
 
 FcContactLogSlope fc_contact_slope_by_d(const FcContactAtModulus* c, double d) {

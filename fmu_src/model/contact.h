@@ -69,6 +69,9 @@ typedef struct {
 // E [Pa] > 0.
 FcContactAtModulus fc_contact_at_modulus(const FcContactParameters* p, double E);
 
+// e^(-decay d), the factor of F_n and A_r; at least 1e-140, at which a contact is open.
+double fc_contact_decayed(const FcContactAtModulus* c, double d);
+
 // At the separation d [m] > 0: all values, or the stiffness sigma [N/m] alone. An open contact of constant
 // stiffness may have d = 0. Then only its stiffness is valid.
 FcContactResponse fc_contact_response(const FcContactAtModulus* c, double d);

@@ -270,7 +270,7 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
     }
     const FcContactAtModulus end = contact_at(scene, h);
     const double load_0 = fmin(scene->at_E.load_0, end.load_0);
-    return scene->friction->mu * load_0 * exp(-scene->at_E.decay * largest_d(scene, h));
+    return scene->friction->mu * load_0 * fc_contact_decayed(&scene->at_E, largest_d(scene, h));
 }
 
 double fc_scene_smallest_saturation(const FcScene* scene, double h) {

@@ -1,6 +1,7 @@
 #include "solver/interval.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 // The largest rate of ln sigma over that of ln E. Derived: 2.11 by Eq. 3. A smaller factor plans panels that are
@@ -41,6 +42,6 @@ FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolve
                         .force = options->force / grows,
                         .speed = fc_drive_largest_speed(&scene->drive, duration),
                         .stiffness = stiffness,
-                        .saturation = fc_scene_largest_saturation(scene, duration),
+                        .saturation = fmin(DBL_MAX, fc_scene_largest_saturation(scene, duration)),
                         .pace = fc_pace(scene, duration)};
 }

@@ -26,7 +26,7 @@ FcPast fc_past(const FcScene* scene) {
 // The ramp from the past to the scene. Its places run from 0 to 1.
 typedef struct {
     const FcScene* scene;
-    FcPast past;
+    FcPast past, now;
     double d, V, V_y, E;                             // by which they change
     double log_limit, log_ratio, log_V_S, log_sigma; // by which parameters change them
     double along, along_change;                      // m2/s, V times delta, and by which it changes
@@ -69,8 +69,8 @@ static double curve_at(const Ramp* ramp, double s, double* log_rate) {
 static Place at_place(const Ramp* ramp, double s) {
     const FcScene* scene = ramp->scene;
     const FcFriction* friction = scene->friction;
-    const double d = ramp->past.d + s * ramp->d;
-    const double E = ramp->past.E + s * ramp->E;
+    const double d = (1.0 - s) * ramp->past.d + s * ramp->now.d; // above 0 at any size of the other
+    const double E = (1.0 - s) * ramp->past.E + s * ramp->now.E;
     const bool follows_load = fc_limit_follows_load(friction);
     Place at = {.limit = scene->F_C, .sigma = scene->at_E.stiffness_0};
     double rate = ramp->log_limit - ramp->log_sigma;
@@ -100,7 +100,7 @@ static Place at_place(const Ramp* ramp, double s) {
 
 static Ramp ramp_between(const FcScene* scene, const FcPast* past, const FcPast* now,
                          const FcBristle* bristle) {
-    Ramp ramp = {.scene = scene, .past = *past};
+    Ramp ramp = {.scene = scene, .past = *past, .now = *now};
     ramp.d = now->d - past->d;
     ramp.V = now->V - past->V;
     ramp.V_y = now->V_y - past->V_y;

@@ -115,7 +115,7 @@ FC_INLINE void of_separation(const FcScene* scene, double d_middle, const double
         e[i] = -c->decay * moved[i];
     }
     exp_less_1(e, halved);
-    const double e_middle = exp(-c->decay * d_middle);
+    const double e_middle = fc_contact_decayed(c, d_middle);
     for (int i = 0; i < POINTS; i++) {
         e[i] = e_middle + e_middle * e[i];
     }

@@ -6,19 +6,19 @@
 #include "solver/panel_tables.h"
 
 typedef struct {
-    double t[FC_POINTS];            // s
-    double tau[FC_POINTS];          // s, dt/du times the panel's length in u
-    FcPhase phase[FC_POINTS];       // of the vibration
-    double V[FC_POINTS];            // m/s
-    double V_y[FC_POINTS];          // m/s
-    double speed[FC_POINTS];        // m/s, |V|; along a line side V, also by rounding beyond the reversal
-    double sigma[FC_POINTS];        // N/m
-    double limit[FC_POINTS];        // N, g at that speed
-    double static_limit[FC_POINTS]; // N
-    double moved[FC_POINTS];        // m, the displacement from the panel's start on
-    double moved_y[FC_POINTS];      // m
-    double duration;                // s
-    int side;                       // along a line, the sign of V; else 0
+    double t[FC_POINTS];               // s
+    double FC_PAIRED tau[FC_POINTS];   // s, dt/du times the panel's length in u
+    FcPhase phase[FC_POINTS];          // of the vibration
+    double FC_PAIRED V[FC_POINTS];     // m/s
+    double FC_PAIRED V_y[FC_POINTS];   // m/s
+    double speed[FC_POINTS];           // m/s, |V|; along a line side V, also by rounding beyond the reversal
+    double FC_PAIRED sigma[FC_POINTS]; // N/m
+    double limit[FC_POINTS];           // N, g at that speed
+    double static_limit[FC_POINTS];    // N
+    double moved[FC_POINTS];           // m, the displacement from the panel's start on
+    double moved_y[FC_POINTS];         // m
+    double duration;                   // s
+    int side;                          // along a line, the sign of V; else 0
 } FcNodes;
 
 // The panel [u, u + h] of the part, h > 0. Rounding takes no point out of the part.
