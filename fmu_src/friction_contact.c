@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "model/extremes.h"
 #include "solver/method.h"
 
 // The number of vibration periods since time 0 beyond which the phase is refused. Chosen empirically:
@@ -48,13 +49,7 @@ static const FcContactAtModulus* contact_at(FcFrictionContact* contact, double E
 // (fc_scene_piece).
 static double load_after(FcLinearInput load, double h) {
     const double after = fc_input_after(load, h);
-    return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fmin(after, 0.0) : after;
-}
-
-// Whether the law uses the separation, and with it the modulus and the load.
-static bool uses_separation(const FcVariables* v) {
-    const FcScene scene = {.friction = &v->friction, .at_E = {.model = v->contact.model}};
-    return fc_scene_depends_on_d(&scene);
+    return after <= FC_NEARLY_OPEN * fabs(load.rate) * h ? fc_least(after, 0.0) : after;
 }
 
 // Whether a scene whose law does not use the separation has one above 0, with finite results.
@@ -69,7 +64,7 @@ static bool has_contact(const FcScene* scene) {
 static FcScene scene_from(FcFrictionContact* contact, double start, double rest,
                           const double rate[FC_INPUT_COUNT], double ahead) {
     const FcVariables* v = &contact->state.variables;
-    const bool is_used = uses_separation(v);
+    const bool is_used = fc_uses_separation(&v->friction, v->contact.model);
     const FcLinearInput V = {v->V + rate[FC_INPUT_V] * ahead, rate[FC_INPUT_V]};
     FcLinearInput d = {v->d + rate[FC_INPUT_D] * ahead, rate[FC_INPUT_D]};
     FcLinearInput E = {v->E, rate[FC_INPUT_E]};
@@ -127,7 +122,7 @@ static bool fail_separation(const FcScene* scene, double h, FcMessage* message) 
     const FcDrive* drive = &scene->drive;
     const double a_d = drive->vibration.a_d;
     if (scene->contact->input == FC_CONTACT_LOAD) {
-        return fail_load(&scene->at_E, fmax(drive->load.value, fc_drive_load(drive, h)), a_d, message);
+        return fail_load(&scene->at_E, fc_most(drive->load.value, fc_drive_load(drive, h)), a_d, message);
     }
     if (drive->d.rate == 0.0) {
         return fc_message_set(
@@ -150,7 +145,7 @@ static bool fail_input(FcMessage* message, const char* name, double value, const
 
 // The inputs that the law uses must be above 0. A load of 0 opens the contact.
 static bool check_inputs(const FcVariables* v, FcMessage* message) {
-    if (!uses_separation(v)) {
+    if (!fc_uses_separation(&v->friction, v->contact.model)) {
         return true;
     }
     if (!(v->E > 0.0)) {
@@ -168,11 +163,11 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     const FcDrive* drive = &scene->drive;
     const double E = drive->E.value;
     const double end = fc_drive_E(drive, h);
-    if (!(fmin(E, end) > 0.0)) {
+    if (!(fc_least(E, end) > 0.0)) {
         return fc_message_set(message, "E moves from %.9g Pa to %.9g Pa in the step: it must stay above 0 Pa",
                               E, end);
     }
-    if (fmax(E, end) > MOST_CHANGE_OF_E * fmin(E, end)) {
+    if (fc_most(E, end) > MOST_CHANGE_OF_E * fc_least(E, end)) {
         return fc_message_set(
             message,
             "E moves from %.9g Pa to %.9g Pa in the step: it may change by at most a factor of %g, "
@@ -185,7 +180,7 @@ static bool check_scene(const FcScene* scene, double h, FcMessage* message) {
     }
     const bool by_load = scene->contact->input == FC_CONTACT_LOAD;
     const bool stays_open = scene->is_open && !scene->floats;
-    if (by_load && (stays_open || !(fmax(drive->load.value, fc_drive_load(drive, h)) > 0.0))) {
+    if (by_load && (stays_open || !(fc_most(drive->load.value, fc_drive_load(drive, h)) > 0.0))) {
         return true; // open throughout
     }
     const double d = fc_scene_smallest_d(scene, h);
@@ -353,20 +348,20 @@ static double force_of_bristle(const FcScene* scene, double h, FcBristle from) {
     const FcFriction* friction = scene->friction;
     double limit = fc_scene_mean_limit(scene, 0.0);
     if (fc_scene_has_pieces(scene)) {
-        limit = fmax(limit, fc_scene_mean_limit(scene, h));
+        limit = fc_most(limit, fc_scene_mean_limit(scene, h));
     }
     const double delta = fc_size(from);
     const double elastic = friction->model == FC_COULOMB || delta == 0.0 || fc_scene_is_loose(scene)
                                ? 0.0
                                : fabs(fc_scene_stiffness(scene, 0.0) * delta);
-    return fmax(fmax(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
+    return fc_most(fc_most(fc_static_ratio(friction) * limit, elastic), DBL_MIN);
 }
 
 // The least limit of the step. If the contact opens or closes in the step, the mean limit at its closed end.
 static double least_limit(const FcScene* scene, double h) {
-    const double at_ends = fmin(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+    const double at_ends = fc_least(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
     return at_ends > 0.0 ? fc_scene_smallest_limit(scene, h)
-                         : fmax(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
+                         : fc_most(fc_scene_mean_limit(scene, 0.0), fc_scene_mean_limit(scene, h));
 }
 
 // solver.tolerance is relative to the largest of the forces of bristle, damping and viscosity. An error of
@@ -380,13 +375,13 @@ static FcSolverOptions solver_options(const FcVariables* v, const FcScene* scene
     const double damping = sigma_1 * speed;
     const double bristle = force_of_bristle(scene, h, from);
     const double limit = damping != 0.0 ? least_limit(scene, h) : 0.0;
-    const double largest = fmax(bristle, damping + sigma_2 * speed);
+    const double largest = fc_most(bristle, damping + sigma_2 * speed);
     double force = largest;
     if (limit > 0.0) {
-        force = fmax(fc_force_beside_damping(largest, damping, limit),
-                     bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
+        force = fc_most(fc_force_beside_damping(largest, damping, limit),
+                        bristle * SMALLEST_TOLERANCE / v->solver.tolerance);
     }
-    return (FcSolverOptions){.tolerance = fmax(SMALLEST_TOLERANCE, v->solver.tolerance),
+    return (FcSolverOptions){.tolerance = fc_most(SMALLEST_TOLERANCE, v->solver.tolerance),
                              .force = force,
                              .largest = largest,
                              .damping = damping,

@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "model/constants.h"
+#include "model/extremes.h"
 #include "model/plane.h"
 #include "model/root.h"
 
@@ -308,11 +309,12 @@ static double part_of_period(const View* view, double t, double period) {
     double part = PART_OF_PERIOD * period;
     if (fc_has_static_friction(friction) && view->side != 0) {
         const FcVelocity at = fc_drive_velocity(&view->scene.drive, t);
-        const double change = fmax(PART_OF_PEAK * friction->V_S, fabs(at.V) - FC_END_OF_PEAK * friction->V_S);
-        part = fmin(part, fc_velocity_time_of_change(&at, change));
+        const double change =
+            fc_most(PART_OF_PEAK * friction->V_S, fabs(at.V) - FC_END_OF_PEAK * friction->V_S);
+        part = fc_least(part, fc_velocity_time_of_change(&at, change));
     }
     assert(!(part < 0.0) && period > 0.0);
-    return fmax(part, LEAST_PART_OF_PERIOD * period);
+    return fc_most(part, LEAST_PART_OF_PERIOD * period);
 }
 
 // The first local time up to `end` at which the push towards the bound of that side ends; else `end`.
@@ -325,7 +327,7 @@ static double first_turn(const View* view, int side, double start, double period
     double before = fc_push_at(&of, start);
     double t = start;
     while (t < end) {
-        const double next = fmin(end, t + part_of_period(view, t, period));
+        const double next = fc_least(end, t + part_of_period(view, t, period));
         const double after = fc_push_at(&of, next);
         if (before > 0.0 && after <= 0.0) {
             return fc_root_between(fc_push_at, &of, t, before, next, after, 0.0, 0.0, &evaluations);
@@ -348,7 +350,8 @@ static double before_opening(const FcDrive* drive, double longest) {
     const FcLinearInput falling[] = {
         drive->load, drive->E, {drive->d.value - drive->vibration.a_d, drive->d.rate}};
     for (int i = 0; i < 3; i++) {
-        longest = falling[i].rate < 0.0 ? fmin(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
+        longest =
+            falling[i].rate < 0.0 ? fc_least(longest, 0.5 * falling[i].value / -falling[i].rate) : longest;
     }
     return longest;
 }
@@ -361,7 +364,7 @@ static double time_to_turn(const View* view, double delta, double period, double
     for (int side = -1; side <= 1; side += 2) {
         const double t = view->side != -side ? first_turn(view, side, start, period, end) : end;
         if (t < end && (view->side != 0 || turns_near(view, side, delta, t))) {
-            turn = fmin(turn, t);
+            turn = fc_least(turn, t);
         }
     }
     return turn;
@@ -418,7 +421,7 @@ bool fc_hybrid_nominals(FcFrictionContact* contact, double nominals[FC_STATE_COU
                                                                  : scene.F_C;
     const double length = force / at.sigma;
     const double amplitude = hypot(vibration->V_1, vibration->V_2) / (FC_TWO_PI * vibration->f);
-    const double energy = force * fmax(length, amplitude);
+    const double energy = force * fc_most(length, amplitude);
     if (!(length > 0.0 && energy > 0.0) || !isfinite(length) || !isfinite(energy)) {
         return fc_message_set(message,
                               "the nominal values of the states are no finite numbers above 0: the limit of "

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/constants.h"
+#include "model/extremes.h"
 #include "solver/method.h"
 
 // The tolerance of the forces whose differences make a derivative: as fine as the solver goes
@@ -52,7 +53,7 @@ static bool dry_force(FcFrictionContact* held, double tolerance, FcVector* force
     const FcBristle start = fc_reach(&scene, (FcBristle){.delta = v->delta_0, .delta_y = v->delta_y_0});
     const double scale = fc_static_ratio(&v->friction) * fc_scene_mean_limit(&scene, 0.0);
     const FcSolverOptions options = {
-        .tolerance = tolerance, .force = fmax(scale, DBL_MIN), .step_size = v->solver.stepSize};
+        .tolerance = tolerance, .force = fc_most(scale, DBL_MIN), .step_size = v->solver.stepSize};
     fc_method_settled(&scene, &options, start, force, evaluations);
     if (*evaluations > FC_MOST_EVALUATIONS) {
         return fc_message_set(message,
@@ -87,12 +88,12 @@ static const double PART_OF_SCALE = 0.25; // for the first range
 // For a velocity, along or transverse, with its amplitude.
 static double first_range_of_V(const FcVariables* v, const FcScene* scene, double V, double amplitude) {
     const double speed = fabs(V);
-    double scale = fmax(amplitude, speed - amplitude);
+    double scale = fc_most(amplitude, speed - amplitude);
     if (amplitude == 0.0) {
         const FcCoefficients at = fc_scene_coefficients(scene, 0.0);
         const double reach = at.limit / at.sigma * v->vibration.f; // of the bristle, in a period
-        scale =
-            fmax(speed, fc_drive_vibrates(&scene->drive) ? fmin(reach, LARGEST_SCALE_OF_V) : v->friction.V_S);
+        scale = fc_most(speed, fc_drive_vibrates(&scene->drive) ? fc_least(reach, LARGEST_SCALE_OF_V)
+                                                                : v->friction.V_S);
     }
     const double room = speed >= amplitude ? speed - amplitude : speed; // towards 0
     return copysign(PART_OF_SCALE * scale, room > PART_OF_SCALE * scale ? -V : V);
@@ -105,7 +106,7 @@ static double first_range_of_amplitude(const FcVariables* v, double V, double am
     if (amplitude == 0.0) {
         return PART_OF_SCALE * (speed > 0.0 ? speed : v->friction.V_S);
     }
-    return PART_OF_SCALE * (amplitude < speed ? -fmin(room, amplitude) : amplitude);
+    return PART_OF_SCALE * (amplitude < speed ? -fc_least(room, amplitude) : amplitude);
 }
 
 // The first range [the variable's unit] over which the force is fitted, with its sign. It contains neither V = 0
@@ -124,10 +125,10 @@ static double first_range(const FcFrictionContact* held, const FcScene* scene, s
     case offsetof(FcVariables, vibration.V_2):
         return first_range_of_amplitude(v, v->V_y, v->vibration.V_2);
     case offsetof(FcVariables, d):
-        return PART_OF_SCALE * fmin(1.0 / decay, v->d);
+        return PART_OF_SCALE * fc_least(1.0 / decay, v->d);
     case offsetof(FcVariables, vibration.a_d):
-        return PART_OF_SCALE * (v->vibration.a_d > 0.0 ? -fmin(1.0 / decay, v->vibration.a_d)
-                                                       : fmin(1.0 / decay, fc_scene_d(scene, 0.0)));
+        return PART_OF_SCALE * (v->vibration.a_d > 0.0 ? -fc_least(1.0 / decay, v->vibration.a_d)
+                                                       : fc_least(1.0 / decay, fc_scene_d(scene, 0.0)));
     case offsetof(FcVariables, vibration.phase_d):
     case offsetof(FcVariables, vibration.phase_2):
         return PART_OF_SCALE;
@@ -180,7 +181,7 @@ static bool slope_over(FcFrictionContact* held, size_t variable, double range, F
         slope->y += k % 2 == 1 ? term.y : -term.y;
         gap.x += k % 2 == 1 ? c.x : -c.x;
         gap.y += k % 2 == 1 ? c.y : -c.y;
-        *error = k >= POINTS - 2 ? fmax(*error, hypot(term.x, term.y)) : 0.0;
+        *error = k >= POINTS - 2 ? fc_most(*error, hypot(term.x, term.y)) : 0.0;
     }
     *missed = hypot(gap.x, gap.y);
     return true;

@@ -10,6 +10,7 @@
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
 #include "model/derivatives.h"
+#include "model/extremes.h"
 #include "settled_force.h"
 
 // The variable of the reference if it has the causality; otherwise NULL, after logging the reason.
@@ -127,13 +128,13 @@ static double small_change(const FcFrictionContact* contact, const FcVariableInf
     if (strcmp(info->unit, "m/s") == 0) {
         scale = v->friction.V_S;
     } else if (strcmp(info->unit, "m") == 0) {
-        scale = fmin(v->d, v->contact.R_q / v->contact.lambda);
+        scale = fc_least(v->d, v->contact.R_q / v->contact.lambda);
     } else if (strcmp(info->unit, "rad") == 0) {
         scale = 1.0;
     } else if (info->causality == FC_CAUSALITY_INDEPENDENT) {
         scale = moment;
     } else if (info->offset == offsetof(FcVariables, vibration.f)) {
-        scale *= fmin(1.0, moment / fabs(contact->state.time));
+        scale *= fc_least(1.0, moment / fabs(contact->state.time));
     }
     return scale > 0.0 ? ldexp(1.0, ilogb(part * scale)) : 0.0;
 }

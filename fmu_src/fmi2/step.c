@@ -6,6 +6,7 @@
 #include "fmi2/instance.h"
 #include "fmi2/log.h"
 #include "fmi2/variables.h"
+#include "model/extremes.h"
 
 // Hosts add or multiply their steps, so their time differs by rounding, which must not stop a run. The
 // allowance is relative: steps of 1e-12 s work as well as steps of 1e9 s.
@@ -15,9 +16,9 @@ static double rounding_of_time(double t, double h) { return 1e-6 * h + 16.0 * DB
 // as this one. A step that begins at the stop time is one too many.
 static double rounding_of_end(const FcExperiment* experiment, double end, double h) {
     const double steps = (end - experiment->start_time) / h;
-    const double sum = 0.5 * DBL_EPSILON * steps * fmax(fabs(experiment->start_time), fabs(end));
+    const double sum = 0.5 * DBL_EPSILON * steps * fc_most(fabs(experiment->start_time), fabs(end));
     const double rounding = rounding_of_time(end, h);
-    return fmax(rounding, fmin(sum, h - rounding));
+    return fc_most(rounding, fc_least(sum, h - rounding));
 }
 
 static bool check_step(const FcInstance* instance, double t, double h) {

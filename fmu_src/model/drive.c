@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/constants.h"
+#include "model/extremes.h"
 #include "model/root.h"
 
 // f t minus the nearest whole number, exact to the last bit of t: the product's rounding error is added back.
@@ -192,27 +193,27 @@ double fc_drive_d_rate(const FcDrive* drive, double t) {
 }
 
 double fc_drive_smallest_d(const FcDrive* drive, double h) {
-    return fmin(drive->d.value, linear(drive->d, h)) - drive->vibration.a_d;
+    return fc_least(drive->d.value, linear(drive->d, h)) - drive->vibration.a_d;
 }
 
 double fc_drive_largest_d(const FcDrive* drive, double h) {
-    return fmax(drive->d.value, linear(drive->d, h)) + drive->vibration.a_d;
+    return fc_most(drive->d.value, linear(drive->d, h)) + drive->vibration.a_d;
 }
 
 double fc_drive_smallest_E(const FcDrive* drive, double h) {
-    return fmin(drive->E.value, linear(drive->E, h));
+    return fc_least(drive->E.value, linear(drive->E, h));
 }
 
 double fc_drive_largest_E(const FcDrive* drive, double h) {
-    return fmax(drive->E.value, linear(drive->E, h));
+    return fc_most(drive->E.value, linear(drive->E, h));
 }
 
 double fc_drive_largest_speed(const FcDrive* drive, double h) {
-    const double along = fmax(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
+    const double along = fc_most(fabs(drive->V.value), fabs(linear(drive->V, h))) + drive->vibration.V_1;
     if (!fc_drive_is_planar(drive)) {
         return along;
     }
-    return hypot(along, fmax(fabs(drive->V_y.value), fabs(linear(drive->V_y, h))) + drive->vibration.V_2);
+    return hypot(along, fc_most(fabs(drive->V_y.value), fabs(linear(drive->V_y, h))) + drive->vibration.V_2);
 }
 
 // Half an angle [rad] up to which the displacement is a series. Derived: the remainder of the series is below
@@ -373,7 +374,7 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
     if (fabs(V) < fabs(V_1)) {
         const double root = angle_of_reversal(V, V_1);
         const double time =
-            t + fmin(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
+            t + fc_least(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
         return time < end ? event_at(drive, time, true) : none_before(end);
     }
     const double time = t + angle_ahead(now, (V > 0.0) == (V_1 > 0.0) ? FC_PI : 0.0, least) / drive->omega;
@@ -401,8 +402,8 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
             const double now = theta(drive, from);
             const double angle = asin(slope);
             const double least = least_ahead(now);
-            to = from +
-                 fmin(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least)) / drive->omega;
+            to = from + fc_least(angle_ahead(now, angle, least), angle_ahead(now, FC_PI - angle, least)) /
+                            drive->omega;
         }
         const bool stops_at_end = !(to < end);
         if (stops_at_end) {

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "model/extremes.h"
+
 // The largest number of evaluations of one root, after which the last value is returned. Bisection alone
 // takes about 60 to reach rounding; half of this would suffice, twice would cost nothing.
 enum { MOST_ROOT_STEPS = 200 };
@@ -78,7 +80,7 @@ double fc_root(FcRootEvaluation f, void* context, double a, FcRootFunction at_a,
 
 double fc_root_between(double (*f)(void* context, double t), void* context, double a, double at_a, double b,
                        double at_b, double close, double least_area, double* evaluations) {
-    const double rounding = DBL_EPSILON * fmax(fabs(a), fabs(b));
+    const double rounding = DBL_EPSILON * fc_most(fabs(a), fabs(b));
     // The root lies between near and far; before is the end that was replaced last.
     double near = b;
     double far = a;
@@ -95,8 +97,8 @@ double fc_root_between(double (*f)(void* context, double t), void* context, doub
         if (at_near == 0.0 || (on_side && is_close) || width <= rounding) {
             break;
         }
-        const double least = fmin(0.5, fmax(1e-9, rounding / width)); // so that t is another number
-        const double t = near + fmax(least, fmin(1.0 - least, part)) * (far - near);
+        const double least = fc_least(0.5, fc_most(1e-9, rounding / width)); // so that t is another number
+        const double t = near + fc_most(least, fc_least(1.0 - least, part)) * (far - near);
         const double at_t = f(context, t);
         *evaluations += 1.0;
         before = near;

@@ -2,6 +2,8 @@
 
 #include <assert.h>
 
+#include "model/extremes.h"
+
 // The mean separation [m] of the surfaces at the time t, with contact.input = Load.
 static double rest_separation(const FcScene* scene, const FcContactAtModulus* at_E, double t) {
     return (log(at_E->load_0 / fc_drive_load(&scene->drive, t)) + scene->log_swell) / at_E->decay;
@@ -25,14 +27,14 @@ static double open_separation(const FcContactAtModulus* at_E) {
     }
     const double without_stiffness = log(at_E->stiffness_0 / NOTHING);
     if (at_E->model == FC_CONTACT_MINDLIN) {
-        return fmin(without_load, without_stiffness / at_E->decay);
+        return fc_least(without_load, without_stiffness / at_E->decay);
     }
     double d =
         without_load; // of stiffness_0 e^(-2 decay d) / d^3, by iteration: an error falls to 1 % each time
     for (int i = 0; i < 8; i++) {
         d = (without_stiffness - 3.0 * log(d)) / (2.0 * at_E->decay);
     }
-    return fmin(without_load, d);
+    return fc_least(without_load, d);
 }
 
 FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModulus* at_E,
@@ -56,7 +58,7 @@ FcScene fc_scene_make(const FcContactParameters* contact, const FcContactAtModul
 double fc_scene_closed_by(const FcScene* scene) {
     return follows_load(scene)
                ? scene->drive.load.value - NOTHING
-               : fmax(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
+               : fc_most(NOT_FAR / scene->at_E.decay, open_separation(&scene->at_E)) - scene->drive.d.value;
 }
 
 // The largest factor by which a load moves in a piece. Chosen empirically: a larger factor needs finer
@@ -76,7 +78,7 @@ static double time_to_edge(const FcScene* scene, double rest) {
     const int most = scene->drive.E.rate == 0.0 ? 1 : 8;
     double time = 0.0;
     for (int i = 0; i < most; i++) {
-        const FcContactAtModulus at_E = contact_at(scene, fmin(fmax(time, 0.0), rest));
+        const FcContactAtModulus at_E = contact_at(scene, fc_least(fc_most(time, 0.0), rest));
         time = (open_separation(&at_E) - d.value) / d.rate;
     }
     return time;
@@ -92,21 +94,21 @@ double fc_scene_piece(FcScene* scene, double rest, double whole) {
     // Time until the contact opens or closes; negative if this lies behind.
     const bool opens = by_load ? rate < 0.0 : rate > 0.0;
     const bool is_far = by_load || scene->is_open ||
-                        scene->at_E.decay * fmax(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
+                        scene->at_E.decay * fc_most(drive->d.value, drive->d.value + rate * rest) > NOT_FAR;
     const double to_edge = by_load  ? -drive->load.value / rate
                            : is_far ? time_to_edge(scene, rest)
                                     : HUGE_VAL;
     const double room = FC_NEARLY_OPEN * whole;
     scene->is_open = scene->is_open || (opens && to_edge <= room);
     if (scene->is_open) {
-        return opens ? rest : fmin(rest, to_edge + room);
+        return opens ? rest : fc_least(rest, to_edge + room);
     }
     if (by_load) {
         const double part = rate > 0.0 ? 1.0 - LOAD_OF_PIECE : 1.0 - 1.0 / LOAD_OF_PIECE;
-        return fmin(rest, part * to_edge);
+        return fc_least(rest, part * to_edge);
     }
     const double moved = log(LOAD_OF_PIECE) / (scene->at_E.decay * fabs(rate));
-    return fmin(rest, to_edge > 0.0 ? fmin(moved, to_edge) : moved);
+    return fc_least(rest, to_edge > 0.0 ? fc_least(moved, to_edge) : moved);
 }
 
 FcScene fc_scene_later(const FcScene* scene, double t) {
@@ -236,15 +238,15 @@ FcLogRates fc_scene_log_rates(const FcScene* scene, double t) {
 // Bounds of the mean separation.
 static double smallest_rest(const FcScene* scene, double h) {
     const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fmin(scene->at_E.load_0, end.load_0);
-    const double load = fmax(scene->drive.load.value, fc_drive_load(&scene->drive, h));
+    const double load_0 = fc_least(scene->at_E.load_0, end.load_0);
+    const double load = fc_most(scene->drive.load.value, fc_drive_load(&scene->drive, h));
     return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
 }
 
 static double largest_rest(const FcScene* scene, double h) {
     const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fmax(scene->at_E.load_0, end.load_0);
-    const double load = fmin(scene->drive.load.value, fc_drive_load(&scene->drive, h));
+    const double load_0 = fc_most(scene->at_E.load_0, end.load_0);
+    const double load = fc_least(scene->drive.load.value, fc_drive_load(&scene->drive, h));
     return (log(load_0 / load) + scene->log_swell) / scene->at_E.decay;
 }
 
@@ -269,7 +271,7 @@ double fc_scene_smallest_limit(const FcScene* scene, double h) {
         return scene->F_C;
     }
     const FcContactAtModulus end = contact_at(scene, h);
-    const double load_0 = fmin(scene->at_E.load_0, end.load_0);
+    const double load_0 = fc_least(scene->at_E.load_0, end.load_0);
     return scene->friction->mu * load_0 * fc_contact_decayed(&scene->at_E, largest_d(scene, h));
 }
 
@@ -277,7 +279,7 @@ double fc_scene_smallest_saturation(const FcScene* scene, double h) {
     if (fc_scene_ratio_is_constant(scene)) {
         const FcContactAtModulus end = contact_at(scene, h);
         return scene->friction->mu *
-               fmin(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
+               fc_least(scene->at_E.load_0 / scene->at_E.stiffness_0, end.load_0 / end.stiffness_0);
     }
     return fc_scene_smallest_limit(scene, h) / fc_scene_largest_stiffness(scene, h);
 }
@@ -297,7 +299,7 @@ double fc_scene_largest_saturation(const FcScene* scene, double h) {
     for (int end = 0; end <= moves; end++) {
         const FcContactAtModulus at_E = contact_at(scene, end == 0 ? 0.0 : h);
         const FcContactResponse response = fc_contact_response(&at_E, d);
-        largest = fmax(largest, (follows ? friction->mu * response.F_n : scene->F_C) / response.sigma);
+        largest = fc_most(largest, (follows ? friction->mu * response.F_n : scene->F_C) / response.sigma);
     }
     return largest * fc_static_ratio(friction);
 }
@@ -320,7 +322,7 @@ double fc_scene_mean_limit(const FcScene* scene, double t) {
         return scene->F_C;
     }
     if (follows_load(scene)) {
-        return scene->friction->mu * fmax(0.0, fc_drive_load(&scene->drive, t));
+        return scene->friction->mu * fc_most(0.0, fc_drive_load(&scene->drive, t));
     }
     const FcContactAtModulus at_E = contact_at(scene, t);
     const double d = scene->drive.d.value + scene->drive.d.rate * t;

@@ -38,9 +38,12 @@ FcScene fc_scene_later(const FcScene* scene, double t);
 FcScene fc_scene_from(const FcScene* scene, double t);
 
 // Whether sigma or g, if the law uses them, depends on the separation.
+static inline bool fc_uses_separation(const FcFriction* friction, int contact_model) {
+    return fc_limit_follows_load(friction) ||
+           (contact_model != FC_CONTACT_CONSTANT && friction->model != FC_COULOMB);
+}
 static inline bool fc_scene_depends_on_d(const FcScene* scene) {
-    return fc_limit_follows_load(scene->friction) ||
-           (scene->at_E.model != FC_CONTACT_CONSTANT && scene->friction->model != FC_COULOMB);
+    return fc_uses_separation(scene->friction, scene->at_E.model);
 }
 
 // Whether the bristle has lost its contact at the start: its force and its deflection are 0.

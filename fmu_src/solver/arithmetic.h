@@ -5,6 +5,8 @@
 
 #include <math.h> // also says whether the C library is glibc
 
+#include "model/extremes.h"
+
 // Compilers do not find all such pairs by themselves. The first has an even place in an array that is
 // FC_PAIRED.
 typedef double FcPair __attribute__((vector_size(16), may_alias));
@@ -27,10 +29,6 @@ static inline double fc_pair_sum(FcPair pair) { return pair[0] + pair[1]; }
 
 // The loops of a panel run over constants once these are inlined.
 #define FC_INLINE static inline __attribute__((always_inline))
-
-// fmin and fmax in line: a panel calls them some twenty times. A NaN is passed over.
-FC_INLINE double fc_least(double a, double b) { return b < a || a != a ? b : a; }
-FC_INLINE double fc_most(double a, double b) { return b > a || a != a ? b : a; }
 
 // The product of two arrays of an even number n.
 FC_INLINE double fc_dot(int n, const double* a, const double* b) {

@@ -11,16 +11,16 @@ static FcPlaneCoefficients at_start(const FcScene* scene) {
     return fc_plane_coefficients(&plane, 0.0, fc_drive_phase(&scene->drive, 0.0));
 }
 
-static void line_step(const FcScene* scene, const FcContactResponse* contact, double h,
+static void line_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
                       FcStepResult* result) {
     const FcCoefficients at = fc_scene_coefficients_of(scene, contact);
     const FcMap map = fc_map_of_constant_scene(&at, h);
-    *result = (FcStepResult){.delta = result->delta, .evaluations = 1.0};
+    *result = fc_result_from((FcBristle){.delta = from.delta}, 1.0);
     fc_map_apply(&map, result);
 }
 
 // Along V as on a line, transverse to V by relaxation alone.
-static void plane_step(const FcScene* scene, double h, FcStepResult* result) {
+static void plane_step(const FcScene* scene, double h, FcBristle from, FcStepResult* result) {
     const FcPlaneCoefficients at = at_start(scene);
     const FcVector n =
         at.speed > 0.0 ? (FcVector){at.V.x / at.speed, at.V.y / at.speed} : (FcVector){1.0, 0.0};
@@ -28,8 +28,8 @@ static void plane_step(const FcScene* scene, double h, FcStepResult* result) {
     const FcMap across = {.relaxation = along.relaxation,
                           .impulse_slope = along.impulse_slope,
                           .heat_square = along.heat_square};
-    FcStepResult turned = {.delta = n.x * result->delta + n.y * result->delta_y,
-                           .delta_y = n.x * result->delta_y - n.y * result->delta,
+    FcStepResult turned = {.delta = n.x * from.delta + n.y * from.delta_y,
+                           .delta_y = n.x * from.delta_y - n.y * from.delta,
                            .evaluations = 1.0};
     fc_map_apply(&along, &turned);
     fc_map_apply_across(&across, &turned);
@@ -40,13 +40,13 @@ static void plane_step(const FcScene* scene, double h, FcStepResult* result) {
     result->impulse_y = n.y * turned.impulse + n.x * turned.impulse_y;
 }
 
-void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h,
+void fc_constant_step(const FcScene* scene, const FcContactResponse* contact, double h, FcBristle from,
                       FcStepResult* result) {
     assert(h >= 0.0 && fc_drive_is_constant(&scene->drive));
-    if (fc_is_planar(scene, fc_bristle_of(result))) {
-        plane_step(scene, h, result);
+    if (fc_is_planar(scene, from)) {
+        plane_step(scene, h, from, result);
     } else {
-        line_step(scene, contact, h, result);
+        line_step(scene, contact, h, from, result);
     }
 }
 

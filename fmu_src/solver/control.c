@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "model/constants.h"
+#include "model/extremes.h"
 #include "solver/tuning.h"
 
 // Derived: polynomials through 9 stages err by rho^-17 for a function that is analytic in a strip of the half width pi / 2,
@@ -106,7 +107,7 @@ static double span_of_stuck(const FcControl* control, const FcReached* at) {
     const FcVelocity y =
         control->plane->on_line ? (FcVelocity){0} : fc_drive_velocity_y_at_phase(drive, at->t, phase);
     const double speed = hypot(x.V, y.V);
-    const double D = at->rate > 0.0 ? speed / at->rate : interval->saturation;
+    const double D = at->per_path > 0.0 ? 1.0 / at->per_path : interval->saturation;
     const double bend = hypot(x.rate, y.rate);
     const double soon =
         speed + bend > 0.0 && D > 0.0 ? fc_time_to_move(speed, bend, FC_MOST_OF_BOUND * D) : 0.0;
@@ -193,7 +194,8 @@ static bool sees_curve(const FcControl* control, const FcNodes* nodes) {
     if (!fc_has_stribeck_curve(friction)) {
         return false;
     }
-    const double V = fmin(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
+    const double V =
+        fc_least(fabs(nodes->speed[FC_STAGES]), fabs(nodes->speed[FC_STAGES - 1])) / friction->V_S;
     return (friction->staticRatio - 1.0) * exp(-V * V) > SEEN * control->interval->tolerance;
 }
 
@@ -206,29 +208,29 @@ double fc_control_excess(const FcControl* control, const FcPart* part, const FcN
     const double length = part->in.length;
     const double forgets =
         panel->rate > 0.0 ? 3.0 / panel->rate + (isfinite(length) ? 2.0 * length : 0.0) : HUGE_VAL;
-    const double lives = fmax(0.0, fmin(interval->duration - end, forgets)) / interval->duration;
-    const double lasts = fmin(1.0, nodes->duration / interval->duration); // the nodes' times are rounded
-    const double end_error = panel->end_error * fmax(1.0, interval->stiffness / panel->sigma);
+    const double lives = fc_most(0.0, fc_least(interval->duration - end, forgets)) / interval->duration;
+    const double lasts = fc_least(1.0, nodes->duration / interval->duration); // the nodes' times are rounded
+    const double end_error = panel->end_error * fc_most(1.0, interval->stiffness / panel->sigma);
     const double mean_error = end_error * lives + panel->mean_error * lasts;
     // In a curve of LuGre's law, a panel may use the share of its relaxation alone.
     const bool in_curve = sees_curve(control, nodes);
     const double path = interval->speed * interval->duration / interval->saturation;
     const bool by_z = in_curve && interval->scene->friction->model == FC_LUGRE;
-    const double whole = allowed * (by_z ? fmin(1.0, fmax(panel->z, path)) : 1.0);
+    const double whole = allowed * (by_z ? fc_least(1.0, fc_most(panel->z, path)) : 1.0);
     const double curve = in_curve || kind == FC_NO_BRISTLE ? FC_SHARE_IN_CURVE : 1.0;
     const double rounding = ROUNDING_OF_PANEL * panel->limit;
-    const double of_mean = FC_SAFETY * mean_error / fmax(curve * FC_SHARE_OF_MEAN * whole, rounding);
-    double of_end = FC_SAFETY * end_error / fmax(curve * FC_SHARE_OF_END * whole, rounding);
+    const double of_mean = FC_SAFETY * mean_error / fc_most(curve * FC_SHARE_OF_MEAN * whole, rounding);
+    double of_end = FC_SAFETY * end_error / fc_most(curve * FC_SHARE_OF_END * whole, rounding);
     if (of_end > 1.0 && of_end > of_mean) {
         of_end *= exp(-path_left(context, end) / interval->saturation);
     }
-    return fmax(of_mean, of_end);
+    return fc_most(of_mean, of_end);
 }
 
 double fc_control_shortens(double excess) {
-    return isfinite(excess) ? fmax(0.3, fmin(0.9, 0.9 * pow(excess, -1.0 / ORDER))) : 0.4;
+    return isfinite(excess) ? fc_most(0.3, fc_least(0.9, 0.9 * pow(excess, -1.0 / ORDER))) : 0.4;
 }
 
 double fc_control_grows(double excess) {
-    return excess > 0.0 ? fmin(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 2.0;
+    return excess > 0.0 ? fc_least(2.0, 0.9 * pow(excess, -1.0 / ORDER)) : 2.0;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/extremes.h"
 #include "model/root.h"
 #include "solver/tuning.h"
 
@@ -17,7 +18,7 @@ double fc_straight_pace(const FcStraight* in, double u) {
 }
 
 double fc_part_time(const FcPart* part, double u) {
-    return fmin(fmax(fc_straight_time(&part->in, u), part->start), part->end);
+    return fc_least(fc_most(fc_straight_time(&part->in, u), part->start), part->end);
 }
 
 double fc_straight_place(const FcStraight* in, double t) {
@@ -145,7 +146,7 @@ static double time_of_power(double a, int n, double change) {
 static double time_of_change(const double most[4], double change) {
     double least = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        least = fmin(least, time_of_power(most[n], n, change));
+        least = fc_least(least, time_of_power(most[n], n, change));
     }
     return least;
 }
@@ -167,9 +168,9 @@ static double length_of_layer(const FcPlane* plane, const double most[4], double
     }
     double layer = INFINITY;
     for (int n = 1; n <= 3; n++) {
-        layer = fmin(layer, time_of_power(most[n], n + 1, (n + 1) * path));
+        layer = fc_least(layer, time_of_power(most[n], n + 1, (n + 1) * path));
     }
-    return fmax(*eps, of_layer * fmin(layer, h));
+    return fc_most(*eps, of_layer * fc_least(layer, h));
 }
 
 // The center at a time, which may be beside [0, h]. A reversal, or what is taken for one ahead of the start, has |V| = 0.
@@ -182,7 +183,7 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     if (is_reversal) {
         of.most[0] = 0.0;
     }
-    const double inside = fmin(fmax(time, 0.0), h);
+    const double inside = fc_least(fc_most(time, 0.0), h);
     const FcPlaneCoefficients near =
         fc_plane_coefficients(plane, inside, fc_drive_phase(&scene->drive, inside));
     double eps;
@@ -193,19 +194,19 @@ static Center center_at(const FcPlane* plane, double time, double seen_from, boo
     const double V_S = scene->friction->V_S;
     const bool has_curve = fc_has_stribeck_curve(scene->friction) && of.most[0] < FC_END_OF_CURVE * V_S;
     if (has_curve) {
-        const double of_curve = fmax(time_of_change(of.most, V_S), plane->on_line ? 0.0 : eps);
+        const double of_curve = fc_most(time_of_change(of.most, V_S), plane->on_line ? 0.0 : eps);
         if (of_curve < 0.5 * of.length && scene->friction->model == FC_LUGRE) {
             of.edge = time_of_change(of.most, FC_END_OF_CURVE * V_S);
         }
-        of.length = fmin(of.length, of_curve);
+        of.length = fc_least(of.length, of_curve);
     }
     if (isfinite(of.length)) { // a transient goes as e^(-x^(n + 1)), the curve as e^(-x^2n)
         const int n = order_at(of.most, of.length);
         of.narrow_beyond = 2.0 / (n + 1.0);
         of.narrow = has_curve ? 1.0 / n : of.narrow_beyond;
-        const double least = 0x1p-40 * fmax(h, fabs(time)); // rounding of the times
-        of.length = fmax(of.length, least);
-        of.beyond = fmax(of.beyond, least);
+        const double least = 0x1p-40 * fc_most(h, fabs(time)); // rounding of the times
+        of.length = fc_most(of.length, least);
+        of.beyond = fc_most(of.beyond, least);
     }
     return of;
 }
@@ -219,8 +220,8 @@ static int line_centers(const FcPlane* plane, double h, double tolerance, Center
     int count = 0;
     // Behind the start, if |V| grows there.
     const FcVelocity now = fc_drive_velocity(drive, 0.0);
-    const double behind = -fmin(time_of_power(fabs(now.rate), 1, fabs(now.V)),
-                                time_of_power(0.5 * fabs(now.curvature), 2, fabs(now.V)));
+    const double behind = -fc_least(time_of_power(fabs(now.rate), 1, fabs(now.V)),
+                                    time_of_power(0.5 * fabs(now.curvature), 2, fabs(now.V)));
     const bool is_reversal = fabs(now.V) <= ROUNDING_OF_V * (fabs(drive->V.value) + drive->vibration.V_1);
     const bool grows = now.V * now.rate > 0.0 || (now.rate == 0.0 && now.V * now.curvature > 0.0);
     if (is_reversal || (grows && behind > -h)) {
@@ -290,7 +291,7 @@ static int add_part(FcPart parts[FC_MOST_PARTS], int count, double start, double
 static Center seen_from_gap(const Center* center, double start, double end) {
     Center of = center ? *center : NONE;
     const double gap = end - start;
-    if (!(of.length < gap) || fmax(start - of.time, of.time - end) > gap) {
+    if (!(of.length < gap) || fc_most(start - of.time, of.time - end) > gap) {
         of.length = of.beyond = of.edge = INFINITY;
     }
     of.beyond = of.beyond < gap ? of.beyond : INFINITY;
@@ -305,7 +306,7 @@ static int add_gap(const FcPlane* plane, FcPart parts[FC_MOST_PARTS], int count,
     const int side = plane->on_line ? (int)fc_sign(fc_drive_V(&plane->scene->drive, 0.5 * (start + end))) : 0;
     double middle = isinf(right.length)  ? end
                     : isinf(left.length) ? start
-                                         : fmin(fmax(0.5 * (left.time + right.time), start), end);
+                                         : fc_least(fc_most(0.5 * (left.time + right.time), start), end);
     middle = middle - start < ROUNDING * h ? start : end - middle < ROUNDING * h ? end : middle;
     if (middle > start) {
         count = add_part(parts, count, start, middle, &left, side);
@@ -325,7 +326,7 @@ int fc_parts(const FcPlane* plane, double h, double tolerance, FcPart parts[FC_M
     double start = 0.0;
     for (int i = 0; i <= found && start < h && count + 4 <= FC_MOST_PARTS; i++) {
         const bool has_after = i < found;
-        const double end = has_after ? fmin(fmax(centers[i].time, start), h) : h;
+        const double end = has_after ? fc_least(fc_most(centers[i].time, start), h) : h;
         if (end - start > (plane->on_line ? SAME_TIME : ROUNDING) * h) {
             count = add_gap(plane, parts, count, start, end, h, i > 0 ? &centers[i - 1] : NULL,
                             has_after ? &centers[i] : NULL);

@@ -4,6 +4,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "model/extremes.h"
+
 enum { START = FC_STAGES, LAST = FC_STAGES - 1 };
 
 FcKind fc_kind(const FcCrossing* crossing) {
@@ -33,13 +35,25 @@ double fc_largest_push(const FcCrossing* crossing) {
     return interval->speed + interval->saturation * interval->pace.log_sigma;
 }
 
+// What all panels begin with.
+static FcFrom first_from(const FcCrossing* crossing) {
+    const FcScene* scene = crossing->interval->scene;
+    const bool limit_stands = fc_scene_limit_is_constant(scene);
+    const bool is_still = limit_stands && fc_scene_stiffness_is_constant(scene);
+    const bool has_curve = fc_has_stribeck_curve(scene->friction);
+    return (FcFrom){.speed = crossing->interval->speed + DBL_MIN,
+                    .push = fc_largest_push(crossing) + DBL_MIN,
+                    .is_still = is_still && !has_curve && scene->friction->sigma_1 == 0.0,
+                    .limit_stands = limit_stands && (!has_curve || fc_drive_V_is_constant(&scene->drive))};
+}
+
 static void reach(FcCrossing* crossing, double u, double t, const FcPlaneCoefficients* at) {
     const double per_path = at->sigma / at->limit;
     crossing->at = (FcReached){.u = u, .t = t, .rate = per_path * fabs(at->speed), .per_path = per_path};
 }
 
 void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane, const FcInterval* interval,
-                       double evaluations) {
+                       bool in_one_part, double evaluations) {
     *crossing = (FcCrossing){.plane = plane,
                              .interval = interval,
                              .parts = room->parts,
@@ -50,7 +64,11 @@ void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane,
     if (!plane->on_line) {
         crossing->across = fc_drive_across(&interval->scene->drive);
     }
-    crossing->count = fc_parts(plane, interval->duration, interval->tolerance, room->parts);
+    crossing->from = first_from(crossing);
+    if (in_one_part) {
+        room->parts[0] = (FcPart){.end = interval->duration, .in = {0.0, INFINITY}, .narrow = 1.0};
+    }
+    crossing->count = in_one_part ? 1 : fc_parts(plane, interval->duration, interval->tolerance, room->parts);
     crossing->first = fc_coefficients_at(crossing, 0.0);
     reach(crossing, 0.0, 0.0, &crossing->first);
 }
@@ -60,6 +78,9 @@ static void take_variable(FcCrossing* crossing, FcStraight in) {
     crossing->part.in = in;
     crossing->at.u = fc_straight_place(&in, crossing->at.t);
     crossing->end = fc_straight_place(&in, crossing->part.end);
+    const double start = crossing->part.start;
+    crossing->whole =
+        crossing->end - (crossing->at.t > start ? fc_straight_place(&in, start) : crossing->at.u);
     crossing->h = 0.0;
 }
 
@@ -82,37 +103,25 @@ void fc_choose_variable(FcCrossing* crossing) {
 
 bool fc_part_is_crossed(const FcCrossing* crossing) { return !(crossing->at.u < crossing->end); }
 
-static FcFrom from_of(const FcCrossing* crossing) {
-    const FcScene* scene = crossing->interval->scene;
-    const bool still = fc_scene_stiffness_is_constant(scene) && fc_scene_limit_is_constant(scene);
-    const bool has_curve = fc_has_stribeck_curve(scene->friction);
-    return (FcFrom){.delta = fc_crossing_delta(crossing),
-                    .scale = (1.0 - crossing->along.relaxation) * crossing->scale,
-                    .speed = crossing->interval->speed + DBL_MIN,
-                    .push = fc_largest_push(crossing) + DBL_MIN,
-                    .for_any = crossing->for_any,
-                    .is_still = still && !has_curve && scene->friction->sigma_1 == 0.0,
-                    .limit_stands = fc_scene_limit_is_constant(scene) &&
-                                    (!has_curve || fc_drive_V_is_constant(&scene->drive))};
-}
-
 bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* panel) {
-    const FcFrom from = from_of(crossing);
+    FcFrom* from = &crossing->from;
+    from->delta = fc_crossing_delta(crossing);
+    from->scale = from->for_any ? (1.0 - crossing->along.relaxation) * crossing->scale : 0.0;
     const FcPlane* plane = crossing->plane;
     fc_nodes_make(plane, &crossing->part, crossing->at.u, h, nodes);
     crossing->evaluations += FC_STAGES;
     switch (fc_kind(crossing)) {
     case FC_SLIPS:
         if (!plane->on_line) {
-            return fc_plane_slip_panel(plane, nodes, &from, panel);
+            return fc_plane_slip_panel(plane, nodes, from, panel);
         }
-        fc_line_slip_panel(plane, nodes, &from, panel);
+        fc_line_slip_panel(plane, nodes, from, panel);
         return true;
     case FC_NO_BRISTLE:
-        fc_coulomb_panel(nodes, from.speed, panel);
+        fc_coulomb_panel(nodes, from->speed, panel);
         return true;
     default:
-        fc_free_panel(plane, nodes, &from, panel);
+        fc_free_panel(plane, nodes, from, panel);
         return true;
     }
 }
@@ -129,7 +138,7 @@ static double least_path(const FcCrossing* crossing, const FcPart* part, double 
     if (crossing->plane->on_line) {
         return fabs(fc_drive_displacement(drive, start, end));
     }
-    const double turn = fmin(fmax(part->in.center, start), end);
+    const double turn = fc_least(fc_most(part->in.center, start), end);
     return hypot(fc_drive_displacement(drive, start, turn),
                  fc_drive_displacement(&crossing->across, start, turn)) +
            hypot(fc_drive_displacement(drive, turn, end),
@@ -176,13 +185,13 @@ double fc_take_accurate(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel) {
 void fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
     if (fc_kind(crossing) ==
         FC_STICKS) { // it moves with the surfaces: a drift over many periods is exact to rounding
-        const FcVector from = crossing->for_any ? (FcVector){0.0, 0.0} : fc_crossing_delta(crossing);
+        const FcVector from = crossing->from.for_any ? (FcVector){0.0, 0.0} : fc_crossing_delta(crossing);
         panel->along.offset = from.x + nodes->moved[LAST];
         panel->across.offset = from.y + nodes->moved_y[LAST];
     }
     fc_map_append(&crossing->along, &panel->along);
     fc_map_append(&crossing->across_map, &panel->across);
-    crossing->control.log_transient -= fmax(0.0, panel->z);
+    crossing->control.log_transient -= fc_most(0.0, panel->z);
     const double kept = crossing->plane->on_line ? 1.0 : exp(-panel->z); // of a deviation
     for (int k = 0; k < 2; k++) {
         crossing->by_start[k].x *= kept;

@@ -15,14 +15,14 @@ typedef struct {
     int count, number;
     FcPart part; // the present one, in the variable of the present motion
     FcReached at;
-    double end;  // of the part, in u
-    double h;    // of the next panel, in u; 0 if nothing proposes one
-    double* way; // m, the path after each part, at the least
+    double end, whole; // of the part, in u
+    double h;          // of the next panel, in u; 0 if nothing proposes one
+    double* way;       // m, the path after each part, at the least
     bool has_ways;
     // The bristle, and the sums.
     FcMap along, across_map;
-    bool for_any;     // the maps are for any start
-    double scale;     // m, of these starts
+    FcFrom from;      // of the next panel, and whether the maps are for any start
+    double scale;     // m, of all these starts
     int slips;        // FcBristle
     bool is_slipping; // along its bound
     bool touches;     // a free bristle is at its bound
@@ -44,9 +44,9 @@ typedef struct {
     double way[FC_MOST_PARTS];
 } FcRoom;
 
-// A crossing of the interval from its start on, with its parts; the bristle is to be set.
+// A crossing of the interval from its start on, with its parts, or in one part; the bristle is to be set.
 void fc_crossing_start(FcCrossing* crossing, FcRoom* room, const FcPlane* plane, const FcInterval* interval,
-                       double evaluations);
+                       bool in_one_part, double evaluations);
 
 FcKind fc_kind(const FcCrossing* crossing);
 FcVector fc_crossing_delta(const FcCrossing* crossing); // m, now

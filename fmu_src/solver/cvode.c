@@ -7,6 +7,7 @@
 // shrink with |V| so that none passes it unseen.
 #include <stdio.h>
 
+#include "model/extremes.h"
 #include "solver/methods.h"
 
 // FC_NO_CVODE leaves it out of any build: SUNDIALS takes memory from the heap, which some targets do not have.
@@ -176,7 +177,7 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     const double path = fc_drive_largest_speed(&scene->drive, h) * h;
     const double forgets =
         scene->friction->model == FC_ELASTIC_PLASTIC ? 1.0 : stiffness * path / options->force;
-    const double periods = fmax(1.0, periods_of(&scene->drive, h) / fmax(1.0, forgets));
+    const double periods = fc_most(1.0, periods_of(&scene->drive, h) / fc_most(1.0, forgets));
     const double force = LOCAL_ERROR_FRACTION * options->tolerance / periods * options->force;
     const double delta = force / stiffness;
     const double of[STATES] = {delta,        delta,        force * h,       force * h,
@@ -196,7 +197,7 @@ static double stribeck_step(const FcScene* scene, double t) {
     const double rate = hypot(drive->V.rate, drive->V_y.rate) +
                         drive->omega * hypot(vibration->V_1, vibration->V_2); // at most
     const double speed = hypot(fc_drive_V(drive, t), fc_drive_V_y(drive, t));
-    const double change = fmax(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
+    const double change = fc_most(STRIBECK_STEP * scene->friction->V_S, 0.5 * speed);
     return rate > 0.0 ? change / rate : INFINITY;
 }
 
@@ -223,14 +224,14 @@ static double integrate_regime(FcCvode* solver, double duration) {
     snprintf(solver->reason, sizeof solver->reason, "%s", "too much work in one step");
     if (!(duration > 0.0) || CVodeReInit(cvode, 0.0, solver->y) != CV_SUCCESS ||
         CVodeSVtolerances(cvode, SMALLEST_LOCAL_ERROR, solver->allowed) != CV_SUCCESS ||
-        CVodeSetMaxStep(cvode, duration / fmax(1.0, parts)) != CV_SUCCESS) {
+        CVodeSetMaxStep(cvode, duration / fc_most(1.0, parts)) != CV_SUCCESS) {
         return NAN;
     }
     double tau = 0.0;
     int flag = CV_SUCCESS;
     while (tau < duration && flag != CV_ROOT_RETURN) {
         const double step = stribeck_step(solver->scene, solver->start + tau);
-        CVodeSetStopTime(cvode, fmin(tau + step, duration));
+        CVodeSetStopTime(cvode, fc_least(tau + step, duration));
         flag = CVode(cvode, duration, solver->y, &tau, CV_ONE_STEP);
         if (flag < 0 || solver->evaluations > FC_MOST_EVALUATIONS) {
             return NAN;

@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "model/extremes.h"
 #include "model/regime.h"
 #include "model/root.h"
 #include "solver/rise.h"
@@ -59,7 +60,7 @@ static double push_at(const FcCrossing* crossing, FcVector n, double t) {
 static double rounding_of_push(const FcCrossing* crossing, const double push[POINTS]) {
     double largest = fc_largest_push(crossing);
     for (int i = 0; i < POINTS; i++) {
-        largest = fmax(largest, fabs(push[i]));
+        largest = fc_most(largest, fabs(push[i]));
     }
     return ROUNDING_OF_PUSH * largest;
 }
@@ -72,9 +73,9 @@ bool fc_falls_behind(const FcCrossing* crossing, FcVector n) {
         return push < 0.0;
     }
     const FcVelocity now = fc_drive_velocity(&interval->scene->drive, t);
-    const double time = fmin(fc_smooth_time(&interval->pace),
-                             fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
-    return push_at(crossing, n, t + 1e-6 * fmin(time, interval->duration - t)) < 0.0;
+    const double time = fc_least(fc_smooth_time(&interval->pace),
+                                 fc_velocity_time_of_change(&now, interval->scene->friction->V_S));
+    return push_at(crossing, n, t + 1e-6 * fc_least(time, interval->duration - t)) < 0.0;
 }
 
 static FcVector direction_of(const FcCrossing* crossing) {
@@ -148,13 +149,14 @@ static double close_to_bound(const FcCrossing* crossing, double D) {
     const FcInterval* interval = crossing->interval;
     // An excess over the bound costs heat, whose tolerance goes with the path.
     const double share = fc_kind(crossing) == FC_STICKS ? 0.0 : FC_SHARE_OF_EVENT;
-    const double allowed = share *
-                           fmin(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
-                           fmin(1.0, interval->speed * interval->duration / D);
+    const double allowed =
+        share * fc_least(fc_allowed_force(interval) / interval->stiffness, interval->tolerance * D) *
+        fc_least(1.0, interval->speed * interval->duration / D);
     const double of_time =
         fabs(crossing->at.u) * fc_straight_pace(&crossing->part.in, crossing->at.u) + interval->duration;
     const double rounding = 1e-13 * D + 4e-16 * fc_largest_push(crossing) * of_time;
-    return 2.0 * D * fmin(fmax(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
+    return 2.0 * D *
+           fc_least(fc_most(allowed, rounding), 1e-3 * D); // if D moves by decades, nothing is near it
 }
 
 // The part of a panel by which it may begin or end beside a top. Derived: |delta| is less by its square, 1e-12
@@ -205,7 +207,7 @@ static double stuck_to_bound(void* context, double u) {
 static double meeting_of_stuck(FcCrossing* crossing, double h, double a, double at_a, double b, double at_b,
                                double meets, double over) {
     const double u = crossing->at.u;
-    const double x_0 = u + fmax(meets, a) * h;
+    const double x_0 = u + fc_most(meets, a) * h;
     const double f_0 = stuck_to_bound(crossing, x_0);
     const double x_1 = x_0 - f_0 * (b - a) * h / (at_b - at_a);
     const double f_1 = stuck_to_bound(crossing, x_1);
@@ -240,7 +242,7 @@ static double place_of_meeting(FcCrossing* crossing, const FcPanel* panel, doubl
         a = b;
         at_a = f[i];
     }
-    return fmax(meets, SHORTENED_BY);
+    return fc_most(meets, SHORTENED_BY);
 }
 
 // The place in a panel, over its length, after which that push is negative; 0 if it is nowhere positive, 2 if
@@ -263,7 +265,7 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
         double push[POINTS];
         for (int i = 0; i < POINTS; i++) {
             const FcVector delta = panel->delta[i];
-            const double size = fmax(hypot(delta.x, delta.y), DBL_MIN);
+            const double size = fc_most(hypot(delta.x, delta.y), DBL_MIN);
             const FcPlaneCoefficients at = fc_nodes_at(nodes, i);
             const FcPlaneBound bound = fc_plane_bound(crossing->plane, &at, 1, nodes->t[i], nodes->phase[i]);
             push[i] = fc_plane_push(crossing->plane, &at, &bound, (FcVector){delta.x / size, delta.y / size});
@@ -273,7 +275,7 @@ static bool catches_up(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel, dou
             cuts >= 4) { // a push of 0 at the end is decided by the motion after it
             return cuts > 0;
         }
-        *h *= fmax(ends, LITTLE_PUSH);
+        *h *= fc_most(ends, LITTLE_PUSH);
         fc_make_again(crossing, *h, nodes, panel);
     }
 }
@@ -291,7 +293,7 @@ static bool cut_at_meeting(FcCrossing* crossing, FcNodes* nodes, FcPanel* panel,
         const FcPlaneCoefficients begin = fc_nodes_at(nodes, START);
         const double D_begin = fc_plane_radius(crossing->plane, &begin, crossing->slips);
         if (crossing->touches && panel->to_bound[START] <= 4.0 * FC_ROUNDING_OF_BOUND * D_begin * D_begin) {
-            panel->to_bound[START] = fmin(panel->to_bound[START], 0.0); // by rounding it may begin beyond
+            panel->to_bound[START] = fc_least(panel->to_bound[START], 0.0); // by rounding it may begin beyond
         }
         const FcPlaneCoefficients end = fc_nodes_at(nodes, LAST);
         *over = close_to_bound(crossing, fc_plane_radius(crossing->plane, &end, crossing->slips));
@@ -383,7 +385,7 @@ static double time_of_dip(Pushed* of, double a, double b, double* least, double*
         }
         *evaluations += 1.0;
     }
-    *least = fmin(at_x, at_y);
+    *least = fc_least(at_x, at_y);
     return at_x <= at_y ? x : y;
 }
 
@@ -476,7 +478,7 @@ void fc_slip_until_event(FcCrossing* crossing) {
 static bool is_neutral(const FcCrossing* crossing, const FcPanel* panel) {
     double largest = 0.0;
     for (int i = 0; i < POINTS; i++) {
-        largest = fmax(largest, fabs(panel->to_bound[i]));
+        largest = fc_most(largest, fabs(panel->to_bound[i]));
     }
     return largest <= LITTLE_PUSH * fc_largest_push(crossing);
 }

@@ -9,6 +9,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "model/extremes.h"
 #include "solver/methods.h"
 #include "solver/pieces.h"
 
@@ -75,12 +76,12 @@ static Integrals rk4(Integrals y, double h, const FcCoefficients* start, const F
 static double largest_rate(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
     const double f = fc_drive_vibrates(drive) ? drive->vibration.f : 0.0;
-    const double span = fc_drive_is_linear(drive) ? h : fmin(h, 1.0 / f);
-    const double samples = fmin(ceil(SAMPLES_PER_PERIOD * fmax(1.0, span * f)), MOST_RATE_SAMPLES);
+    const double span = fc_drive_is_linear(drive) ? h : fc_least(h, 1.0 / f);
+    const double samples = fc_least(ceil(SAMPLES_PER_PERIOD * fc_most(1.0, span * f)), MOST_RATE_SAMPLES);
     double largest = 0.0;
     for (double i = 0.0; i <= samples; i += 1.0) {
         const FcCoefficients at = fc_scene_coefficients(scene, span * (i / samples));
-        largest = fmax(largest, fc_relaxation_rate(&at));
+        largest = fc_most(largest, fc_relaxation_rate(&at));
     }
     return largest;
 }
@@ -140,7 +141,7 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
         return true;
     }
     const double size = options->step_size;
-    const double steps = fmax(1.0, ceil(h / size - STEP_ROUNDING));
+    const double steps = fc_most(1.0, ceil(h / size - STEP_ROUNDING));
     if (!(steps <= MOST_FIXED_STEPS)) {
         return fc_message_set(
             message,

@@ -121,8 +121,8 @@ FC_INLINE void by_path(const FcNodes* nodes, double delta_0, double D, bool for_
 
 // The integrals of F = sigma delta, F V, delta' V = (V - r delta) V and F (V - delta') = sigma r delta^2 with delta = P
 // delta_0 + Q. weight is over the duration, z = r times the duration.
-FC_INLINE void integrate(const double* weight, const double* P, const double* Q, const double* z,
-                         const double* V, const double* sigma, double duration, FcMap* map) {
+FC_INLINE void integrate(const double* weight, bool for_any, const double* P, const double* Q,
+                         const double* z, const double* V, const double* sigma, double duration, FcMap* map) {
     FcPair impulse_slope = {0.0, 0.0};
     FcPair impulse_offset = {0.0, 0.0};
     FcPair work_slope = {0.0, 0.0};
@@ -135,21 +135,23 @@ FC_INLINE void integrate(const double* weight, const double* P, const double* Q,
     for (int i = 0; i < POINTS; i += 2) {
         const FcPair w = fc_pair(weight + i);
         const FcPair F = w * fc_pair(sigma + i);
-        const FcPair FP = F * fc_pair(P + i);
         const FcPair FQ = F * fc_pair(Q + i);
-        const FcPair zP = fc_pair(z + i) * fc_pair(P + i);
         const FcPair zQ = fc_pair(z + i) * fc_pair(Q + i);
         const FcPair X = duration * fc_pair(V + i);
         const FcPair w_V = w * fc_pair(V + i);
-        impulse_slope += FP;
         impulse_offset += FQ;
-        work_slope += FP * X;
         work_offset += FQ * X;
-        drag_slope += w_V * zP;
         drag_offset += w_V * (X - zQ);
-        heat_square += FP * zP;
-        heat_slope += FP * zQ;
         heat_offset += FQ * zQ;
+        if (for_any) {
+            const FcPair FP = F * fc_pair(P + i);
+            const FcPair zP = fc_pair(z + i) * fc_pair(P + i);
+            impulse_slope += FP;
+            work_slope += FP * X;
+            drag_slope += w_V * zP;
+            heat_square += FP * zP;
+            heat_slope += FP * zQ;
+        }
     }
     map->impulse_slope = duration * fc_pair_sum(impulse_slope);
     map->impulse_offset = duration * fc_pair_sum(impulse_offset);
@@ -235,9 +237,10 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     const double relaxation = for_any ? -of.less_1[LAST] : 1.0;
     panel->along = (FcMap){.relaxation = relaxation, .offset = of.Q_x[LAST]};
     panel->across = (FcMap){.relaxation = relaxation, .offset = of.Q_y[LAST]};
-    integrate(weight, P, of.Q_x, rate, nodes->V, nodes->sigma, nodes->duration, &panel->along);
+    integrate(weight, for_any, P, of.Q_x, rate, nodes->V, nodes->sigma, nodes->duration, &panel->along);
     if (planar) {
-        integrate(weight, P, of.Q_y, rate, nodes->V_y, nodes->sigma, nodes->duration, &panel->across);
+        integrate(weight, for_any, P, of.Q_y, rate, nodes->V_y, nodes->sigma, nodes->duration,
+                  &panel->across);
     }
 
     // The errors.
@@ -258,14 +261,14 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
     }
     const bool has_defect = relaxes && !is_known;
     double defect = has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
-    double quadrature = fc_error_of_force(nodes, speed, held, F, nodes->V);
+    double quadrature = fc_error_of_force(nodes, speed, held, relaxes, F, nodes->V);
     if (planar) {
         for (int i = 0; i < POINTS; i++) {
             F[i] = nodes->sigma[i] * y[i];
             slope[i] = nodes->tau[i] * nodes->V_y[i] - z[i] * y[i];
         }
         defect += has_defect ? fc_radau_unresolved(slope, panel->z) : 0.0;
-        quadrature += fc_error_of_force(nodes, speed, 0.0, F, nodes->V_y);
+        quadrature += fc_error_of_force(nodes, speed, 0.0, relaxes, F, nodes->V_y);
     }
     if (from->scale != 0.0) {
         for (int i = 0; i < POINTS; i++) {
@@ -273,7 +276,7 @@ FC_INLINE void take(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fr
             slope[i] = -z[i] * P[i];
         }
         defect += has_defect ? from->scale * fc_radau_unresolved(slope, panel->z) : 0.0;
-        quadrature += fc_error_of_force(nodes, speed, 0.0, F, nodes->V);
+        quadrature += fc_error_of_force(nodes, speed, 0.0, relaxes, F, nodes->V);
     }
     // In the plane r may be less between its ends than at both.
     fc_set_errors(panel, planar ? 0.0 : z[START], z[LAST], panel->sigma, defect, quadrature);

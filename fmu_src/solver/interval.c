@@ -4,6 +4,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "model/extremes.h"
+
 // The largest rate of ln sigma over that of ln E. Derived: 2.11 by Eq. 3. A smaller factor plans panels that are
 // too long for a large change of E, a larger one panels that are too short.
 static const double BY_E = 2.2;
@@ -23,7 +25,7 @@ FcPace fc_pace(const FcScene* scene, double h) {
     if (scene->floats) {
         // d ln F_n / d ln E is below 2. Floating surfaces move by the change of ln F_n and of ln load, over
         // the decay.
-        const double load = fmin(drive->load.value, fc_drive_load(drive, h));
+        const double load = fc_least(drive->load.value, fc_drive_load(drive, h));
         const double floating = (2.0 * by_E + fabs(drive->load.rate) / load) / scene->at_E.decay;
         pace.log_sigma += (by_decay + by_nearness) * floating;
     }
@@ -42,6 +44,6 @@ FcInterval fc_interval_make(const FcScene* scene, double duration, const FcSolve
                         .force = options->force / grows,
                         .speed = fc_drive_largest_speed(&scene->drive, duration),
                         .stiffness = stiffness,
-                        .saturation = fmin(DBL_MAX, fc_scene_largest_saturation(scene, duration)),
+                        .saturation = fc_least(DBL_MAX, fc_scene_largest_saturation(scene, duration)),
                         .pace = fc_pace(scene, duration)};
 }

@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "model/extremes.h"
 #include "model/plane.h"
 #include "model/root.h"
 #include "solver/panel_tables.h"
@@ -171,13 +172,13 @@ static double next_place(const Ramp* ramp, double s, double step) {
     const double change = hypot(ramp->V, ramp->V_y);
     double next = s + step;
     if (ramp->slips && drops(ramp) && change != 0.0) {
-        next = fmin(next,
-                    s + fmax(STEP_OF_CURVE * V_S / FACTOR_OF_STEP, V - END_OF_CURVE * FACTOR_OF_STEP * V_S) /
-                            change);
+        next = fc_least(
+            next, s + fc_most(STEP_OF_CURVE * V_S / FACTOR_OF_STEP, V - END_OF_CURVE * FACTOR_OF_STEP * V_S) /
+                          change);
         const double reversal = ramp->along_change != 0.0 ? -ramp->along / ramp->along_change : -1.0;
         next = reversal > s && reversal < next ? reversal : next;
     }
-    const double place = next < 1.0 - 1e-9 ? fmax(next, s + 1e-9) : 1.0;
+    const double place = next < 1.0 - 1e-9 ? fc_most(next, s + 1e-9) : 1.0;
     assert(place > s && place <= 1.0);
     return place;
 }
@@ -189,7 +190,7 @@ static double step_from(const Ramp* ramp, double s) {
     const double moves = fabs(log(last.D / first.D)) + fabs(log(last.limit / first.limit)) +
                          fabs(log(last.sigma / first.sigma)) + fabs(ramp->d) * ramp->scene->at_E.decay +
                          fabs(ramp->log_V_S);
-    return (1.0 - s) / ceil(fmin(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
+    return (1.0 - s) / ceil(fc_least(moves / STEP_OF_LOG, MOST_STEPS) + 1e-3);
 }
 
 // The number of parts of a step on Stribeck's curve in which D is sought to turn. Two turns in one part are not
@@ -202,7 +203,7 @@ static int parts_between(const Ramp* ramp, double s, double next) {
     }
     const double V_S = ramp->past.V_S * exp(s * ramp->log_V_S) / FACTOR_OF_STEP;
     const double moves = hypot(ramp->V, ramp->V_y) / V_S + fabs(ramp->log_V_S);
-    return (int)ceil(PARTS * fmin(1.0, (next - s) * moves / STEP_OF_CURVE) + 1e-3);
+    return (int)ceil(PARTS * fc_least(1.0, (next - s) * moves / STEP_OF_CURVE) + 1e-3);
 }
 
 // The next place to stop at after s, or the one before it at which D turns.

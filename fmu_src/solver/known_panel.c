@@ -21,8 +21,8 @@ void fc_coulomb_panel(const FcNodes* nodes, double speed, FcPanel* panel) {
         panel->along.work_offset += weight * nodes->limit[i] * nodes->speed[i];
     }
     panel->along.heat_offset = panel->along.work_offset;
-    panel->mean_error = fc_error_of_force(nodes, speed, 0.0, F_x, nodes->V) +
-                        fc_error_of_force(nodes, speed, 0.0, F_y, nodes->V_y);
+    panel->mean_error = fc_error_of_force(nodes, speed, 0.0, true, F_x, nodes->V) +
+                        fc_error_of_force(nodes, speed, 0.0, true, F_y, nodes->V_y);
 }
 
 // The heat is the work, less the stored energy, whose rate follows Stribeck's curve at once, less the part of the
@@ -70,5 +70,5 @@ void fc_line_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom
         return;
     }
     panel->mean_error =
-        fc_error_of_force(nodes, from->speed, 0.0, F, nodes->V) + fc_error_of_mean(nodes, heat);
+        fc_error_of_force(nodes, from->speed, 0.0, true, F, nodes->V) + fc_error_of_mean(nodes, heat);
 }

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "model/extremes.h"
 #include "solver/leap_block.h"
 #include "solver/tuning.h"
 
@@ -37,7 +38,7 @@ static double to_kink(const FcScene* scene, double k) {
         const double V = i < 3 ? kinks[i] : -kinks[i - 3];
         const double at = (V - drive->V.value) / drive->V.rate * drive->vibration.f; // periods
         if (at > k) {
-            nearest = fmin(nearest, floor(at - k));
+            nearest = fc_least(nearest, floor(at - k));
         }
     }
     return nearest;
@@ -57,7 +58,7 @@ static double begin_of_periods(const FcScene* scene, double k, double count) {
     if (drive->vibration.V_1 == 0.0) {
         return 0.0;
     }
-    const double most = fmax(fabs(V), fabs(V_end)) / drive->vibration.V_1;
+    const double most = fc_most(fabs(V), fabs(V_end)) / drive->vibration.V_1;
     const double opposed = fc_part_until_opposed(drive, V + V_end);
     return most > NEAR_KINK && most < 1.0 + 1e-6 && fabs(opposed - 0.5) > 0.25
                ? fmod(opposed + 0.5, 1.0) * period
@@ -78,7 +79,7 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
             slipped = total->meetings > 0;
             k += 1.0;
         }
-        const double room = fmin(longest, fmin(periods - k, to_kink(scene, k)));
+        const double room = fc_least(longest, fc_least(periods - k, to_kink(scene, k)));
         // On a line periods begin at the bound, if the bristle slips along it for any time.
         const bool on_line = slipped && !law.is_planar && total->slip_side != 0;
         const bool forgets = slipped && !on_line;

@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "model/constants.h"
+#include "model/extremes.h"
 #include "model/regime.h"
 #include "model/root.h"
 #include "solver/tuning.h"
@@ -118,7 +119,7 @@ static bool sample_of_slips(const Block* block, const FcScene* scene, double k, 
     const double last = apart(start, other);
     const double before = apart(other, warmed_up(block, k, most - 2));
     const double close =
-        allowed(block) / fmax(block->of->options->stiffness_at_end, fc_scene_stiffness(scene, 0.0));
+        allowed(block) / fc_most(block->of->options->stiffness_at_end, fc_scene_stiffness(scene, 0.0));
     if (start.slips != block->start.slips || other.slips != start.slips ||
         !(last <= close && last * last <= close * (before - last))) {
         return false;
@@ -162,12 +163,14 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene end = scene_at(block, block->of->count - 1.0);
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
     const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
-    const double sigma = fmax(block->of->options->stiffness_at_end, fmax(at.sigma, at_end.sigma));
-    const double delta = fmax(fc_size(block->start), fmax(at.limit / at.sigma, at_end.limit / at_end.sigma));
+    const double sigma = fc_most(block->of->options->stiffness_at_end, fc_most(at.sigma, at_end.sigma));
+    const double delta =
+        fc_most(fc_size(block->start), fc_most(at.limit / at.sigma, at_end.limit / at_end.sigma));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->of->scene->friction->sigma_1;
     // Errors of the deflection add up until they have relaxed.
-    const double lives = fmin(block->of->count, 1.0 / fmax(typical->map.relaxation, 1.0 / block->of->count));
+    const double lives =
+        fc_least(block->of->count, 1.0 / fc_most(typical->map.relaxation, 1.0 / block->of->count));
     const FcMap of_map = {
         .relaxation = sigma * delta * lives,
         .offset = sigma * lives,
@@ -207,7 +210,7 @@ static Variable variable_of(const Block* block) {
         const double middle = drive->V.value + 0.5 * last * block->period * drive->V.rate;
         const double rate = drive->V.rate * block->period / V_1;
         const double V = drive->V.value / V_1 + fc_part_until_opposed(drive, middle) * rate;
-        if (fmax(fabs(V), fabs(V + last * rate)) <= 1.0) { // else V does not reverse
+        if (fc_most(fabs(V), fabs(V + last * rate)) <= 1.0) { // else V does not reverse
             const Variable found = {true, V, rate, acos(V), acos(V + last * rate)};
             if (fabs(found.to - found.from) > LEAST_RANGE) {
                 return found;
@@ -229,7 +232,7 @@ static double period_of_point(const Block* block, int j) {
     const Variable* of = &block->variable;
     const double now = of->from + (of->to - of->from) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
     const double k = of->is_phase ? (cos(now) - of->V) / of->rate : now;
-    return fmax(0.0, fmin(k, block->of->count - 1.0));
+    return fc_most(0.0, fc_least(k, block->of->count - 1.0));
 }
 
 // Infinite if an error is no number. Without a path work and heat have infinite weights and no errors.
@@ -240,7 +243,7 @@ static double largest_error(int count, const Numbers* weight, const double* erro
         if (isnan(seen)) {
             return HUGE_VAL;
         }
-        largest = fmax(largest, seen);
+        largest = fc_most(largest, seen);
     }
     return largest;
 }
@@ -271,7 +274,7 @@ static double less_foretold(const Block* block, double k, Numbers* map) {
 // none, or if a period has no map.
 static bool interpolate(Block* block) {
     const double may = allowed(block);
-    const double most = fmin(MOST_POINTS, floor(MOST_PART * block->of->count));
+    const double most = fc_least(MOST_POINTS, floor(MOST_PART * block->of->count));
     double before_last = HUGE_VAL;
     double largest = 0.0;
     block->variable = variable_of(block);
@@ -298,7 +301,7 @@ static bool interpolate(Block* block) {
             return true;
         }
         before_last = last;
-        largest = j > 0 ? fmax(largest, last) : 0.0;
+        largest = j > 0 ? fc_most(largest, last) : 0.0;
         // The errors fall by a ratio from point to point. If the remaining points are too few for this ratio,
         // the block is refused.
         const double left = j <= 1 || last <= may ? 0.0
@@ -311,7 +314,9 @@ static bool interpolate(Block* block) {
     return false;
 }
 
-static double periods_of_part(const Block* block) { return fmax(1.0, floor(block->of->count / MOST_PARTS)); }
+static double periods_of_part(const Block* block) {
+    return fc_most(1.0, floor(block->of->count / MOST_PARTS));
+}
 
 // Whether the periods are those of a bristle that slips in ElasticPlastic while V reverses.
 static bool slips_between_reversals(const Block* block) {
@@ -338,7 +343,8 @@ static double turn_of(FcPushed push, double a, double b, double* evaluations) {
 // The distance of both bounds less the way of the bristle from the one that it leaves to the other [m], in period k of
 // an ElasticPlastic bristle: below 0 it slips along both.
 static double distance_less_way(const Block* block, double k) {
-    const FcScene scene = scene_at(block, fmin(k, block->of->count - 2.0)); // up to two periods are looked at
+    const FcScene scene =
+        scene_at(block, fc_least(k, block->of->count - 2.0)); // up to two periods are looked at
     const int side = block->of->side;
     FcFriction friction;
     FcFriction other_friction;
@@ -411,7 +417,7 @@ static Rooms rooms_of(const Block* block) {
         rooms.swing = swing;
     }
     for (int i = 0; i * rooms.stride < block->of->count + rooms.stride; i++) {
-        const FcScene scene = scene_at(block, fmin(i * rooms.stride, block->of->count - 1.0));
+        const FcScene scene = scene_at(block, fc_least(i * rooms.stride, block->of->count - 1.0));
         FcFriction friction;
         const FcScene bound = fc_scene_of_bound(&scene, 0, &friction);
         rooms.D[i] = fc_scene_smallest_saturation(&bound, block->period);
@@ -421,7 +427,7 @@ static Rooms rooms_of(const Block* block) {
 
 static double room_at(const Block* block, const Rooms* rooms, double k, FcBristle start) {
     const int i = (int)(k / rooms->stride);
-    const double length = fmin(rooms->stride, block->of->count - 1.0 - i * rooms->stride);
+    const double length = fc_least(rooms->stride, block->of->count - 1.0 - i * rooms->stride);
     const double part = length > 0.0 ? (k - i * rooms->stride) / length : 0.0;
     const double D = rooms->D[i] + part * (rooms->D[i + 1] - rooms->D[i]);
     const double V = hypot(rooms->V.x + k * rooms->rate.x, rooms->V.y + k * rooms->rate.y) +
@@ -464,7 +470,7 @@ static FcBristle stuck_at(const Stuck* of, double t) {
 
 // The distance [m] to the bound, at the part `phase` of period k, or at the next end of the block.
 static double room_of_stuck(const Stuck* of, double k, double phase) {
-    const double t = fmin(fmax(0.0, k + phase), of->block->of->count) * of->block->period;
+    const double t = fc_least(fc_most(0.0, k + phase), of->block->of->count) * of->block->period;
     *of->block->evaluations += 1.0;
     return fc_bound(&of->bound, t) - fc_size(stuck_at(of, t));
 }
@@ -476,13 +482,13 @@ static double least_room(const Stuck* of, double k, double* phase) {
     for (int i = 0; i < PHASES; i++) {
         const double room = room_of_stuck(of, k, (double)i / PHASES);
         at = room < least ? i : at;
-        least = fmin(least, room);
+        least = fc_least(least, room);
     }
     const double before = room_of_stuck(of, k, (at - 1.0) / PHASES);
     const double after = room_of_stuck(of, k, (at + 1.0) / PHASES);
     const double bend = before - 2.0 * least + after;
     *phase = (at + (bend > 0.0 ? 0.5 * (before - after) / bend : 0.0)) / PHASES;
-    return fmin(least, room_of_stuck(of, k, *phase));
+    return fc_least(least, room_of_stuck(of, k, *phase));
 }
 
 // The period with the least room near period k, by steps of up to `step` periods at the phase of its least room.
@@ -493,7 +499,7 @@ static double tightest_near(const Stuck* of, double k, double step) {
     for (double way = step; way >= 1.0; way = floor(0.5 * way)) {
         for (int side = -1; side <= 1; side += 2) {
             for (;;) {
-                const double next = fmin(fmax(0.0, k + side * way), last);
+                const double next = fc_least(fc_most(0.0, k + side * way), last);
                 const double room = room_of_stuck(of, next, phase);
                 if (!(room < least)) {
                     break;
@@ -522,10 +528,10 @@ static bool meets_while_stuck(const Block* block, const Place* without_room, int
             return true;
         }
         tightest = room < least ? without_room[i].k : tightest;
-        least = fmin(least, room);
+        least = fc_least(least, room);
     }
     const double k = tightest_near(&of, tightest, each * periods_of_part(block));
-    for (double at = fmax(0.0, k - 1.0); at < fmin(k + 2.0, block->of->count); at += 1.0) {
+    for (double at = fc_most(0.0, k - 1.0); at < fc_least(k + 2.0, block->of->count); at += 1.0) {
         const Place place = {at, 0.0, stuck_at(&of, at * block->period)};
         if (meets(block, &place)) {
             return true;

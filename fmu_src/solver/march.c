@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/extremes.h"
 #include "model/regime.h"
 #include "solver/crossing.h"
 #include "solver/events.h"
@@ -67,9 +68,9 @@ static void pass_over_rounding(FcCrossing* crossing, double before, int stalled)
         crossing->along.offset = NAN;
         return;
     }
-    crossing->at.u =
-        fmin(crossing->end, fmax(crossing->at.u, before + ldexp(0x1p-50, doublings) *
-                                                              (fabs(before) + crossing->end - before)));
+    crossing->at.u = fc_least(crossing->end,
+                              fc_most(crossing->at.u, before + ldexp(0x1p-50, doublings) *
+                                                                   (fabs(before) + crossing->end - before)));
     crossing->at.t = fc_part_time(&crossing->part, crossing->at.u);
 }
 
@@ -89,9 +90,7 @@ static void cross_part(FcCrossing* crossing, int number) {
                 fc_free_until_event(crossing);
             }
         }
-        const double least =
-            PROGRESS * (crossing->end - fc_straight_place(&crossing->part.in, crossing->part.start));
-        stalled = crossing->at.u - before > least ? 0 : stalled + 1;
+        stalled = crossing->at.u - before > PROGRESS * crossing->whole ? 0 : stalled + 1;
         if (stalled > FC_MOST_TRIES && !fc_slip_neutrally(crossing)) {
             pass_over_rounding(crossing, before, stalled);
         }
@@ -168,6 +167,23 @@ static void put_result(const FcCrossing* crossing, FcStepResult* result) {
     result->evaluations = crossing->evaluations;
 }
 
+// The displacement in an interval of the length h [s] from its start to any time, at the most [m].
+static double longest_way(const FcDrive* drive, double h) {
+    const double V = fabs(drive->V.value) + fabs(drive->V_y.value);
+    const double rate = fabs(drive->V.rate) + fabs(drive->V_y.rate);
+    const double swing = drive->omega * h > 2.0 ? 2.0 / drive->omega : h;
+    return (V + 0.5 * rate * h) * h + (fabs(drive->vibration.V_1) + fabs(drive->vibration.V_2)) * swing;
+}
+
+// Whether a bristle sticks to the interval's end, since no bound is near enough. Its motion has no events then.
+static bool stays_stuck(const FcInterval* interval, FcBristle bristle) {
+    const FcScene* scene = interval->scene;
+    const double h = interval->duration;
+    const double farthest = fc_size(bristle) + longest_way(&scene->drive, h);
+    const double D = fc_static_ratio(scene->friction) * fc_scene_smallest_saturation(scene, h);
+    return scene->friction->model == FC_ELASTIC_PLASTIC && bristle.slips == 0 && farthest < (1.0 - 1e-9) * D;
+}
+
 void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
                    FcStepResult* result) {
     if (!(duration > 0.0) || isnan(result->delta)) { // no number of an earlier interval
@@ -180,8 +196,9 @@ void fc_march_step(const FcScene* scene, const FcSolverOptions* options, double 
     const FcInterval interval = fc_interval_make(scene, duration, options);
     FcRoom room;
     FcCrossing crossing;
-    fc_crossing_start(&crossing, &room, &plane, &interval, result->evaluations);
-    crossing.is_bounded = may_meet(scene, &plane.of_static_limit);
+    const bool sticks = stays_stuck(&interval, bristle);
+    fc_crossing_start(&crossing, &room, &plane, &interval, sticks, result->evaluations);
+    crossing.is_bounded = !sticks && may_meet(scene, &plane.of_static_limit);
     fc_set_delta(&crossing, (FcVector){bristle.delta, bristle.delta_y});
     choose_rigid(&crossing);
     if (fc_kind(&crossing) == FC_NO_BRISTLE) { // the deflection stands meanwhile
@@ -204,11 +221,11 @@ FcMap fc_march_map(const FcScene* scene, const FcSolverOptions* options, double 
     const FcInterval interval = fc_interval_make(scene, duration, options);
     FcRoom room;
     FcCrossing crossing;
-    fc_crossing_start(&crossing, &room, &plane, &interval, *evaluations);
+    fc_crossing_start(&crossing, &room, &plane, &interval, false, *evaluations);
     choose_rigid(&crossing);
-    crossing.for_any = true;
+    crossing.from.for_any = true;
     crossing.is_bounded = false;
-    crossing.scale = fmax(start, crossing.first.limit / crossing.first.sigma);
+    crossing.scale = fc_most(start, crossing.first.limit / crossing.first.sigma);
     start_control(&crossing, crossing.scale);
     cross(&crossing);
     *evaluations = crossing.evaluations;

@@ -47,8 +47,7 @@ bool fc_method_formula(const FcScene* scene, const FcContactResponse* contact, F
     if (!is_affine(scene) || fc_scene_is_loose(scene) || !takes_default(scene, method)) {
         return false;
     }
-    *result = fc_result_from(from, 0.0);
-    fc_constant_step(scene, contact, h, result);
+    fc_constant_step(scene, contact, h, from, result);
     return true;
 }
 

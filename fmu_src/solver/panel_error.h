@@ -17,17 +17,17 @@ FC_INLINE double fc_error_of_mean(const FcNodes* nodes, const double* f) {
 
 // The error of the mean over the panel of a force [N], its work over the largest speed [m/s], and its heat, together: one
 // function for all three, (F - held) (1 + v + (F + held) |v| / g), v = V / speed. The integrals of the constant force
-// `held` [N] are exact.
-FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double held, const double* F,
-                                   const double* V) {
+// `held` [N] are exact. A stuck bristle makes no heat.
+FC_INLINE double fc_error_of_force(const FcNodes* nodes, double speed, double held, bool heats,
+                                   const double* F, const double* V) {
     double FC_PAIRED f[FC_POINTS];
     const double over_duration = 1.0 / nodes->duration;
     const double over_speed = 1.0 / speed;
     for (int i = 0; i < FC_POINTS; i++) {
         const double v = V[i] * over_speed;
         const double over_limit = 1.0 / fc_most(nodes->limit[i], 1e-300);
-        f[i] = (F[i] - held) * (1.0 + v + (F[i] + held) * over_limit * fabs(v)) *
-               (nodes->tau[i] * over_duration);
+        const double heat = heats ? (F[i] + held) * over_limit * fabs(v) : 0.0;
+        f[i] = (F[i] - held) * (1.0 + v + heat) * (nodes->tau[i] * over_duration);
     }
     return fc_radau_quadrature_error(f);
 }

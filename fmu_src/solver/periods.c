@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/extremes.h"
 #include "model/regime.h"
 #include "solver/leap.h"
 
@@ -94,7 +95,7 @@ static double edge_of(Walk* walk, int side) {
     walk->total.evaluations = end.evaluations;
     const double kept = 1.0 - map->relaxation;
     const double room = side * (end.delta - map->offset);
-    *edge = side * fmin(side * farthest, room / kept);
+    *edge = side * fc_least(side * farthest, room / kept);
     return *edge;
 }
 
@@ -112,7 +113,7 @@ static void take_free(const Walk* walk, double n, FcStepResult* total) {
 static void settle(const Walk* walk, FcStepResult* total) {
     const FcMap* map = &walk->free_map;
     const FcMap* across = &walk->free_map_across;
-    const double least = 1e-300 * fmax(1.0, fmax(fabs(map->offset), fabs(across->offset)));
+    const double least = 1e-300 * fc_most(1.0, fc_most(fabs(map->offset), fabs(across->offset)));
     if (!(map->relaxation > least)) {
         return; // nothing relaxes
     }
@@ -171,7 +172,7 @@ static double free_periods_by_steps(Walk* walk, double left) {
             free = middle;
         }
     }
-    return fmin(free, left);
+    return fc_least(free, left);
 }
 
 // The number of periods after the free start delta that meet no bound. The deflection moves by s (1 - P^n) /
@@ -197,7 +198,7 @@ static double free_periods(Walk* walk, double left) {
     }
     const double n = map.relaxation > 0.0 ? log1p(-map.relaxation * room) / log1p(-map.relaxation) : room;
     assert(!(n < 0.0));
-    return fmin(left, floor(n) + 1.0);
+    return fc_least(left, floor(n) + 1.0);
 }
 
 static void take_cycles(Walk* walk, double times) {
@@ -217,12 +218,12 @@ static bool repeats(Walk* walk) {
     const FcStepResult* total = &walk->total;
     const double size = size_of(total);
     const double changed =
-        fmax(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
+        fc_most(fabs(total->delta - walk->met.delta), fabs(total->delta_y - walk->met.delta_y));
     if (walk->met_at < 0.0 || total->slips != walk->met.slips || !(changed <= SAME_END * size)) {
         return false;
     }
     return changed <= SAME_END * LEAST_PART * size ||
-           changed <= SAME_END * fmin(1.0, free_map_of(walk).relaxation) * size;
+           changed <= SAME_END * fc_least(1.0, free_map_of(walk).relaxation) * size;
 }
 
 // The farthest that a step of Newton moves the deflection, over it. Chosen empirically: without a limit one of
@@ -279,7 +280,7 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         return false;
     }
     *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
-    const double part = length > 0.0 ? fmin(1.0, MOST_OF_NEWTON * size_of(total) / length) : 1.0;
+    const double part = length > 0.0 ? fc_least(1.0, MOST_OF_NEWTON * size_of(total) / length) : 1.0;
     const FcBristle reached = fc_reach(scene, (FcBristle){.delta = met->from.x + part * start.x,
                                                           .delta_y = met->from.y + part * start.y,
                                                           .slips = total->slips});
@@ -413,7 +414,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     const double f = scene->drive.vibration.f;
     const bool is_linear = fc_drive_is_linear(&scene->drive);
     const double periods = fc_drive_vibrates(&scene->drive) ? floor(h * f) : 0.0;
-    const double rest = periods > 0.0 ? fmax(0.0, fma(h, f, -periods) / f) : h;
+    const double rest = periods > 0.0 ? fc_most(0.0, fma(h, f, -periods) / f) : h;
     // A rest of no more than the rounding of h could take a slip off its bound.
     const bool has_rest = rest > 4.0 * DBL_EPSILON * h;
     assert(h >= 0.0 && rest <= h);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "model/extremes.h"
 #include "model/regime.h"
 
 void fc_pieces_start(FcPieces* pieces, const FcScene* scene, double whole) {
@@ -69,7 +70,7 @@ static FcSolverOptions options_of_piece(const FcSolverOptions* options, const Fc
                              ? fc_scene_smallest_limit(pieces->scene, pieces->h)
                              : 0.0;
     if (limit > 0.0) {
-        own.force = fmin(own.force, fc_force_beside_damping(options->largest, options->damping, limit));
+        own.force = fc_least(own.force, fc_force_beside_damping(options->largest, options->damping, limit));
     }
     return own;
 }

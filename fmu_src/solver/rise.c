@@ -11,18 +11,18 @@ enum { POINTS = FC_POINTS, START = FC_STAGES };
 // The polynomial through the points of a panel, in barycentric form.
 static double value_at(void* points, double x) {
     const double* f = points;
-    double above = 0.0;
-    double below = 0.0;
-    for (int i = 0; i < POINTS; i++) {
-        const double away = x - (0.5 + FC_RADAU.node[i]);
-        if (away == 0.0) {
-            return f[i];
+    FcPair above = {0.0, 0.0};
+    FcPair below = {0.0, 0.0};
+    for (int i = 0; i < POINTS; i += 2) {
+        const FcPair away = x - (0.5 + fc_pair(FC_RADAU.node + i));
+        if (away[0] == 0.0 || away[1] == 0.0) {
+            return f[away[0] == 0.0 ? i : i + 1];
         }
-        const double part = FC_RADAU.barycentric[i] / away;
-        above += part * f[i];
+        const FcPair part = fc_pair(FC_RADAU.barycentric + i) / away;
+        above += part * fc_pair(f + i);
         below += part;
     }
-    return above / below;
+    return fc_pair_sum(above) / fc_pair_sum(below);
 }
 
 // The root between a place at which f is not positive, unless by rounding, and one at which it is.
@@ -31,6 +31,25 @@ static double root_between(double* f, double a, double b, double at_b) {
     double none = 0.0;
     return at_a < 0.0 ? fc_root_between(value_at, f, a, at_a, b, at_b, 0.0, 0.0, &none)
                       : a + 0x1p-50 * (b - a);
+}
+
+// Four numbers side by side, if the processor can: else they are two pairs.
+typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
+
+// The values at the start and after each of the equal steps.
+FC_WITH_AVX static void find_samples(const double f[POINTS], double value[FC_SAMPLES + 1]) {
+    value[0] = f[START];
+    for (int k = 0; k < FC_SAMPLES; k += 8) {
+        Four first = {0.0};
+        Four second = {0.0};
+        for (int j = 0; j < POINTS; j++) {
+            const Four* weight = (const Four*)(FC_RADAU.sample[j] + k);
+            first += f[j] * weight[0];
+            second += f[j] * weight[1];
+        }
+        *(Four*)(value + k + 1) = first;
+        *(Four*)(value + k + 5) = second;
+    }
 }
 
 double fc_first_rise(const double at_points[FC_POINTS], double over) {
@@ -46,28 +65,26 @@ double fc_first_rise(const double at_points[FC_POINTS], double over) {
     if (largest + 0.25 * (largest - smallest) < 0.0) { // nor between the points
         return 2.0;
     }
-    bool is_below = f[START] <= over;
-    double a = 0.0; // the last place at which it was below 0
-    double before = f[START];
-    double last = f[START];
+    double value[FC_SAMPLES + 1];
+    find_samples(f, value);
+    bool is_below = value[0] <= over;
+    int below = 0; // the last sample at which it was below 0
     for (int k = 1; k <= FC_SAMPLES; k++) {
-        double x = (double)k / FC_SAMPLES;
-        const double sample = fc_dot(POINTS, FC_RADAU.sample[k], f);
-        double value = sample;
         // Between three samples it may have a top, at that of a parabola.
-        const double bend = 2.0 * last - before - sample;
-        if (last > before && last > sample && last <= over && last + 0.25 * bend > over) {
-            x += (0.5 * (sample - before) / bend - 1.0) / FC_SAMPLES;
-            value = value_at(f, x);
-            a = fc_least(a, (k - 2.0) / FC_SAMPLES);
+        const double before = value[k > 1 ? k - 2 : 0];
+        const double last = value[k - 1];
+        const double bend = 2.0 * last - before - value[k];
+        const bool has_top = last + 0.25 * bend > over && last <= over && last > before && last > value[k];
+        if (is_below && (has_top || value[k] > over)) {
+            const double x = (k + (has_top ? 0.5 * (value[k] - before) / bend - 1.0 : 0.0)) / FC_SAMPLES;
+            const double at_x = has_top ? value_at(f, x) : value[k];
+            const int from = has_top && below > k - 2 ? (k > 1 ? k - 2 : 0) : below;
+            if (at_x > over) {
+                return root_between(f, (double)from / FC_SAMPLES, x, at_x);
+            }
         }
-        before = last;
-        last = sample;
-        if (value > over && is_below) {
-            return root_between(f, a, x, value);
-        }
-        is_below = is_below || value <= over;
-        a = value <= 0.0 ? x : a;
+        is_below = is_below || value[k] <= over;
+        below = value[k] <= 0.0 ? k : below;
     }
     return 2.0;
 }

@@ -2,6 +2,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "model/extremes.h"
 #include "solver/panel_error.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
@@ -69,14 +70,14 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
             for (int j = 0; j < STAGES; j++) {
                 left -= FC_RADAU.inverse[i][j] * (a[j] - a_0);
             }
-            diagonal[i] = fmax(0.0, pace * (V.x * c + V.y * s));
+            diagonal[i] = fc_most(0.0, pace * (V.x * c + V.y * s));
             step[i] = left;
         }
         solve(diagonal, step);
         double largest = 0.0;
         for (int i = 0; i < STAGES; i++) {
             a[i] += step[i];
-            largest = fmax(largest, fabs(step[i]));
+            largest = fc_most(largest, fabs(step[i]));
         }
         if (!(largest < 2.0)) { // also of no number
             return false;
@@ -145,9 +146,9 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFro
     panel->limit = nodes->limit[LAST];
     panel->rate = z[LAST] / nodes->tau[LAST];
     const double force = panel->sigma * bound[LAST].D;
-    const double quadrature = fc_error_of_force(nodes, from->speed, 0.0, F_x, nodes->V) +
-                              fc_error_of_force(nodes, from->speed, 0.0, F_y, nodes->V_y) +
+    const double quadrature = fc_error_of_force(nodes, from->speed, 0.0, true, F_x, nodes->V) +
+                              fc_error_of_force(nodes, from->speed, 0.0, true, F_y, nodes->V_y) +
                               fc_error_of_mean(nodes, heat);
-    fc_set_errors(panel, 0.0, z[LAST], force, fc_radau_unresolved(slope, fmax(0.0, panel->z)), quadrature);
+    fc_set_errors(panel, 0.0, z[LAST], force, fc_radau_unresolved(slope, fc_most(0.0, panel->z)), quadrature);
     return true;
 }

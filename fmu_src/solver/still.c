@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "model/extremes.h"
 #include "model/regime.h"
 #include "model/root.h"
 #include "solver/events.h"
@@ -88,7 +89,7 @@ static bool meets_in_part(FcCrossing* crossing, double* end, double* way) {
     const FcPlaneCoefficients at = fc_coefficients_at(crossing, t);
     const double D = at.static_limit / at.sigma;
     const double moves = side * fc_drive_displacement(drive, t, *end);
-    *way = fmax(0.0, D - side * crossing->along.offset);
+    *way = fc_most(0.0, D - side * crossing->along.offset);
     if (!(crossing->is_bounded && moves > *way)) {
         return false;
     }

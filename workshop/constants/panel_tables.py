@@ -5,7 +5,7 @@
 They are kept with the sources, so that a build needs no mpmath. tests/solver/test_panel_tables.py has
 other formulas. All follow from the nodes c_i on [0, 1], the roots of P_n - P_(n-1) with the Legendre
 polynomials P_n(2 c - 1): the integrals of the polynomials through values at the nodes, their Legendre
-coefficients, their values at 0 and, with the panel's start as a tenth point, at 32 equal steps.
+coefficients, their values at 0 and, with the panel's start as a tenth point, after 32 equal steps.
 """
 
 import numpy as np
@@ -72,7 +72,7 @@ def tables() -> str:
     rule = Rule(radau_nodes(STAGES))
     inverse = rule.integral**-1
     points = [*rule.nodes, mpf(0)]
-    samples = [[*values_at(points, mpf(k) / SAMPLES), mpf(0), mpf(0)] for k in range(SAMPLES + 1)]
+    samples = list(zip(*(values_at(points, mpf(k) / SAMPLES) for k in range(1, SAMPLES + 1)), strict=True))
     return f"""// Made by workshop.constants.panel_tables, which describes the entries.
 // clang-format off
 #ifndef FC_SOLVER_PANEL_TABLES_H
@@ -90,7 +90,7 @@ typedef struct {{
     double inverse[9][10]; // of the Runge-Kutta matrix
     double tail[10][4];    // [j][k]: weight of node j in the Legendre coefficient of degree n - 1 - k
     double barycentric[10];
-    double sample[{SAMPLES + 1}][12]; // [k][j]: weight of point j in the value of the polynomial after the part k / {SAMPLES}
+    double sample[10][{SAMPLES}];  // [j][k]: weight of point j in the value of the polynomial after the part (k + 1) / {SAMPLES}
 }} FC_PAIRED FcRadauRule;
 
 // Radau IIA of {STAGES} stages.
@@ -101,7 +101,7 @@ static const FcRadauRule FC_RADAU = {{
     {rows([[inverse[i, j] for j in range(STAGES)] for i in range(STAGES)])},
     {rows([*rule.tail, [mpf(0)] * 4])},
     {row(barycentric_weights(points))},
-    {rows(samples)},
+    {rows([list(of_point) for of_point in samples])},
 }};
 
 #endif  // FC_SOLVER_PANEL_TABLES_H
