@@ -1,4 +1,4 @@
-"""What holds for every scene: the cycle identity, splitting, rate independence, odd symmetry, the bound F_C.
+"""What holds for every scene: the cycle identity, a step in parts, a later start.
 
 Values come from wide logarithmic ranges and from their ends: nothing moves, hardly anything moves,
 contacts from softer to stiffer than any real one.
@@ -21,7 +21,7 @@ FREQUENCY = 16384.0
 PERIOD = 1.0 / FREQUENCY
 
 every_scene = settings(
-    max_examples=50,
+    max_examples=25,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
@@ -37,14 +37,14 @@ def signed(values: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
 
 
 @st.composite
-def scenes(draw: st.DrawFn, constant: bool | None = None) -> dict[str, float | str]:
+def scenes(draw: st.DrawFn) -> dict[str, float | str]:
     """FMU start values."""
     V_1 = draw(st.just(0.0) | logarithmic(1e-9, 1e2))
     near = signed(st.sampled_from([1.0, 1.0 - 1e-9, 1.0 + 1e-9, 1.0 - 1e-3]).map(lambda x: x * V_1))
     V = draw(st.sampled_from([0.0, 1e-300, -1e-300]) | signed(logarithmic(1e-9, 1e2)) | near)
     d = draw(st.floats(8e-6, 20e-6))
     a_d = draw(st.sampled_from([0.0, 1e-300, 1e-18]) | logarithmic(1e-12, 3e-6))
-    is_constant = draw(st.booleans()) if constant is None else constant
+    is_constant = draw(st.booleans())
     F_C = draw(logarithmic(1e-3, 1e4))
     return {
         "V": V,
@@ -111,18 +111,6 @@ def force_scale(outputs: dict[str, float], values: dict[str, Any]) -> float:
     return max(values["F_C"], abs(outputs["F_t"]), abs(outputs["F_t_mean"]))
 
 
-def assert_same(
-    one: dict[str, float],
-    other: dict[str, float],
-    values: dict[str, Any],
-    sign: float = 1.0,
-    bound: float = 2.0,
-) -> None:
-    scale = bound * TOLERANCE * force_scale(one, values)
-    assert sign * other["F_t"] == pytest.approx(one["F_t"], abs=scale)
-    assert sign * other["F_t_mean"] == pytest.approx(one["F_t_mean"], abs=scale)
-
-
 @every_scene
 @given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
 def test_cycle_identity_where_the_velocity_keeps_its_sign(
@@ -145,87 +133,19 @@ def test_cycle_identity_where_the_velocity_keeps_its_sign(
 
 
 @every_scene
-@given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
-def test_a_step_in_a_hundred_parts(
-    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
+@given(data=st.data(), values=scenes(), h=durations, deflection=fractions, periods=st.integers(1, 2**30))
+def test_a_step_in_parts_and_later(
+    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float, periods: int
 ) -> None:
-    rates = data.draw(ramps(values, h))
-    whole = run(fmu, values, deflection, [h], rates)
-    parts = run(fmu, values, deflection, [h / 100] * 100, rates)
-    assert_same(whole, parts, values)
+    """A hundred parts agree within two tolerances; whole periods later all bits are the same.
 
-
-@every_scene
-@given(data=st.data(), values=scenes(), h=durations, deflection=fractions, k=logarithmic(1e-3, 1e3))
-def test_rate_independence(
-    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float, k: float
-) -> None:
-    """V(t), d(t), E(t) -> k V(k t), d(k t), E(k t) leaves the force over the path unchanged."""
-    rates = data.draw(ramps(values, h))
-    slow = run(fmu, values, deflection, [h], rates)
-    faster = values | {
-        "V": k * values["V"],
-        "vibration.V_1": k * values["vibration.V_1"],
-        "vibration.f": k * values["vibration.f"],
-    }
-    fast_rates = {name: rate * (k * k if name == "V" else k) for name, rate in rates.items()}
-    fast = run(fmu, faster, deflection, [h / k], fast_rates)
-    assert_same(slow, fast, values)
-    assert fast["delta"] == pytest.approx(
-        slow["delta"], abs=2 * TOLERANCE * max(values["F_C"], abs(slow["F_t"])) / slow["sigma"]
-    )
-
-
-@every_scene
-@given(data=st.data(), values=scenes(), h=durations, deflection=fractions)
-def test_odd_symmetry(
-    fmu: FrictionFmu, data: st.DataObject, values: dict, h: float, deflection: float
-) -> None:
-    """V(t) -> -V(t), the vibration half a period later, gives -F."""
-    rates = data.draw(ramps(values, h))
-    forth = run(fmu, values, deflection, [h], rates)
-    mirrored = values | {
-        "V": -values["V"],
-        "vibration.phase_d": values["vibration.phase_d"] + math.pi,
-    }
-    back_rates = {name: -rate if name == "V" else rate for name, rate in rates.items()}
-    back = run(fmu, mirrored, -deflection, [h], back_rates, start=PERIOD / 2)
-    assert_same(forth, back, values, sign=-1.0)
-    assert back["W_f"] == pytest.approx(forth["W_f"], rel=1e-6, abs=1e-6 * values["F_C"] * PERIOD)
-
-
-@every_scene
-@given(data=st.data(), values=scenes(constant=True), deflection=fractions, part=logarithmic(1e-3, 30.0))
-def test_the_force_stays_within_coulomb_friction_at_constant_stiffness(
-    fmu: FrictionFmu, data: st.DataObject, values: dict, deflection: float, part: float
-) -> None:
-    rates = data.draw(ramps(values, 20 * part * PERIOD))
-    F_C = values["F_C"]
-    values = values | {"delta_0": deflection * F_C / values["contact.sigma"]}
-    with fmu.session(values) as session:
-        for k in range(20):
-            if rates and k == 0:
-                session.set_rates(**rates)
-            session.step(part * PERIOD)
-            assert abs(session.get("F_t")) <= F_C * (1 + TOLERANCE)
-            assert abs(session.get("F_t_mean")) <= F_C * (1 + TOLERANCE)
-
-
-@every_scene
-@given(
-    values=scenes(),
-    h=durations,
-    deflection=fractions,
-    periods=st.integers(0, 2**30),
-)
-def test_independence_of_the_start_time(
-    fmu: FrictionFmu, values: dict, h: float, deflection: float, periods: int
-) -> None:
-    """A run that starts whole periods later gives the same bits: local time keeps even a late step exact.
-
-    The duration is a multiple of 2^-36 s, so that no end of a step is rounded.
+    Local time keeps even a late step exact. The duration is a multiple of 2^-36 s: no end is rounded.
     """
     h = math.ceil(h * 2.0**36) / 2.0**36
-    now = run(fmu, values, deflection, [h])
-    later = run(fmu, values, deflection, [h], start=periods * PERIOD)
-    assert later == now
+    rates = data.draw(ramps(values, h))
+    whole = run(fmu, values, deflection, [h], rates)
+    assert run(fmu, values, deflection, [h], rates, start=periods * PERIOD) == whole
+    parts = run(fmu, values, deflection, [h / 100] * 100, rates)
+    scale = 2 * TOLERANCE * force_scale(whole, values)
+    assert parts["F_t"] == pytest.approx(whole["F_t"], abs=scale)
+    assert parts["F_t_mean"] == pytest.approx(whole["F_t_mean"], abs=scale)

@@ -9,7 +9,7 @@ from frictioncontact.fmu import FrictionError, FrictionFmu
 
 F = 20e3  # Hz
 LARGEST = 2.0**46 / F  # s, 3.5e9
-HOURS_TO_DECADES = [1e3, 1e5, 1e7, 1e9, 3e9]
+HOURS_TO_DECADES = [1e3, 1e7, 3e9]
 
 # Table 1, soft; the separation at a phase in (0, 2 pi).
 V, V_1, D, A_D, PHASE_D, SCALE = 0.5, 1.44, 14e-6, 1.1e-6, 0.3, 4.4e-7
@@ -68,14 +68,13 @@ def test_force_is_that_of_a_short_step_to_the_same_phase(fmu: FrictionFmu, h: fl
 
 LAWS = [
     {"friction.model": "Coulomb"},
-    {"friction.model": "Dahl"},
     {"friction.model": "Dahl", "solver.method": "cvode"},
     {"friction.model": "Dahl", "solver.method": "backwardEuler", "solver.stepSize": 1e300},
 ]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: "-".join(str(value) for value in law.values()))
-@pytest.mark.parametrize("h", [LARGEST * (1 + 1e-9), 1e12, 9.1e11, 1.1e24, 1e100, 1e300, 1e305, 1.7e308])
+@pytest.mark.parametrize("h", [LARGEST * (1 + 1e-9), 9.1e11, 1e100, 1.7e308])
 def test_a_time_that_tells_no_phase_is_refused(
     fmu: FrictionFmu, h: float, law: dict[str, str | float]
 ) -> None:

@@ -9,11 +9,10 @@ import math
 
 import numpy as np
 import pytest
-from physics.course import scale
 from scipy.integrate import solve_ivp
 
 from frictioncontact.fmu import FrictionFmu, Session, Value
-from workshop.reference.start_values import scene_of
+from workshop.reference import changed, scene_of, step
 
 F_C = 55.0
 LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
@@ -80,62 +79,31 @@ PARAMETERS = (
 )
 
 
+@pytest.mark.parametrize("axis", ["t", "y"], ids=["line", "plane"])
 @pytest.mark.parametrize("law", LAWS)
-def test_derivatives_against_differences(fmu: FrictionFmu, law: str) -> None:
+def test_derivatives_against_differences(fmu: FrictionFmu, law: str, axis: str) -> None:
     """Eight digits where two differences agree: elsewhere they step over a kink."""
-    asked = graded = 0
-    for number in range(12):
+    asked, graded, output = 0, 0, f"F_{axis}_settled"
+    for number in range(5 if axis == "t" else 2):
         values = drawn(law, number)
-        scene = scene_of(values)
-        limit = scale(scene, 0.0, 1 / scene.f, 0.0)
+        V_1, by_load = float(values["vibration.V_1"]), values["contact.input"] == "Load"
+        moves = ("V", "E", "load" if by_load else "d")
+        if axis == "y":
+            values |= {"V_y": 0.3 * V_1, "vibration.V_2": 0.5 * V_1, "vibration.phase_2": 0.7}
+            moves = ("V", "V_y", "vibration.V_2", "vibration.phase_2")
+        limit = step(changed(scene_of(values), h=1e-4, delta_0=0.0)).S
         with fmu.session(values | {"solver.tolerance": 1e-12}) as session:
-            for name in ("V", "E", "load" if scene.input == "Load" else "d", *PARAMETERS):
+            for name in (*moves, *PARAMETERS):
                 if not scale_of(session, name) > 0.0:
                     continue  # at its bound
-                coarse, fine = (slope_by_differences(session, name, step) for step in (4e-3, 1e-3))
+                coarse, fine = (slope_by_differences(session, name, h, output) for h in (4e-3, 1e-3))
                 unit = abs(fine) + limit / scale_of(session, name)
                 asked += 1
                 if abs(fine - coarse) < 1e-8 * unit:
                     graded += 1
-                    error = abs(session.slope("F_t_settled", name) - fine)
-                    assert error < 1e-8 * unit, (number, name, values)
-            assert session.slope("F_t_settled", "d" if scene.input == "Load" else "load") == 0.0
-    assert graded > 0.9 * asked > 100
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_derivatives_in_the_plane(fmu: FrictionFmu, law: str) -> None:
-    """Of the mean across, as along a line."""
-    asked = graded = 0
-    for number in range(4):
-        values = drawn(law, number)
-        V_1 = float(values["vibration.V_1"])
-        values |= {"V_y": 0.3 * V_1, "vibration.V_2": 0.5 * V_1, "vibration.phase_2": 0.7}
-        with fmu.session(values | {"solver.tolerance": 1e-12}) as session:
-            size = math.hypot(session.get("F_t_settled"), session.get("F_y_settled"))
-            for name in ("V", "V_y", *PARAMETERS, "vibration.V_2", "vibration.phase_2"):
-                if not scale_of(session, name) > 0.0:
-                    continue
-                coarse, fine = (slope_by_differences(session, name, h, "F_y_settled") for h in (4e-3, 1e-3))
-                unit = abs(fine) + size / scale_of(session, name)
-                asked += 1
-                if abs(fine - coarse) < 1e-8 * unit:
-                    graded += 1
-                    error = abs(session.slope("F_y_settled", name) - fine)
-                    assert error < 1e-8 * unit, (number, name, values)
-    assert graded > 0.8 * asked > 40
-
-
-@pytest.mark.parametrize("zeta", [-0.9, 0.0, 0.3, 0.999, 1.0 - 1e-6])
-def test_coulomb_is_the_arc_sine(fmu: FrictionFmu, zeta: float) -> None:
-    """(2 / pi) F_C asin(V / V_1) + sigma_2 V, and its derivative."""
-    V_1, sigma_2 = 0.8, 3.0
-    values = {"friction.model": "Coulomb", "V": zeta * V_1, "vibration.V_1": V_1, "friction.sigma_2": sigma_2}
-    with fmu.session(values) as session:
-        mean = 2 / math.pi * F_C * math.asin(zeta) + sigma_2 * zeta * V_1
-        assert session.get("F_t_settled") == pytest.approx(mean, rel=1e-12, abs=1e-12)
-        by_V = 2 / math.pi * F_C / (V_1 * math.sqrt((1 - zeta) * (1 + zeta))) + sigma_2
-        assert session.slope("F_t_settled", "V") == pytest.approx(by_V, rel=1e-7)
+                    assert abs(session.slope(output, name) - fine) < 1e-8 * unit, (number, name, values)
+            assert session.slope("F_t_settled", "d" if by_load else "load") == 0.0
+    assert graded > 0.8 * asked > 20
 
 
 @pytest.mark.parametrize("zeta", [-1.0, 1.0])
@@ -145,7 +113,7 @@ def test_coulomb_where_V_only_touches_zero(fmu: FrictionFmu, zeta: float, V_1: f
         assert session.get("F_t_settled") == pytest.approx(zeta * F_C, rel=1e-12)
 
 
-@pytest.mark.parametrize("V", [1e-300, -1e-300, 3e-3, -3e-3, 1e15])
+@pytest.mark.parametrize("V", [1e-300, -3e-3, 1e15])
 @pytest.mark.parametrize("law", LAWS)
 def test_without_vibration_it_is_steady_sliding(fmu: FrictionFmu, law: str, V: float) -> None:
     has_curve, excess, V_S = law in ("LuGre", "ElasticPlastic"), 0.4, 0.01
@@ -211,15 +179,6 @@ def test_it_is_the_same_at_every_time_and_after_every_past(fmu: FrictionFmu) -> 
         assert session.get("F_t_settled") == first
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_long_steps_lead_there(fmu: FrictionFmu, law: str) -> None:
-    values = VIBRATING | SOFT | {"friction.model": law, "friction.limit": "Load", "friction.staticRatio": 1.2}
-    with fmu.session(values) as session:
-        session.step(1000 / 20e3)
-        session.step(1 / 20e3)
-        assert session.get("F_t_settled") == pytest.approx(session.get("F_t_mean"), abs=2e-6 * F_C)
-
-
 def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
     """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
     values: dict[str, Value] = {
@@ -266,7 +225,7 @@ def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, perio
 
 @pytest.mark.parametrize(
     ("mass", "sigma", "periods", "least", "most"),
-    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 1000, 7.0, 9.0)],
+    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 700, 7.0, 9.0)],
 )
 def test_a_mass_follows_it_but_for_ripple_and_transient(
     fmu: FrictionFmu, mass: float, sigma: float, periods: int, least: float, most: float
@@ -285,22 +244,6 @@ def test_a_mass_follows_it_but_for_ripple_and_transient(
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
     assert least * ripple < error < most * ripple
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [
-        {"contact.input": "Load", "load": 0.0, "friction.limit": "Load"},
-        {"contact.input": "Load", "load": -3.0, "friction.limit": "Load", "vibration.V_1": 0.3},
-        {"d": 1e-2, "friction.limit": "Load", "vibration.V_1": 0.3},
-    ],
-)
-def test_an_open_contact_has_derivatives(fmu: FrictionFmu, scene: dict[str, Value]) -> None:
-    """Of sigma_2 V alone."""
-    with fmu.session(scene | {"V": 0.1, "friction.sigma_2": 7.0}) as session:
-        assert session.get("F_t_settled") == pytest.approx(0.7)
-        slopes = {name: session.slope("F_t_settled", name) for name in ("V", "V_y", "d", "E", "load")}
-    assert slopes == pytest.approx({"V": 7.0, "V_y": 0.0, "d": 0.0, "E": 0.0, "load": 0.0})
 
 
 def test_a_load_that_does_not_count_has_a_derivative_of_0(fmu: FrictionFmu) -> None:
