@@ -12,7 +12,7 @@ from fmi_library import CO_SIMULATION, ERROR, MODEL_EXCHANGE, OK, Instance
 
 from workshop.description import description, read
 
-# test_settled_force.py has the derivatives of F_t_settled and F_y_settled.
+SETTLED = ("F_t_settled", "F_y_settled")
 OUTPUTS = tuple(
     variable["name"]
     for variable in description()["variables"]
@@ -62,18 +62,17 @@ def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], sc
         assert exact == pytest.approx(2.0 * slopes[0] - slopes[1], rel=1e-5, abs=1e-6 * size), name
 
 
+STIFF, SOFT = {"contact.sigma": 2e6}, {"contact.stiffnessScale": 4.4e-7}
 JUMPS = {  # a sliding contact, and values that jump after a step
-    "onto the kinetic bound, as V reverses": ({}, {"contact.sigma": 2e6}, {"contact.sigma": 4e6}),
-    "inside both bounds, as V reverses": ({}, {"contact.sigma": 2e6}, {"contact.sigma": 2.6e6}),
-    "the limit falls, as V reverses": ({}, {"contact.sigma": 2e6}, {"F_C": 30.0}),
-    "the surfaces approach, as V reverses": (
-        {"contact.model": 1}, {"contact.stiffnessScale": 4.4e-7}, {"d": 13.8e-6},
-    ),
+    "onto the kinetic bound, as V reverses": ({}, STIFF, {"contact.sigma": 4e6}),
+    "inside both bounds, as V reverses": ({}, STIFF, {"contact.sigma": 2.6e6}),
+    "the surfaces approach, as V reverses": ({"contact.model": 1}, SOFT, {"d": 13.8e-6}),
     "past a least bound, Dahl": (
         {"friction.model": 1, "contact.model": 1, **PRESSED},
-        {"contact.stiffnessScale": 4.4e-7, "load": 312.44}, {"load": 468.0, "E": 35.134e9, "V": 0.2},
+        {**SOFT, "load": 312.44},
+        {"load": 468.0, "E": 35.134e9, "V": 0.2},
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("jump", JUMPS)
@@ -85,17 +84,8 @@ def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instanc
     instance.initialize()
     assert instance.step(0.0, 1e-3) == OK
     assert instance.set({"V": -0.15, **after}) == OK
-    for name in (
-        "V",
-        "d",
-        "E",
-        "load",
-        "F_C",
-        "friction.mu",
-        "friction.staticRatio",
-        "friction.V_S",
-        "contact.sigma",
-    ):
+    limits = ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma")
+    for name in ("V", "d", "E", "load", *limits):
         (start,) = instance.get(name)
         status, exact = instance.directional(FORCES, {name: 1.0})
         assert status == OK
@@ -271,20 +261,27 @@ def test_every_derivative(new_instance: Callable[..., Instance], kind: int, part
     assert graded > 0.9 * asked
 
 
-def test_a_bristle_that_slips_by_parameters_of_its_bound(new_instance: Callable[..., Instance]) -> None:
-    """In co-simulation it stays on a bound that comes nearer: F_t is the limit then, and the damping's."""
-    instance = new_instance()
-    assert instance.choose({**ELASTIC_PLASTIC, "contact.model": 2}) == OK
-    assert instance.set({"V": 0.5, "friction.sigma_1": 20.0}) == OK
+@pytest.mark.parametrize("number", range(8))
+def test_of_the_settled_force(instance: Instance, number: int) -> None:
+    """Eight digits again, of every law along a line and in the plane."""
+    choices, values, _ = drawn(number)
+    if choices == {**choices, **ELASTIC_PLASTIC}:
+        values["friction.staticRatio"] = 1.0  # else it takes long
+    assert instance.choose(choices) == OK
+    assert instance.set(values | {"solver.tolerance": 1e-12}) == OK
     instance.initialize()
-    assert instance.step(0.0, 1e-3) == OK
-    for name, slope in {
-        "F_C": 1.0,
-        "contact.sigma": 0.0,
-        "friction.sigma_1": 0.0,
-        "friction.sigma_2": 0.5,
-    }.items():
-        assert instance.directional(["F_t"], {name: 1.0}) == (OK, [pytest.approx(slope, abs=1e-12)]), name
+    here, asked = np.hypot(*instance.get(*SETTLED)), 0
+    for name in (*STEPS, *TUNABLE):
+        scale = scale_of(name, values) if values.get(name) else 0.0
+        if scale == 0.0:
+            continue  # at its bound
+        status, exact = instance.directional(SETTLED, {name: 1.0})
+        assert status == OK, instance.messages
+        expected, smooth = by_richardson(instance, name, 0.005 * scale, SETTLED)
+        error = np.abs(np.array(exact) - expected) / (np.abs(expected) + here / scale)
+        assert not (smooth & (error > 1e-8)).any(), (name, error)
+        asked += smooth.all()
+    assert asked > 12
 
 
 REFUSED = {

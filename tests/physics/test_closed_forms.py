@@ -134,7 +134,7 @@ def test_contact(fmu: FrictionFmu, parameters: dict[str, float], E: float) -> No
 # ---- means of a vibration ----
 
 
-@pytest.mark.parametrize("zeta", [-0.9, 0.0, 0.3, 0.999])
+@pytest.mark.parametrize("zeta", [-1.0, -0.9, 0.0, 0.999, 1.0])
 def test_coulomb_along_is_the_arc_sine(graded: Graded, zeta: float) -> None:
     mean = coulomb_along(zeta) + 3.0 * zeta * V_2 / F_C
     values = along("Coulomb", 1.0, zeta) | {"friction.sigma_2": 3.0}
@@ -264,17 +264,6 @@ def test_held_sliding_relaxes_toward_its_direction(graded: Graded, initial: str,
     truth = [SIGMA * end[0], SIGMA * end[1], *mean, work, work - stored, *end]
     assert [found[name] for name in RESULTS] == pytest.approx(truth, rel=1e-11)
     assert graded.settled(values) == pytest.approx(tuple(n), rel=1e-12)
-
-
-@pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
-def test_the_heat_of_a_load_that_falls(graded: Graded, law: str) -> None:
-    """A bristle at its bound gives up sigma (delta^2 - D^2) / 2; here in a start from beyond the bound."""
-    values = CONSTANT | {"friction.model": law, "friction.limit": "Load", "contact.input": "Load"}
-    values |= {"load": 100.0, "friction.mu": 0.2, "delta_0": 50.0 / SIGMA}
-    (found,) = graded.steps(values, 1e-6)
-    assert found["F_t"] == pytest.approx(20.0, rel=1e-12)
-    if graded.fmu is None:
-        assert found["Q_f"] == pytest.approx((50.0**2 - 20.0**2) / (2 * SIGMA), rel=1e-10)
 
 
 def test_a_push_of_zero_at_the_start_goes_on_slipping_if_V_rises() -> None:

@@ -1,4 +1,4 @@
-"""Contacts that open and close, and what the tolerance is relative to."""
+"""Contacts that are open, and loads that jump."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import pytest
 
 from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
-from workshop.reference import changed, follow, scene_of, step
+from workshop.reference import changed, follow, scene_of
 
 MU = 0.176
 CONTACTS = ("Asperities", "Mindlin", "Constant")
@@ -29,31 +29,6 @@ def assert_open(session: Session, F_t: float, F_y: float = 0.0, *, constant: boo
     slopes = [session.slope("F_t_settled", name) for name in ("V", "V_y", "d", "E", "load")]
     assert slopes == pytest.approx([2.0, 0.0, 0.0, 0.0, 0.0])
     assert constant or session.get("sigma") == 0.0
-
-
-@pytest.mark.parametrize(
-    ("law", "model"), [("Dahl", "Asperities"), ("ElasticPlastic", "Mindlin"), ("LuGre", "Constant")]
-)
-def test_a_load_that_falls_to_0_stays_and_comes_back(fmu: FrictionFmu, law: str, model: str) -> None:
-    """In linear steps, through negative loads, and at 0; the reference step by step."""
-    values = pressed(law, model, **{"friction.staticRatio": 1.3, "friction.V_S": 0.2, "V": 0.1})
-    values |= {"friction.sigma_2": 2.0, "vibration.V_1": 0.3, "vibration.a_d": 1e-6}
-    h, before, scenes = 1.1e-4, 100.0, []
-    for load in (-20.0, -20.0, 0.0, 0.0, 60.0, 100.0):  # at the ends of the steps
-        scenes.append(changed(scene_of(values), h=h, load=before, load_rate=(load - before) / h))
-        before = load
-    W_f = Q_f = energy = 0.0
-    with fmu.session(values) as session:
-        for now, truth in zip(scenes, follow(scenes), strict=True):
-            session.set("load", now.load)
-            session.set_rates(load=now.load_rate)
-            session.step(h)
-            W_f, Q_f = W_f + truth.W_f, Q_f + truth.Q_f
-            energy += truth.S * truth.path
-            for name in ("F_t", "F_t_mean"):
-                assert abs(session.get(name) - getattr(truth, name)) < 1.1e-7 * truth.S, name
-            for name, value in (("W_f", W_f), ("Q_f", Q_f)):
-                assert abs(session.get(name) - value) < 1e-7 * energy + 1e-10 * abs(value), name
 
 
 @pytest.mark.parametrize("load", [0.0, -5.0, 1e-101])
@@ -160,21 +135,3 @@ def test_a_modulus_that_moves_by_more_than_ten_is_refused(fmu: FrictionFmu, fact
         assert session.read(["F_t", "delta", "Q_f"]).tolist() == before
         session.set_rates(E=(9.9 - 1) * E / 1e-4)
         session.step(1e-4)
-
-
-@pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic"])
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-8])
-def test_a_press_of_80_times_is_graded_by_the_press(fmu: FrictionFmu, law: str, tolerance: float) -> None:
-    """S is the largest of the limits at both ends and of the bristle's force at the start."""
-    values = pressed(
-        law, "Asperities", load=5.0, V=0.02, **{"friction.staticRatio": 1.3, "friction.V_S": 0.01}
-    )
-    now = changed(scene_of(values), h=1e-3, load_rate=395.0 / 1e-3)
-    truth = step(now)
-    assert truth.S == pytest.approx(MU * 400.0 * (1.3 if law == "ElasticPlastic" else 1.0))
-    with fmu.session(values | {"solver.tolerance": tolerance}) as session:
-        session.set_rates(load=now.load_rate)
-        session.step(now.h)
-        for name, size in (("F_t", 1.0), ("F_t_mean", 1.0), ("W_f", truth.path), ("Q_f", truth.path)):
-            error = abs(session.get(name) - getattr(truth, name))
-            assert error <= (tolerance + 1e-11) * truth.S * size, name
