@@ -95,23 +95,13 @@ class Library:
         self.dll = ctypes.CDLL(str(folder / "binaries" / "linux64" / "FrictionContact.so"))
         for name, arguments in SIGNATURES.items():
             getattr(self.dll, name).argtypes = [c_void_p, *arguments]
-        self.dll.fmi2Instantiate.argtypes = [
-            c_char_p,
-            c_int,
-            c_char_p,
-            c_char_p,
-            POINTER(Callbacks),
-            c_int,
-            c_int,
-        ]
+        text = c_char_p
+        self.dll.fmi2Instantiate.argtypes = [text, c_int, text, text, POINTER(Callbacks), c_int, c_int]
         self.dll.fmi2Instantiate.restype = c_void_p
         self.dll.fmi2FreeInstance.argtypes = [c_void_p]
         self.dll.fmi2FreeInstance.restype = None
         self.dll.fmi2GetVersion.restype = c_char_p
         self.dll.fmi2GetTypesPlatform.restype = c_char_p
-
-    def names(self, causality: str, kind: str = "Real") -> list[str]:
-        return [v.name for v in self.variables.values() if v.causality == causality and v.type == kind]
 
 
 class Instance:

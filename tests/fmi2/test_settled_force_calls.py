@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import pytest
-from fmi_library import ERROR, OK, Instance
+from fmi_library import ERROR, OK, Instance, Library
+
+from workshop import description
 
 VIBRATING = {
     "V": 0.5,
@@ -94,3 +96,14 @@ def test_calls_that_ask_for_it_beside_others(instance: Instance) -> None:
     assert instance.directional(BOTH, {"V": 0.0}) == (OK, [0.0, 0.0])
     assert instance.output_rate("F_t_settled")[0] == ERROR
     assert "F_t_settled has no derivative in time here" in instance.last_message.text
+
+
+@pytest.mark.parametrize("name", BOTH)
+def test_the_model_description_says_what_it_depends_on(library: Library, name: str) -> None:
+    model = description.read()
+    (output,) = (each for each in model.outputs if each.variable.name == name)
+    assert [each.name for each in output.dependencies] == list(INPUTS)
+    (unknown,) = (each for each in model.initialUnknowns if each.variable.name == name)
+    parameters = {each.name for each in library.variables.values() if each.causality == "parameter"}
+    unused = {"initialState", "solver.method", "solver.stepSize", "friction.sigma_1"}
+    assert {each.name for each in unknown.dependencies} - set(INPUTS) == parameters - unused

@@ -52,6 +52,26 @@ def test_stiffness_at_the_end_has_the_phase_of_the_end(fmu: FrictionFmu, t: floa
     assert (F_t, sigma) == tuple(again)
 
 
+@pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
+def test_a_run_that_starts_whole_periods_later_gives_the_same_bits(fmu: FrictionFmu, law: str) -> None:
+    """Local time keeps even a late step exact. f is a power of two, h of 2^-36 s: nothing is rounded."""
+    start = START | {
+        "vibration.f": 16384.0,
+        "friction.model": law,
+        "friction.staticRatio": 1.2,
+        "delta_0": 1e-8,
+    }
+    for h in (2.0**-20, 1234567 * 2.0**-36, 0.0625):
+        runs = []
+        for periods in (0, 1, 12345, 2**30):
+            with fmu.session(start, periods / 16384.0) as session:
+                session.set_rates(V=0.1 / h)
+                session.step(h)
+                session.step(h)
+                runs.append(session.read(("F_t", "F_t_mean", "W_f", "Q_f", "delta")).tolist())
+        assert runs.count(runs[0]) == len(runs)
+
+
 LAWS = [
     {"friction.model": "Coulomb"},
     {"friction.model": "Dahl", "solver.method": "cvode"},

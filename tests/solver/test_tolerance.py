@@ -58,11 +58,11 @@ def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
         limit=limit,
         contact=contact,
         V_1=V_1,
-        V=rng.choice((V_1 * rng.uniform(-2, 2), nearly)),
+        V=rng.choice((V_1 * rng.uniform(-2, 2), nearly, rng.choice((0.0, 1e-300, -1e-9)))),
         f=f,
         h=rng.uniform(0.02, 2.5) / f,
         start=rng.random() / f,
-        a_d=rng.choice((0.0, 10 ** rng.uniform(-8, -6))),
+        a_d=rng.choice((0.0, 1e-300, 1e-18, 10 ** rng.uniform(-8, -6))),
         phase_d=rng.uniform(-3, 3),
         F_C=10 ** rng.uniform(0, 2),
     )
