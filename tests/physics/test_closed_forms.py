@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -25,6 +26,7 @@ from physics.closed_forms import (
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop import reference
+from workshop.project import ROOT
 from workshop.reference import CHOICES, LAWS_WITH_A_STATE, Scene, changed, scene, scene_of
 
 F, F_C, V_2, SIGMA = 2e4, 55.0, 0.8, 2.5e6
@@ -129,6 +131,25 @@ def test_contact(fmu: FrictionFmu, parameters: dict[str, float], E: float) -> No
                     slope = scale * float((getattr(high, attribute) - getattr(low, attribute)) / (2 * h))
                     size = session.get(output) / (d if name == "d" else E)
                     assert session.slope(output, name) == pytest.approx(slope, rel=1e-9, abs=1e-12 * size)
+
+
+def test_table_1(fmu: FrictionFmu) -> None:
+    """The start values of the FMU, and the numbers of docs/physics.md that follow from them."""
+    page = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
+    full, soft = (
+        1 / ((1 - 0.33**2) / (part * 71.3e9) + (1 - 0.29**2) / 200e9) for part in (1.0, 0.7)
+    )  # Eq. 4
+    assert f"{full / 1e9:.3f} GPa; {soft / 1e9:.3f} GPa" in page
+    with fmu.session() as session:
+        assert {name: session.get(f"contact.{name}") for name in TABLE_1} == TABLE_1
+        assert session.read(("d", "F_C", "vibration.f")).tolist() == [14e-6, F_C, F]
+        assert session.get("E") == pytest.approx(full, rel=1e-10)
+        at = [Contact(TABLE_1, d, session.get("E")) for d in (14e-6, 17e-6)]
+        truth = [float(at[0].A_r), float(at[0].asperities)]
+        assert session.read(("A_r", "sigma")).tolist() == pytest.approx(truth, rel=1e-12)
+    numbers = [f"{float(x):.4e}" for x in (at[0].A_r, at[0].asperities, at[1].asperities)]
+    A_r, stiff, lifted = (re.sub(r"e([-+])0?(\d+)", r"e\1\2", text).replace("e+", "e") for text in numbers)
+    assert f"{A_r} m²" in page and f"{stiff} N/m; {lifted} N/m" in page
 
 
 # ---- means of a vibration ----

@@ -53,6 +53,31 @@ def test_elastic_plastic_with_a_static_ratio_of_1_has_no_stribeck_velocity(
     assert results[0] == results[1] == results[2]
 
 
+@pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic"])
+def test_the_pace_does_not_matter(fmu: FrictionFmu, law: str) -> None:
+    """V n times as large, and d, E and the vibration n times as fast: the same force along the path."""
+    forces = []
+    for n in (1.0, 1000.0):
+        speeds = {"V": n * 0.3, "vibration.V_1": n * 1.44, "vibration.f": n * 20e3}
+        start = VIBRATING | speeds | {"friction.model": law, "delta_0": 5e-6, "solver.tolerance": 1e-8}
+        with fmu.session(start) as session:
+            session.set_rates(V=n * n * 1e3, d=n * 2e-3, E=n * 1e14)
+            session.step(1.3e-4 / n)
+            forces.append(session.read(["F_t", "F_t_mean", "W_f"]))
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+
+
+def test_dahl_s_force_stays_within_coulomb_s_at_constant_stiffness(fmu: FrictionFmu) -> None:
+    random = np.random.default_rng(1)
+    for sigma in (1e5, 1e7, 1e12):
+        start = {"contact.model": "Constant", "contact.sigma": sigma, "vibration.V_1": 1.44}
+        with fmu.session(start | {"delta_0": -55.0 / sigma}) as session:
+            for part in random.uniform(0.01, 3.0, 30):
+                session.set("V", random.uniform(-2.0, 2.0))
+                session.step(part / 20e3)
+                assert np.abs(session.read(["F_t", "F_t_mean"])).max() <= 55.0 * (1 + 1e-6)
+
+
 def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:
     """Mean position [m] in each cycle of a mass of 1 kg under a load of 30 N + 10 N cos, at 50 Hz.
 
