@@ -159,7 +159,8 @@ def test_table_1(fmu: FrictionFmu) -> None:
 def test_coulomb_along_is_the_arc_sine(graded: Graded, zeta: float) -> None:
     mean = coulomb_along(zeta) + 3.0 * zeta * V_2 / F_C
     values = along("Coulomb", 1.0, zeta) | {"friction.sigma_2": 3.0}
-    assert graded.settled(values) == pytest.approx((mean, 0.0), abs=1e-12)
+    error = 1e-9 if abs(zeta) == 1.0 else 1e-12  # a time of the root of rounding, where V only touches 0
+    assert graded.settled(values) == pytest.approx((mean, 0.0), abs=error)
 
 
 @pytest.mark.parametrize("zeta", ZETA)
