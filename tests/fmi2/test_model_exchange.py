@@ -136,6 +136,23 @@ def announced(instance: Instance, t: float) -> float | None:
     return info.nextEventTime if info.nextEventTimeDefined else None
 
 
+@pytest.mark.parametrize("V", [0.0, 0.01, -0.019])
+def test_the_turns_of_the_vibration_are_announced(new_instance: Callable[..., Instance], V: float) -> None:
+    """ElasticPlastic turns back from the bound it is near to where V + V_1 cos(2 pi f t) changes sign."""
+    omega, V_1, period = 2e3 * math.pi, 0.02, 1e-3
+    instance = block(new_instance, ELASTIC_PLASTIC, V=V, **{"vibration.V_1": V_1, "vibration.f": 1e3})
+    forward = math.acos(-V / V_1) / omega  # V turns negative
+    for side, first, turn in ((1, 0.0, forward), (-1, forward * 1.01, period - forward)):
+        begin = max(first, turn - 0.2 * period)
+        way = V * (turn - begin) + V_1 / omega * (math.sin(omega * turn) - math.sin(omega * begin))
+        for k in range(3):
+            assert instance.put_states(side * 19.9e-6 - way, 0.0, 0.0) == OK
+            found = announced(instance, k * period + begin)
+            assert found == pytest.approx(k * period + turn, abs=1e-11) and found > k * period + turn
+    assert instance.put_states(-0.5 * V * period, 0.0, 0.0) == OK
+    assert announced(instance, 0.0) == pytest.approx(period / 3, rel=1e-8)  # near no bound
+
+
 @pytest.mark.parametrize("law", [DAHL, ELASTIC_PLASTIC, LUGRE], ids=["Dahl", "ElasticPlastic", "LuGre"])
 @pytest.mark.parametrize("limit", [1, 2], ids=["Constant", "Load"])
 @pytest.mark.parametrize("across", [0.0, 0.3])
