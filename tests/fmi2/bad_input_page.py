@@ -55,7 +55,8 @@ def _cell(text: str) -> str:
 def _table(kind: int) -> list[str]:
     """Functions by states, as a block of code."""
     rows = [["", *STATES[kind]], *([function, *cells] for function, cells in TABLE[kind].items())]
-    return [f"    {function:35}" + "".join(f"{cell:^22}" for cell in cells) for function, *cells in rows]
+    lines = (f"    {function:35}" + "".join(f"{cell:^22}" for cell in cells) for function, *cells in rows)
+    return [line.rstrip() for line in lines]
 
 
 def _instantiation(library: Library) -> list[str]:
