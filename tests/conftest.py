@@ -26,7 +26,7 @@ defaultCallbacks.logger = fmi2CallbackLoggerTYPE(printLogMessage)
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST = """
     test_wheel test_site test_reproducible test_identify test_sweep test_building test_sweep_cluster
-    test_scenes test_report test_c_units test_belt_page test_against_co_simulation test_release_command
+    test_scenes test_report test_c_units test_tolerance test_belt_page test_release_command
     test_validate test_simulate_many test_random_fits test_sources
 """.split()
 

@@ -23,7 +23,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.parameters import E_FULL, SEPARATION
 from workshop.build import build_fmu
 from workshop.project import ROOT
-from workshop.reference.contact import Contact, stiffness
+from workshop.reference import rest, scene_of
 from workshop.systems import parameters, run_fmpy, run_libcosim, with_parameters, write_ssp
 
 HERE = Path(__file__).resolve().parent
@@ -52,7 +52,7 @@ def one_system() -> tuple[Callable[[np.ndarray], np.ndarray], float]:
     p = parameters((HERE / "SystemStructure.ssd").read_text())
     m, k, c = (p["mass", name] for name in "mkc")
     F_C = p["contact", "F_C"]
-    sigma = p["contact", "contact.stiffnessScale"] * float(stiffness(Contact(), SEPARATION, E_FULL))
+    sigma = p["contact", "contact.stiffnessScale"] * rest(scene_of({"d": SEPARATION, "E": E_FULL}))[1]
 
     def rates(t: float, y: np.ndarray) -> list[float]:
         x, v, delta = y

@@ -22,7 +22,7 @@ from frictioncontact.errors import UserError
 from frictioncontact.parameters import E_REDUCED, SEPARATION
 from workshop.build import build_fmu
 from workshop.project import ROOT
-from workshop.reference.contact import Contact, stiffness
+from workshop.reference import rest, scene_of
 from workshop.systems import parameters, run_libcosim, write_ssp
 
 HERE = Path(__file__).resolve().parent
@@ -52,7 +52,7 @@ def reference(duration: float = DURATION, points: int = 2001) -> tuple[np.ndarra
     m, k, c, F_C = (p[name] for name in ("m", "k", "c", "F_C"))
     w, phase = 2 * np.pi * p["vibration.f"], p["vibration.phase_d"]
     # sigma = E A_r(d)^2 / d^3, and A_r falls as exp(-3 d / R_q).
-    sigma_0 = p["contact.stiffnessScale"] * float(stiffness(Contact(), SEPARATION, E_REDUCED))
+    sigma_0 = p["contact.stiffnessScale"] * rest(scene_of({"d": SEPARATION, "E": E_REDUCED}))[1]
 
     def rates(t: float, y: np.ndarray) -> list[float]:
         x, v, delta, _ = y.tolist()

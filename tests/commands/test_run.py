@@ -11,8 +11,7 @@ import matplotlib.image
 import pytest
 
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, start_values
-from workshop.reference import solution as reference
-from workshop.reference.start_values import scene_of
+from workshop.reference import scene_of, settled
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -25,8 +24,7 @@ def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 
 def exact_mean(number: int, parameters: ParameterSet) -> float:
-    scene = scene_of(start_values(TABLE_2[number - 1], parameters))
-    return float(reference.periodic_mean(scene))
+    return settled(scene_of(start_values(TABLE_2[number - 1], parameters)))[0]
 
 
 @pytest.fixture(scope="module")

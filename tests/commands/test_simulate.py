@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +15,7 @@ import frictioncontact as fc
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.simulation import command
-from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP
-from workshop.reference.start_values import scene_of
+from workshop.reference import changed, follow, scene_of
 
 SOFT: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 2.5e6, "solver.tolerance": 1e-8}
 STEP, COUNT = 3e-5, 8
@@ -42,17 +40,18 @@ def pieces(time: list[float], values: list[float], end: float) -> list[tuple[flo
 
 def right(values: dict[str, Value], time: list[float], velocity: list[float]) -> np.ndarray:
     """F_t and its mean over each of COUNT rows [N], by the reference over every straight piece."""
-    scene, delta, rows = scene_of(values), MP.mpf(0), []
+    scene, scenes = scene_of(values), []
     for k in range(COUNT):
-        impulse = MP.mpf(0)
+        scenes.append([])
         for begin, end, value, slope in pieces(time, velocity, (k + 1) * STEP):
-            if end <= k * STEP:
-                continue
             at = max(begin, k * STEP)
-            now = replace(scene, V=value + slope * (at - begin), V_rate=slope, start=MP.mpf(at))
-            delta, part = reference.advance(now, MP.mpf(at), end - at, delta)[:2]
-            impulse += part
-        rows.append((float(reference.force(now, MP.mpf(end), delta)), float(impulse) / STEP))
+            if end > at:
+                scenes[-1].append(changed(scene, V=value + slope * (at - begin), V_rate=slope, h=end - at))
+    steps, rows = iter(follow(chain(*scenes))), []
+    for row in scenes:
+        found = [next(steps) for _ in row]
+        impulse = sum(each.F_t_mean * part.h for each, part in zip(found, row, strict=True))
+        rows.append((found[-1].F_t, impulse / STEP))
     return np.array(rows)
 
 

@@ -11,8 +11,7 @@ import pytest
 import frictioncontact as fc
 from frictioncontact.fmu import FrictionFmu, Session
 from workshop.project import ROOT
-from workshop.reference.solution import periodic_mean
-from workshop.reference.start_values import scene_of
+from workshop.reference import scene_of, settled
 
 sys.path.append(str(ROOT / "examples" / "calibration"))
 from calibrate import GUESS, SCENE, STEP, STOP, TRUTH, calibrate, forces
@@ -64,7 +63,7 @@ def test_model_exchange_finds_the_truth() -> None:
 
 def test_co_simulation_finds_the_truth(fmu: FrictionFmu) -> None:
     """The measurement is the independent reference's."""
-    measured = [float(periodic_mean(scene_of(SCENE | TRUTH | {"V": V}))) for V in SPEEDS]
+    measured = [settled(scene_of(SCENE | TRUTH | {"V": V}))[0] for V in SPEEDS]
     with fmu.session(SCENE | {"solver.tolerance": 1e-10}) as session:
         found = calibrate(MeanForces("mean_forces", session), np.array(measured))
     assert found == {name: pytest.approx(value, rel=1e-7) for name, value in TRUTH.items()}

@@ -41,19 +41,6 @@ def _step(title: str, t: float, h: float, *named: str) -> BadCall:
     return BadCall(title, BETWEEN_STEPS, lambda i: i.step(t, h), ("fmi2DoStep", *named))
 
 
-def _unusable(name: str, value: float, *named: str) -> BadCall:
-    """A step with an input that could be set, but not used."""
-    start = {"d": 14e-6, "E": 58.556936170e9}[name]
-    return BadCall(
-        f"a step with {name} = {value:g}",
-        BETWEEN_STEPS,
-        lambda i: i.step(0.0, 1e-5),
-        ("fmi2DoStep", *named),
-        prepare=lambda i: i.set({name: value}),
-        mend=lambda i: i.set({name: start}),
-    )
-
-
 def _moved(name: str, rate: float, h: float, *named: str, **values: float) -> BadCall:
     """A step in which a derivative moves an input too far."""
     return BadCall(
@@ -68,11 +55,15 @@ def _moved(name: str, rate: float, h: float, *named: str, **values: float) -> Ba
 
 CALLS = [
     _set("V", math.nan, "nan"),
-    _set("d", math.inf, "inf"),
-    _unusable("d", 0.0, "d = 0 m", "above 0 m", "not connected"),
-    _unusable("E", -1e9, "E = -1e+09 Pa", "above 0 Pa"),
+    BadCall(
+        "a step with d = 0",
+        BETWEEN_STEPS,
+        lambda i: i.step(0.0, 1e-5),
+        ("fmi2DoStep", "d = 0 m", "above 0 m", "not connected"),
+        prepare=lambda i: i.set({"d": 0.0}),
+        mend=lambda i: i.set({"d": 14e-6}),
+    ),
     _set("F_C", -55.0, "-55", "1e-12"),
-    _set("vibration.f", 1e16, "1e+16", "1e+15"),
     _set("contact.nu", 0.6, "0.6", "0.5", state="instantiated"),
     _set("solver.tolerance", 0.0, "0", "1e-12", state="initialization"),
     _set("contact.R_q", 1e-6, "fixed"),
@@ -124,8 +115,7 @@ CALLS = [
     ),
     _moved("d", -0.2, 1e-4, "d ", "1.4e-05", "-6e-06"),
     _moved("E", 1e16, 1e-4, "E "),
-    _moved("E", -1e15, 1e-4, "E "),
-    *(_moved(name, 1.7e308, 1e4, name) for name in ("V", "d", "E")),
+    _moved("V", 1.7e308, 1e4, "V"),
     _moved("V", 1e-6, 100.0, "50 s", **{"vibration.V_1": 0.4}),
     BadCall(
         "explicitEuler beyond its stability limit",

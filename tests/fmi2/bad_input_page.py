@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from bad_calls import CALLS
-from call_table import MODEL_EXCHANGE_TABLE, TABLE
-from fmi_library import Instance, Library
+from call_table import STATES, TABLE
+from fmi_library import CO_SIMULATION, MODEL_EXCHANGE, Instance, Library
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.build import build_fmu
@@ -52,8 +52,11 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("%%", "%")
 
 
-def _indented(table: str) -> list[str]:
-    return ["    " + line for line in table.strip("\n").splitlines()]
+def _table(kind: int) -> list[str]:
+    """Functions by states, as a block of code."""
+    rows = [["", *STATES[kind]], *([function, *cells] for function, cells in TABLE[kind].items())]
+    lines = (f"    {function:35}" + "".join(f"{cell:^22}" for cell in cells) for function, *cells in rows)
+    return [line.rstrip() for line in lines]
 
 
 def _instantiation(library: Library) -> list[str]:
@@ -92,11 +95,11 @@ def page(folder: Path) -> str:
         lines.append(ORDER.rstrip("\n").format(example=instance.last_message.text))
     lines += [
         "",
-        *_indented(TABLE),
+        *_table(CO_SIMULATION),
         "",
         "An instance for model exchange:",
         "",
-        *_indented(MODEL_EXCHANGE_TABLE),
+        *_table(MODEL_EXCHANGE),
     ]
     lines += [INSTANTIATION.rstrip("\n"), "", *_instantiation(library), ""]
     return "\n".join(lines)

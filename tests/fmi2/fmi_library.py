@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fmpy.model_description import ScalarVariable
-
 from workshop import description
 
 STATES, INDICATORS = 4, 4
@@ -43,60 +41,39 @@ class EventInfo(ctypes.Structure):
 
 
 _GET = [POINTER(c_uint), c_size_t]
+_KIND, _OUT = POINTER(c_int), POINTER(c_double)
 SIGNATURES: dict[str, list[Any]] = {
     "fmi2SetDebugLogging": [c_int, c_size_t, POINTER(c_char_p)],
     "fmi2SetupExperiment": [c_int, c_double, c_double, c_int, c_double],
-    "fmi2EnterInitializationMode": [],
-    "fmi2ExitInitializationMode": [],
-    "fmi2Terminate": [],
-    "fmi2Reset": [],
-    "fmi2GetReal": [*_GET, POINTER(c_double)],
-    "fmi2GetInteger": [*_GET, POINTER(c_int)],
-    "fmi2GetBoolean": [*_GET, POINTER(c_int)],
-    "fmi2GetString": [*_GET, POINTER(c_char_p)],
-    "fmi2SetReal": [*_GET, POINTER(c_double)],
-    "fmi2SetInteger": [*_GET, POINTER(c_int)],
-    "fmi2SetBoolean": [*_GET, POINTER(c_int)],
-    "fmi2SetString": [*_GET, POINTER(c_char_p)],
     "fmi2GetFMUstate": [POINTER(c_void_p)],
     "fmi2SetFMUstate": [c_void_p],
     "fmi2FreeFMUstate": [POINTER(c_void_p)],
     "fmi2SerializedFMUstateSize": [c_void_p, POINTER(c_size_t)],
     "fmi2SerializeFMUstate": [c_void_p, c_char_p, c_size_t],
     "fmi2DeSerializeFMUstate": [c_char_p, c_size_t, POINTER(c_void_p)],
-    "fmi2GetDirectionalDerivative": [*_GET, *_GET, POINTER(c_double), POINTER(c_double)],
-    "fmi2SetRealInputDerivatives": [*_GET, POINTER(c_int), POINTER(c_double)],
-    "fmi2GetRealOutputDerivatives": [*_GET, POINTER(c_int), POINTER(c_double)],
+    "fmi2GetDirectionalDerivative": [*_GET, *_GET, _OUT, _OUT],
+    "fmi2SetRealInputDerivatives": [*_GET, _KIND, _OUT],
+    "fmi2GetRealOutputDerivatives": [*_GET, _KIND, _OUT],
     "fmi2DoStep": [c_double, c_double, c_int],
-    "fmi2CancelStep": [],
-    "fmi2GetStatus": [c_int, POINTER(c_int)],
-    "fmi2GetRealStatus": [c_int, POINTER(c_double)],
-    "fmi2GetIntegerStatus": [c_int, POINTER(c_int)],
-    "fmi2GetBooleanStatus": [c_int, POINTER(c_int)],
-    "fmi2GetStringStatus": [c_int, POINTER(c_char_p)],
-    "fmi2EnterEventMode": [],
     "fmi2NewDiscreteStates": [POINTER(EventInfo)],
-    "fmi2EnterContinuousTimeMode": [],
-    "fmi2CompletedIntegratorStep": [c_int, POINTER(c_int), POINTER(c_int)],
+    "fmi2CompletedIntegratorStep": [c_int, _KIND, _KIND],
     "fmi2SetTime": [c_double],
-    "fmi2SetContinuousStates": [POINTER(c_double), c_size_t],
-    "fmi2GetDerivatives": [POINTER(c_double), c_size_t],
-    "fmi2GetEventIndicators": [POINTER(c_double), c_size_t],
-    "fmi2GetContinuousStates": [POINTER(c_double), c_size_t],
-    "fmi2GetNominalsOfContinuousStates": [POINTER(c_double), c_size_t],
 }
-
-
-@dataclass(frozen=True)
-class Variable:
-    name: str
-    reference: int
-    kind: str  # Real or Enumeration
-    causality: str
-    variability: str
-    start: str | None
-    min: float | None
-    max: float | None
+for _type, _pointer in (
+    ("Real", _OUT),
+    ("Integer", _KIND),
+    ("Boolean", _KIND),
+    ("String", POINTER(c_char_p)),
+):
+    SIGNATURES |= {f"fmi2{way}{_type}": [*_GET, _pointer] for way in ("Get", "Set")}
+    SIGNATURES[f"fmi2Get{_type}Status"] = [c_int, _pointer]
+SIGNATURES["fmi2GetStatus"] = [c_int, _KIND]
+_VECTORS = "SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates"
+for _name in (*_VECTORS.split(), "GetNominalsOfContinuousStates"):
+    SIGNATURES[f"fmi2{_name}"] = [_OUT, c_size_t]
+for _name in """EnterInitializationMode ExitInitializationMode Terminate Reset CancelStep EnterEventMode
+    EnterContinuousTimeMode""".split():
+    SIGNATURES[f"fmi2{_name}"] = []
 
 
 @dataclass(frozen=True)
@@ -114,40 +91,17 @@ class Library:
         model = description.read(folder)
         self.guid: str = model.guid
         self.log_categories = [category.name for category in model.logCategories]
-        self.variables = {variable.name: variable for variable in map(_variable, model.modelVariables)}
+        self.variables = {variable.name: variable for variable in model.modelVariables}
         self.dll = ctypes.CDLL(str(folder / "binaries" / "linux64" / "FrictionContact.so"))
         for name, arguments in SIGNATURES.items():
             getattr(self.dll, name).argtypes = [c_void_p, *arguments]
-        self.dll.fmi2Instantiate.argtypes = [
-            c_char_p,
-            c_int,
-            c_char_p,
-            c_char_p,
-            POINTER(Callbacks),
-            c_int,
-            c_int,
-        ]
+        text = c_char_p
+        self.dll.fmi2Instantiate.argtypes = [text, c_int, text, text, POINTER(Callbacks), c_int, c_int]
         self.dll.fmi2Instantiate.restype = c_void_p
         self.dll.fmi2FreeInstance.argtypes = [c_void_p]
         self.dll.fmi2FreeInstance.restype = None
         self.dll.fmi2GetVersion.restype = c_char_p
         self.dll.fmi2GetTypesPlatform.restype = c_char_p
-
-    def names(self, causality: str, kind: str = "Real") -> list[str]:
-        return [v.name for v in self.variables.values() if v.causality == causality and v.kind == kind]
-
-
-def _variable(variable: ScalarVariable) -> Variable:
-    return Variable(
-        name=variable.name,
-        reference=variable.valueReference,
-        kind=variable.type,
-        causality=variable.causality,
-        variability=variable.variability,
-        start=variable.start,
-        min=None if variable.min is None else float(variable.min),
-        max=None if variable.max is None else float(variable.max),
-    )
 
 
 class Instance:
@@ -269,7 +223,7 @@ class Instance:
     # values
 
     def references(self, names: Sequence[str]) -> Any:
-        return (c_uint * len(names))(*(self.library.variables[name].reference for name in names))
+        return (c_uint * len(names))(*(self.library.variables[name].valueReference for name in names))
 
     def set(self, values: Mapping[str, float]) -> int:
         """Sets Reals in one call."""

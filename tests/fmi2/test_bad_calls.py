@@ -62,21 +62,3 @@ def test_bad_call(
     bad.mend(twin)
     assert continue_run(touched, bad.state) == continue_run(twin, bad.state)
     assert capfd.readouterr() == ("", "")
-
-
-def test_values_that_do_not_go_together_are_refused_and_can_be_mended(
-    new_instance: Callable[..., Instance],
-) -> None:
-    instance, twin = new_instance(), new_instance()
-    for each in (instance, twin):
-        each.initialize()
-    good = instance.get("d")[0]
-    assert instance.set({"vibration.a_d": 2 * good}) == OK
-    assert instance.step(0.0, 1e-5) == ERROR
-    assert instance.output_rate("F_t")[0] == ERROR
-    assert instance.directional(["F_t"], {"d": 1.0})[0] == ERROR
-    assert "vibration.a_d" in instance.last_message.text
-    assert instance.set({"vibration.a_d": 0.0}) == OK
-    assert instance.step(0.0, 1e-5) == OK
-    assert twin.step(0.0, 1e-5) == OK
-    assert instance.get(*OUTPUTS) == twin.get(*OUTPUTS)

@@ -12,7 +12,7 @@ from fmi_library import CO_SIMULATION, ERROR, MODEL_EXCHANGE, OK, Instance
 
 from workshop.description import description, read
 
-# test_settled_force.py has the derivatives of F_t_settled and F_y_settled.
+SETTLED = ("F_t_settled", "F_y_settled")
 OUTPUTS = tuple(
     variable["name"]
     for variable in description()["variables"]
@@ -21,36 +21,10 @@ OUTPUTS = tuple(
 STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5, "load": 3e-4, "V_y": 1e-6}
 ELASTIC_PLASTIC, LUGRE = {"friction.model": 3}, {"friction.model": 4}
 LIMIT_BY_LOAD, PRESSED = {"friction.limit": 2}, {"friction.limit": 2, "contact.input": 2}
-SOFT = {"contact.stiffnessScale": 1e-6}
 DAMPED = {"friction.sigma_1": 20.0, "friction.sigma_2": 30.0}
 STRIBECK = {"friction.staticRatio": 1.4, "friction.V_S": 0.01}
-ACROSS = {"V_y": -0.004, "delta_y_0": 1.5e-9, "vibration.V_2": 0.02, "vibration.phase_2": 0.4}
 FORCES = ("F_t", "F_y")
-SCENES = {
-    "asperities": ({}, {"contact.stiffnessScale": 1e-6}),
-    "constant stiffness": ({"contact.model": 2}, {}),
-    "Coulomb": ({"friction.model": 2}, {}),
-    "weak material": ({}, {"contact.Y": 4e6, "contact.stiffnessScale": 1e-6, "contact.R": 1e-3}),
-    "vibrating": ({}, {"contact.stiffnessScale": 1e-6, "vibration.V_1": 0.3, "vibration.a_d": 1e-6}),
-    "damped, the limit follows the load": (LIMIT_BY_LOAD, {**SOFT, **DAMPED}),
-    "damped, pressed by a load": (PRESSED, {**SOFT, **DAMPED}),
-    "Coulomb, pressed by a load": ({"friction.model": 2, **PRESSED}, {}),
-    "LuGre": (LUGRE, {**SOFT, **DAMPED, **STRIBECK}),
-    "LuGre, pressed by a load": ({**LUGRE, **PRESSED}, {**SOFT, **DAMPED, **STRIBECK}),
-    "LuGre, vibrating, Mindlin": (
-        {**LUGRE, **LIMIT_BY_LOAD, "contact.model": 3},
-        {**SOFT, **DAMPED, **STRIBECK, "vibration.V_1": 0.3, "vibration.a_d": 1e-6},
-    ),
-    "ElasticPlastic that sticks": (ELASTIC_PLASTIC, {**SOFT, **DAMPED}),
-    "ElasticPlastic that sticks, pressed by a load": ({**ELASTIC_PLASTIC, **PRESSED}, {**SOFT, **DAMPED}),
-    "Coulomb in the plane": ({"friction.model": 2, **PRESSED}, {**DAMPED, **ACROSS}),
-    "Dahl in the plane": (LIMIT_BY_LOAD, {**SOFT, **DAMPED, **ACROSS}),
-    "LuGre in the plane, pressed by a load": (
-        {**LUGRE, **PRESSED},
-        {**SOFT, **DAMPED, **STRIBECK, **ACROSS, "vibration.V_1": 0.3, "vibration.a_d": 1e-6},
-    ),
-    "ElasticPlastic in the plane": (ELASTIC_PLASTIC, {**SOFT, **DAMPED, **ACROSS}),
-}
+INPUTS = ("V", "d", "E", "load")
 # A bristle that slips stays on the bound while the bound comes nearer: where an input moves this way.
 NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0, "V_y": 1.0}
 VIBRATING_SURFACES = {
@@ -60,52 +34,10 @@ VIBRATING_SURFACES = {
     "vibration.phase_d": 0.7,
 }
 SLIPPING = {
-    "constant limit": ({}, {}),
     "the limit follows the load": (LIMIT_BY_LOAD, {}),
-    "pressed by a load": (PRESSED, {}),
-    "Mindlin": ({"contact.model": 3}, {}),
-    "vibrating surfaces": (LIMIT_BY_LOAD, VIBRATING_SURFACES),
-    "vibrating surfaces, pressed by a load": (PRESSED, VIBRATING_SURFACES),
     "in the plane": (PRESSED, {**VIBRATING_SURFACES, "V_y": 0.3}),
     "with static friction, in the plane": (PRESSED, {**STRIBECK, "V_y": 0.3, "friction.V_S": 0.5}),
 }
-
-
-def differences(instance: Instance, name: str) -> list[float]:
-    step = STEPS[name]
-    start = instance.get(name)[0]
-    values = []
-    for x in (start + step, start - step):
-        assert instance.set({name: x}) == OK
-        values.append(instance.get(*OUTPUTS))
-    assert instance.set({name: start}) == OK
-    return [(above - below) / (2 * step) for above, below in zip(*values, strict=True)]
-
-
-def scales(instance: Instance, name: str) -> list[float]:
-    """Size of one output over one input: rounding of the differences is judged against it."""
-    start = abs(instance.get(name)[0]) or 0.005  # m/s, where V_y is 0
-    return [abs(value) / start for value in instance.get(*OUTPUTS)]
-
-
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("state", ["initialization", "step complete"])
-def test_each_output_to_each_input(new_instance: Callable[..., Instance], scene: str, state: str) -> None:
-    choices, values = SCENES[scene]
-    instance = new_instance()
-    assert instance.choose(choices) == OK
-    assert instance.set({**values, "delta_0": 2e-9}) == OK
-    instance.bring_to(state)
-    if state == "step complete":
-        assert instance.step(0.0, 1.23e-5) == OK
-    for name in STEPS:
-        status, derivatives = instance.directional(OUTPUTS, {name: 1.0})
-        assert status == OK
-        expected = differences(instance, name)
-        for output, exact, difference, scale in zip(
-            OUTPUTS, derivatives, expected, scales(instance, name), strict=True
-        ):
-            assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
 
 
 @pytest.mark.parametrize("scene", SLIPPING)
@@ -130,18 +62,17 @@ def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], sc
         assert exact == pytest.approx(2.0 * slopes[0] - slopes[1], rel=1e-5, abs=1e-6 * size), name
 
 
+STIFF, SOFT = {"contact.sigma": 2e6}, {"contact.stiffnessScale": 4.4e-7}
 JUMPS = {  # a sliding contact, and values that jump after a step
-    "onto the kinetic bound, as V reverses": ({}, {"contact.sigma": 2e6}, {"contact.sigma": 4e6}),
-    "inside both bounds, as V reverses": ({}, {"contact.sigma": 2e6}, {"contact.sigma": 2.6e6}),
-    "the limit falls, as V reverses": ({}, {"contact.sigma": 2e6}, {"F_C": 30.0}),
-    "the surfaces approach, as V reverses": (
-        {"contact.model": 1}, {"contact.stiffnessScale": 4.4e-7}, {"d": 13.8e-6},
-    ),
+    "onto the kinetic bound, as V reverses": ({}, STIFF, {"contact.sigma": 4e6}),
+    "inside both bounds, as V reverses": ({}, STIFF, {"contact.sigma": 2.6e6}),
+    "the surfaces approach, as V reverses": ({"contact.model": 1}, SOFT, {"d": 13.8e-6}),
     "past a least bound, Dahl": (
         {"friction.model": 1, "contact.model": 1, **PRESSED},
-        {"contact.stiffnessScale": 4.4e-7, "load": 312.44}, {"load": 468.0, "E": 35.134e9, "V": 0.2},
+        {**SOFT, "load": 312.44},
+        {"load": 468.0, "E": 35.134e9, "V": 0.2},
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("jump", JUMPS)
@@ -153,26 +84,18 @@ def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instanc
     instance.initialize()
     assert instance.step(0.0, 1e-3) == OK
     assert instance.set({"V": -0.15, **after}) == OK
-    for name in ("V", "d", "E", "load"):
-        status, derivatives = instance.directional(OUTPUTS, {name: 1.0})
-        assert status == OK
-        for output, exact, difference, scale in zip(
-            OUTPUTS, derivatives, differences(instance, name), scales(instance, name), strict=True
-        ):
-            if not output.endswith("_mean"):  # of the step before
-                assert exact == pytest.approx(difference, rel=1e-6, abs=1e-6 * scale), (output, name)
-    for name in ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma"):
+    limits = ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma")
+    for name in ("V", "d", "E", "load", *limits):
         (start,) = instance.get(name)
         status, exact = instance.directional(FORCES, {name: 1.0})
         assert status == OK
-        expected, smooth = by_richardson(instance, name, 1e-4 * start, FORCES)
+        expected, smooth = by_richardson(instance, name, 1e-4 * abs(start), FORCES)
         assert smooth.all(), name
-        size = np.hypot(*instance.get(*FORCES)) / start
+        size = np.hypot(*instance.get(*FORCES)) / abs(start)
         assert exact == pytest.approx(expected, rel=1e-8, abs=1e-8 * size), name
 
 
-def test_a_direction_is_the_sum_of_its_parts(new_instance: Callable[..., Instance]) -> None:
-    instance = new_instance()
+def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
     assert instance.set({"delta_0": 2e-9}) == OK
     instance.initialize()
     assert instance.step(0.0, 1e-9) == OK
@@ -180,16 +103,11 @@ def test_a_direction_is_the_sum_of_its_parts(new_instance: Callable[..., Instanc
     parts = [instance.directional(OUTPUTS, {name: slope})[1] for name, slope in direction.items()]
     _, together = instance.directional(OUTPUTS, direction)
     assert together == [pytest.approx(sum(each), rel=1e-12, abs=0) for each in zip(*parts, strict=True)]
-
-
-def test_no_known_variable_gives_zero(new_instance: Callable[..., Instance]) -> None:
-    instance = new_instance()
-    instance.initialize()
     assert instance.directional(OUTPUTS, {}) == (OK, [0.0] * len(OUTPUTS))
     assert instance.directional([], {"V": 1.0}) == (OK, [])
 
 
-@pytest.mark.parametrize("d", [1e-11, 1e-10, 3e-10])
+@pytest.mark.parametrize("d", [1e-11, 3e-10])
 def test_a_jump_that_moves_the_bristle_a_little(new_instance: Callable[..., Instance], d: float) -> None:
     """On the bound F_t is mu F_n, and F_n goes with exp(-lambda d / R_q), though less d moves nothing."""
     instance = new_instance()
@@ -230,6 +148,7 @@ def drawn(number: int) -> tuple[dict[str, int], dict[str, float], float]:
         "V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0),
         "V_y": across * between(1e-2, 1.0),
         "d": 14e-6 * between(0.9, 1.1),
+        "E": 58e9 * between(0.5, 2.0),
         "load": 312.0 * between(0.7, 1.4),
         "F_C": between(30.0, 90.0),
         "friction.mu": between(0.12, 0.3),
@@ -252,16 +171,18 @@ def drawn(number: int) -> tuple[dict[str, int], dict[str, float], float]:
 
 
 def scale_of(name: str, values: dict[str, float]) -> float:
-    """The change of a parameter with which the contact becomes another one, within its bounds."""
+    """The change of a variable with which the contact becomes another one, within its bounds."""
     if "phase" in name:
         return 1.0
+    if name in ("W_f", "Q_f", "d"):
+        return 2e-6 if name == "d" else 1e-3  # m, R_q over lambda; J
     if name == "vibration.a_d":
         return min(2e-6, values[name])  # m, R_q over lambda
     if name in ("vibration.f", "time"):
         return 5e2 if name == "vibration.f" else 1e-5  # Hz, s, which turn the phase by some tenths
     if name == "friction.staticRatio":
         return values[name] - 1.0
-    return min(values["friction.V_S"], values[name]) if "V_" in name else values[name]
+    return min(values["friction.V_S"], abs(values[name])) if name[0] == "V" or "V_" in name else values[name]
 
 
 def by_richardson(
@@ -309,18 +230,24 @@ def prepared(
 
 @pytest.mark.parametrize("part", range(8))
 @pytest.mark.parametrize("kind", [CO_SIMULATION, MODEL_EXCHANGE])
-def test_by_every_tunable_parameter(new_instance: Callable[..., Instance], kind: int, part: int) -> None:
-    """Eight digits, of the derivative or of the output over the parameter's scale; by time too."""
+def test_every_derivative(new_instance: Callable[..., Instance], kind: int, part: int) -> None:
+    """Eight digits, of the derivative or of the output over the variable's scale.
+
+    By inputs and tunable parameters; in model exchange by states and time too.
+    """
     of_step = {*STATES, "F_t_mean", "F_y_mean"} if kind == CO_SIMULATION else set()
     unknown = tuple(name for name in (*OUTPUTS, *RATES) if name not in of_step)
+    known = (*STEPS, *TUNABLE, *((*STATES, "time") if kind == MODEL_EXCHANGE else ()))
     asked = graded = 0
     for number in range(25 * part, 25 * part + 25):
         if kind == MODEL_EXCHANGE and number % 4 == LAWS.index(2):
             continue  # Coulomb is refused there
         instance, values = prepared(new_instance, kind, number)
         here = np.abs(instance.get(*unknown))
-        for name in (*TUNABLE, "time") if kind == MODEL_EXCHANGE else TUNABLE:
-            if values.get(name) == 0.0:
+        if kind == MODEL_EXCHANGE:
+            values |= dict(zip(STATES, np.abs(instance.states()), strict=True))
+        for name in known:
+            if values.get(name) == 0.0 and name not in ("W_f", "Q_f"):
                 continue  # at its bound
             scale = scale_of(name, values)
             status, exact = instance.directional(unknown, {name: 1.0})
@@ -331,41 +258,30 @@ def test_by_every_tunable_parameter(new_instance: Callable[..., Instance], kind:
             wrong = smooth & (error > 1e-8)
             assert not wrong.any(), (number, name, np.array(unknown)[wrong], error[wrong])
         instance.free()
-    assert graded > 0.95 * asked
+    assert graded > 0.9 * asked
 
 
-def test_a_bristle_that_slips_by_parameters_of_its_bound(new_instance: Callable[..., Instance]) -> None:
-    """In co-simulation it stays on a bound that comes nearer: F_t is the limit then, and the damping's."""
-    instance = new_instance()
-    assert instance.choose({**ELASTIC_PLASTIC, "contact.model": 2}) == OK
-    assert instance.set({"V": 0.5, "friction.sigma_1": 20.0}) == OK
+@pytest.mark.parametrize("number", range(8))
+def test_of_the_settled_force(instance: Instance, number: int) -> None:
+    """Eight digits again, of every law along a line and in the plane."""
+    choices, values, _ = drawn(number)
+    if choices == {**choices, **ELASTIC_PLASTIC}:
+        values["friction.staticRatio"] = 1.0  # else it takes long
+    assert instance.choose(choices) == OK
+    assert instance.set(values | {"solver.tolerance": 1e-12}) == OK
     instance.initialize()
-    assert instance.step(0.0, 1e-3) == OK
-    for name, slope in {
-        "F_C": 1.0,
-        "contact.sigma": 0.0,
-        "friction.sigma_1": 0.0,
-        "friction.sigma_2": 0.5,
-    }.items():
-        assert instance.directional(["F_t"], {name: 1.0}) == (OK, [pytest.approx(slope, abs=1e-12)]), name
-
-
-def test_a_bristle_of_lugre_that_slips_along_its_static_bound(new_instance: Callable[..., Instance]) -> None:
-    """The load falls faster than the bristle relaxes: F_t is the static limit, staticRatio mu F_n."""
-    instance = new_instance(kind=MODEL_EXCHANGE)
-    assert instance.choose({**LUGRE, **PRESSED, "contact.model": 2}) == OK
-    values = {"V": 0.01, "contact.sigma": 1e5, "vibration.a_d": 1e-6, "vibration.phase_d": -1.5}
-    assert instance.set({**values, **DAMPED, "friction.staticRatio": 1.4, "delta_0": 1.0}) == OK
-    instance.bring_to("continuous-time mode")
-    F_n, delta = instance.get("F_n", "delta")
-    assert 1e5 * delta == pytest.approx(1.4 * 0.176 * F_n, rel=1e-12)
-    for name in ("friction.staticRatio", "friction.mu", "contact.sigma", "vibration.a_d", "vibration.f"):
-        (start,) = instance.get(name)
-        status, exact = instance.directional(("F_t", *RATES), {name: 1.0})
-        assert status == OK
-        expected, _ = by_richardson(instance, name, 1e-3 * start, ("F_t", *RATES))
-        size = np.abs(instance.get("F_t", *RATES)) / start
-        assert np.all(np.abs(exact - expected) <= 1e-8 * (np.abs(expected) + size)), name
+    here, asked = np.hypot(*instance.get(*SETTLED)), 0
+    for name in (*STEPS, *TUNABLE):
+        scale = scale_of(name, values) if values.get(name) else 0.0
+        if scale == 0.0:
+            continue  # at its bound
+        status, exact = instance.directional(SETTLED, {name: 1.0})
+        assert status == OK, instance.messages
+        expected, smooth = by_richardson(instance, name, 0.005 * scale, SETTLED)
+        error = np.abs(np.array(exact) - expected) / (np.abs(expected) + here / scale)
+        assert not (smooth & (error > 1e-8)).any(), (name, error)
+        asked += smooth.all()
+    assert asked > 12
 
 
 REFUSED = {

@@ -19,9 +19,7 @@ OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
             {"guid": "{00000000-0000-0000-0000-000000000000}"},
             "the guid is {00000000-0000-0000-0000-000000000000}",
         ),
-        ({"guid": ""}, "the guid is"),
         ({"kind": 17}, "fmuType = 17 is neither fmi2ModelExchange (0) nor fmi2CoSimulation (1)"),
-        ({"name": ""}, "the instance name is missing"),
         ({"name": None}, "the instance name is missing"),
     ],
 )
@@ -43,20 +41,14 @@ def test_no_guid_and_no_callbacks(library: Library) -> None:
 
 
 @pytest.mark.parametrize(
-    "location",
-    [None, "", "file:///a b/resources", "file:///a%20b/resources", "C:\\nonsense", "file://" + "x" * 10_000],
+    "text", ["file:///a%20b/resources", "C:\\nonsense µ", "with % and #" + "n" * 100_000]
 )
-def test_any_resource_location(new_instance: Callable[..., Instance], location: str | None) -> None:
-    instance = new_instance(resource_location=location)
+def test_any_name_and_resource_location(new_instance: Callable[..., Instance], text: str) -> None:
+    instance = new_instance(name=text, resource_location=text)
+    instance.step(0.0, 1.0)
+    assert instance.last_message.name == text
     instance.initialize()
     assert instance.step(0.0, 1e-5) == OK
-
-
-@pytest.mark.parametrize("name", ["a", "Ünïcode µ", "with % and #", "n" * 100_000])
-def test_any_name(new_instance: Callable[..., Instance], name: str) -> None:
-    instance = new_instance(name=name)
-    instance.step(0.0, 1.0)
-    assert instance.last_message.name == name
 
 
 def scene(number: int) -> dict[str, float]:
@@ -83,32 +75,15 @@ def run(instance: Instance, number: int, steps: int) -> list[float]:
     return instance.get(*OUTPUTS)
 
 
-def test_a_hundred_instances_step_by_turns(library: Library) -> None:
-    alone = []
-    for number in range(100):
-        with Instance(library) as instance:
-            alone.append(run(instance, number, 3))
-    together = [Instance(library, name=f"contact {number}") for number in range(100)]
-    for number, instance in enumerate(together):
-        assert instance.set(scene(number)) == OK
-        instance.initialize()
-    for step in range(3):
-        for number, instance in enumerate(together):
-            assert instance.set({"V": scene(number)["V"] + 0.01 * step}) == OK
-            assert instance.step(step * 1.7e-5, 1.7e-5) == OK
-    assert [instance.get(*OUTPUTS) for instance in together] == alone
-    random.Random(1).shuffle(together)
-    for instance in together:
-        instance.free()
+def test_instances_in_threads(library: Library) -> None:
+    """Forty contacts that live at once give what each gives alone."""
 
-
-def test_a_hundred_instances_in_threads(library: Library) -> None:
     def one(number: int) -> list[float]:
         with Instance(library, name=f"contact {number}", logging_on=True) as instance:
             results = run(instance, number, 20)
             assert all(message.name == f"contact {number}" for message in instance.messages)
             return results
 
-    alone = [one(number) for number in range(100)]
+    alone = [one(number) for number in range(40)]
     with ThreadPoolExecutor(max_workers=16) as threads:
-        assert list(threads.map(one, range(100))) == alone
+        assert list(threads.map(one, range(40))) == alone

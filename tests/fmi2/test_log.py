@@ -25,34 +25,24 @@ def whole_life(instance: Instance) -> set[str]:
 
 
 def test_the_declared_categories_are_the_ones_used(
-    library: Library, new_instance: Callable[..., Instance]
+    library: Library, new_instance: Callable[..., Instance], capfd: pytest.CaptureFixture[str]
 ) -> None:
-    assert whole_life(new_instance(logging_on=True)) == set(library.log_categories)
-
-
-def test_without_debug_logging_only_errors_and_warnings(new_instance: Callable[..., Instance]) -> None:
-    assert whole_life(new_instance(logging_on=False)) == {"logStatusError", "logStatusWarning"}
+    """All with debug logging or if none is named, errors and warnings without. Nothing is printed."""
+    every, least = set(library.log_categories), {"logStatusError", "logStatusWarning"}
+    assert whole_life(new_instance(logging_on=True)) == every
+    assert whole_life(new_instance(logging_on=False)) == least
+    named, off, silent = new_instance(), new_instance(logging_on=True), new_instance(with_logger=False)
+    assert switch(named, True) == OK and whole_life(named) == every
+    off.messages.clear()
+    assert switch(off, False) == OK and whole_life(off) == least
+    assert silent.set({"F_C": -1.0}) == ERROR and not whole_life(silent)
+    assert capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("category", ["logEvents", "logSolver", "logStatusWarning", "logStatusError"])
-def test_one_category_at_a_time_and_errors_always(
-    new_instance: Callable[..., Instance], category: str
-) -> None:
-    instance = new_instance()
+def test_one_category_at_a_time_and_errors_always(instance: Instance, category: str) -> None:
     assert switch(instance, True, category) == OK
     assert whole_life(instance) == {category, "logStatusError"}
-
-
-def test_no_category_means_all(library: Library, instance: Instance) -> None:
-    assert switch(instance, True) == OK
-    assert whole_life(instance) == set(library.log_categories)
-
-
-def test_switching_off(new_instance: Callable[..., Instance]) -> None:
-    instance = new_instance(logging_on=True)
-    instance.messages.clear()
-    assert switch(instance, False) == OK
-    assert whole_life(instance) == {"logStatusError", "logStatusWarning"}
 
 
 def test_an_unknown_category_switches_nothing(instance: Instance) -> None:
@@ -62,25 +52,8 @@ def test_an_unknown_category_switches_nothing(instance: Instance) -> None:
     assert instance.messages == []
 
 
-def test_text_is_finished_and_safe_as_a_format(instance: Instance) -> None:
+def test_text_is_finished_cut_and_safe_as_a_format(instance: Instance) -> None:
     assert switch(instance, True, "100%s #r0#") == ERROR
     assert instance.last_message.text == "fmi2SetDebugLogging: log category '100%%s ##r0##' is unknown"
-
-
-def test_long_text_from_the_host_is_cut(instance: Instance) -> None:
     assert switch(instance, True, "x" * 100_000) == ERROR
     assert len(instance.last_message.text) < 512
-
-
-def test_an_instance_without_a_logger_works(
-    new_instance: Callable[..., Instance], capfd: pytest.CaptureFixture[str]
-) -> None:
-    instance = new_instance(with_logger=False, logging_on=True)
-    assert instance.set({"F_C": -1.0}) == ERROR
-    whole_life(instance)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_nothing_is_printed(new_instance: Callable[..., Instance], capfd: pytest.CaptureFixture[str]) -> None:
-    whole_life(new_instance(logging_on=True))
-    assert capfd.readouterr() == ("", "")

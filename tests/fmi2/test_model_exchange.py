@@ -6,14 +6,11 @@ import math
 from collections.abc import Callable
 from ctypes import c_double
 
-import numpy as np
 import pytest
 from fmi_library import ERROR, MODEL_EXCHANGE, OK, STATES, Instance
 
 DAHL, ELASTIC_PLASTIC, LUGRE = 1, 3, 4
 RATES = ("der(delta)", "der(W_f)", "der(Q_f)", "der(delta_y)")
-FORCES = ("F_t", "F_t_mean", "F_y", "F_y_mean")
-UNKNOWNS = (*FORCES, "delta", "delta_y", "F_n", "sigma", "A_r", "W_f", "Q_f", *RATES)
 CONTINUOUS = "continuous-time mode"
 BLOCK = {"contact.sigma": 2.5e6, "F_C": 50.0}  # bound at 20 um with contact.model = Constant
 
@@ -33,141 +30,17 @@ def block(new_instance: Callable[..., Instance], law: int, **values: float) -> I
     return started(new_instance, {"friction.model": law, "contact.model": 2}, {**BLOCK, **values})
 
 
-def random_scene(number: int) -> tuple[dict[str, int], dict[str, float], float]:
-    """Choices, values and a deflection over that of the limit; every law, contact, limit and input.
-
-    From 48 on they move across, too.
-    """
-    rng = np.random.default_rng([31, number])
-    choices = {
-        "friction.model": (DAHL, ELASTIC_PLASTIC, LUGRE)[number % 3],
-        "contact.model": int(rng.integers(1, 4)),
-        "friction.limit": int(rng.integers(1, 3)),
-        "contact.input": int(rng.integers(1, 3)),
-    }
-    values = {
-        "V": rng.choice([-1, 1]) * 10 ** rng.uniform(-2, 0),
-        "d": rng.uniform(10e-6, 18e-6),
-        "E": rng.uniform(2e10, 2e11),
-        "contact.stiffnessScale": 10 ** rng.uniform(-6, -3),
-        "friction.staticRatio": rng.uniform(1.0, 2.0),
-        "friction.V_S": 10 ** rng.uniform(-2, 0),
-        "friction.sigma_1": 10 ** rng.uniform(0, 2),
-        "friction.sigma_2": 10 ** rng.uniform(0, 2),
-        "vibration.V_1": rng.choice([0.0, 10 ** rng.uniform(-2, 0)]),
-        "vibration.a_d": rng.choice([0.0, 10 ** rng.uniform(-8, -6)]),
-        "vibration.phase_d": rng.uniform(0, 2 * math.pi),
-    }
-    part = float(rng.choice([0.5, -0.5, 2.5, -2.5]))
-    if number >= 48:
-        values["V_y"] = rng.choice([-1, 1]) * 10 ** rng.uniform(-2, 0)
-        values["vibration.V_2"] = rng.choice([0.0, 10 ** rng.uniform(-2, 0)])
-        values["vibration.phase_2"] = rng.uniform(0, 2 * math.pi)
-    return choices, values, part
-
-
-def derivative_errors(instance: Instance) -> float:
-    """The largest difference of a directional derivative to a central one, over the variable's size."""
-    now = np.array(instance.get(*UNKNOWNS))
-    V, V_1, V_2 = instance.get("V", "vibration.V_1", "vibration.V_2")
-    speed, force, delta = abs(V) + V_1 + V_2, np.hypot(now[0], now[2]), np.hypot(now[4], now[5])
-    sizes = {"V": speed, "V_y": speed, "delta": delta, "delta_y": delta}
-    sizes |= {name: abs(instance.get(name)[0]) for name in ("d", "E", "load")}
-    sizes |= {"W_f": 1e-3, "Q_f": 1e-3}
-    power = force * speed  # a rate may be a difference of such, and 0
-    least = np.array([force] * 4 + [delta] * 2 + [1e-300] * 5 + [speed, power, power, speed])
-    worst = 0.0
-    for name, size in sizes.items():
-        status, exact = instance.directional(UNKNOWNS, {name: size})
-        assert status == OK
-        start = instance.get(name)[0]
-        ends = []
-        step = 1e-5
-        for x in (start + step * size, start - step * size):
-            assert instance.set({name: x}) == OK
-            ends.append(np.array(instance.get(*UNKNOWNS)))
-        assert instance.set({name: start}) == OK
-        difference = (ends[0] - ends[1]) / (2 * step)
-        scale = np.maximum.reduce([np.abs(now), np.abs(difference), least])
-        worst = max(worst, float((np.abs(exact - difference) / scale).max()))
-    return worst
-
-
-@pytest.mark.parametrize("number", range(96))
-def test_every_derivative_by_every_input_and_state(
-    new_instance: Callable[..., Instance], number: int
-) -> None:
-    """Central differences of the FMU's own values in the same regime; half the starts lie beyond a bound."""
-    choices, values, part = random_scene(number)
-    instance = started(new_instance, choices, values)
-    assert instance.call("fmi2SetTime", 1.3e-5) == OK
-    F_n, sigma = instance.get("F_n", "sigma")
-    limit = 55.0 if choices["friction.limit"] == 1 else 0.176 * F_n
-    across = 0.7 * part * limit / sigma if number >= 48 else 0.0
-    assert instance.put_states(part * limit / sigma, 1e-3, 1e-3, across) == OK
-    instance.event()
-    assert derivative_errors(instance) < 1e-6
-
-
-def test_rates_are_power_and_heat(new_instance: Callable[..., Instance]) -> None:
-    """W_f' = F_t V, and Q_f' = W_f' - sigma delta delta'; delta' by Eq. 2."""
-    instance = block(new_instance, DAHL, V=0.1)
-    assert instance.put_states(8e-6, 0.0, 0.0) == OK
-    expected = 0.1 * (1 - 2.5e6 * 8e-6 / 50.0)
-    F_t = 2.5e6 * 8e-6
-    assert instance.rates() == pytest.approx(
-        [expected, 0.1 * F_t, 0.1 * F_t - F_t * expected, 0.0], rel=1e-14
-    )
-    assert instance.get(*RATES) == instance.rates()
-    assert instance.get("F_t", "F_t_mean") == pytest.approx([F_t, F_t], rel=1e-15)
-    calls = instance.get("solver.evaluations")[0]
-    instance.rates()
-    assert instance.get("solver.evaluations")[0] == calls + 1
-
-
-def test_states_set_as_variables_are_the_states(new_instance: Callable[..., Instance]) -> None:
-    """As CasADi sets them."""
-    one, other = (block(new_instance, LUGRE, V=0.1) for _ in range(2))
-    assert one.put_states(3e-6, 2e-3, 1e-3) == OK
-    assert other.set({"Q_f": 1e-3, "delta": 3e-6, "W_f": 2e-3}) == OK
-    assert one.fingerprint() == other.fingerprint()
-
-
 def test_rates_of_the_same_names_in_co_simulation(new_instance: Callable[..., Instance]) -> None:
-    instance = new_instance()
-    assert instance.set({"V": 0.1, "vibration.V_1": 0.02, "friction.sigma_2": 3.0}) == OK
-    assert instance.choose({"friction.model": LUGRE}) == OK
-    instance.initialize()
-    exchanged = new_instance(kind=MODEL_EXCHANGE)
-    assert exchanged.set({"V": 0.1, "vibration.V_1": 0.02, "friction.sigma_2": 3.0}) == OK
-    assert exchanged.choose({"friction.model": LUGRE}) == OK
-    exchanged.bring_to(CONTINUOUS)
+    instance, exchanged = new_instance(), new_instance(kind=MODEL_EXCHANGE)
+    for each, state in ((instance, "step complete"), (exchanged, CONTINUOUS)):
+        assert each.set({"V": 0.1, "vibration.V_1": 0.02, "friction.sigma_2": 3.0}) == OK
+        assert each.choose({"friction.model": LUGRE}) == OK
+        each.bring_to(state)
     for step in range(5):
         assert instance.step(step * 1e-5, 1e-5) == OK
         assert exchanged.call("fmi2SetTime", (step + 1) * 1e-5) == OK
         assert exchanged.put_states(*instance.get("delta", "W_f", "Q_f", "delta_y")) == OK
         assert instance.get(*RATES) == pytest.approx(exchanged.rates(), rel=1e-12)
-
-
-@pytest.mark.parametrize("state", ["initialization", "step complete"])
-def test_derivatives_of_rates_in_co_simulation(new_instance: Callable[..., Instance], state: str) -> None:
-    instance = new_instance()
-    assert instance.choose({"friction.model": LUGRE, "contact.input": 2}) == OK
-    values = {"friction.staticRatio": 1.4, "friction.V_S": 0.1, "vibration.V_1": 0.02, "delta_0": 2e-9}
-    assert instance.set({"V": 0.1, "contact.stiffnessScale": 1e-5, "friction.sigma_1": 20.0, **values}) == OK
-    instance.bring_to(state)
-    for name in ("V", "E", "load"):
-        status, exact = instance.directional(RATES, {name: 1.0})
-        assert status == OK
-        start = instance.get(name)[0]
-        step = 1e-5 * start
-        ends = []
-        for x in (start + step, start - step):
-            assert instance.set({name: x}) == OK
-            ends.append(np.array(instance.get(*RATES)))
-        assert instance.set({name: start}) == OK
-        difference = (ends[0] - ends[1]) / (2 * step)
-        assert exact == pytest.approx(difference, rel=1e-6, abs=1e-8 * np.abs(ends[0]).min() / start)
 
 
 def test_a_bristle_reaches_its_bound_and_leaves_it(new_instance: Callable[..., Instance]) -> None:
@@ -221,29 +94,6 @@ def test_a_bristle_breaks_away_and_sticks_again(new_instance: Callable[..., Inst
     assert all(z > 0 for z in instance.indicators()) and instance.rates()[0] == 1e-3  # it sticks
 
 
-def test_a_jump_up_of_the_bound_leaves_it_slipping(new_instance: Callable[..., Instance]) -> None:
-    """It catches up at V and goes on along the kinetic bound, never breaking away; a saved state knows."""
-    instance = block(
-        new_instance, ELASTIC_PLASTIC, V=1.0, **{"friction.staticRatio": 1.5, "friction.V_S": 0.1}
-    )
-    assert instance.put_states(30e-6 * (1 + 1e-9), 0.0, 0.0) == OK
-    instance.event()
-    assert instance.states()[0] == pytest.approx(20e-6, rel=1e-14)
-    assert instance.call("fmi2EnterEventMode") == OK
-    assert instance.set({"F_C": 60.0}) == OK
-    instance.new_discrete_states()
-    assert instance.call("fmi2EnterContinuousTimeMode") == OK
-    assert instance.rates()[0] == 1.0 and all(z > 0 for z in instance.indicators())
-    other = new_instance(kind=MODEL_EXCHANGE)
-    status, state = other.deserialize(instance.serialize(instance.save()))
-    assert status == OK and other.restore(state) == OK and other.drop(state) == OK
-    for one in (instance, other):
-        assert one.put_states(24e-6 * (1 + 1e-9), 0.0, 0.0) == OK  # F_C / sigma, not 36 um
-        assert one.indicators()[1] < 0 and one.step_completed()
-        one.event()
-        assert one.rates() == pytest.approx([0.0, 60.0, 60.0, 0.0], rel=1e-12)
-
-
 def test_a_parameter_set_in_continuous_time_mode_acts_like_an_input(
     new_instance: Callable[..., Instance],
 ) -> None:
@@ -280,13 +130,6 @@ def test_a_contact_opens_and_closes_at_events(new_instance: Callable[..., Instan
     assert instance.rates()[0] == pytest.approx(0.1, rel=1e-12)
 
 
-def test_an_open_contact_at_the_start_has_nominal_values(new_instance: Callable[..., Instance]) -> None:
-    choices = {"friction.model": ELASTIC_PLASTIC, "friction.limit": 2, "contact.input": 2}
-    instance = started(new_instance, choices, {"load": 0.0, "delta_0": 1e-6})
-    assert instance.states()[0] == 0.0
-    assert all(0 < x < math.inf for x in nominals(instance))
-
-
 def announced(instance: Instance, t: float) -> float | None:
     assert instance.call("fmi2SetTime", t) == OK
     info = instance.event()
@@ -319,14 +162,10 @@ def test_the_next_time_event_is_a_third_of_a_period_ahead_at_most(
     """In every law, along a line and in the plane."""
     choices = {"friction.model": law, "friction.limit": limit}
     instance = started(new_instance, choices, {"vibration.V_1": 0.2, "vibration.V_2": across})
-    for k in range(30):
+    for k in range(8):
         t = k * 0.37 / 20e3
         assert t < announced(instance, t) <= t + (1 / 3 + 1e-8) / 20e3
-
-
-def test_no_event_is_announced_without_vibration(new_instance: Callable[..., Instance]) -> None:
-    for law in (DAHL, ELASTIC_PLASTIC, LUGRE):
-        assert announced(block(new_instance, law, V=0.1), 0.0) is None
+    assert announced(block(new_instance, law, V=0.1), 0.0) is None  # without vibration
 
 
 def test_the_stop_time_is_refused_at_once(new_instance: Callable[..., Instance]) -> None:
@@ -429,13 +268,3 @@ def test_a_saved_state_replays_to_the_bit(new_instance: Callable[..., Instance],
     status, state = other.deserialize(data)
     assert status == OK and other.restore(state) == OK and other.drop(state) == OK
     assert run(other) == first
-
-
-def test_coupled_inputs_that_do_not_go_together_can_be_mended(new_instance: Callable[..., Instance]) -> None:
-    choices = {"friction.model": DAHL, "friction.limit": 2, "contact.model": 2}
-    instance = started(new_instance, choices, {**BLOCK, "vibration.a_d": 1e-6})
-    assert instance.set({"d": 0.5e-6}) == OK
-    assert instance.call("fmi2GetDerivatives", (c_double * STATES)(), STATES) == ERROR
-    assert not instance.step_completed()
-    assert instance.set({"d": 5e-6}) == OK
-    assert all(map(math.isfinite, instance.rates()))

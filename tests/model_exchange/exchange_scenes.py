@@ -2,128 +2,93 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
-from physics.course import Step
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.exchange import Host
-from workshop.reference.contact import Contact
-from workshop.reference.scene import Scene
-from workshop.reference.start_values import start_values_of
+from workshop.reference import INPUTS, Scene, changed, rest, scene, start_values, step
 
 LAWS = ("Dahl", "LuGre", "ElasticPlastic")
-F, MU, LOAD, FREQUENCY = 55.0, 0.176, 312.0, 20e3
-INPUTS = ("V", "d", "E", "load")
+FREQUENCY = 20e3
 OUTPUTS = 40  # points at which the host ends a step of its own
+LARGEST = {"F_t": False, "F_y": False, "W_f": True, "Q_f": True}  # whether it is an energy
 
 
-@dataclass(frozen=True)
-class ExchangeScene:
-    number: int
-    scene: Scene
-    delta_0: float  # m
-    h: float  # s
-
-    def start_values(self) -> dict[str, Value]:
-        return {**start_values_of(self.scene), "delta_0": self.delta_0}
-
-    def inputs(self, t: float) -> dict[str, float]:
-        return {n: getattr(self.scene, n) + getattr(self.scene, f"{n}_rate") * t for n in INPUTS}
-
-    @property
-    def is_held(self) -> bool:
-        return all(getattr(self.scene, f"{name}_rate") == 0.0 for name in INPUTS)
-
-
-class Errors(NamedTuple):
-    F_t: float  # over the largest force of the step
-    W_f: float  # over that times the path
-    Q_f: float
-
-
-def drawn(number: int, fmu: FrictionFmu) -> ExchangeScene:
+def drawn(number: int, planar: bool = False) -> Scene:
     """sigma V / (2 pi f F) from 0.1 to 100, every law, limit and contact; most vibrate, most inputs move."""
-    rng = np.random.default_rng([29, number])
+    rng = np.random.default_rng([29, number, planar])
     chance = lambda p: bool(rng.random() < p)  # noqa: E731
-    law = LAWS[number % 3]
-    h = rng.uniform(0.3, 3.0) / FREQUENCY
-    V = rng.choice([-1.0, 1.0]) * 10 ** rng.uniform(-2, 0)
-    V_1 = 10 ** rng.uniform(-2, 0.3) if chance(0.6) else 0.0
-    a_d = 10 ** rng.uniform(-7.5, -6) if chance(0.5) else 0.0
-    moves = chance(0.67)
-    pressed = chance(0.5)
-    speed = max(abs(V), V_1)
-    stiffness = 10 ** rng.uniform(-1, 2) * F * 2 * np.pi * FREQUENCY / speed
-    E = 58.556936170e9
-    limit = rng.choice(["Constant", "Load"]).item()
-    bounded = law == "ElasticPlastic" or limit == "Load"
-    damped = chance(0.4) and not (moves and bounded)  # the damping would not see how inputs move the bound
-    scene = Scene(
-        V=V,
-        d=rng.uniform(10e-6, 18e-6),
-        E=E,
-        load=LOAD,
-        f=FREQUENCY,
-        V_1=V_1,
-        a_d=a_d,
-        phase_d=rng.uniform(0, 2 * np.pi),
-        F_C=F,
-        mu=MU,
-        friction=law,
+    law, limit = LAWS[number % 3], rng.choice(["Constant", "Load"]).item()
+    moves, pressed = chance(0.6), chance(0.5)
+    damped = chance(0.4) and not (moves and (law == "ElasticPlastic" or limit == "Load"))
+    now = scene(
+        law=law,
         limit=limit,
+        contact=rng.choice(["Asperities", "Constant", "Mindlin"]).item(),
         input="Load" if pressed else "Separation",
+        h=rng.uniform(0.3, 2.5) / FREQUENCY,
+        f=FREQUENCY,
+        V=rng.choice([-1.0, 1.0]) * 10 ** rng.uniform(-2, 0),
+        V_1=10 ** rng.uniform(-2, 0.3) if chance(0.6) else 0.0,
+        a_d=10 ** rng.uniform(-7.5, -6) if chance(0.5) else 0.0,
+        phase_d=rng.uniform(0, 2 * np.pi),
+        d=rng.uniform(10e-6, 18e-6),
         staticRatio=rng.uniform(1, 2) if chance(0.5) else 1.0,
         V_S=10 ** rng.uniform(-2, 0),
-        sigma_1=rng.uniform(0, 0.02) * F / speed if damped else 0.0,
-        sigma_2=rng.uniform(0, 0.1) * F / speed if chance(0.4) else 0.0,
-        V_rate=rng.uniform(-2, 2) * V / h if moves and chance(0.7) else 0.0,
-        d_rate=rng.uniform(-0.3e-6, 0.3e-6) / h if moves and chance(0.6) and not pressed else 0.0,
-        load_rate=rng.uniform(-0.5, 0.5) * LOAD / h if moves and chance(0.6) and pressed else 0.0,
-        E_rate=rng.uniform(-0.1, 0.1) * E / h if moves and chance(0.3) else 0.0,
-        contact=Contact(model=rng.choice(["Asperities", "Constant", "Mindlin"]).item(), sigma=stiffness),
     )
-    with Host(fmu, start_values_of(scene), lambda t, own: {}, tolerance=1e-3) as host:
-        sigma, F_n = host.get("sigma", "F_n")
-    if scene.contact.model != "Constant":
-        scene = replace(scene, contact=replace(scene.contact, stiffnessScale=stiffness / sigma))
-    bound = (F if limit == "Constant" else MU * F_n) / stiffness
-    return ExchangeScene(number, scene, rng.uniform(-0.9, 0.9) * bound, h)
+    if planar:
+        now.V_y, now.phase_2 = rng.choice([-1.0, 1.0]) * 10 ** rng.uniform(-2, 0), rng.uniform(0, 2 * np.pi)
+        now.V_2 = 10 ** rng.uniform(-2, 0.3) if chance(0.6) else 0.0
+    speed = max(abs(now.V), now.V_1, abs(now.V_y), now.V_2)
+    # the damping would not see how inputs move the bound
+    now.sigma_1 = rng.uniform(0, 0.02) * now.F_C / speed if damped else 0.0
+    now.sigma_2 = rng.uniform(0, 0.1) * now.F_C / speed if chance(0.4) else 0.0
+    if moves:
+        now.V_rate, now.V_y_rate = rng.uniform(-2, 2) * now.V / now.h, rng.uniform(-2, 2) * now.V_y / now.h
+        now.load_rate = rng.uniform(-0.5, 0.5) * now.load / now.h if pressed else 0.0
+        now.d_rate = 0.0 if pressed else rng.uniform(-0.3e-6, 0.3e-6) / now.h
+        now.E_rate = rng.uniform(-0.1, 0.1) * now.E / now.h if chance(0.3) else 0.0
+    stiffness = 10 ** rng.uniform(-1, 2) * now.F_C * 2 * np.pi * FREQUENCY / speed
+    now.contact_sigma, now.stiffnessScale = stiffness, stiffness / rest(changed(now, stiffnessScale=1.0))[1]
+    size, angle = rng.uniform(0, 0.9) * rest(now)[0] / stiffness, rng.uniform(0, 2 * np.pi)
+    now.delta_0 = size * np.cos(angle)
+    now.delta_y_0 = size * np.sin(angle) if planar else 0.0
+    return now
 
 
-def errors(truth: Step, values: Mapping[str, float]) -> Errors:
-    """Of F_t, W_f and Q_f at the end."""
-    return Errors(
-        abs(float(truth.F_t) - values["F_t"]) / truth.scale,
-        abs(float(truth.W_f) - values["W_f"]) / (truth.scale * truth.path),
-        abs(float(truth.Q_f) - values["Q_f"]) / (truth.scale * truth.path),
-    )
+def is_held(now: Scene) -> bool:
+    return not any(getattr(now, f"{name}_rate") for name in INPUTS)
 
 
-def stepped(scene: ExchangeScene, fmu: FrictionFmu, settings: dict[str, Value]) -> dict[str, float]:
+def errors(now: Scene, found: dict[str, float]) -> dict[str, float]:
+    """Of the ends, over the largest force of the step or that times the path."""
+    truth = step(now)
+    sizes = {name: truth.S * (truth.path if energy else 1.0) for name, energy in LARGEST.items()}
+    return {name: abs(found[name] - getattr(truth, name)) / size for name, size in sizes.items()}
+
+
+def error(now: Scene, found: dict[str, float]) -> float:
+    return max(errors(now, found).values())
+
+
+def stepped(now: Scene, fmu: FrictionFmu, settings: dict[str, Value]) -> dict[str, float]:
     """Outputs after one step of co-simulation."""
-    rates = {name: getattr(scene.scene, f"{name}_rate") for name in INPUTS}
-    names = ("F_t", "W_f", "Q_f")
-    with fmu.session(scene.start_values() | settings) as session:
-        session.set_rates(**{name: rate for name, rate in rates.items() if rate})
-        session.step(scene.h)
-        return dict(zip(names, session.read(names), strict=True))
+    with fmu.session(start_values(now) | settings) as session:
+        session.set_rates(**{name: getattr(now, f"{name}_rate") for name in INPUTS})
+        session.step(now.h)
+        return dict(zip(LARGEST, session.read(LARGEST), strict=True))
 
 
-def run(scene: ExchangeScene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:
+def run(now: Scene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:
     """The last outputs in a host, after an event: a bristle that slips has then been taken onto its bound."""
-    with Host(
-        fmu,
-        scene.start_values(),
-        lambda t, own: scene.inputs(t),
-        tolerance=tolerance,
-        longest_step=scene.h / 20,
-    ) as host:
+
+    def inputs(t: float, own: Any) -> dict[str, float]:
+        return {name: getattr(now, name) + getattr(now, f"{name}_rate") * t for name in INPUTS}
+
+    with Host(fmu, start_values(now), inputs, tolerance=tolerance, longest_step=now.h / 20) as host:
         for k in range(1, OUTPUTS + 1):
-            host.advance(scene.h * k / OUTPUTS)
+            host.advance(now.h * k / OUTPUTS)
         host.event()
-        names = ("F_t", "W_f", "Q_f", "solver.evaluations")
-        return {**dict(zip(names, host.get(*names), strict=True)), "events": host.events}
+        return dict(zip(LARGEST, host.get(*LARGEST), strict=True))

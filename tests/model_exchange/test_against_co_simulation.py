@@ -1,8 +1,6 @@
-"""The two interfaces of one contact: loads that open it, inputs that jump, static friction."""
+"""The two interfaces of one contact: inputs that jump and turn at events, slips that a host may step over."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -11,7 +9,6 @@ from frictioncontact.fmu import FrictionFmu, Value
 from workshop.exchange import Host
 
 PERIOD = 5e-5  # s
-SEEN = ("F_t", "F_n", "delta", "W_f", "Q_f", "F_y", "delta_y")
 
 
 def stiff(fmu: FrictionFmu, start: dict[str, Value], stiffness: float) -> dict[str, Value]:
@@ -22,93 +19,6 @@ def stiff(fmu: FrictionFmu, start: dict[str, Value], stiffness: float) -> dict[s
             "contact.sigma": stiffness,
             "contact.stiffnessScale": stiffness / session.get("sigma"),
         }
-
-
-def exchanged(
-    fmu: FrictionFmu,
-    start: dict[str, Value],
-    inputs: Callable[[float], dict[str, float]],
-    times: np.ndarray,
-    tolerance: float,
-) -> np.ndarray:
-    with Host(
-        fmu, start, lambda t, own: inputs(t), tolerance=tolerance, longest_step=times[-1] / 200
-    ) as host:
-        seen = []
-        for time in times[1:]:
-            host.advance(time)
-            host.event()
-            seen.append(host.get(*SEEN))
-    return np.array(seen)
-
-
-def stepped(
-    fmu: FrictionFmu,
-    start: dict[str, Value],
-    inputs: Callable[[float], dict[str, float]],
-    times: np.ndarray,
-) -> np.ndarray:
-    """Inputs that are linear between the times."""
-    with fmu.session({**start, "solver.tolerance": 1e-8}) as session:
-        seen = []
-        for now, then in zip(times[:-1], times[1:], strict=True):
-            here, there = inputs(now), inputs(then)
-            for name, value in here.items():
-                session.set(name, value)
-            session.set_rates(**{name: (there[name] - here[name]) / (then - now) for name in here})
-            session.step(then - now)
-            seen.append([session.get(name) for name in SEEN])
-    return np.array(seen)
-
-
-@pytest.mark.parametrize(
-    ("limit", "contact", "across"),
-    [
-        ("Constant", "Asperities", 0.0),
-        ("Constant", "Constant", 1.0),
-        ("Constant", "Mindlin", 1.0),
-        ("Load", "Asperities", 1.0),
-        ("Load", "Constant", 0.0),
-        ("Load", "Mindlin", 0.0),
-    ],
-)
-@pytest.mark.parametrize(
-    ("law", "ratio"), [("Dahl", 1.0), ("LuGre", 1.5), ("ElasticPlastic", 1.0), ("ElasticPlastic", 1.5)]
-)
-def test_a_load_that_falls_to_zero_and_comes_back(
-    fmu: FrictionFmu, law: str, ratio: float, limit: str, contact: str, across: float
-) -> None:
-    """While V turns. How fast they move a bound, and its part of Q_f, is taken from the host's steps."""
-    corners = np.array([0.0, 0.4, 0.6, 1.0]) * 4 * PERIOD
-    times = np.linspace(0.0, 1.0, 101) * 4 * PERIOD
-
-    def inputs(t: float) -> dict[str, float]:
-        load = float(np.interp(t, corners, [300.0, -20.0, -20.0, 300.0]))
-        V_y = across * float(np.interp(t, corners, [-0.1, 0.2, 0.1, 0.3]))
-        return {"load": load, "V": float(np.interp(t, corners, [0.3, 0.2, -0.1, -0.3])), "V_y": V_y}
-
-    start: dict[str, Value] = {
-        "friction.model": law,
-        "friction.limit": limit,
-        "friction.staticRatio": ratio,
-        "friction.V_S": 0.2,
-        "contact.model": contact,
-        "contact.input": "Load",
-        "vibration.V_1": 0.2,
-        "vibration.V_2": 0.1 * across,
-        "vibration.a_d": 0.2e-6,
-        **inputs(0.0),
-    }
-    start = stiff(fmu, start, 20e6)
-    found = exchanged(fmu, start, inputs, times, 1e-8)
-    expected = stepped(fmu, start, inputs, times)
-    opened = expected[:, 1] == 0.0
-    assert 20 < opened.sum() < 30
-    assert not expected[opened, 2].any() or (limit == "Constant" and contact == "Constant")
-    energy = 80.0 * 0.3 * times[-1]
-    sizes = [80.0, 300.0, 80.0 / 20e6, energy, energy, 80.0, 80.0 / 20e6]
-    off = np.abs((found - expected) / sizes).max(0)
-    assert (off < [1e-5, 1e-14, 1e-5, 1e-6, 1e-4, 1e-5, 1e-5]).all(), off
 
 
 def jumped(rng: np.random.Generator, now: dict[str, float]) -> dict[str, float]:
@@ -126,11 +36,13 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
     """Of three jumps in a row [J], after looking that both interfaces have them and delta to rounding."""
     rng = np.random.default_rng([37, number])
     now = {"V": rng.uniform(-0.3, 0.3), "d": 14e-6, "E": 58e9, "load": 300.0}
+    planar = number % 2
+    now |= {"V_y": rng.uniform(-0.3, 0.3)} if planar else {}
     law = ["ElasticPlastic", "Dahl", "LuGre"][number % 5 % 3]
     start: dict[str, Value] = {
         "friction.model": law,
         "friction.limit": rng.choice(["Constant", "Load"]).item() if law == "ElasticPlastic" else "Load",
-        "friction.staticRatio": 1.0 if number % 2 else 1.5,
+        "friction.staticRatio": rng.choice([1.0, 1.5]),
         "friction.V_S": 0.1,
         "contact.model": rng.choice(["Asperities", "Constant", "Mindlin"]).item(),
         "contact.input": rng.choice(["Separation", "Load"]).item(),
@@ -139,7 +51,7 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
         **now,
     }
     start = stiff(fmu, start, 20e6)
-    start["delta_0"] = rng.uniform(-2, 2) * 55.0 / 20e6
+    start["delta_0"], start["delta_y_0"] = rng.uniform(-2, 2, 2) * [1.0, planar] * 55.0 / 20e6
     with (
         fmu.session(start) as session,
         Host(fmu, start, lambda t, own: now, tolerance=1e-8) as host,
@@ -152,8 +64,8 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
                 session.set(name, value)
             session.step(0.0)
             host.event()
-            delta, Q_f = host.get("delta", "Q_f")
-            assert delta == pytest.approx(session.get("delta"), rel=1e-12)
+            delta, delta_y, Q_f = host.get("delta", "delta_y", "Q_f")
+            assert [delta, delta_y] == pytest.approx(session.read(("delta", "delta_y")), rel=1e-12)
             assert Q_f == pytest.approx(session.get("Q_f"), rel=1e-11)
             heats.append(Q_f)
     return list(np.diff(heats))
@@ -161,8 +73,8 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
 
 def test_inputs_that_jump_at_an_event(fmu: FrictionFmu) -> None:
     """As between two steps of co-simulation."""
-    heats = [heat for number in range(120) for heat in heats_of_jumps(fmu, number)]
-    assert sum(heat > 0.0 for heat in heats) > 30
+    heats = [heat for number in range(60) for heat in heats_of_jumps(fmu, number)]
+    assert sum(heat > 0.0 for heat in heats) > 20
 
 
 @pytest.mark.parametrize(("load", "rate"), [(50.0, 0.0), (500.0, -25e3)])
@@ -206,10 +118,11 @@ def test_inputs_whose_speed_changes_at_an_event(fmu: FrictionFmu, load: float, r
             assert host.get("F_t")[0] == pytest.approx(session.get("F_t"), abs=1e-5 * load)
 
 
-def test_no_slip_is_stepped_over(fmu: FrictionFmu) -> None:
+@pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])
+def test_no_slip_is_stepped_over(fmu: FrictionFmu, planar: bool) -> None:
     """A vibration that exceeds the bound by 1e-4 to 3 % slips for a while that a host may step over."""
     worst = []
-    for number in range(60):
+    for number in range(18):
         rng = np.random.default_rng([5, number])
         amplitude = 55.0 / 50e6 * (1.0 + 10.0 ** rng.uniform(-4.0, -1.5))
         start: dict[str, Value] = {
@@ -224,34 +137,17 @@ def test_no_slip_is_stepped_over(fmu: FrictionFmu) -> None:
         if number % 3 == 2:
             phase = rng.uniform(0.0, 2.0 * np.pi)
             start |= {"friction.limit": "Load", "vibration.a_d": 0.3e-6, "vibration.phase_d": phase}
-        start["vibration.V_1"] = amplitude * 2.0 * np.pi / PERIOD
+        angle = rng.uniform(0.0, 0.5 * np.pi) if planar else 0.0
+        speed = amplitude * 2.0 * np.pi / PERIOD
+        start |= {"vibration.V_1": speed * np.cos(angle), "vibration.V_2": speed * np.sin(angle)}
+        start["vibration.phase_2"] = rng.choice([0.0, 0.3, 1.5, np.pi])
         stop = rng.uniform(0.6, 1.4) * PERIOD
         with (
             fmu.session({**start, "solver.tolerance": 1e-8}) as session,
-            Host(fmu, start, lambda t, own: {}, tolerance=1e-6) as host,
+            Host(fmu, start, lambda t, own: {}, tolerance=1e-8 if planar else 1e-6) as host,
         ):
             session.step(stop)
             host.advance(stop)
             host.event()
             worst.append(abs(host.get("Q_f")[0] - session.get("Q_f")) / (55.0 * 4.0 * amplitude))
-    assert max(worst) < 5e-5
-
-
-@pytest.mark.parametrize("V", [0.02, -0.2, 0.5])
-def test_a_settled_start_with_static_friction(fmu: FrictionFmu, V: float) -> None:
-    """It may slip from the start: the first period after it is that of co-simulation."""
-    start: dict[str, Value] = {
-        "initialState": "Settled",
-        "friction.model": "ElasticPlastic",
-        "friction.staticRatio": 1.4,
-        "friction.V_S": 0.1,
-        "contact.model": "Constant",
-        "contact.sigma": 50e6,
-        "V": V,
-        "vibration.V_1": 0.3,
-    }
-    times = np.linspace(0.0, PERIOD, 21)
-    found = exchanged(fmu, start, lambda t: {}, times, 1e-9)
-    expected = stepped(fmu, start, lambda t: {}, times)
-    energy = 55.0 * 0.3 * PERIOD
-    assert np.abs((found - expected) / [55.0, 1e3, 1.1e-6, energy, energy, 55.0, 1.1e-6]).max() < 1e-6
+    assert max(worst) < (1e-4 if planar else 5e-5)

@@ -16,7 +16,6 @@ from workshop.bench.exchange import (
     LAWS,
     LawBelt,
     Run,
-    against_cost,
     errors,
     exchange,
     reference,
@@ -58,16 +57,6 @@ def test_table(fmu: FrictionFmu, law: str) -> None:
         assert run.calls == pytest.approx(calls, rel=0.05), way
         assert errors(belt, run, truth) == pytest.approx((of_F_t, of_x), rel=0.35), way
     assert max(errors(belt, exchange(fmu, belt, 1e-10), truth)) < 1e-7
-
-
-def test_the_chart_has_the_error_of_each_tolerance_over_the_time_per_evaluation(fmu: FrictionFmu) -> None:
-    belt = LawBelt()
-    rows = against_cost(fmu)
-    (row,) = (row for row in rows if 1e-4 < float(str(row["error_F_t"])) < 1e-3)  # of 1e-6
-    run = exchange(fmu, belt, 1e-6)
-    assert (row["error_F_t"], row["error_x"]) == errors(belt, run, reference(belt))
-    assert row["H"] == belt.end / run.evaluations
-    assert len(rows) == 3 and rows[-1]["error_F_t"] < 1e-5
 
 
 def test_a_stuck_mass_does_not_creep(fmu: FrictionFmu) -> None:

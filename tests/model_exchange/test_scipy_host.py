@@ -14,7 +14,7 @@ from workshop.project import ROOT
 
 PAGE = (ROOT / "docs" / "model-exchange.md").read_text(encoding="utf-8")
 MASS, PULL, F_C, F = 2.0, 15.0, 55.0, 20e3
-PERIODS = 40
+PERIODS = 10
 NUMBERS = {"ElasticPlastic": 3, "Dahl": 1}
 
 
@@ -28,10 +28,10 @@ def pulled() -> Callable[..., tuple[float, float]]:
 
 
 def by_small_steps(law: str, sigma: float, V_1: float) -> float:
-    """The velocity [m/s] by the midpoint rule over 4000 steps a period, with the bristle cut at its bound."""
-    h = 1.0 / (4000 * F)
+    """The velocity [m/s] by the midpoint rule over 1000 steps a period, with the bristle cut at its bound."""
+    h = 1.0 / (1000 * F)
     v = delta = 0.0
-    for k in range(PERIODS * 4000):
+    for k in range(PERIODS * 1000):
         swing = V_1 * math.cos(2 * math.pi * F * (k + 0.5) * h)
         half = v + 0.5 * h * (PULL - sigma * delta) / MASS + swing  # at the middle of the step
         rate = half if law == "ElasticPlastic" else half - sigma * abs(half) * delta / F_C
@@ -45,7 +45,7 @@ def by_small_steps(law: str, sigma: float, V_1: float) -> float:
 
 
 @pytest.mark.parametrize("law", ["ElasticPlastic", "Dahl"])
-@pytest.mark.parametrize("sigma", [10e6, 20e6])
+@pytest.mark.parametrize("sigma", [20e6])
 def test_no_period_is_skipped(pulled: Callable[..., tuple[float, float]], law: str, sigma: float) -> None:
     """Events a period apart, at zeros of the velocity, gave BDF 41 % and LSODA 260 % at 1e-3."""
     scene = {"friction.model": NUMBERS[law], "contact.model": 2, "contact.sigma": sigma}

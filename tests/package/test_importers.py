@@ -22,8 +22,7 @@ from frictioncontact.fmu import OUTPUTS, SETTLED, FrictionFmu, simulate
 from frictioncontact.parameters import IDENTIFIED, TABLE_2, start_values
 from workshop.description import read
 from workshop.project import ROOT
-from workshop.reference.solution import periodic_mean
-from workshop.reference.start_values import scene_of
+from workshop.reference import scene_of, settled
 
 
 def test_the_page_names_the_versions_that_are_tested() -> None:
@@ -68,7 +67,7 @@ STEP, STEPS = 5e-4, 10
 @pytest.fixture(scope="module")
 def mean() -> float:
     """F_t_mean [N] at its end, by the independent reference: the bristle has settled long before."""
-    return float(periodic_mean(scene_of(SCENE)))
+    return settled(scene_of(SCENE))[0]
 
 
 def test_the_scene_in_fmpy(fmu_path: Path, mean: float) -> None:

@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
-from workshop.reference import solution as reference
-from workshop.reference.contact import Contact
-from workshop.reference.scene import Scene
+from workshop.reference import scene, settled
 from workshop.regimes.mean import (
     PARAMETERS,
     REGIMES,
@@ -36,9 +34,9 @@ def probe(fmu_path: Path) -> Probe:
 def expected(kappa: float, zeta: float) -> float:
     """By the reference, at a constant stiffness."""
     sigma = kappa * 2.0 * math.pi * FREQUENCY * COULOMB_FORCE / V_1
-    contact = Contact(model="Constant", sigma=sigma)
-    scene = Scene(V=zeta * V_1, V_1=V_1, f=FREQUENCY, F_C=COULOMB_FORCE, contact=contact)
-    return float(reference.periodic_mean(scene)) / COULOMB_FORCE
+    moves = scene(V=zeta * V_1, V_1=V_1, f=FREQUENCY, F_C=COULOMB_FORCE, contact="Constant")
+    moves.contact_sigma = sigma
+    return settled(moves)[0] / COULOMB_FORCE
 
 
 @pytest.mark.parametrize("kappa", [0.1, 1.0, 7.0, 300.0])

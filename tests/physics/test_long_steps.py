@@ -9,7 +9,7 @@ from frictioncontact.fmu import FrictionError, FrictionFmu
 
 F = 20e3  # Hz
 LARGEST = 2.0**46 / F  # s, 3.5e9
-HOURS_TO_DECADES = [1e3, 1e5, 1e7, 1e9, 3e9]
+HOURS_TO_DECADES = [1e3, 1e7, 3e9]
 
 # Table 1, soft; the separation at a phase in (0, 2 pi).
 V, V_1, D, A_D, PHASE_D, SCALE = 0.5, 1.44, 14e-6, 1.1e-6, 0.3, 4.4e-7
@@ -52,30 +52,35 @@ def test_stiffness_at_the_end_has_the_phase_of_the_end(fmu: FrictionFmu, t: floa
     assert (F_t, sigma) == tuple(again)
 
 
-@pytest.mark.parametrize("h", HOURS_TO_DECADES)
-def test_force_is_that_of_a_short_step_to_the_same_phase(fmu: FrictionFmu, h: float) -> None:
-    """Settled long before the end: the last hundred periods decide, from any time with the same phase."""
-    h += 1.3e-5
-    rest = float(angle(0.0, h) / (2 * mp.pi)) / F  # s into a period
-    forces = []
-    for duration in (h, 1000.0 / F + rest):
-        with fmu.session(START) as session:
-            session.step(duration)
-            forces.append(session.get("F_t"))
-    # 1e-11 is asked of the solver; the time of the second step is rounded by 4e-18 s, 5e-13 of a radian.
-    assert forces[0] == pytest.approx(forces[1], abs=55 * 3e-11)
+@pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
+def test_a_run_that_starts_whole_periods_later_gives_the_same_bits(fmu: FrictionFmu, law: str) -> None:
+    """Local time keeps even a late step exact. f is a power of two, h of 2^-36 s: nothing is rounded."""
+    start = START | {
+        "vibration.f": 16384.0,
+        "friction.model": law,
+        "friction.staticRatio": 1.2,
+        "delta_0": 1e-8,
+    }
+    for h in (2.0**-20, 1234567 * 2.0**-36, 0.0625):
+        runs = []
+        for periods in (0, 1, 12345, 2**30):
+            with fmu.session(start, periods / 16384.0) as session:
+                session.set_rates(V=0.1 / h)
+                session.step(h)
+                session.step(h)
+                runs.append(session.read(("F_t", "F_t_mean", "W_f", "Q_f", "delta")).tolist())
+        assert runs.count(runs[0]) == len(runs)
 
 
 LAWS = [
     {"friction.model": "Coulomb"},
-    {"friction.model": "Dahl"},
     {"friction.model": "Dahl", "solver.method": "cvode"},
     {"friction.model": "Dahl", "solver.method": "backwardEuler", "solver.stepSize": 1e300},
 ]
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: "-".join(str(value) for value in law.values()))
-@pytest.mark.parametrize("h", [LARGEST * (1 + 1e-9), 1e12, 9.1e11, 1.1e24, 1e100, 1e300, 1e305, 1.7e308])
+@pytest.mark.parametrize("h", [LARGEST * (1 + 1e-9), 9.1e11, 1e100, 1.7e308])
 def test_a_time_that_tells_no_phase_is_refused(
     fmu: FrictionFmu, h: float, law: dict[str, str | float]
 ) -> None:

@@ -18,8 +18,8 @@ F, V_1 = 20e3, 1e-4
 X = V_1 / (2.0 * pi * F)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
-@pytest.mark.parametrize(("sigma", "F_C"), [(1e6, 1e4), (1e6, 55.0), (1e4, 1e4)])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-9])
+@pytest.mark.parametrize(("sigma", "F_C"), [(1e6, 55.0), (1e4, 1e4)])
 def test_work_and_heat_of_every_period(fmu: FrictionFmu, sigma: float, F_C: float, tolerance: float) -> None:
     start = {
         "V": 0.0,

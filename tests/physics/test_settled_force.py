@@ -1,4 +1,4 @@
-"""F_t_settled, the mean force of a settled period, and its derivatives: against formulas and differences.
+"""F_t_settled, the mean force of a settled period, against formulas and runs that resolve the vibration.
 
 The hunt grades it in every sequence (tests/hunt/test_scenes.py).
 """
@@ -9,11 +9,9 @@ import math
 
 import numpy as np
 import pytest
-from physics.course import scale
 from scipy.integrate import solve_ivp
 
-from frictioncontact.fmu import FrictionFmu, Session, Value
-from workshop.reference.start_values import scene_of
+from frictioncontact.fmu import FrictionFmu, Value
 
 F_C = 55.0
 LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
@@ -22,130 +20,7 @@ VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "vibratio
 SOFT = {"contact.stiffnessScale": 4.4e-7}
 
 
-def drawn(law: str, number: int) -> dict[str, Value]:
-    """The start values of a seeded scene that vibrates."""
-    rng = np.random.default_rng([LAWS.index(law), number])
-
-    def between(low: float, high: float) -> float:
-        return float(low * (high / low) ** rng.random())
-
-    V_1 = between(1e-2, 3.0)
-    scene: dict[str, Value] = {
-        "friction.model": law,
-        "friction.limit": str(rng.choice(["Constant", "Load"])),
-        "contact.input": str(rng.choice(["Separation", "Load"])),
-        "contact.model": str(rng.choice(["Asperities", "Constant", "Mindlin"])),
-        "contact.stiffnessScale": between(1e-8, 1e-1),
-        "contact.sigma": between(1e4, 1e12),
-        "friction.staticRatio": 1.0 if law == "ElasticPlastic" else 1.0 + between(1e-2, 2.0),
-        "friction.V_S": V_1 * between(1e-2, 3.0),
-        "friction.sigma_1": between(1e-2, 10.0),
-        "friction.sigma_2": between(1e-2, 10.0),
-        "vibration.V_1": V_1,
-        "vibration.a_d": float(rng.choice([0.0, between(1e-8, 3e-6)])),
-        "vibration.phase_d": float(rng.uniform(-4.0, 4.0)),
-        "V": V_1 * float(rng.uniform(-2.0, 2.0)),
-        "load": between(1.0, 1e3),
-        "delta_0": between(1e-10, 1e-6),
-    }
-    return scene
-
-
-def scale_of(session: Session, name: str) -> float:
-    """How far the input or parameter moves before the force is another one, within its bounds."""
-    if name in ("V", "vibration.V_1"):
-        return session.get("vibration.V_1")
-    if name == "d":
-        return session.get("contact.R_q") / session.get("contact.lambda")
-    if name == "friction.staticRatio":
-        return session.get(name) - 1.0
-    return 1.0 if "phase" in name else session.get(name)
-
-
-def slope_by_differences(session: Session, name: str, step: float, output: str = "F_t_settled") -> float:
-    """Central difference of order 6."""
-    start, h, total = session.get(name), step * scale_of(session, name), 0.0
-    for k, weight in enumerate((3 / 4, -3 / 20, 1 / 60), start=1):
-        for side in (1, -1):
-            session.set(name, start + side * k * h)
-            total += side * weight * session.get(output) / h
-    session.set(name, start)
-    return total
-
-
-PARAMETERS = (
-    *("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "friction.sigma_1", "friction.sigma_2"),
-    *("contact.sigma", "contact.stiffnessScale"),
-    *("vibration.f", "vibration.V_1", "vibration.a_d", "vibration.phase_d"),
-)
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_derivatives_against_differences(fmu: FrictionFmu, law: str) -> None:
-    """Eight digits where two differences agree: elsewhere they step over a kink."""
-    asked = graded = 0
-    for number in range(12):
-        values = drawn(law, number)
-        scene = scene_of(values)
-        limit = scale(scene, 0.0, 1 / scene.f, 0.0)
-        with fmu.session(values | {"solver.tolerance": 1e-12}) as session:
-            for name in ("V", "E", "load" if scene.input == "Load" else "d", *PARAMETERS):
-                if not scale_of(session, name) > 0.0:
-                    continue  # at its bound
-                coarse, fine = (slope_by_differences(session, name, step) for step in (4e-3, 1e-3))
-                unit = abs(fine) + limit / scale_of(session, name)
-                asked += 1
-                if abs(fine - coarse) < 1e-8 * unit:
-                    graded += 1
-                    error = abs(session.slope("F_t_settled", name) - fine)
-                    assert error < 1e-8 * unit, (number, name, values)
-            assert session.slope("F_t_settled", "d" if scene.input == "Load" else "load") == 0.0
-    assert graded > 0.9 * asked > 100
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_derivatives_in_the_plane(fmu: FrictionFmu, law: str) -> None:
-    """Of the mean across, as along a line."""
-    asked = graded = 0
-    for number in range(4):
-        values = drawn(law, number)
-        V_1 = float(values["vibration.V_1"])
-        values |= {"V_y": 0.3 * V_1, "vibration.V_2": 0.5 * V_1, "vibration.phase_2": 0.7}
-        with fmu.session(values | {"solver.tolerance": 1e-12}) as session:
-            size = math.hypot(session.get("F_t_settled"), session.get("F_y_settled"))
-            for name in ("V", "V_y", *PARAMETERS, "vibration.V_2", "vibration.phase_2"):
-                if not scale_of(session, name) > 0.0:
-                    continue
-                coarse, fine = (slope_by_differences(session, name, h, "F_y_settled") for h in (4e-3, 1e-3))
-                unit = abs(fine) + size / scale_of(session, name)
-                asked += 1
-                if abs(fine - coarse) < 1e-8 * unit:
-                    graded += 1
-                    error = abs(session.slope("F_y_settled", name) - fine)
-                    assert error < 1e-8 * unit, (number, name, values)
-    assert graded > 0.8 * asked > 40
-
-
-@pytest.mark.parametrize("zeta", [-0.9, 0.0, 0.3, 0.999, 1.0 - 1e-6])
-def test_coulomb_is_the_arc_sine(fmu: FrictionFmu, zeta: float) -> None:
-    """(2 / pi) F_C asin(V / V_1) + sigma_2 V, and its derivative."""
-    V_1, sigma_2 = 0.8, 3.0
-    values = {"friction.model": "Coulomb", "V": zeta * V_1, "vibration.V_1": V_1, "friction.sigma_2": sigma_2}
-    with fmu.session(values) as session:
-        mean = 2 / math.pi * F_C * math.asin(zeta) + sigma_2 * zeta * V_1
-        assert session.get("F_t_settled") == pytest.approx(mean, rel=1e-12, abs=1e-12)
-        by_V = 2 / math.pi * F_C / (V_1 * math.sqrt((1 - zeta) * (1 + zeta))) + sigma_2
-        assert session.slope("F_t_settled", "V") == pytest.approx(by_V, rel=1e-7)
-
-
-@pytest.mark.parametrize("zeta", [-1.0, 1.0])
-@pytest.mark.parametrize("V_1", [0.8, 1e-300])
-def test_coulomb_where_V_only_touches_zero(fmu: FrictionFmu, zeta: float, V_1: float) -> None:
-    with fmu.session({"friction.model": "Coulomb", "V": zeta * V_1, "vibration.V_1": V_1}) as session:
-        assert session.get("F_t_settled") == pytest.approx(zeta * F_C, rel=1e-12)
-
-
-@pytest.mark.parametrize("V", [1e-300, -1e-300, 3e-3, -3e-3, 1e15])
+@pytest.mark.parametrize("V", [1e-300, -3e-3, 1e15])
 @pytest.mark.parametrize("law", LAWS)
 def test_without_vibration_it_is_steady_sliding(fmu: FrictionFmu, law: str, V: float) -> None:
     has_curve, excess, V_S = law in ("LuGre", "ElasticPlastic"), 0.4, 0.01
@@ -198,28 +73,6 @@ def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) ->
             assert session.slope("F_t_settled", "V") == pytest.approx(sigma / f / 2, rel=1e-3)
 
 
-def test_it_is_the_same_at_every_time_and_after_every_past(fmu: FrictionFmu) -> None:
-    with fmu.session(VIBRATING | SOFT) as session:
-        first = session.get("F_t_settled")
-        for V in (0.9, -0.2, 0.5):
-            session.set("V", V)
-            session.set_rates(V=300.0, d=1e-3)
-            session.step(1.7e-4)
-            assert session.get("F_t_settled") != first
-        session.set("V", 0.5)
-        session.set("d", 14e-6)
-        assert session.get("F_t_settled") == first
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_long_steps_lead_there(fmu: FrictionFmu, law: str) -> None:
-    values = VIBRATING | SOFT | {"friction.model": law, "friction.limit": "Load", "friction.staticRatio": 1.2}
-    with fmu.session(values) as session:
-        session.step(1000 / 20e3)
-        session.step(1 / 20e3)
-        assert session.get("F_t_settled") == pytest.approx(session.get("F_t_mean"), abs=2e-6 * F_C)
-
-
 def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
     """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
     values: dict[str, Value] = {
@@ -266,7 +119,7 @@ def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, perio
 
 @pytest.mark.parametrize(
     ("mass", "sigma", "periods", "least", "most"),
-    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 1000, 7.0, 9.0)],
+    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 700, 7.0, 9.0)],
 )
 def test_a_mass_follows_it_but_for_ripple_and_transient(
     fmu: FrictionFmu, mass: float, sigma: float, periods: int, least: float, most: float
@@ -285,22 +138,6 @@ def test_a_mass_follows_it_but_for_ripple_and_transient(
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
     assert least * ripple < error < most * ripple
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [
-        {"contact.input": "Load", "load": 0.0, "friction.limit": "Load"},
-        {"contact.input": "Load", "load": -3.0, "friction.limit": "Load", "vibration.V_1": 0.3},
-        {"d": 1e-2, "friction.limit": "Load", "vibration.V_1": 0.3},
-    ],
-)
-def test_an_open_contact_has_derivatives(fmu: FrictionFmu, scene: dict[str, Value]) -> None:
-    """Of sigma_2 V alone."""
-    with fmu.session(scene | {"V": 0.1, "friction.sigma_2": 7.0}) as session:
-        assert session.get("F_t_settled") == pytest.approx(0.7)
-        slopes = {name: session.slope("F_t_settled", name) for name in ("V", "V_y", "d", "E", "load")}
-    assert slopes == pytest.approx({"V": 7.0, "V_y": 0.0, "d": 0.0, "E": 0.0, "load": 0.0})
 
 
 def test_a_load_that_does_not_count_has_a_derivative_of_0(fmu: FrictionFmu) -> None:

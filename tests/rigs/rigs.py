@@ -7,22 +7,18 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from scipy import stats
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "hunt"))
-from hunt_library import after, scene, settled, step
-
 import frictioncontact as fc
+from workshop.reference import after, scene, settled, step
 
 LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
 FAULTS = ("none", "offset", "drift", "delay", "gain", "flipped sign", "wrong law", "peak to peak")

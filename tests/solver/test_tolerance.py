@@ -12,31 +12,23 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hunt.hunt_library import CHOICES, Scene, rest, scene, start_values, step
 
 from frictioncontact.fmu import FrictionFmu
+from workshop.reference import CHOICES, INPUTS, Scene, rest, scene, start_values, step
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 ROUNDING = 1e-11
 F = 20e3  # Hz
-OF_FMU = {
-    "F_t": "F_t",
-    "F_y": "F_y",
-    "F_t_mean": "F_t_mean",
-    "F_y_mean": "F_y_mean",
-    "work": "W_f",
-    "heat": "Q_f",
-}
-RATES = ("V", "d", "E", "load", "V_y")
+GRADED = ("F_t", "F_y", "F_t_mean", "F_y_mean", "W_f", "Q_f")
 Results = dict[str, float]
 
 
 def results(fmu: FrictionFmu, now: Scene, tolerance: float) -> Results:
     with fmu.session(start_values(now) | {"solver.tolerance": tolerance}, now.start) as session:
-        session.set_rates(**{name: getattr(now, f"{name}_rate") for name in RATES})
+        session.set_rates(**{name: getattr(now, f"{name}_rate") for name in INPUTS})
         session.step(now.h)
-        found = {name: session.get(variable) for name, variable in OF_FMU.items()}
-        return found | {"evaluations": session.get("solver.evaluations")}
+        names = (*GRADED, "solver.evaluations")
+        return dict(zip(names, session.read(names), strict=True))
 
 
 def error(now: Scene, found: Results, truth: Any) -> float:
@@ -46,9 +38,9 @@ def error(now: Scene, found: Results, truth: Any) -> float:
     of_energy = truth.S * (truth.path + moved)
     rounding = (1e-13 + 20 * np.finfo(float).eps * now.h * now.f) * size * truth.S
     errors = []
-    for name in OF_FMU:
+    for name in GRADED:
         apart = abs(found[name] - getattr(truth, name))
-        is_energy = name in ("work", "heat")
+        is_energy = name in ("W_f", "Q_f")
         errors.append(max(0.0, apart - rounding) / of_energy if is_energy else apart / truth.S)
     return max(errors)
 
@@ -66,11 +58,11 @@ def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
         limit=limit,
         contact=contact,
         V_1=V_1,
-        V=rng.choice((V_1 * rng.uniform(-2, 2), nearly)),
+        V=rng.choice((V_1 * rng.uniform(-2, 2), nearly, rng.choice((0.0, 1e-300, -1e-9)))),
         f=f,
         h=rng.uniform(0.02, 2.5) / f,
         start=rng.random() / f,
-        a_d=rng.choice((0.0, 10 ** rng.uniform(-8, -6))),
+        a_d=rng.choice((0.0, 1e-300, 1e-18, 10 ** rng.uniform(-8, -6))),
         phase_d=rng.uniform(-3, 3),
         F_C=10 ** rng.uniform(0, 2),
     )
@@ -100,7 +92,7 @@ def drawn(rng: random.Random, law: str, limit: str, planar: bool) -> Scene:
 def test_sweep(fmu: FrictionFmu, law: str, limit: str, planar: bool) -> None:
     rng = random.Random(f"{law} {limit} {planar}")
     missed = []
-    for _ in range(60):
+    for _ in range(40):
         now = drawn(rng, law, limit, planar)
         truth = step(now)
         for tolerance in TOLERANCES:
@@ -112,10 +104,10 @@ def test_sweep(fmu: FrictionFmu, law: str, limit: str, planar: bool) -> None:
 
 # ---- where V nearly touches 0 ----
 
-AWAY = (0.06, 0.02, 1e-2, 1e-3, 1e-4)  # 1 - |V / V_1|
-PHASES = (0.0, 0.13, 0.5, 0.77)  # of the step's start, in periods
-ANGLES = (0.0, 0.3, math.pi / 2, 2.0, math.pi, 4.1)  # of the sliding in the plane
-ACROSS = (0.0, 1e-12, 1e-9)  # m/s
+AWAY = (0.02, 1e-3, 1e-8, -1e-8, -1e-2)  # 1 - |V / V_1|
+PHASES = (0.0, 0.13, 0.5 + 1e-9)  # of the step's start, in periods
+ANGLES = (0.0, 0.3, math.pi / 2, 4.1)  # of the sliding in the plane
+ACROSS = (0.0, 1e-9)  # m/s
 
 
 def near_zero(law: str, V: float, phase: float) -> Scene:
@@ -169,7 +161,7 @@ def test_a_near_zero_of_any_direction(fmu: FrictionFmu, law: str, side: int) -> 
 def test_velocities_near_the_amplitude(fmu: FrictionFmu, law: str, planar: bool) -> None:
     """|V| = (1 +- 1e-1 .. 1e-12) V_1: two reversals that come near to each other, touch, and are a dip."""
     missed = []
-    for k, stiffness in ((k, sigma) for k in range(1, 13) for sigma in (1e4, 1e7, 1e10)):
+    for k, stiffness in ((k, sigma) for k in range(1, 13, 2) for sigma in (1e4, 1e7, 1e10)):
         for V in (side * (1 + way * 10.0**-k) for side in (-1, 1) for way in (-1, 1)):
             now = near_zero(law, V, 0.1 + 0.07 * k)
             now.contact_sigma, now.h = stiffness, 0.93 / F
@@ -196,7 +188,7 @@ def test_order(fmu: FrictionFmu, kappa: float, V: float) -> None:
         truth = step(now)
         for k, tolerance in enumerate(TOLERANCES):
             found = results(fmu, now, tolerance)
-            evaluations[k] += found["evaluations"]
+            evaluations[k] += found["solver.evaluations"]
             errors[k] += abs(found["F_t_mean"] - truth.F_t_mean) / truth.S
     order = -np.polyfit(np.log(evaluations), np.log(errors), 1)[0]
     assert order > 14

@@ -1,18 +1,14 @@
 """The scenes of the benchmarks, and what is right in each: the reference at every communication point."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
 from workshop.bench.driver import Job
-from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP
-from workshop.reference.coulomb import mean_limit
-from workshop.reference.scene import Scene
-from workshop.reference.start_values import scene_of
+from workshop.reference import Scene, changed, follow, scene_of, step
 
 SIGMAS = (6e4, 6e6, 6e8, 6e10, 6e12)  # N/m at 14 um
 # No whole number of periods, so that what cancels over a period, and luck at one phase, do not count.
@@ -38,34 +34,25 @@ class Case:
 
     def scene_at(self, k: int, start: float) -> Scene:
         """The scene of step k, its inputs counted from the step's own start."""
-        scene = scene_of(self.start_values)
-        if not self.inputs:
-            return scene
+        scene = changed(scene_of(self.start_values), start=start + k * self.step, h=self.step)
         now = {name: float(samples[k]) for name, samples in self.inputs.items()}
         rates = {}
         if self.linear:
             rates = {f"{name}_rate": float(v[k + 1] - v[k]) / self.step for name, v in self.inputs.items()}
-        return replace(scene, **now, **rates, start=MP.mpf(start) + k * MP.mpf(self.step))
+        return changed(scene, **now, **rates)
 
     @property
     def F_C(self) -> float:
         """What errors are over [N]: F_C, or mu times the mean of F_n over a period at the start."""
         scene = scene_of(self.start_values)
-        return scene.F_C if scene.limit == "Constant" else float(mean_limit(scene, 0, scene.period))
+        forward = changed(scene, law="Coulomb", V=1.0, V_1=0.0, sigma_2=0.0, h=1.0 / scene.f)
+        return float(step(forward).F_t_mean)
 
 
 def expected(case: Case, start: float) -> tuple[np.ndarray, np.ndarray]:
     """F_t at the end of each step and its mean over the step [N]."""
-    delta, H = 0, MP.mpf(case.step)
-    whole = (H * scene_of(case.start_values).f) % 1 < 1e-9 and not case.inputs
-    F, F_mean = [], []
-    for k in range(case.count):
-        begin = MP.mpf(start) + (0 if whole else k) * H  # every whole period is the same map
-        scene = case.scene_at(k, start)
-        delta, impulse, _ = reference.solve(scene, begin, begin + H, delta)
-        F.append(float(reference.force(scene, begin + H, delta)))
-        F_mean.append(float(impulse) / case.step)
-    return np.array(F), np.array(F_mean)
+    steps = follow(case.scene_at(k, start) for k in range(case.count))
+    return np.array([each.F_t for each in steps]), np.array([each.F_t_mean for each in steps])
 
 
 def vibrating(sigma: float) -> Case:

@@ -24,11 +24,7 @@ from workshop.bench.cases import Case, sampled, vibrating
 from workshop.bench.coupling import Belt, monolithic
 from workshop.bench.driver import REPORT
 from workshop.build import build_fmu
-from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP
-from workshop.reference.scene import Scene
-from workshop.reference.settled import settled
-from workshop.reference.start_values import scene_of
+from workshop.reference import Scene, changed, follow, rest, scene_of, settled_deflection
 
 
 @dataclass(frozen=True)
@@ -37,7 +33,7 @@ class Run:
 
     start: float
     delta_0: float
-    steps: list[tuple[float, Scene]]  # duration [s], and the scene in it
+    steps: list[Scene]
     right: list[tuple[float, float]]
 
 
@@ -51,19 +47,17 @@ def runs_of(case: Case, phases: tuple[float, ...]) -> list[Run]:
     return [
         _run(case, start, delta)
         for start in starts
-        for delta in (0.0, float(settled(scene, MP.mpf(start), 0).delta))
+        for delta in (0.0, settled_deflection(changed(scene, start=start)))
     ]
 
 
 def _run(case: Case, start: float, delta_0: float) -> Run:
     ratios = [1.0] * case.count if case.inputs else STEPS
-    steps = [(ratio * case.step, case.scene_at(k, start)) for k, ratio in enumerate(ratios)]
-    now, delta, right = MP.mpf(start), MP.mpf(delta_0), []
-    for h, scene in steps:
-        delta, impulse = reference.advance(scene, now, h, delta)[:2]
-        now += MP.mpf(h)
-        right.append((float(reference.force(scene, now, delta)), float(impulse) / h))
-    return Run(start, delta_0, steps, right)
+    steps = [
+        changed(case.scene_at(k, start), h=ratio * case.step, delta_0=delta_0)
+        for k, ratio in enumerate(ratios)
+    ]
+    return Run(start, delta_0, steps, [(found.F_t, found.F_t_mean) for found in follow(steps)])
 
 
 def largest_errors(
@@ -75,20 +69,19 @@ def largest_errors(
     for run in runs:
         values = {**case.start_values, "delta_0": run.delta_0, **settings, **first}
         with fmu.session(values, run.start) as session:
-            for (h, scene), right in zip(run.steps, run.right, strict=True):
+            for scene, right in zip(run.steps, run.right, strict=True):
                 for name in case.inputs:
                     session.set(name, getattr(scene, name))
                 if case.linear and case.inputs:
                     session.set_rates(**{name: getattr(scene, f"{name}_rate") for name in case.inputs})
-                session.step(h)
+                session.step(scene.h)
                 errors = np.maximum(errors, np.abs(session.read(("F_t", "F_t_mean")) - right))
     return errors
 
 
 def simpler(case: Case) -> dict[str, dict[str, Value]]:
     """Start values of the simpler levels, by the headings of their columns."""
-    still = replace(scene_of(case.start_values), a_d=0.0)
-    sigma = float(reference.sigma(still, 0))
+    _, sigma = rest(scene_of(case.start_values))
     return {
         "Coulomb": {"friction.model": "Coulomb"},
         "ElasticPlastic": {"friction.model": "ElasticPlastic"},

@@ -14,8 +14,7 @@ from scipy.integrate import solve_ivp
 
 from workshop.bench.cases import Case
 from workshop.bench.driver import Bench, Outcome, failed
-from workshop.reference.contact import stiffness
-from workshop.reference.start_values import scene_of
+from workshop.reference import CHOICES, rest, scene_of
 
 PLAIN_PROGRAMS = {
     "Radau 5": "plain_radau_5",
@@ -28,15 +27,14 @@ PLAIN_PROGRAMS = {
 def plain_values(case: Case, tolerance: float) -> dict[str, float]:
     """The equation's few numbers, under the names of bench.PLAIN."""
     scene = scene_of(case.start_values)
-    contact = scene.contact
-    asperities = contact.model != "Constant"
+    asperities = scene.contact != 1 + CHOICES["contact"].index("Constant")
     return {
         "V": scene.V,
         "d": scene.d,
         "F_C": scene.F_C,
-        "sigma": float(stiffness(contact, scene.d, scene.E)),
+        "sigma": rest(scene)[1],
         "d_ref": scene.d,
-        "decay": contact.lambda_ / contact.R_q if asperities else 0.0,
+        "decay": getattr(scene, "lambda") / scene.R_q if asperities else 0.0,
         "f": scene.f,
         "V_1": scene.V_1,
         "a_d": scene.a_d,

@@ -25,11 +25,9 @@ from rich.progress import Progress
 from frictioncontact.command import progress_bar
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import Value
-from workshop.bench.cases import Case, cases
+from workshop.bench.cases import cases, expected
 from workshop.bench.driver import Bench, open_bench
 from workshop.project import ROOT
-from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP
 
 TUNING = Path("solver") / "tuning.h"
 CONSTANT = re.compile(r"static const double (FC_\w+) = ([0-9.e-]+);")
@@ -71,18 +69,6 @@ def built(folder: Path, changed: Mapping[str, float]) -> Path:
     return library
 
 
-def right(case: Case, start: float) -> tuple[np.ndarray, np.ndarray]:
-    """F_t at the end of each step and its mean over the step [N], of any law."""
-    H, delta, slips, F, mean = MP.mpf(case.step), 0, 0, [], []
-    for k in range(case.count):
-        begin, scene = MP.mpf(start) + k * H, case.scene_at(k, start)
-        step = reference.advance(scene, begin, H, delta, slips=slips)
-        delta, slips = step.delta, step.slips
-        F.append(float(reference.force(scene, begin + H, delta, slips)))
-        mean.append(float(step.impulse) / case.step)
-    return np.array(F), np.array(mean)
-
-
 class Scenes:
     """The scenes with what is right in them."""
 
@@ -96,7 +82,7 @@ class Scenes:
         self.right = []
         for case in of:
             start = case.starts[-1]  # not at a whole phase
-            self.right.append((case, start, *right(case, start)))
+            self.right.append((case, start, *expected(case, start)))
             progress.advance(task)
 
     def take(self, bench: Bench) -> tuple[np.ndarray, float, str]:

@@ -2,10 +2,10 @@
 
     python -m workshop.related.results
 
-Takes a minute. The reference solves Eq. 1-4, 12-14, 20-22 and 24 by itself, in extended precision: no number
-is the FMU's.
+The reference solves Eq. 1-4, 12-14, 20-22 and 24 by itself, in extended precision: no number is the FMU's.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,11 +15,7 @@ from lxml import etree
 from frictioncontact.command import write_csv
 from workshop.presets import presets
 from workshop.project import ROOT
-from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP, MULTIPRECISION, multiprecision
-from workshop.reference.contact import area
-from workshop.reference.scene import Drive
-from workshop.reference.start_values import scene_of
+from workshop.reference import changed, follow, rest, scene_of, settled_deflection
 
 FOLDER = ROOT / "data" / "related"
 COLUMNS = ("time", "F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
@@ -55,22 +51,20 @@ def experiments() -> list[Experiment]:
 
 def rows(experiment: Experiment) -> Iterator[dict[str, float]]:
     """A row for each communication point, in the order and units of COLUMNS."""
-    scene = scene_of(experiment.values)
-    count = round(experiment.stop / experiment.step)
+    scene = changed(scene_of(experiment.values), h=experiment.step)
+    steps = follow([scene] * round(experiment.stop / experiment.step))
     settled = experiment.values.get("initialState") == "Settled"
-    delta, work = multiprecision(reference.periodic_deflection(scene) if settled else 0), MP.mpf(0)
-    for k in range(count + 1):
+    F_t = mean = steps[0].F_t_start
+    work, delta = 0.0, settled_deflection(scene) if settled else scene.delta_0
+    for k, found in enumerate([None, *steps]):
+        if found:
+            F_t, mean, work, delta = found.F_t, found.F_t_mean, work + found.W_f, found.delta
         t = experiment.step * k
-        mean = reference.force(scene, 0, delta)
-        if k:
-            before = experiment.step * (k - 1)
-            delta, impulse, step_work = map(multiprecision, reference.solve(scene, before, t, delta))
-            mean, work = impulse / (MP.mpf(t) - MP.mpf(before)), work + step_work
-        drive = Drive(scene, t, MULTIPRECISION)
-        force = reference.force(scene, t, delta)
-        A_r = area(scene.contact, drive.d(MP.mpf(0)), drive.E(MP.mpf(0)))
-        values = (t, force, mean, work, reference.sigma(scene, t), A_r, delta)
-        yield dict(zip(COLUMNS, map(float, values), strict=True))
+        d = scene.d + scene.a_d * math.cos(2.0 * math.pi * math.fmod(scene.f * t, 1.0) + scene.phase_d)
+        _, sigma = rest(changed(scene, d=d, a_d=0.0))
+        A_r = math.sqrt(sigma * d**3 / (scene.stiffnessScale * scene.E))  # Eq. 3
+        values = (t, F_t, mean, work, sigma, A_r, delta)
+        yield dict(zip(COLUMNS, values, strict=True))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,13 @@
-"""The reference of hunt/ by ctypes: scenes by name, steps and settled forces."""
+"""hunt/reference.c by ctypes: what is right, by brute force in extended precision, with no line of the FMU.
+
+A scene is a state of inputs and parameters over one communication step. tests/physics/test_closed_forms.py
+compares the results with closed forms.
+"""
 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -18,8 +23,10 @@ CHOICES = {
     "input": ("Separation", "Load"),
     "initial": ("Given", "Settled"),
 }
-RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start work heat slips
+RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start W_f Q_f slips
     delta delta_y S path""".split()
+INPUTS = ("V", "d", "E", "load", "V_y")
+LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 # Of the FMU, where its name is not the reference's.
 FMU_NAMES = {
     **{name: f"vibration.{name}" for name in ("f", "V_1", "a_d", "phase_d", "V_2", "phase_2")},
@@ -28,9 +35,10 @@ FMU_NAMES = {
     "contact_sigma": "contact.sigma",
     "law": "friction.model",
     "contact": "contact.model",
+    "initial": "initialState",
 }
-NO_START_VALUES = ("start", "h", "initial", "slips")
-LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
+NAMES = {FMU_NAMES.get(name, name): name for name in (*NUMBERS, *CHOICES)}
+NO_START_VALUES = ("start", "h", "initial", "slips", *(f"{name}_rate" for name in INPUTS))
 
 
 class Scene(ctypes.Structure):
@@ -38,6 +46,10 @@ class Scene(ctypes.Structure):
         *((name, ctypes.c_double) for name in NUMBERS),
         *((name, ctypes.c_int) for name in (*CHOICES, "slips")),
     ]
+
+    @property
+    def vibrates(self) -> bool:
+        return any((self.V_1, self.V_2, self.a_d))
 
 
 class Step(ctypes.Structure):
@@ -58,16 +70,26 @@ def library() -> Any:
 
 
 def scene(**values: Any) -> Scene:
-    made = library().start_values()
+    """By the reference's names; what is not named has the FMU's start."""
+    return changed(library().start_values(), **values)
+
+
+def changed(of: Scene, **values: Any) -> Scene:
+    made = Scene.from_buffer_copy(of)
     for name, value in values.items():
-        setattr(made, name, 1 + CHOICES[name].index(value) if name in CHOICES else value)
+        setattr(made, name, 1 + CHOICES[name].index(value) if isinstance(value, str) else value)
     return made
+
+
+def scene_of(start_values: Mapping[str, Any]) -> Scene:
+    """By the FMU's names. Those of the solver tell nothing."""
+    return scene(**{NAMES[n]: v for n, v in start_values.items() if not n.startswith("solver.")})
 
 
 def start_values(of: Scene) -> dict[str, Any]:
     """Of the FMU, but for the rates of its inputs."""
-    names = [n for n, _ in Scene._fields_ if n not in NO_START_VALUES and not n.endswith("_rate")]
-    return {FMU_NAMES.get(name, name): getattr(of, name) for name in names}
+    values = {fmu: getattr(of, name) for fmu, name in NAMES.items() if name not in NO_START_VALUES}
+    return {n: CHOICES[NAMES[n]][v - 1] if NAMES[n] in CHOICES else v for n, v in values.items()}
 
 
 def rest(now: Scene) -> tuple[float, float]:
@@ -77,6 +99,7 @@ def rest(now: Scene) -> tuple[float, float]:
 
 
 def step(now: Scene, before: Scene | None = None, fineness: int = 1) -> Any:
+    """before: what the last step has left; None at the very start."""
     result = Step()
     past = ctypes.byref(before) if before is not None else None
     library().reference_step(past, ctypes.byref(now), fineness, ctypes.byref(result))
@@ -91,16 +114,29 @@ def settled(now: Scene) -> tuple[float, float]:
     return force[0], force[1]
 
 
+def settled_deflection(now: Scene) -> float:
+    """m, at the start: that of a step over no time."""
+    return step(changed(now, initial="Settled", h=1e-30)).delta
+
+
 def after(before: Scene, result: Any, **values: Any) -> tuple[Scene, Scene]:
     """What the step left, and the scene of the next one."""
-    left = Scene.from_buffer_copy(before)
-    left.start += before.h
-    for name in ("V", "d", "E", "load", "V_y"):
+    left = changed(before, start=before.start + before.h, slips=int(result.slips), initial="Given")
+    for name in INPUTS:
         setattr(left, name, getattr(before, name) + getattr(before, f"{name}_rate") * before.h)
         setattr(left, f"{name}_rate", 0.0)
     left.delta_0, left.delta_y_0 = result.delta, result.delta_y
-    left.slips, left.initial = int(result.slips), 1
-    now = Scene.from_buffer_copy(left)
-    for name, value in values.items():
-        setattr(now, name, value)
-    return left, now
+    return left, changed(left, **values)
+
+
+def follow(scenes: Iterable[Scene]) -> list[Any]:
+    """Step after step: the first scene says the start and the deflection. Inputs and parameters may jump."""
+    found: list[Any] = []
+    left = None
+    for now in scenes:
+        if left is not None:
+            carried = ("start", "delta_0", "delta_y_0", "slips", "initial")
+            now = changed(now, **{name: getattr(left, name) for name in carried})
+        found.append(step(now, left))
+        left, _ = after(now, found[-1])
+    return found
