@@ -34,7 +34,6 @@
 // A Stribeck curve falls from its peak within some V_S. In a step V moves by at most half of |V|, so that
 // steps approach the peak geometrically, and on the peak by this part of V_S.
 #define STRIBECK_STEP 0.25
-#define MOST_PERIODS 1e5 // of the vibration in one communication step: minutes of computing
 
 // The states: the deflection, and the integrals of FcStepResult.
 enum { DELTA, DELTA_Y, IMPULSE, IMPULSE_Y, WORK, HEAT, DRAG, STATES };
@@ -60,6 +59,9 @@ struct FcCvode {
     double evaluations; // of the motion
     char reason[160];   // CVODE's last error message
 };
+
+// The largest number of evaluations in a communication step, a second of computing: each makes a scene.
+static const double MOST_EVALUATIONS = 2e5;
 
 static FcScene scene_at(const FcCvode* solver, double tau) {
     return fc_scene_from(solver->scene, solver->start + tau);
@@ -233,7 +235,13 @@ static double integrate_regime(FcCvode* solver, double duration) {
         const double step = stribeck_step(solver->scene, solver->start + tau);
         CVodeSetStopTime(cvode, fc_least(tau + step, duration));
         flag = CVode(cvode, duration, solver->y, &tau, CV_ONE_STEP);
-        if (flag < 0 || solver->evaluations > FC_MOST_EVALUATIONS) {
+        if (flag >= 0 && solver->evaluations > MOST_EVALUATIONS) {
+            snprintf(solver->reason, sizeof solver->reason,
+                     "it needs more than %.0e evaluations; use smaller steps or collocation",
+                     MOST_EVALUATIONS);
+            flag = CV_TOO_MUCH_WORK;
+        }
+        if (flag < 0) {
             return NAN;
         }
     }
@@ -243,14 +251,6 @@ static double integrate_regime(FcCvode* solver, double duration) {
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message) {
     assert(solver && h >= 0.0 && options->tolerance > 0.0);
-    const double periods = periods_of(&scene->drive, h);
-    if (!(periods <= MOST_PERIODS)) {
-        return fc_message_set(
-            message,
-            "solver.method = cvode: the communication step of %.5g s holds %.5g periods of the "
-            "vibration; at most %.0e are allowed; use smaller steps or collocation",
-            h, periods, MOST_PERIODS);
-    }
     FcFriction friction = *scene->friction; // the damping is not a part of the result
     friction.sigma_1 = friction.sigma_2 = 0.0;
     FcScene undamped = *scene;

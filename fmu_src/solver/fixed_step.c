@@ -15,7 +15,7 @@
 
 // The largest number of steps in a communication step, like FC_MOST_EVALUATIONS (solver.h): more would seem
 // to hang.
-#define MOST_FIXED_STEPS 1e8
+#define MOST_FIXED_STEPS 5e6
 
 // The part of a step that makes no further step, since hosts round their steps. Half of it does for hosts
 // that round more coarsely; twice of it stretches the steps by as much more.
@@ -75,8 +75,9 @@ static Integrals rk4(Integrals y, double h, const FcCoefficients* start, const F
 // The largest sigma |V| / g over [0, h] [1/s], sampled.
 static double largest_rate(const FcScene* scene, double h) {
     const FcDrive* drive = &scene->drive;
-    const double f = fc_drive_vibrates(drive) ? drive->vibration.f : 0.0;
-    const double span = fc_drive_is_linear(drive) ? h : fc_least(h, 1.0 / f);
+    const bool vibrates = fc_drive_vibrates(drive);
+    const double f = vibrates ? drive->vibration.f : 0.0;
+    const double span = fc_drive_is_linear(drive) || !vibrates ? h : fc_least(h, 1.0 / f);
     const double samples = fc_least(ceil(SAMPLES_PER_PERIOD * fc_most(1.0, span * f)), MOST_RATE_SAMPLES);
     double largest = 0.0;
     for (double i = 0.0; i <= samples; i += 1.0) {
