@@ -20,7 +20,7 @@ from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
 from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
-from workshop.fmu_docs import directions, laws, march
+from workshop.fmu_docs import diagrams, directions, laws, march
 from workshop.fmu_docs.tutorial import PAGES, blocks
 from workshop.project import ROOT
 
@@ -176,6 +176,9 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "table2": partial(table2_figure.draw, fmu, list(table2.results(fmu))),
         "overview": partial(overview, fmu),
         "fmpy_example": partial(fmpy_example, fmu),
+        "output-choice": diagrams.draw_choice,
+        "promise-domain": diagrams.draw_domain,
+        "levels": partial(diagrams.draw_levels, fmu),
         "step_sizes": partial(step_sizes, fmu),
         "physics-open-contact": partial(laws.open_contact, fmu),
         "physics-static-friction": partial(laws.static_friction, fmu),
