@@ -15,25 +15,25 @@ from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, STIFFNESS_PRINT
 # ---- which output to connect ----
 
 QUESTION, ANSWER = ("#fdf1e3", style.ORANGE), ("#eaf3fa", style.BLUE)
-WIDTH, HEIGHT = 0.52, 0.13  # of a box
+WIDTH, HEIGHT = 0.56, 0.14  # of a box
 QUESTIONS = (  # what is asked; the answer that ends the way, and the output it leads to
-    ("Does the contact vibrate?\n(vibration.V_1, V_2 or a_d above 0)", "no", "F_t\nat any step"),
-    ("Does your machine feel\nthe force within a period?", "yes", "F_t\nsteps up to T/20"),
-    ("Can your mass stick, or does\nyour tool exchange values?", "no", "F_t_settled\nfc.friction_law"),
+    ("Does the contact\nvibrate?", "no", "F_t\nat any step"),
+    ("Does your machine feel\nthe force within a period?", "yes", "F_t\nup to T/20"),
+    ("Can your mass stick, or does\nyour tool exchange values?", "no", "F_t_settled\nat any step"),
 )
-LAST = "F_t_mean\nsteps of whole periods T = 1/f"
+LAST = "F_t_mean\nsteps of whole periods T"
 
 
 def draw_choice(path: Path) -> None:
     """Questions down the left, outputs on the right."""
-    figure, axes = style.subplots(size=(5.6, 5.6))
-    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    figure, axes = style.subplots(size=(4.4, 4.8))
+    axes.set(xlim=(-0.01, 1.01), ylim=(0.0, 1.0))
     axes.axis("off")
     for k, (question, ends, output) in enumerate(QUESTIONS):
         y = 0.91 - 0.27 * k
         _box(axes, 0.28, y, WIDTH, question, QUESTION)
-        _box(axes, 0.84, y, 0.3, output, ANSWER, bold=True)
-        _arrow(axes, (0.54, y), (0.69, y), ends, (0.615, y + 0.03))
+        _box(axes, 0.86, y, 0.28, output, ANSWER, bold=True)
+        _arrow(axes, (0.56, y), (0.72, y), ends, (0.64, y + 0.03))
         _arrow(axes, (0.28, y - HEIGHT / 2), (0.28, y - 0.27 + HEIGHT / 2), _other(ends), (0.32, y - 0.135))
     _box(axes, 0.28, 0.1, WIDTH, LAST, ANSWER, bold=True)
     style.save(figure, path)
@@ -71,15 +71,15 @@ DOMAIN = (  # the quantity, from, to; what happens below and above
     ("static ratio R", 1.0, 3.0, None, FREE),
     ("V_S / v", 1e-3, 10.0, FREE, FREE),
     ("σ₁ v / g", None, 1.0, None, FREE),
-    ("force at the start / g", None, 100.0, None, FREE),
-    ("E, largest / least in a step", 1.0, 10.0, None, REFUSED),
+    ("start force / g", None, 100.0, None, FREE),
+    ("E max / E min", 1.0, 10.0, None, REFUSED),
 )
 ENDS = (1e-11, 1e11)
 
 
 def draw_domain(path: Path) -> None:
     """Each quantity as a bar on one logarithmic axis."""
-    figure, axes = style.subplots(size=(5.6, 4.6))
+    figure, axes = style.subplots(size=(4.6, 4.6))
     for k, (_, low, high, below, above) in enumerate(DOMAIN):
         y = len(DOMAIN) - k
         left, right = low or ENDS[0], high
@@ -121,7 +121,7 @@ LEVELS: dict[str, dict[str, Value]] = {
 
 
 def level_errors(fmu: FrictionFmu, kappas: np.ndarray, alpha: float) -> dict[str, np.ndarray]:
-    """Largest error of the settled mean over all phases, over F_C, of each level against Dahl on asperities."""
+    """Largest error of the settled mean over F_C, at any phase, of each level against Dahl on asperities."""
     sigma = kappas * 2.0 * math.pi * FREQUENCY * COULOMB_FORCE / V_1
     full = {
         "V": ZETA * V_1,

@@ -103,10 +103,10 @@ def regimes(probe: Probe, quick: bool) -> Figure:
         items += [] if alpha else [_dry_rows()]
         panels.append(Panel(words, KAPPA, ZETA, items, True, True))
     caption = (
-        "The simplest simplification of Dahl's law whose mean is within 1 % of F_C of Dahl's at every phase of "
-        "the separation. Where the mean may be negative, some phase drives the sliding. Marked: row 3 of "
-        "Table 2 at the printed parameters (κ = 1.2e6, ζ = 0.0035) and as identified (κ = 0.53, ζ = 0.35), and "
-        "the dry rows of Luo 2024, of which Dahl's law itself gives 1/110 to 1/4."
+        "The simplest simplification of Dahl's law whose mean is within 1 % of F_C of Dahl's at every phase "
+        "of the separation. Where the mean may be negative, some phase drives the sliding. Marked: row 3 of "
+        "Table 2 at the printed parameters (κ = 1.2e6, ζ = 0.0035) and as identified (κ = 0.53, ζ = 0.35), "
+        "and the dry rows of Luo 2024, of which Dahl's law itself gives 1/110 to 1/4."
     )
     title = "Dahl's law: which simplification is within 1 % of F_C"
     return Figure("regimes", title, caption, panels, 3, (15.0, 5.6))
