@@ -64,20 +64,6 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Span:
-    """A horizontal band over the whole width."""
-
-    low: float
-    high: float
-    label: str
-    colour: str
-
-    def draw(self, axes: Axes) -> list[Artist]:
-        band = axes.axhspan(self.low, self.high, color=self.colour, alpha=0.15, lw=0, label=text(self.label))
-        return [band]
-
-
-@dataclass(frozen=True)
 class Map:
     """Values over x (columns) and y (rows), from low to high, with contour lines."""
 
@@ -124,7 +110,7 @@ class Panel:
     title: str
     x_label: str
     y_label: str
-    items: Sequence[Line | Level | Span | Map | Classes]
+    items: Sequence[Line | Level | Map | Classes]
     x_log: bool = False
     y_log: bool = False
     x_range: tuple[float, float] | None = None

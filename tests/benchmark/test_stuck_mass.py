@@ -1,4 +1,4 @@
-"""A mass and a stuck contact that exchange values: the edges of stability that docs/tools.md promises.
+"""A mass and a stuck contact that exchange values: the edges of stability that docs/machine.md promises.
 
 They are measured with the FMU in a master written here, and held against eigenvalues where it is one's turn.
 """
@@ -30,8 +30,8 @@ from workshop.project import ROOT
 M, SIGMA = 1.0, 1e6
 TIME = math.sqrt(M / SIGMA)
 COUNT = 600  # steps
-GUIDE = (ROOT / "docs" / "tools.md").read_text(encoding="utf-8")
-TITLES = {  # of the rows in docs/tools.md
+GUIDE = (ROOT / "docs" / "machine.md").read_text(encoding="utf-8")
+TITLES = {  # of the rows in docs/machine.md
     JACOBI: "Jacobi, held values",
     REREAD: "Jacobi that reads",
     LINEAR: "Jacobi with input and output derivatives",
@@ -114,7 +114,7 @@ def test_the_fmu_turns_unstable_at_the_edges_of_the_table(
 @pytest.mark.parametrize("fraction", [0.3, 0.7])
 @pytest.mark.parametrize("master", [JACOBI, GAUSS_SEIDEL])
 def test_the_edges_of_the_mean_force(fmu: FrictionFmu, master: str, fraction: float) -> None:
-    """They lie H sigma / 2 higher, as docs/tools.md and the advice say."""
+    """They lie H sigma / 2 higher, as docs/machine.md and the advice say."""
     H = fraction * LARGEST_STEP[master] * TIME
     low, high = (edge + H * SIGMA / 2 for edge in promised(master, H))
     assert grows(fmu, master, H, 1.03 * high, output="F_t_mean")

@@ -12,7 +12,15 @@ import numpy as np
 import pytest
 
 from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
-from frictioncontact.parameters import COULOMB_FORCE, IDENTIFIED, PERIOD, TABLE_2, start_values
+from frictioncontact.parameters import (
+    COULOMB_FORCE,
+    IDENTIFIED,
+    PERIOD,
+    SEPARATION,
+    STIFFNESS_PRINTED,
+    TABLE_2,
+    start_values,
+)
 from frictioncontact.table2 import rows as table2
 from frictioncontact.table2.command import percent
 from workshop.fmu_docs import laws, tutorial
@@ -101,6 +109,25 @@ def test_the_force_beyond_the_limit_is_what_the_equations_page_says(fmu: Frictio
     page = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
     said = f"in row 4 of Table 2 with the identified parameters it reaches {most:.2f} F_C."
     assert said in " ".join(page.split())
+
+
+def test_the_limits_of_the_equations_are_those_of_their_page(fmu: FrictionFmu) -> None:
+    """The normal reaction (delta^2/2) |d sigma/dd| in sliding, and the deflection F_C/sigma itself."""
+    page = " ".join((ROOT / "docs" / "physics.md").read_text(encoding="utf-8").split())
+    reactions, F_n = [], 0.0
+    for model in ("Asperities", "Mindlin"):
+        scale = IDENTIFIED.stiffness / STIFFNESS_PRINTED if model == "Asperities" else 1.0
+        sigma = {}
+        for d in (SEPARATION - 1e-10, SEPARATION, SEPARATION + 1e-10):
+            scene = {"contact.model": model, "contact.stiffnessScale": scale, "d": d}
+            with fmu.session(scene) as session:
+                sigma[d], F_n = session.get("sigma"), session.get("F_n")
+        below, at, above = sigma.values()
+        reactions.append(0.5 * (COULOMB_FORCE / at) ** 2 * (below - above) / 2e-10)
+    said = f"{reactions[0]:.0f} N beside F_n = {F_n:.0f} N at the identified"
+    assert said in page and f"{reactions[1]:.2f} N at Mindlin's" in page
+    delta = COULOMB_FORCE / IDENTIFIED.stiffness
+    assert f"{1e6 * delta:.1f} µm or {delta / 6e-6:.1f} R_q" in page
 
 
 def test_static_friction_under_vibration_is_what_the_page_says(fmu: FrictionFmu) -> None:

@@ -42,7 +42,6 @@ from workshop.report.recovery import (
 from workshop.validate import longitudinal
 from workshop.validate.measurements import sliding
 
-PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs" / "measured-parameters.md").read_text(encoding="utf-8")
 
 SEEDS = 20
@@ -109,24 +108,6 @@ def test_intervals_hold_the_truth_in_about_95_percent_of_seeds(
 def test_loops_are_recovered_too(from_law: Callable[[str], Recovered], law: str) -> None:
     for name in LOOP_TRUTH:
         assert sum(from_law(law).holds(name)) >= least(from_law(law).fits), name
-
-
-@pytest.mark.slow
-def test_recovery_is_what_the_documents_say(
-    from_kind: Callable[[str], Recovered], from_law: Callable[[str], Recovered]
-) -> None:
-    """Within a seed: another C library may round it to the other side of an interval's end."""
-    noisy = from_kind("V_1 uncertain")
-    said = re.search(
-        r"for (\d+), (\d+) and (\d+) of 20 seeds\. .* for (\d+), (\d+) and (\d+) of 20 seeds.*"
-        r"for (\d+) and (\d+) of 20 seeds.*contain the phase for (\d+) of 20",
-        " ".join(PHYSICS.split()),
-    )
-    recovered = (from_kind("scatter estimated"), noisy, from_law("Dahl"))
-    held = [sum(one.holds(name)) for one in recovered for name in one.truth]
-    linear = [one.interval(1) for one in noisy.fits]
-    held.append(sum(low <= TRUTH["vibration.phase_d"] <= high for low, high in linear))
-    assert [int(number) for number in said.groups()] == pytest.approx(held, abs=1)
 
 
 def _inside_joint_region(one: Fit) -> bool:

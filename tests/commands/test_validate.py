@@ -52,12 +52,17 @@ def test_the_dry_rows(fmu_path: Path) -> None:
     assert said in PAGE
     assert f"F_C - k a = {data.without[0] - fit.stiffness * data.amplitude:.3f} N" in PAGE
     assert longitudinal.STRIBECK == 1e-4 and "V_S = 0.1 mm/s" in PAGE
-    for baseline in (longitudinal.constant_ratio(data), longitudinal.logarithm(data)):
+    moved = 5e-9 * fit.stiffness  # N, by an error of 5 nm in the amplitude
+    assert f"moves it by {moved:.3f} N, {100 * moved / misfit:.0f} % of the rms error" in PAGE
+    for baseline in (each(data) for each in longitudinal.BASELINES):
         cells = [f"{force:.4f}" for force in baseline.model]
         cells += [
             f"{measurements.rms(model - data.vibrated):.3f}" for model in (baseline.model, baseline.predicted)
         ]
         assert row(cells) in PAGE, baseline.law
+    plain = longitudinal.constant_force(data)
+    parts = [100 * measurements.rms(each - data.vibrated) for each in (plain.model, plain.predicted)]
+    assert "one constant force by {:.0f} and {:.0f} %".format(*parts / data.vibrated.mean()) in PAGE
 
 
 def test_the_oiled_rows_follow_no_law(fmu_path: Path) -> None:
@@ -67,6 +72,8 @@ def test_the_oiled_rows_follow_no_law(fmu_path: Path) -> None:
     assert measurements.rms(fit.model - data.vibrated) > measurements.rms(ratio.model - data.vibrated)
     assert f"ElasticPlastic is {measurements.rms(fit.model - data.vibrated):.3f} N" in PAGE
     assert f"({measurements.rms(ratio.model - data.vibrated):.3f} N)" in PAGE
+    plain = longitudinal.constant_force(data)
+    assert f"({measurements.rms(plain.model - data.vibrated):.3f} N)" in PAGE
     assert f"by a factor of {fit.factor:.2f}" in PAGE
 
 
@@ -134,7 +141,6 @@ def test_the_cycles_and_the_unloading(fits: dict[str, record.RecordFit]) -> None
     without = record.without_bound(data, dahl)
     for name, friction in (
         ("ElasticPlastic, limit μ F_n", elastic_plastic.unloading),
-        ("μ F_n alone, μ of ElasticPlastic", -elastic_plastic.mu * part.load),
         ("Dahl, limit μ F_n in Eq. 2 alone", without),
         ("ElasticPlastic, constant limit", elastic_plastic.constant_limit),
         ("Dahl, constant limit", dahl.constant_limit),

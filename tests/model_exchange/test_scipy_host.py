@@ -1,18 +1,17 @@
-"""The host for scipy on docs/model-exchange.md, in scenes in which an error control alone skips periods."""
+"""The host for scipy of examples/model-exchange, in scenes in which an error control alone skips periods."""
 
 from __future__ import annotations
 
 import math
-import re
+import runpy
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 from scipy.integrate import BDF, LSODA
 
 from workshop.project import ROOT
 
-PAGE = (ROOT / "docs" / "model-exchange.md").read_text(encoding="utf-8")
+PROGRAM = ROOT / "examples" / "model-exchange" / "pulled_mass.py"
 MASS, PULL, F_C, F = 2.0, 15.0, 55.0, 20e3
 PERIODS = 10
 NUMBERS = {"ElasticPlastic": 3, "Dahl": 1}
@@ -20,11 +19,14 @@ NUMBERS = {"ElasticPlastic": 3, "Dahl": 1}
 
 @pytest.fixture(scope="module")
 def pulled() -> Callable[..., tuple[float, float]]:
-    """The page's function."""
-    code = re.search(r"^```python\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)[1]
-    names: dict[str, Any] = {}
-    exec(compile(code[: code.index("\n\nscene = ")], "page", "exec"), names)
-    return names["pulled"]
+    """The example's function."""
+    return runpy.run_path(str(PROGRAM))["pulled"]
+
+
+def test_it_prints_what_its_page_says(capsys: pytest.CaptureFixture[str]) -> None:
+    runpy.run_path(str(PROGRAM), run_name="__main__")
+    page = PROGRAM.with_name("README.md").read_text(encoding="utf-8")
+    assert f"It prints {capsys.readouterr().out.strip()}." in page
 
 
 def by_small_steps(law: str, sigma: float, V_1: float) -> float:

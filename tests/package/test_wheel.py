@@ -177,7 +177,7 @@ def test_commands_that_need_no_extra(user: User) -> None:
 
 PAGES = (
     "README.md",
-    *(f"docs/{name}.md" for name in ("using", "python", "tools", "api", "measured-parameters")),
+    *(f"docs/{name}.md" for name in ("using", "machine", "python", "tools", "api", "measured-parameters")),
     "examples/friction-law/README.md",
 )
 LINES = [

@@ -36,7 +36,7 @@ from frictioncontact.parameters import (
 )
 from frictioncontact.periodic import periodic_mean
 from workshop.paper.claims import mean_changes
-from workshop.paper.equations import force_eq_23, force_eq_25
+from workshop.paper.equations import force_eq_25
 from workshop.regimes.mean import coulomb_limit, soft_limit
 from workshop.report.text import IDENTIFY_INTRO
 
@@ -199,21 +199,6 @@ def test_13_constant_velocity_means_coulomb_friction(fmu: FrictionFmu) -> None:
         for parameters in (PRINTED, IDENTIFIED):
             assert periodic_mean(fmu, start_values(row, parameters)) == pytest.approx(55.0, abs=1e-6)
     stated(13, "55.000000 N")
-
-
-def test_14_where_the_printed_means_come_from() -> None:
-    def frozen(d: float, E: float) -> float:
-        relative = stiffness(SURFACES, d, E) / stiffness(SURFACES, SEPARATION, E_FULL)
-        return float(force_eq_23(COULOMB_FORCE, 5.1 * relative, 1.0, COULOMB_FORCE))
-
-    row_1, row_5 = frozen(SEPARATION, E_FULL), frozen(SEPARATION, E_REDUCED)
-    row_4 = 0.5 * (frozen(SEPARATION - A_D, E_FULL) + frozen(SEPARATION + A_D, E_FULL))
-    assert [round(force) for force in (row_1, row_4, row_5)] == [55, 48, 54]
-    mean = mean_over_cycle(lambda d: frozen(d, E_FULL), SEPARATION, A_D)
-    stated(14, f"{row_1:.2f}, {row_4:.2f} and {row_5:.2f} N", f"{mean:.2f} N")
-    reductions = [100 * (1 - row / row_1) for row in (row_4, row_5)]
-    assert [round(reduction) for reduction in reductions] == [12, 1]
-    stated(14, "{:.1f} and {:.2f} %".format(*reductions))
 
 
 def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:

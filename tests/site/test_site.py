@@ -16,6 +16,7 @@ from workshop.browser import PATIENCE, SIZES, watch, window
 from workshop.project import ROOT
 from workshop.site.check import broken_links, complaints, pages
 from workshop.site.command import build
+from workshop.site.conf import MAINTAINERS
 
 pytest.importorskip("ziglang", reason="the release's packages are not installed: scripts/setup release")
 pytestmark = pytest.mark.filterwarnings("ignore::sphinx.deprecation.RemovedInSphinx11Warning")  # of the theme
@@ -147,6 +148,22 @@ def test_search_finds_a_variable_in_its_table_first(page: Page, site: Path) -> N
     page.goto((site / "search.html").as_uri() + "?q=F_t_settled")
     first = page.locator("ul.search li a").first
     expect(first).to_have_attribute("href", re.compile(r"docs/using\.html#index-\d"))
+
+
+def test_search_finds_the_pages_of_users_before_those_of_maintainers(page: Page, site: Path) -> None:
+    page.goto((site / "search.html").as_uri() + "?q=stiffness")
+    expect(page.locator("#search-results")).to_contain_text("matching the search query")
+    hits = page.locator("ul.search li a").evaluate_all("all => all.map((link) => link.href)")
+    last = [f"/{name}.html" for name in MAINTAINERS["Maintainers"].values()]
+    of_maintainers = [any(name in hit for name in last) for hit in hits]
+    assert any(of_maintainers) and not all(of_maintainers)
+    assert of_maintainers == sorted(of_maintainers)
+
+
+def test_the_menu_names_two_parts(site: Path) -> None:
+    menu = html.parse(str(site / "docs" / "using.html")).getroot().find_class("caption-text")
+    parts = list(dict.fromkeys(caption.text.split(" · ")[0] for caption in menu))
+    assert parts == ["Users", "Maintainers"]
 
 
 def test_the_playground_lives_in_its_page(browser: Browser, site: Path) -> None:

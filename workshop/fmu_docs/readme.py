@@ -20,7 +20,7 @@ from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from frictioncontact.table2 import figure as table2_figure
 from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
-from workshop.fmu_docs import directions, laws, march
+from workshop.fmu_docs import diagrams, directions, laws, march
 from workshop.fmu_docs.tutorial import PAGES, blocks
 from workshop.project import ROOT
 
@@ -124,7 +124,7 @@ def fmpy_example(fmu: FrictionFmu, path: Path) -> None:
 
 def step_sizes(fmu: FrictionFmu, path: Path) -> None:
     """Where F_t and F_t_mean lie after a step, at any phase, against the length of the step."""
-    figure, axes = style.subplots(size=(7.6, 4.2))
+    figure, axes = style.subplots(size=(5.2, 4.4))
     steps = np.geomspace(0.02, 20.0, 241) * PERIOD
     phases = 60
     values = np.empty((len(steps), phases, 2))
@@ -147,16 +147,16 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
         axes.text(1.07e6 * part * PERIOD, 62.5, words, fontsize=8.5, va="center")
     for place, text in (
         (1.6, "use F_t"),
-        (7.9, "F_t or F_t_mean,\nas the plant needs"),
+        (7.9, "F_t or\nF_t_mean"),
         (160.0, "use F_t_mean"),
     ):
-        axes.text(place, 55.0, text, ha="center", va="center", fontsize=10)
+        axes.text(place, 55.0, text, ha="center", va="center", fontsize=9)
     axes.set_ylim(0.0, 66.0)
     axes.set_xlim(1e6 * steps[0], 1e6 * steps[-1])
     axes.set_xticks([1, 10, 50, 100, 500, 1000], ["1", "10", "50", "100", "500", "1000"])
-    axes.set_xlabel("communication step [µs]; the vibration's period is 50 µs")
+    axes.set_xlabel("communication step [µs]; T = 50 µs")
     axes.set_ylabel("force after a step, at any phase [N]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     style.save(figure, path)
 
 
@@ -176,6 +176,9 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "table2": partial(table2_figure.draw, fmu, list(table2.results(fmu))),
         "overview": partial(overview, fmu),
         "fmpy_example": partial(fmpy_example, fmu),
+        "output-choice": diagrams.draw_choice,
+        "promise-domain": diagrams.draw_domain,
+        "levels": partial(diagrams.draw_levels, fmu),
         "step_sizes": partial(step_sizes, fmu),
         "physics-open-contact": partial(laws.open_contact, fmu),
         "physics-static-friction": partial(laws.static_friction, fmu),

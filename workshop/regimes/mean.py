@@ -131,7 +131,7 @@ def soft_sensitivity(zeta: float, name: str, alpha: float, phase_d: float) -> fl
 
 # What decides a regime, as classes of `regime_map`.
 REGIMES = (
-    "Coulomb is enough",
+    "Coulomb",
     "Dahl, constant stiffness",
     "Dahl, moving separation",
     "mean friction may be negative",

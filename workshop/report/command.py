@@ -31,7 +31,7 @@ identification. Writes build/report/index.html, one page that needs no network, 
 PNG beside it."""
 
 # Figures that the README and the documents show, and their names there.
-IN_DOCS = ("fig-04", "fig-13", "heights", "mean", "regimes", "reduction", "sensitivity-cuts", "recovery")
+IN_DOCS = ("fig-04", "heights", "mean", "regimes", "reduction")
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:

@@ -62,7 +62,7 @@ html_theme_options = {
 # A browser reads no file for a page that was opened from a folder: the excerpts under the hits of a search.
 SUMMARY = "if (location.protocol === 'file:') DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;"
 
-CONTENTS = {
+USERS = {
     "Tutorial": {
         "1. First force": "docs/tutorial/first-force",
         "2. Your surface": "docs/tutorial/your-surface",
@@ -70,19 +70,23 @@ CONTENTS = {
         "4. Your sweep": "docs/tutorial/your-sweep",
         "5. What to trust": "docs/tutorial/what-to-trust",
     },
-    "Use": {
+    "Using": {
         "First simulation and variables": "docs/using",
+        "Couple it to your machine": "docs/machine",
+        "The live page": "docs/playground",
+    },
+    "Tools": {
         "FMI tools": "docs/tools",
         "Python": "docs/python",
         "Python reference": "docs/api",
         "Model exchange": "docs/model-exchange",
         "Importers": "docs/compatibility",
-        "Measured parameters": "docs/measured-parameters",
-        "The live page": "docs/playground",
+        "Wrong calls and values": "docs/bad-input",
     },
     "Examples": {
         "Overview": "examples/README",
         "A mass on a belt": "examples/stick-slip/README",
+        "A mass in model exchange": "examples/model-exchange/README",
         "A friction law": "examples/friction-law/README",
         "A calibration by gradient": "examples/calibration/README",
         "A slow plant": "examples/ultrasonic-slider/README",
@@ -91,25 +95,28 @@ CONTENTS = {
         "A million scenarios": "examples/simulate-many/README",
         "Sweep": "examples/sweep/README",
     },
-    "Model": {
+    "Physics": {
         "Equations": "docs/physics",
         "Three directions": "docs/three-directions",
-        "Validation": "docs/validation",
         "Errata": "docs/errata",
     },
-    "Solver": {"Accuracy, speed, stability": "docs/numerics", "How it works": "docs/solver"},
-    "Trust": {
-        "Reliability": "docs/reliability",
-        "Wrong calls and values": "docs/bad-input",
-        "Release": "docs/release",
-    },
-    "Project": {
-        "Changelog": "CHANGELOG",
-        "Contributing": "CONTRIBUTING",
-        "Security": "SECURITY",
+    "Measurements": {
+        "Validation": "docs/validation",
+        "Measured parameters": "docs/measured-parameters",
         "Data": "data/measurements/README",
     },
+    "Trust": {"Accuracy, speed, stability": "docs/numerics", "Reliability": "docs/reliability"},
 }
+MAINTAINERS = {  # scorer.js has the same pages: a search finds them last
+    "Maintainers": {
+        "The solver": "docs/solver",
+        "Contributing": "CONTRIBUTING",
+        "Release": "docs/release",
+        "Security": "SECURITY",
+        "Changelog": "CHANGELOG",
+    },
+}
+CONTENTS = {f"Users · {caption}": pages for caption, pages in USERS.items()} | MAINTAINERS
 PLAYGROUND = """
 <p><a href="../playground.html">Open it in a window of its own</a></p>
 <iframe class="playground" src="../playground.html" title="The FMU, alive" loading="lazy"></iframe>

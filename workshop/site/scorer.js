@@ -1,5 +1,5 @@
-// How hits of the search are ordered: the pages that explain a thing before those that only mention it.
-const LAST = ["CHANGELOG", "CONTRIBUTING", "docs/bad-input"];
+// How hits of the search are ordered: the users' pages before those of the maintainers and what only mentions a thing.
+const LAST = ["docs/solver", "CONTRIBUTING", "docs/release", "SECURITY", "CHANGELOG", "docs/bad-input"];
 var Scorer = {
   score: ([page, title, anchor, description, score]) => (LAST.includes(page) ? score - 100 : score),
   objNameMatch: 11,

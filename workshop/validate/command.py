@@ -145,7 +145,7 @@ def run(options: argparse.Namespace) -> None:
     for name in ("dry", "oil"):
         data = measurements.sliding(name)
         fits = [longitudinal.fit(path, data, law) for law in longitudinal.LAWS]
-        fits += [longitudinal.constant_ratio(data), longitudinal.logarithm(data)]
+        fits += [baseline(data) for baseline in longitudinal.BASELINES]
         sliding[name] = (data, fits)
         console.print(longitudinal_table(name, data, fits))
 

@@ -18,6 +18,7 @@ LAW = {
     "Dahl": style.ORANGE,
     "LuGre": style.PINK,
     "ElasticPlastic": style.BLUE,
+    "a constant force": style.PINK,
     "a constant ratio": style.GREEN,
     "a + b ln V": style.AMBER,
 }

@@ -33,6 +33,11 @@ class Fit:
     most: np.ndarray
 
 
+def constant_force(data: Sliding) -> Fit:
+    """The plain baseline: one force for every row."""
+    return _straight("a constant force", data, np.ones((len(data.V), 1)))
+
+
 def constant_ratio(data: Sliding) -> Fit:
     """An empirical baseline: vibration multiplies friction by a number."""
     return _straight("a constant ratio", data, data.without[:, None])
@@ -41,6 +46,9 @@ def constant_ratio(data: Sliding) -> Fit:
 def logarithm(data: Sliding) -> Fit:
     """An empirical baseline: a + b ln V, two numbers."""
     return _straight("a + b ln V", data, np.column_stack([np.ones(len(data.V)), np.log(data.V)]))
+
+
+BASELINES = (constant_force, constant_ratio, logarithm)
 
 
 def _straight(name: str, data: Sliding, columns: np.ndarray) -> Fit:
