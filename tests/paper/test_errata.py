@@ -35,10 +35,8 @@ from frictioncontact.parameters import (
     start_values,
 )
 from frictioncontact.periodic import periodic_mean
-from workshop.paper.claims import mean_changes
-from workshop.paper.equations import force_eq_23, force_eq_25
-from workshop.regimes.mean import coulomb_limit, soft_limit
-from workshop.report.text import IDENTIFY_INTRO
+from workshop.report.paper import force_eq_23, force_eq_25, mean_change
+from workshop.report.regimes import coulomb_limit, scene, soft_limit
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
 SURFACES = Surfaces()
@@ -134,12 +132,8 @@ def test_8_printed_stiffness_is_at_17_um() -> None:
     stated(8, f"{at_17:.4g} N/m", f"{at_14:.4g} N/m", f"{stiffness(SURFACES, SEPARATION):.4g} N/m")
 
 
-def test_9_exponent_of_the_mean_stiffness() -> None:
-    assert 2.07e11 / 2.326e11 - 1.0 == pytest.approx(-0.11, abs=5e-4)
-
-
 def test_10_means_rise(fmu: FrictionFmu) -> None:
-    by_fmu = mean_changes(fmu)
+    by_fmu = [mean_change(fmu, name)[2] for name in ("A_r", "sigma")]
     for model in ("exponential", "gaussian"):
         changes = [
             100.0
@@ -156,19 +150,22 @@ def test_10_means_rise(fmu: FrictionFmu) -> None:
             assert changes[0] == pytest.approx(100.0 * (i0(0.55) - 1.0), rel=1e-9)
 
 
-@pytest.mark.parametrize("quantity", [area, stiffness])
-@pytest.mark.parametrize("model", ["exponential", "gaussian"])
-def test_10_area_and_stiffness_are_convex(quantity: object, model: str) -> None:
-    gaps = np.linspace(6e-6, 24e-6, 40)
-    values = np.array([quantity(SURFACES, d, model=model) for d in gaps])  # type: ignore[operator]
-    assert np.all(np.diff(values, 2) > 0.0)
+def test_10_area_and_stiffness_are_convex() -> None:
+    for quantity, model in product((area, stiffness), ("exponential", "gaussian")):
+        values = [quantity(SURFACES, d, model=model) for d in np.linspace(6e-6, 24e-6, 40)]
+        assert np.all(np.diff(values, 2) > 0.0)
 
 
-def test_11_percentages() -> None:
+def limit(of: object, zeta: float) -> float:
+    return float(of(scene(0.0, zeta)))  # type: ignore[operator]
+
+
+def test_9_11_exponent_and_percentages() -> None:
+    assert 2.07e11 / 2.326e11 - 1.0 == pytest.approx(-0.11, abs=5e-4)
     stated(11, f"{100 * (1 - 48 / 55):.1f} %", f"{100 * (1 - 54 / 55):.1f} %")
 
 
-@pytest.mark.parametrize("t", [0.4e-5, 1.3e-5, 6.1e-5, 3.3e-4])
+@pytest.mark.parametrize("t", [1.3e-5, 3.3e-4])
 def test_12_eq_25_fails_eq_2(t: float) -> None:
     """The residual by finite differences of Eq. 25 is the one in closed form, and not zero."""
     sigma, V, V_1 = 2.5366e6, 0.5, 1.44
@@ -188,7 +185,7 @@ def test_12_mean_of_eq_25_drifts_to_coulomb(fmu: FrictionFmu) -> None:
     for n in (1, 2, 10, 1000):
         t = PERIOD * (n - 1 + (np.arange(400_000) + 0.5) / 400_000)
         means.append(float(np.mean(force_eq_25(COULOMB_FORCE, *drive, t))))
-    coulomb = COULOMB_FORCE * coulomb_limit(IDENTIFIED.V / row.V_1)
+    coulomb = COULOMB_FORCE * limit(coulomb_limit, IDENTIFIED.V / row.V_1)
     assert means[-1] == pytest.approx(coulomb, abs=1e-3)
     exact = periodic_mean(fmu, start_values(row, IDENTIFIED))
     stated(12, f"{means[0]:.2f}, {means[1]:.2f} and {means[2]:.2f} N", f"{coulomb:.2f} N", f"{exact:.2f} N")
@@ -221,9 +218,9 @@ def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:
     printed = [periodic_mean(fmu, start_values(row, PRINTED)) for row in rows]
     identified = [periodic_mean(fmu, start_values(row, IDENTIFIED)) for row in rows]
     zeta = PRINTED.V / TABLE_2[2].V_1
-    coulomb, soft = COULOMB_FORCE * coulomb_limit(zeta), COULOMB_FORCE * soft_limit(zeta)
+    coulomb, soft = (COULOMB_FORCE * limit(of, zeta) for of in (coulomb_limit, soft_limit))
     assert coulomb <= printed[1] * (1.0 + 1e-5) <= soft
-    slowest = 1.44 * brentq(lambda z: soft_limit(z) - 27 / 55, 0.01, 0.99)
+    slowest = 1.44 * brentq(lambda z: limit(soft_limit, z) - 27 / 55, 0.01, 0.99)
     fastest = 1.44 * math.sin(0.5 * math.pi * 27 / 55)
     stated(
         15,
@@ -244,24 +241,15 @@ def test_15_least_squares_through_the_same_rows(fmu: FrictionFmu) -> None:
     linear = [MN * scale for scale in result.interval(0)]
     turns = [math.degrees(angle) for angle in result.interval(1)]
     second = f"second minimum at {math.degrees(result.minima[1].point[1]):.0f}°"
-    wide = (
-        f"any stiffness up to {MN * most:.0f} MN/m",
-        f"phases from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°",
-    )
     assert least == 0.0
     stated(
         15,
         f"{MN * result.values[0]:.3f} MN/m and {math.degrees(result.values[1]):.2f}°",
-        *wide,
+        f"any stiffness up to {MN * most:.0f} MN/m",
+        f"phases from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°",
         second,
         f"{linear[0]:.3f} to {linear[1]:.0f} MN/m and {turns[0]:.0f}° to {turns[1]:.0f}°",
     )
-    report = " ".join(IDENTIFY_INTRO.split())
-    residuals = [f"{residual:.2f}".replace("-", "−") for residual in result.residuals]
-    values = f"{MN * result.values[0]:.3f} MN/m and {math.degrees(result.values[1]):.1f}°"
-    errors = "residuals of {}, {} and {} N".format(*residuals)
-    for form in (*wide, second, values, errors):
-        assert form in report, form
 
 
 def test_16_modulus() -> None:

@@ -30,7 +30,7 @@ def page(results: Sequence[Result], claims: Claims, figures: Mapping[str, Figure
     source = (FOLDER / "report.md").read_text(encoding="utf-8")
     source = re.sub(r"\[\[([\w-]+)\]\]", lambda match: parts[match[1]], source)
     made = re.split(
-        r"(<code>.*?</code>|<[^>]*>)", MarkdownIt().enable("table").render(source), flags=re.DOTALL
+        r"(<code.*?</code>|<[^>]*>)", MarkdownIt().enable("table").render(source), flags=re.DOTALL
     )
     body = "".join(part if k % 2 else text(part, "<sub>", "</sub>") for k, part in enumerate(made))
     title = re.search(r"^# (.*)$", source, re.MULTILINE)[1]

@@ -191,7 +191,7 @@ def regimes(fmu: Path, quick: bool) -> Figure:
         axes.grid(visible=False)
         axes.pcolormesh(kappas, zetas, z, alpha=0.75, rasterized=True, shading="nearest", **look)
         for name, colour in REGIMES.items():
-            axes.fill([], [], color=colour, alpha=0.75, label=name)
+            axes.plot([], [], "s", color=colour, alpha=0.75, ms=8, label=name)
 
     row = TABLE_2[2]
     points = [
