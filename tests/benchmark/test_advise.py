@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -76,7 +75,7 @@ def advised(fmu_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> 
 
 
 OPEN = ["contact.input=Load", "load=0"]
-SEEDS = (0, 1, 3, 5, 8, 26)  # one of ElasticPlastic, whose reference takes longest
+SEEDS = (0, 1, 3, 26)  # one of ElasticPlastic, whose reference takes longest
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -120,7 +119,7 @@ def test_the_promise_is_of_F_C_if_viscous_friction_is_far_larger(
         advised(fmu_path, capsys, "--accuracy", "1e-8", *words)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(12))
 def test_no_bristle_is_farther_from_coulomb_than_the_bound(seed: int) -> None:
     random = np.random.default_rng(seed)
     V_1 = 10.0 ** random.uniform(-2, 0.5)
@@ -142,58 +141,37 @@ def test_no_bristle_is_farther_from_coulomb_than_the_bound(seed: int) -> None:
         assert errors[0] <= bounds[0] + 1e-14 and errors[1] <= bounds[1] + 1e-14
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
+def test_nothing_is_proven_of_other_scenes() -> None:
+    for values in (
         {"vibration.a_d": 1e-7},
         {"friction.model": "LuGre"},
         {"V": 1.0, "vibration.V_1": 1.0},
         {"friction.limit": "Load"},
-        {"sigma": 0.0},
-    ],
-)
-def test_nothing_is_proven_of_other_scenes(values: dict[str, float | str]) -> None:
-    sigma = float(values.pop("sigma", 1e9))
-    assert min(coulomb_errors(start_values_of(scene_of(values)) | ALONG, sigma, 1e-3)) == float("inf")
+    ):
+        start_values = start_values_of(scene_of(values)) | ALONG
+        assert min(coulomb_errors(start_values, 1e9, 1e-3)) == float("inf")
+    assert min(coulomb_errors(start_values_of(scene_of({})) | ALONG, 0.0, 1e-3)) == float("inf")
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
+def test_bad_questions_get_one_line(
+    fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    uneven = tmp_path / "inputs.csv"
+    uneven.write_text("time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n")
+    for words, message in (
         (["--set", "V"], "V: is not of the form NAME=VALUE"),
         (["solver.tolerance=1e-3"], "solver.tolerance does not describe a scene; these do: V, d, E"),
         (["--accuracy", "0"], "accuracy 0: must lie between"),
         (["--step", "-1"], "step -1 s: must lie between"),
         (["--inputs", "nowhere.csv"], "nowhere.csv: No such file"),
+        (["--inputs", str(uneven)], "inputs: time must grow in even steps, and does not at sample "),
         ([*OPEN, "friction.limit=Load"], "friction.mu F_n = 0 N: must be above 0 N"),
         ([*OPEN, "--mass", "1", "--step", "1e-3"], "mass: sigma = 0 N/m: must be above 0 N/m"),
-    ],
-)
-def test_bad_questions_get_one_line(
-    fmu_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
-) -> None:
-    with pytest.raises(SystemExit) as ended:
-        advised(fmu_path, capsys, *words)
-    assert message in str(ended.value)
-    assert str(ended.value).count("\n") == 0
-
-
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (
-            "time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n",
-            "inputs: time must grow in even steps, and does not at sample ",
-        ),
-    ],
-)
-def test_bad_inputs_are_told_by_their_line(
-    fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path, content: str, message: str
-) -> None:
-    path = tmp_path / "inputs.csv"
-    path.write_text(content)
-    with pytest.raises(SystemExit, match=re.escape(message)):
-        advised(fmu_path, capsys, "--inputs", str(path))
+    ):
+        with pytest.raises(SystemExit) as ended:
+            advised(fmu_path, capsys, *words)
+        assert message in str(ended.value)
+        assert str(ended.value).count("\n") == 0
 
 
 TIMES, SPEEDS = 2e-5 + 1e-5 * np.arange(11), 0.01 * (np.arange(11) - 5)
@@ -232,7 +210,6 @@ def test_fmpy_s_command_holds_the_inputs_of_a_file(
     [
         ("time,V", 0.0, ["--linear"], "frictioncontact simulate"),
         ("time [s],V [m/s]", 0.0, ["--linear"], "frictioncontact simulate"),
-        ("time,V [mm/s]", 0.0, [], "Neither fmpy"),
         ("time [ms],V", 0.0, [], "Neither fmpy"),
         ("time,V", 1e-5, ["--linear"], "Neither fmpy"),
     ],

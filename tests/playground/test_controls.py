@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from native_wave import wave
@@ -9,9 +11,11 @@ from playground_page import Playground
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from workshop.description import description
+from workshop.playground.page import ASSETS
 
 LIMIT = 1e-12  # of the largest force
 VARIABLES = {variable["name"]: variable for variable in description()["variables"]}
+CONTROLS = [control["name"] for control in json.loads((ASSETS / "controls.json").read_text(encoding="utf-8"))]
 # What must be chosen for a control to have an effect.
 CONTEXT = {
     "contact.sigma": {"contact.model": "Constant"},
@@ -26,14 +30,9 @@ CONTEXT = {
 START = {"V": 0.5, "vibration.V_1": 1.44, "contact.stiffnessScale": 5e-7}
 
 
-def controls(playground: Playground) -> list[str]:
-    return playground.page.locator("[data-variable]").evaluate_all(
-        "all => all.map((c) => c.dataset.variable)"
-    )
-
-
-def quantities(playground: Playground) -> list[str]:
-    return [name for name in controls(playground) if "items" not in VARIABLES[name]]
+QUANTITIES, CHOICES = (
+    [name for name in CONTROLS if ("items" in VARIABLES[name]) == is_choice] for is_choice in (False, True)
+)
 
 
 def assert_same(playground: Playground, fmu: FrictionFmu, values: dict[str, float | str]) -> list[float]:
@@ -46,8 +45,7 @@ def assert_same(playground: Playground, fmu: FrictionFmu, values: dict[str, floa
 
 def test_every_quantity_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) -> None:
     """Typed into its field, in the unit that is shown."""
-    assert len(quantities(playground)) >= 8
-    for name in quantities(playground):
+    for name in QUANTITIES:
         scene = START | CONTEXT.get(name, {})
         playground.load(scene)
         before = assert_same(playground, fmu, scene)
@@ -60,9 +58,7 @@ def test_every_quantity_reaches_the_fmu(playground: Playground, fmu: FrictionFmu
 
 
 def test_every_choice_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) -> None:
-    choices = [name for name in controls(playground) if "items" in VARIABLES[name]]
-    assert {"friction.model", "contact.model"} <= set(choices)
-    for name in choices:
+    for name in CHOICES:
         forces = []
         for item in VARIABLES[name]["items"]:
             scene = START | CONTEXT.get(name, {})
@@ -75,7 +71,7 @@ def test_every_choice_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) 
 def test_every_slider_moves_with_the_keyboard(playground: Playground) -> None:
     """An arrow moves field, spoken value and figures together."""
     playground.load(START | {"vibration.a_d": 1e-6})
-    for name in quantities(playground):
+    for name in QUANTITIES:
         root = playground.page.locator(f'[data-variable="{name}"]')
         if not root.is_visible():
             continue
@@ -91,7 +87,7 @@ def test_every_slider_moves_with_the_keyboard(playground: Playground) -> None:
 
 
 def test_a_refusal_is_the_fmu_s_own_message_at_the_control(playground: Playground, fmu: FrictionFmu) -> None:
-    wrong = {"F_C": -1.0, "vibration.f": 0.0, "vibration.a_d": 20e-6, "d": -1e-6, "E": 0.0}
+    wrong = {"F_C": -1.0, "vibration.a_d": 20e-6, "vibration.V_1": 1e30}
     for name, value in wrong.items():
         playground.load(START)
         before = playground.wave()
@@ -109,71 +105,33 @@ def test_a_refusal_is_the_fmu_s_own_message_at_the_control(playground: Playgroun
         assert playground.wave() == before
 
 
-COMMA = "is not a number: write the decimal point as ."
-
-
 def test_what_is_no_number_is_told_so(playground: Playground) -> None:
-    """A comma has two meanings."""
-    for text in ("", "ten", "1e", "NaN", "0x", "0x10", "0b1", "Infinity", "1 2", "1,234", "0,5"):
-        playground.load(START)
-        before = playground.wave()
-        field = playground.page.locator('[data-variable="V"] input[type=text]')
-        field.fill(text)
-        field.press("Enter")
-        field.blur()
-        said = playground.refusal("V")
-        assert said.startswith(f"{text} {COMMA}") if "," in text else said.endswith("is not a number"), text
-        assert playground.wave() == before, text
-
-
-def test_a_minus_sign_as_it_is_printed_is_understood(playground: Playground) -> None:
+    """A comma has two meanings; a minus sign as it is printed is one."""
     playground.load(START)
+    before = playground.wave()
+    for text in ("", "1e", "NaN", "0x10", "1 2", "0,5"):
+        playground.enter("V", text)
+        said = playground.refusal("V")
+        assert "write the decimal point as ." in said if "," in text else said.endswith("is not a number"), (
+            text
+        )
+        assert playground.wave() == before, text
     playground.enter("V", "\u22125e1")
     assert playground.refusal("V") == ""
     assert playground.wave()["velocity_m_per_s"][120] == pytest.approx(-0.05 - 1.44)
 
 
-def test_pointing_at_the_map_of_a_refused_scene_changes_nothing(playground: Playground) -> None:
-    playground.load(START)
-    playground.finish()
-    playground.enter("d", "0")
-    refusal = playground.refusal("d")
-    assert "d = 0 m must be above 0 m" in refusal
-    box = playground.page.locator("#map svg").bounding_box()
-    assert box is not None
-    playground.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
-    playground.page.mouse.down()
-    playground.page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.4 * box["height"])
-    playground.page.mouse.up()
-    playground.settle()
-    assert playground.refusal("d") == refusal
-
-
-def test_a_speed_beyond_all_use_is_refused_by_name(playground: Playground) -> None:
-    """Before any step, which would take as many evaluations as are allowed. The unit shown is mm/s."""
-    for speed in ("1e30", "1e300"):
-        playground.load(START)
-        playground.enter("vibration.V_1", speed)
-        assert "is above its maximum 1e+15 m/s" in playground.refusal("vibration.V_1")
-
-
 def test_wrong_words_of_an_address_are_told_and_no_part_of_the_scene(playground: Playground) -> None:
-    """On a page that shows a scene already."""
+    """On a page that shows a scene already, and on one that opens with them."""
+    playground.load(START)
     for words, message in (("x=1", "x is no variable of this FMU"), ("V=NaN", "V: NaN is not a number")):
-        playground.load(START)
-        playground.page.evaluate(
-            "words => { document.body.dataset.address = 'busy'; location.hash = words; }", words
-        )
-        playground.settle()
+        playground.load(dict([words.split("=")]))
         assert playground.page.locator("#refusal").inner_text() == message
         for kind in ("fmpy", "Python", ".ssv", "Link"):
             text = playground.text(kind)
             assert "NaN" not in text and "x=1" not in text
-        playground.enter("V", "20")
-        assert playground.page.locator("#refusal").inner_text() == ""
-
-
-def test_an_address_with_foreign_words_shows_the_message(playground: Playground) -> None:
+    playground.enter("V", "20")
+    assert playground.page.locator("#refusal").inner_text() == ""
     playground.open("#colour=3")
     assert playground.page.locator("#refusal").inner_text() == "colour is no variable of this FMU"
     playground.open("#friction.model=Newton")
@@ -181,6 +139,7 @@ def test_an_address_with_foreign_words_shows_the_message(playground: Playground)
 
 
 def test_pointing_at_the_map_and_at_the_curve_moves_the_scene(playground: Playground) -> None:
+    """But not a scene that is refused."""
     playground.load(START)
     playground.finish()
     for figure, numbers, part in (("map", ("kappa", "zeta"), 0.7), ("mean", ("zeta",), 0.5)):
@@ -194,3 +153,9 @@ def test_pointing_at_the_map_and_at_the_curve_moves_the_scene(playground: Playgr
         ring = playground.page.locator(f"#{figure} .point.here").bounding_box()
         assert ring is not None
         assert ring["x"] + ring["width"] / 2 == pytest.approx(box["x"] + part * box["width"], abs=1.5)
+    playground.enter("d", "0")
+    refusal, box = playground.refusal("d"), playground.page.locator("#map svg").bounding_box()
+    assert "d = 0 m must be above 0 m" in refusal and box is not None
+    playground.page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    playground.settle()
+    assert playground.refusal("d") == refusal
