@@ -65,7 +65,7 @@ def test_scipy_solves_the_same_equation() -> None:
 
 def test_failures_carry_their_reason(bench: Bench) -> None:
     stiff = vibrating(6e12)
-    refused = bench.run(stiff.job(solver__method="explicitEuler", solver__stepSize=5e-5))
+    refused = bench.run(stiff.job(settings={"solver.method": "explicitEuler", "solver.stepSize": 5e-5}))
     assert "largest usable step" in refused.failure and np.isnan(refused.cpu)
     assert "100 evaluations" in scipy_radau(stiff, 1e-8, 100, 0.0).failure
     assert "d = -1 m" in bench.run(Job({"d": -1.0}, 1e-6)).failure

@@ -10,8 +10,8 @@ import pytest
 
 from workshop.bench import work_precision
 from workshop.bench.driver import Bench
-from workshop.bench.grade import Point
 from workshop.bench.work_precision import (
+    Point,
     cheapest,
     cost_at,
     period_cells,

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from frictioncontact import style
-from workshop.bench.grade import Point
 
 METHODS = {  # that the chart shows: label and colour
     "collocation": ("the default", style.BLUE),
@@ -20,7 +20,7 @@ SHOWN = ("vibrating-6e06", "vibrating-6e10", "vibrating-V", "vibrating-d", "line
 SMALLEST_ERROR = 1e-16
 
 
-def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: Path) -> list[Path]:
+def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Path) -> list[Path]:
     """Small multiples of the scenes in SHOWN, of those that were measured; every method is in the CSV."""
     names = [name for name in SHOWN if name in titles] or list(titles)
     rows = -(-len(names) // 2)

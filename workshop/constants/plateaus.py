@@ -105,7 +105,7 @@ class Scenes:
         for case, start, F, mean in self.right:
             limit = case.F_C * float(case.start_values.get("friction.staticRatio", 1.0))
             for tolerance in TOLERANCES:
-                outcome = bench.run(case.job(start, 0.0, solver__tolerance=tolerance))
+                outcome = bench.run(case.job(start, 0.0, {"solver.tolerance": tolerance}))
                 if outcome.failure:
                     raise UserError(f"{case.name}: {outcome.failure}")
                 evaluations.append(outcome.evaluations)
