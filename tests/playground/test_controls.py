@@ -79,7 +79,7 @@ def test_a_refusal_is_the_fmu_s_own_message_at_the_control(playground: Playgroun
         assert playground.wave() == before
         field = playground.page.locator(f'[data-variable="{name}"] input[type=text]')
         assert field.get_attribute("aria-invalid") == "true"
-        playground.enter(name, repr(float(VARIABLES[name]["start"]) * factor))
+        playground.enter(name, repr(float(START.get(name, VARIABLES[name]["start"])) * factor))
         assert playground.refusal(name) == ""
         assert playground.wave() == before
 
