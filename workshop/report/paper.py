@@ -110,8 +110,7 @@ def vibrating(number: int, V: float, V_1: float, fmu: FrictionFmu) -> Figure:
         f"V = {1e3 * V:g} mm/s, V_1 = {V_1:g} m/s, 20 kHz, d and E constant. Mean friction in the periodic "
         f"state: {means[0]:.4g} N at the printed parameters, {means[1]:.4g} N at the identified stiffness. "
         "Eq. 25 puts V(t) into the solution for constant V: it falls to zero at every reversal, whatever "
-        "the bristle does, and drifts toward Coulomb friction as its factor t grows. In the stiff contact "
-        "the two can't be told apart by eye."
+        "the bristle does, and drifts toward Coulomb friction as its factor t grows."
     )
     return figure(number, f"velocity {V:g} m/s with a vibration of {V_1:g} m/s", caption, panels)
 
@@ -200,9 +199,7 @@ def figure_12(fmu: FrictionFmu) -> Figure:
     ]
     caption = (
         "Left: the friction force depends on d only on the way to saturation, here at the instant σ V t / "
-        "F_C = 5.1 of d = 14 µm. Once the contact slides it is F_C at every constant d. Right: while d "
-        "moves, the deflection lags and the force goes around a loop, beyond F_C on one side and below it "
-        "on the other."
+        "F_C = 5.1 of d = 14 µm. Right: while d moves, the deflection lags and the force goes around a loop."
     )
     return figure(12, "friction force against separation", caption, panels)
 
@@ -232,8 +229,7 @@ def figure_13(fmu: FrictionFmu) -> Figure:
     caption = (
         "V constant, d = 14 µm ± 1.1 µm. In a periodic state the integral of V (1 − F / F_C) vanishes, so "
         "with V constant and positive the mean is exactly F_C = 55 N whatever σ does. The paper's 48 N "
-        "comes out of Eq. 23 with d(t) put in at one frozen instant, and of (max + min) / 2 instead of a "
-        "mean."
+        "comes out of Eq. 23 at one frozen instant, and of (max + min) / 2 instead of a mean."
     )
     return figure(13, "friction force over time with moving separation", caption, panels)
 

@@ -149,11 +149,9 @@ def means(fmu: Path, quick: bool) -> Figure:
     ]
     panels.append(Panel("Cuts at d constant", ZETA, "mean F_t / F_C", cuts, {"ylim": (0.0, 1.05)}))
     caption = (
-        "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean: at κ = 100 within "
-        "0.001 F_C for ζ = 0.3, but not near ζ = 1; with d moving this much only above 3000. Soft ones, "
-        "below 0.1, keep a nearly constant deflection and have a limit of their own: π²/4 times Coulomb's "
-        "mean at small ζ. Inside the line 0 the mean is negative: the vibration drives the sliding. Beyond "
-        "ζ = 1 nothing reverses and, with d constant, the mean is F_C."
+        "Mean friction in the periodic state. Stiff contacts tend to Coulomb's mean, soft ones (κ < 0.1) "
+        "to a limit of their own. Inside the line 0 the mean is negative: the vibration drives the sliding. "
+        "Beyond ζ = 1 nothing reverses and, with d constant, the mean is F_C."
     )
     return Figure("mean", "Mean friction over the regimes", caption, panels, 3, (15.0, 4.9))
 
@@ -174,9 +172,8 @@ def sensitivity_cuts(fmu: Path, quick: bool) -> Figure:
         title = "To " + ", ".join(SYMBOLS[name] for name in names)
         panels.append(Panel(title, KAPPA, "of F_C per 100 % or rad", items, {"xscale": "log"}))
     caption = (
-        "The same along κ at ζ = 0.3. The dashed ends are the limits: Coulomb's (2/π) asin ζ to the right, "
-        "where only V, V_1 and F_C matter, and the soft limit ζ ⟨σ⟩ / ⟨σ |ζ + cos|⟩ to the left, where the "
-        "phase matters and the stiffness no more."
+        "Along κ at ζ = 0.3. The dashed ends are the limits: Coulomb's to the right, where V, V_1 and F_C matter "
+        "alone, and the soft one to the left, where the phase matters and the stiffness no more."
     )
     return Figure("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
 
@@ -253,13 +250,11 @@ def reduction(fmu: Path, quick: bool) -> Figure:
         Panel("Measured headline ranges", "V / V_1 of the limits", y, measured, y_range),
     ]
     caption = (
-        "With a constant separation every stiffness lies between the two dashed limits. The measured "
-        "ranges are those that the abstracts state; they give no V / V_1, so they are bands over the whole "
-        "width: D. Shahgholian Ghahfarokhi, M. Salimi, M. Farzin, Modares Mech. Eng. 15(9), 187–198 "
-        "(2015); S. Dong, M. J. Dapino, J. Vis. Exp. 2015, 52931 (normal vibration at 22 kHz: another "
-        "mechanism than that of the curves, shown for scale); S. Dong, M. J. Dapino, Ultrasonics 54(1), "
-        "343–350 (2014), the paper's reference 9. The printed V / V_1 of Table 2 is 0.0035: there every "
-        "stiffness gives at least 99.4 %, not 51 %."
+        "With a constant separation every stiffness lies between the two dashed limits. The measured ranges "
+        "are those of the abstracts, without V / V_1: D. Shahgholian Ghahfarokhi, M. Salimi, M. Farzin, "
+        "Modares Mech. Eng. 15(9), 187–198 (2015); S. Dong, M. J. Dapino, J. Vis. Exp. 2015, 52931 (normal "
+        "vibration at 22 kHz, for scale); S. Dong, M. J. Dapino, Ultrasonics 54(1), 343–350 (2014), the "
+        "paper's reference 9. At Table 2's V / V_1 = 0.0035 every stiffness gives at least 99.4 %, not 51 %."
     )
     title = "Friction reduction against the velocity ratio"
     return Figure("reduction", title, caption, panels, 2, (12.0, 5.4))
