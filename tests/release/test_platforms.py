@@ -70,7 +70,7 @@ def run(start: list[str], platform: str, library: Path, fmu: FrictionFmu) -> lis
     done = subprocess.run([*map(str, command)], input=words(fmu), capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr[-2000:]
     rows = [line.split() for line in done.stdout.splitlines()]
-    table = np.array([[float.fromhex(word) for word in row] for row in rows])
+    table = np.array([[int(row[0]), *map(float.fromhex, row[1:])] for row in rows])
     runs = [table[table[:, 0] == k + 1, 1:] for k in range(len(scenarios()))]
     assert all(len(one) and np.isfinite(one).all() for one in runs)
     return [one / np.maximum(np.abs(one).max(axis=0), 1e-300) for one in runs]

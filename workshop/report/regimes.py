@@ -172,8 +172,8 @@ def sensitivity_cuts(fmu: Path, quick: bool) -> Figure:
         title = "To " + ", ".join(SYMBOLS[name] for name in names)
         panels.append(Panel(title, KAPPA, "of F_C per 100 % or rad", items, {"xscale": "log"}))
     caption = (
-        "Along κ at ζ = 0.3. The dashed ends are the limits: Coulomb's to the right, where V, V_1 and F_C matter "
-        "alone, and the soft one to the left, where the phase matters and the stiffness no more."
+        "Along κ at ζ = 0.3. The dashed ends are the limits: Coulomb's to the right, where only V, V_1, F_C "
+        "matter, and the soft one to the left, where the phase matters and the stiffness no more."
     )
     return Figure("sensitivity-cuts", "Sensitivities against their limits", caption, panels, 3, (15.0, 4.9))
 
