@@ -52,6 +52,5 @@ def test_the_coupled_error_falls_with_the_order_of_the_coupling(fmu: FrictionFmu
 
 def test_a_coupling_that_chatters_is_told(fmu: FrictionFmu) -> None:
     belt = Belt()
-    rows = coupled_errors(fmu, belt, monolithic(belt), quick=True)
-    failures = {(row["coupling"], row["failure"]) for row in rows if row["H"] == belt.end / 500}
-    assert failures == {("F_t held", "chatters"), ("F_t linear", "")}
+    rows = coupled_errors(fmu, belt, monolithic(belt), (500,))
+    assert [row["failure"] for row in rows] == ["chatters", ""]  # F_t held, F_t linear

@@ -45,7 +45,7 @@ def test_every_quantity_reaches_the_fmu(playground: Playground, fmu: FrictionFmu
     for name in QUANTITIES:
         scene = START | CONTEXT.get(name, {})
         playground.load(scene)
-        before = assert_same(playground, fmu, scene)
+        before = playground.wave()["F_t_N"]
         factor = VARIABLES[name]["factor"]
         value = 1.5 * float(scene.get(name, VARIABLES[name]["start"])) or 0.5 / factor
         text = repr(value * factor)

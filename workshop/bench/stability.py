@@ -65,7 +65,8 @@ def run(options: argparse.Namespace) -> None:
             for name in COUPLINGS
         ]
         reference = monolithic(belt)
-        errors = coupled_errors(fmu, belt, reference, quick) + against_cost(fmu)
+        counts = (500, 2000, 8000) if quick else tuple(250 * 2**k for k in range(8))
+        errors = coupled_errors(fmu, belt, reference, counts) + against_cost(fmu)
     tables = {
         "stability": behaviours,
         "stability-edges": found,

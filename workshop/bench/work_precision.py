@@ -175,7 +175,7 @@ def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
     return rows
 
 
-def period_points(bench: Bench) -> list[dict[str, object]]:
+def period_points(bench: Bench, counts: Sequence[int] = PERIODS) -> list[dict[str, object]]:
     """Cost of one step from rest over ever more vibration periods, in every law.
 
     V rises from 0.3 to 0.7 V_1 and the load falls by half within a moving step; in a held one they keep
@@ -195,7 +195,7 @@ def period_points(bench: Bench) -> list[dict[str, object]]:
             "vibration.a_d": 1.1e-6,
         }
         one: Outcome | None = None
-        for kind, periods in product(("held", "moving"), PERIODS):
+        for kind, periods in product(("held", "moving"), counts):
             moves = kind == "moving"
             inputs = {name: ends if moves else np.full(2, ends.mean()) for name, ends in samples.items()}
             outcome = bench.run(Job(values, periods * PERIOD, inputs=inputs, linear=moves, budget=0.005))
