@@ -50,8 +50,8 @@ def test_every_quantity_reaches_the_fmu(playground: Playground, fmu: FrictionFmu
         value = 1.5 * float(scene.get(name, VARIABLES[name]["start"])) or 0.5 / factor
         text = repr(value * factor)
         playground.enter(name, text)
-        after = assert_same(playground, fmu, scene | {name: float(text) / factor})
-        assert name == "delta_0" or before != after, name
+        assert_same(playground, fmu, scene | {name: float(text) / factor})
+        assert name == "delta_0" or playground.wave()["F_t_N"] != before, name
 
 
 def test_every_choice_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) -> None:
