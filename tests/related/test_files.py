@@ -1,6 +1,6 @@
 """What the FMU holds beside the model: its manifest, parameter sets, reference results and terminals.
 
-tests/examples/test_check_reference.py has that the FMU meets them.
+tests/release/test_verify.py has that the FMU meets them.
 """
 
 from __future__ import annotations
