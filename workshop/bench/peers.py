@@ -54,66 +54,45 @@ class TooSlow(Exception):
     """The evaluations allowed are spent."""
 
 
-class Equation:
-    """Eq. 1, 2 in plain Python numbers over one communication step."""
-
-    def __init__(self, values: dict[str, float], most_evaluations: int) -> None:
-        self.values = values
-        self.rates = {"V": 0.0, "d": 0.0}
-        self.begin = 0.0
-        self.evaluations = 0
-        self.most_evaluations = most_evaluations
-
-    def stiffness_ratio(self, t: float) -> float:
-        v = self.values
-        if v["decay"] == 0.0:
-            return 1.0
-        d = v["d"] + self.rates["d"] * (t - self.begin)
-        d += v["a_d"] * math.cos(2 * math.pi * v["f"] * t + v["phase_d"])
-        return (v["d_ref"] / d) ** 3 * math.exp(-2 * v["decay"] * (d - v["d_ref"]))
-
-    def slope(self, t: float, y: np.ndarray) -> tuple[float, float]:
-        self.evaluations += 1
-        if self.evaluations > self.most_evaluations:
-            raise TooSlow
-        v = self.values
-        V = v["V"] + self.rates["V"] * (t - self.begin) + v["V_1"] * math.cos(2 * math.pi * v["f"] * t)
-        ratio = self.stiffness_ratio(t) * float(y[0])
-        return (V - abs(V) * ratio) * v["sigma"] / v["F_C"], ratio
-
-
 def scipy_radau(case: Case, tolerance: float, most_evaluations: int, start: float) -> Outcome:
     """solve_ivp with Radau over each communication step; started anew only if inputs jump or bend there."""
-    equation = Equation(plain_values(case, tolerance), most_evaluations)
+    v, rates = plain_values(case, tolerance), {"V": 0.0, "d": 0.0}
+    begin, evaluations, y, rows = start, 0, np.zeros(2), []
+
+    def stiffness_ratio(t: float) -> float:
+        d = v["d"] + rates["d"] * (t - begin) + v["a_d"] * math.cos(2 * math.pi * v["f"] * t + v["phase_d"])
+        softer = (v["d_ref"] / d) ** 3 * math.exp(-2 * v["decay"] * (d - v["d_ref"]))
+        return softer if v["decay"] else 1.0
+
+    def slope(t: float, y: np.ndarray) -> tuple[float, float]:
+        nonlocal evaluations
+        evaluations += 1
+        if evaluations > most_evaluations:
+            raise TooSlow
+        V = v["V"] + rates["V"] * (t - begin) + v["V_1"] * math.cos(2 * math.pi * v["f"] * t)
+        ratio = stiffness_ratio(t) * float(y[0])
+        return (V - abs(V) * ratio) * v["sigma"] / v["F_C"], ratio
+
     ends = start + case.step * np.arange(1, case.count + 1)
     spans = [(start, ends[-1], ends)] if not case.inputs else [(e - case.step, e, [e]) for e in ends]
-    y = np.zeros(2)
-    rows = []
+    how = {"rtol": tolerance, "atol": (tolerance, tolerance * case.step)}
     cpu = time.thread_time()
     try:
         for k, (begin, end, points) in enumerate(spans):
-            equation.begin = begin
             for name, samples in case.inputs.items():
-                equation.values[name] = float(samples[k])
+                v[name] = float(samples[k])
                 if case.linear:
-                    equation.rates[name] = float(samples[k + 1] - samples[k]) / case.step
-            atol = (tolerance, tolerance * case.step)
+                    rates[name] = float(samples[k + 1] - samples[k]) / case.step
             with warnings.catch_warnings():  # its numerical Jacobian overflows where the contact is stiff
                 warnings.simplefilter("ignore", RuntimeWarning)
-                result = solve_ivp(
-                    equation.slope, (begin, end), y, "Radau", points, rtol=tolerance, atol=atol
-                )
+                result = solve_ivp(slope, (begin, end), y, "Radau", points, **how)
             if not result.success:
                 return failed(str(result.message))
             y = result.y[:, -1]
-            rows += [
-                (equation.stiffness_ratio(t), *column) for t, column in zip(points, result.y.T, strict=True)
-            ]
+            rows += [(stiffness_ratio(t), *column) for t, column in zip(points, result.y.T, strict=True)]
     except TooSlow:
         return failed(f"not finished after {most_evaluations} evaluations")
     cpu = time.thread_time() - cpu
     ratio, scaled, impulse = np.array(rows).T
-    F_C = equation.values["F_C"]
-    F_mean = F_C * np.diff(impulse, prepend=0.0) / case.step
-    per_step = np.array([cpu, equation.evaluations]) / case.count
-    return Outcome(F_C * ratio * scaled, F_mean, *map(float, per_step))
+    F_mean = v["F_C"] * np.diff(impulse, prepend=0.0) / case.step
+    return Outcome(v["F_C"] * ratio * scaled, F_mean, cpu / case.count, evaluations / case.count)
