@@ -105,11 +105,7 @@ def scenes() -> list[Case]:
         Case(
             f"table-2-row-{row.number}",
             f"Table 2, row {row.number}",
-            {
-                "E": E_REDUCED if row.softened else E_FULL,
-                "vibration.V_1": row.V_1,
-                "vibration.a_d": row.a_d,
-            },
+            {"E": E_REDUCED if row.softened else E_FULL, "vibration.V_1": row.V_1, "vibration.a_d": row.a_d},
         )
         for row in TABLE_2
     ]

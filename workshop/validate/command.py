@@ -6,13 +6,7 @@ from collections.abc import Sequence
 from rich.table import Table
 
 from frictioncontact import resources, style
-from frictioncontact.command import (
-    add_fmu,
-    add_output,
-    as_table,
-    command_line,
-    table_console,
-)
+from frictioncontact.command import add_fmu, add_output, as_table, command_line, table_console
 from frictioncontact.fmu import FrictionFmu
 from workshop.build import build_fmu
 from workshop.validate import elements, figures, longitudinal, measurements, normal, record
