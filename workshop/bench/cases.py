@@ -116,6 +116,7 @@ def cases() -> list[Case]:
             name="vibrating-d",
             title="d vibrates, V 5 mm/s",
             start_values={"vibration.a_d": 1.1e-6},
+            starts=(0.0, 0.4 * PERIOD),
         ),
         Case("held", "no vibration, V and d held", {}, step=1e-6, count=16, inputs={"V": steps, "d": gaps}),
         Case(
