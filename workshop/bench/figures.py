@@ -14,7 +14,6 @@ METHODS = {  # that the chart shows: label and colour
     "Radau 9": ("order 9", style.ORANGE),
     "Radau 13": ("order 13", style.RED),
     "plain CVODE": ("CVODE", style.GREEN),
-    "scipy Radau": ("scipy Radau", style.GREY),
 }
 SHOWN = ("vibrating-6e06", "vibrating-6e10", "vibrating-V", "vibrating-d", "linear", "sampled-20-linear-6e06")
 SMALLEST_ERROR = 1e-16

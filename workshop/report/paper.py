@@ -45,7 +45,6 @@ STIFFNESSES = {  # each scene is drawn at both
     "Identified stiffness, σ = 2.537 MN/m": IDENTIFIED,
 }
 FORCE, GAP, TIME = "friction force F_t [N]", "separation d [µm]", "time [µs]"
-seconds = EngFormatter("s")
 
 
 def force_eq_23(F_C: float, sigma: Any, V: Any, t: Any) -> np.ndarray:
@@ -69,7 +68,7 @@ def figure(number: int, title: str, caption: str, panels: Sequence[Panel], *layo
 
 def steady(number: int, V: float, fmu: FrictionFmu) -> Figure:
     def in_seconds(axes: Axes) -> None:
-        axes.xaxis.set_major_formatter(seconds)
+        axes.xaxis.set_major_formatter(EngFormatter("s"))
 
     panels, times = [], []
     for name, contact in STIFFNESSES.items():
@@ -121,9 +120,12 @@ def against_gap(number: int, fmu: FrictionFmu) -> Figure:
         8: ("A_r", area, 1e6, "contact area", "A_r [mm²]"),
         10: ("sigma", stiffness, 1.0, "contact stiffness", "σ [N/m]"),
     }[number]
-    gaps = np.linspace(10e-6, 20e-6, 101)
+    gaps, of_fmu = np.linspace(10e-6, 20e-6, 101), []
     with fmu.session() as session:
-        of_fmu = [session.set("d", d) or session.step(0.0) or scale * session.get(name) for d in gaps]
+        for d in gaps:
+            session.set("d", d)
+            session.step(0.0)
+            of_fmu.append(scale * session.get(name))
     gaussian = [scale * of_heights(Surfaces(), d, model="gaussian") for d in gaps]
     items = [
         Line(1e6 * gaps, of_fmu, "FMU (Eq. 3; 20–22, corrected)", MODEL, width=2.4),

@@ -103,11 +103,8 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
         ) -> None:
             axes.vlines(np.flatnonzero(which), *ends[which].T, color=colour, lw=width, label=label)
 
-        items = [
-            partial(
-                bars, which=held, label=f"contains the truth: {sum(held)} of {seeds}", colour=BLUE, width=1.8
-            )
-        ]
+        label = f"contains the truth: {sum(held)} of {seeds}"
+        items = [partial(bars, which=held, label=label, colour=BLUE, width=1.8)]
         if not all(held):
             items.append(partial(bars, which=~held, label="misses it", colour=ORANGE, width=2.4))
         items.append(Level(factor * TRUTH[name], "truth", BLACK))
