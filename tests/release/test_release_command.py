@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -60,6 +61,12 @@ def test_the_wheel_and_the_page_are_the_released_files(released: Path, tmp_path:
         assert archive.read("documentation/playground.html") == inside
         assert b'<a href="playground.html">' in archive.read("documentation/index.html")
     subprocess.run(["sha256sum", "--check", "--strict", "SHA256SUMS"], cwd=released.parent, check=True)
+
+
+def test_it_is_one_of_ours(released: Path) -> None:
+    command = [sys.executable, "-m", "workshop", "workshop.release.command", "--check", str(released)]
+    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    assert len(said) == 4 and all(line.startswith("ok  ") for line in said)
 
 
 def test_contents(released: Path) -> None:
