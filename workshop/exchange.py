@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_double, c_uint
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,7 @@ class Host(Closing):
                 get_z=self._model.getEventIndicators,
                 get_nominals=self._get_nominals,
                 set_time=self._set_time,
-                input=_NoInput(),
+                input=SimpleNamespace(apply=lambda t: None),  # inputs are set with the states
                 startTime=start,
                 maxStep=longest_step,
                 relativeTolerance=tolerance,
@@ -190,10 +191,3 @@ class FMU2Counted(FMU2Model):
     def _call(self, *arguments: Any) -> Any:
         self.calls += 1
         return super()._call(*arguments)
-
-
-class _NoInput:
-    """Inputs are set with the states."""
-
-    def apply(self, t: float) -> None:
-        pass

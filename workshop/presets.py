@@ -23,24 +23,33 @@ class Preset:
     measured: tuple[tuple[float, float, str], ...] | None = None  # V / V_1, force over that without, text
 
 
+IDENTIFIED_ROWS = (
+    "identified",
+    "Table 2, identified stiffness and phase",
+    "Three numbers fitted to the three informative rows of Table 2: stiffness 2.5366 MN/m at 14 µm, "
+    "phase 224.94°, velocity 0.5 m/s. They show that the equations can reach the rows, not that the "
+    "equations are right.",
+)
+EXACT_ROWS = (
+    "exact",
+    "Table 2, exact: the printed parameters",
+    "The equations at the printed parameters: where the paper's number differs, they do not give it.",
+)
+
+
 def presets() -> list[Preset]:
     return [*table_2(IDENTIFIED), *table_2(PRINTED), *dry_rows(), *scenes()]
 
 
 def table_2(parameters: ParameterSet) -> list[Preset]:
     """The six rows of Table 2 with one set of parameters."""
-    name = "identified" if parameters is IDENTIFIED else "exact"
-    group = (
-        "Table 2, identified stiffness and phase"
-        if parameters is IDENTIFIED
-        else "Table 2, exact: the printed parameters"
-    )
+    name, group, note = IDENTIFIED_ROWS if parameters is IDENTIFIED else EXACT_ROWS
     return [
         Preset(
             f"table2-row{row.number}-{name}",
             group,
             f"Row {row.number} {name}: {_conditions(row)}",
-            _table_2_note(parameters),
+            note,
             SETTLED | start_values(row, parameters),
             known=row.paper_force,
             known_from="Paper",
@@ -58,24 +67,11 @@ def _conditions(row: Row) -> str:
     return ", ".join(parts) or "no vibration"
 
 
-def _table_2_note(parameters: ParameterSet) -> str:
-    if parameters is IDENTIFIED:
-        return (
-            "Three numbers fitted to the three informative rows of Table 2: stiffness 2.5366 MN/m at 14 µm, "
-            "phase 224.94°, velocity 0.5 m/s. They show that the equations can reach the rows, not that the "
-            "equations are right."
-        )
-    return "The equations at the printed parameters: where the paper's number differs, they do not give it."
-
-
 def dry_rows() -> list[Preset]:
     """Luo et al. 2024, Fig. 5b: each row that slides, with its measured force without vibration as F_C."""
     data = sliding("dry")
     rows = np.column_stack([data.V, data.without, data.vibrated]).tolist()
-    points = tuple(
-        (V / data.V_1, force / without, f"{1e3 * V:g} mm/s: {force:g} of {without:g} N")
-        for V, without, force in rows
-    )
+    points = tuple((V / data.V_1, F / F_C, f"{1e3 * V:g} mm/s: {F:g} of {F_C:g} N") for V, F_C, F in rows)
     return [
         Preset(
             f"luo2024-dry-{1e3 * V:g}mm-s",
@@ -102,6 +98,9 @@ def dry_rows() -> list[Preset]:
         )
         for V, without, force in rows
     ]
+
+
+SOFT: dict[str, float | str] = {"contact.model": "Constant", "contact.sigma": 14.4e6}
 
 
 def scenes() -> list[Preset]:
@@ -131,13 +130,7 @@ def scenes() -> list[Preset]:
             "Transverse vibration: the velocity turns and never reverses",
             "The vibration of 1.44 m/s is transverse to the sliding. The force turns after the velocity "
             "(figure b), so little is left of it along the sliding.",
-            SETTLED
-            | {
-                "contact.model": "Constant",
-                "contact.sigma": 14.4e6,
-                "V": 0.144,
-                "vibration.V_2": 1.44,
-            },
+            SETTLED | SOFT | {"V": 0.144, "vibration.V_2": 1.44},
         ),
         Preset(
             "ellipse",
@@ -146,15 +139,8 @@ def scenes() -> list[Preset]:
             "The surfaces vibrate in an ellipse of the plane while they slide at an angle. The mean force "
             "has a transverse part, and it need not point against the sliding.",
             SETTLED
-            | {
-                "contact.model": "Constant",
-                "contact.sigma": 14.4e6,
-                "V": 0.3,
-                "V_y": 0.2,
-                "vibration.V_1": 1.44,
-                "vibration.V_2": 0.9,
-                "vibration.phase_2": 1.1,
-            },
+            | SOFT
+            | {"V": 0.3, "V_y": 0.2, "vibration.V_1": 1.44, "vibration.V_2": 0.9, "vibration.phase_2": 1.1},
         ),
         Preset(
             "ultrasonic-motor",

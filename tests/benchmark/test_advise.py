@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -23,7 +22,6 @@ from workshop.reference import changed, scene_of, settled, start_values, step
 
 F_C = 55.0  # N
 LAWS = ("Dahl", "LuGre", "ElasticPlastic", "Coulomb")
-OUTPUTS = ("F_t", "F_t_mean")
 
 
 def draw(seed: int) -> tuple[dict[str, Value], float, float]:
@@ -49,7 +47,7 @@ def missed(
     step: float,
     phases: tuple[float, ...] = (0.0, 0.5),
 ) -> np.ndarray:
-    """The largest errors of OUTPUTS [N] in some steps from some phases, from rest and settled."""
+    """The largest errors of F_t and F_t_mean [N] in some steps from some phases, from rest and settled."""
     case = Case("drawn", "drawn", scene, step)
     return largest_errors(fmu, case, settings, runs_of(case, phases))
 
@@ -71,7 +69,7 @@ def advised(fmu_path: Path, capsys: pytest.CaptureFixture[str], *words: str) -> 
 
 
 OPEN = ["contact.input=Load", "load=0"]
-SEEDS = (0, 1, 3, 5, 8, 26)  # one of ElasticPlastic, whose reference takes longest
+SEEDS = (0, 1, 3, 26)  # one of ElasticPlastic, whose reference takes longest
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -84,21 +82,17 @@ def test_the_advice_holds_its_promise(
     assert missed(fmu, scene, settings, step).max() <= allowed(scene, accuracy)
 
 
-@pytest.mark.parametrize(
-    ("words", "outputs"),
-    [
-        (["V=0.5"], ("F_t", "F_t_mean")),
-        (["V=0.7", "vibration.V_1=1.44", "--output-of", "F_t_mean"], ("F_t_mean",)),
-    ],
-)
 def test_coulomb_is_advised_where_it_is_close_enough(
-    fmu: FrictionFmu, fmu_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], outputs: tuple
+    fmu: FrictionFmu, fmu_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    settings = advised(fmu_path, capsys, "--accuracy", "1e-2", "--step", "1e-3", *words)
-    assert settings["friction.model"] == 2.0
-    scene = {k: v for k, v in settings.items() if k != "friction.model"}
-    errors = missed(fmu, scene, settings, 1e-3)
-    assert max(errors[OUTPUTS.index(name)] for name in outputs) <= allowed(scene, 1e-2)
+    for words, outputs in (
+        (["V=0.5"], [0, 1]),
+        (["V=0.7", "vibration.V_1=1.44", "--output-of", "F_t_mean"], [1]),
+    ):
+        settings = advised(fmu_path, capsys, "--accuracy", "1e-2", "--step", "1e-3", *words)
+        assert settings["friction.model"] == 2.0
+        scene = {k: v for k, v in settings.items() if k != "friction.model"}
+        assert missed(fmu, scene, settings, 1e-3)[outputs].max() <= allowed(scene, 1e-2)
 
 
 def test_the_promise_is_of_F_C_if_viscous_friction_is_far_larger(
@@ -115,7 +109,7 @@ def test_the_promise_is_of_F_C_if_viscous_friction_is_far_larger(
         advised(fmu_path, capsys, "--accuracy", "1e-8", *words)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(12))
 def test_no_bristle_is_farther_from_coulomb_than_the_bound(seed: int) -> None:
     random = np.random.default_rng(seed)
     V_1 = 10.0 ** random.uniform(-2, 0.5)
@@ -132,82 +126,58 @@ def test_no_bristle_is_farther_from_coulomb_than_the_bound(seed: int) -> None:
         assert abs(found.F_t_mean - rigid.F_t_mean) / 55.0 <= bounds[1] + 1e-14
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
+def test_nothing_is_proven_of_other_scenes() -> None:
+    for values in (
         {"vibration.a_d": 1e-7},
         {"friction.model": "LuGre"},
         {"V": 1.0, "vibration.V_1": 1.0},
         {"friction.limit": "Load"},
-        {"sigma": 0.0},
-    ],
-)
-def test_nothing_is_proven_of_other_scenes(values: dict[str, float | str]) -> None:
-    sigma = float(values.pop("sigma", 1e9))
-    assert min(coulomb_errors(start_values(scene_of(values)), sigma, 1e-3)) == float("inf")
+    ):
+        assert min(coulomb_errors(start_values(scene_of(values)), 1e9, 1e-3)) == float("inf")
+    assert min(coulomb_errors(start_values(scene_of({})), 0.0, 1e-3)) == float("inf")
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
+def test_bad_questions_get_one_line(
+    fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    uneven = tmp_path / "inputs.csv"
+    uneven.write_text("time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n")
+    for words, message in (
         (["--set", "V"], "V: is not of the form NAME=VALUE"),
         (["solver.tolerance=1e-3"], "solver.tolerance does not describe a scene; these do: V, d, E"),
         (["--accuracy", "0"], "accuracy 0: must lie between"),
         (["--step", "-1"], "step -1 s: must lie between"),
         (["--inputs", "nowhere.csv"], "nowhere.csv: No such file"),
+        (["--inputs", str(uneven)], "inputs: time must grow in even steps, and does not at sample "),
         ([*OPEN, "friction.limit=Load"], "friction.mu F_n = 0 N: must be above 0 N"),
         ([*OPEN, "--mass", "1", "--step", "1e-3"], "mass: sigma = 0 N/m: must be above 0 N/m"),
-    ],
-)
-def test_bad_questions_get_one_line(
-    fmu_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
-) -> None:
-    with pytest.raises(SystemExit) as ended:
-        advised(fmu_path, capsys, *words)
-    assert message in str(ended.value)
-    assert str(ended.value).count("\n") == 0
-
-
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (
-            "time,V\n0,0.1\n1e-5,0.2\n3e-5,0.2\n",
-            "inputs: time must grow in even steps, and does not at sample ",
-        ),
-    ],
-)
-def test_bad_inputs_are_told_by_their_line(
-    fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path, content: str, message: str
-) -> None:
-    path = tmp_path / "inputs.csv"
-    path.write_text(content)
-    with pytest.raises(SystemExit, match=re.escape(message)):
-        advised(fmu_path, capsys, "--inputs", str(path))
+    ):
+        with pytest.raises(SystemExit) as ended:
+            advised(fmu_path, capsys, *words)
+        assert message in str(ended.value)
+        assert str(ended.value).count("\n") == 0
 
 
 TIMES, SPEEDS = 2e-5 + 1e-5 * np.arange(11), 0.01 * (np.arange(11) - 5)
 
 
-def of_inputs(
-    fmu_path: Path, capsys: pytest.CaptureFixture[str], path: Path, heading: str, begin: float, *words: str
-) -> list[str]:
-    """The words of the command that it prints for SPEEDS in a file."""
-    rows = zip(TIMES - TIMES[0] + begin, SPEEDS, strict=True)
-    path.write_text(heading + "\n" + "".join(f"{time!r},{V!r}\n" for time, V in np.array([*rows]).tolist()))
-    soft = ["--set", "contact.stiffnessScale=1e-6", "--fmu", str(fmu_path)]
-    main(advise, ["--quick", "--inputs", str(path), *soft, *words])
-    return capsys.readouterr().out.splitlines()[-1].split()
-
-
-def test_fmpy_s_command_holds_the_inputs_of_a_file(
+def test_the_command_that_it_prints_holds_the_inputs_of_a_file(
     fmu: FrictionFmu, fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """It gives what steps do from the first time on."""
-    words = of_inputs(fmu_path, capsys, tmp_path / "inputs.csv", "time,V", TIMES[0])
-    assert words[:2] == ["fmpy", "simulate"]
+    """It gives what steps do from the first time on; of linear inputs, frictioncontact's; else none."""
+
+    def words(heading: str, begin: float, *options: str) -> list[str]:
+        path = tmp_path / "inputs.csv"
+        table = np.column_stack([TIMES - TIMES[0] + begin, SPEEDS])
+        np.savetxt(path, table, "%.17g", delimiter=",", header=heading, comments="")
+        soft = ["--set", "contact.stiffnessScale=1e-6", "--fmu", str(fmu_path)]
+        main(advise, ["--quick", "--inputs", str(path), *soft, *options])
+        return capsys.readouterr().out.splitlines()[-1].split()
+
+    printed = words("time,V", TIMES[0])
+    assert printed[:2] == ["fmpy", "simulate"]
     out = ["--output-variables", "F_t", "--output-file", str(tmp_path / "out.csv")]
-    run = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), *out, *words[3:]]
+    run = [sys.executable, "-m", "fmpy", "simulate", str(fmu_path), *out, *printed[3:]]
     subprocess.run(run, check=True, capture_output=True, timeout=60)
     found = np.loadtxt(tmp_path / "out.csv", delimiter=",", skiprows=1)
     with fmu.session({"contact.stiffnessScale": 1e-6, "V": SPEEDS[0]}, start=TIMES[0]) as session:
@@ -215,24 +185,9 @@ def test_fmpy_s_command_holds_the_inputs_of_a_file(
             session.set("V", V)
             session.step(1e-5)
             assert found[k + 1] == pytest.approx([TIMES[k + 1], session.get("F_t")], rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("heading", "begin", "options", "command"),
-    [
-        ("time,V", 0.0, ["--linear"], "frictioncontact simulate"),
-        ("time [s],V [m/s]", 0.0, ["--linear"], "frictioncontact simulate"),
-        ("time,V [mm/s]", 0.0, [], "Neither fmpy"),
-        ("time [ms],V", 0.0, [], "Neither fmpy"),
-        ("time,V", 1e-5, ["--linear"], "Neither fmpy"),
-    ],
-)
-def test_no_command_reads_a_file_otherwise(
-    fmu_path: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path,
-    heading: str, begin: float, options: list[str], command: str,
-) -> None:  # fmt: skip
-    words = of_inputs(fmu_path, capsys, tmp_path / "inputs.csv", heading, begin, *options)
-    assert " ".join(words).startswith(command)
-    if words[0] == "frictioncontact":
-        main(simulate, words[2:])
-        assert len(capsys.readouterr().out.splitlines()) == len(TIMES) + 1
+    printed = words("time [s],V [m/s]", 0.0, "--linear")
+    assert printed[:2] == ["frictioncontact", "simulate"]
+    main(simulate, printed[2:])
+    assert len(capsys.readouterr().out.splitlines()) == len(TIMES) + 1
+    for heading, begin, options in (("time [ms],V", 0.0, []), ("time,V", 1e-5, ["--linear"])):
+        assert words(heading, begin, *options)[:2] == ["Neither", "fmpy"]

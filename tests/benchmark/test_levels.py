@@ -16,7 +16,7 @@ def test_the_table_of_scenes_shows_where_simpler_models_fail(
 ) -> None:
     """Of the scenes one of each kind."""
     kinds = {case.name: case for case in levels.scenes()}
-    chosen = [kinds[name] for name in ("steady", "table-2-row-2", "presliding", "stick-slip", "soft")]
+    chosen = [kinds[name] for name in ("steady", "presliding", "stick-slip", "soft")]
     monkeypatch.setattr(levels, "scenes", lambda: chosen)
     main(levels, ["--quick", "--fmu", str(fmu_path), "--output", str(tmp_path)])
     assert "presliding" in capsys.readouterr().out

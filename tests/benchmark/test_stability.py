@@ -26,22 +26,16 @@ def test_edges_lie_where_theory_says(fmu: FrictionFmu, method: str, edge: tuple[
     assert classify(fmu, method, 1.003 * theory) == edge[1]
 
 
-@pytest.mark.parametrize("z", [1e-3, 0.1, 1.0, 3.0, 1e3, 1e8])
-def test_implicit_methods_have_no_limit(fmu: FrictionFmu, z: float) -> None:
-    assert classify(fmu, "collocation", z) == "monotone"
-    assert classify(fmu, "backwardEuler", z) == "monotone"
-    assert classify(fmu, "cvode", z) in ("monotone", "stable")
+def test_implicit_methods_have_no_limit(fmu: FrictionFmu) -> None:
+    for z in (1e-3, 3.0, 1e8):
+        assert classify(fmu, "collocation", z) == classify(fmu, "backwardEuler", z) == "monotone"
+        assert classify(fmu, "cvode", z) in ("monotone", "stable")
 
 
 @pytest.mark.parametrize("coupling", COUPLINGS)
 def test_a_coupled_mass_is_stable_up_to_the_step_in_theory(fmu: FrictionFmu, coupling: str) -> None:
     belt = Belt()
     assert coupled_edge(fmu, belt, coupling) == pytest.approx(theoretical_edge(belt, coupling), rel=7e-4)
-
-
-def test_derivatives_allow_longer_steps() -> None:
-    held, linear = (theoretical_edge(Belt(), coupling) for coupling in COUPLINGS)
-    assert linear > 10 * held
 
 
 def test_the_coupled_error_falls_with_the_order_of_the_coupling(fmu: FrictionFmu) -> None:
@@ -58,6 +52,5 @@ def test_the_coupled_error_falls_with_the_order_of_the_coupling(fmu: FrictionFmu
 
 def test_a_coupling_that_chatters_is_told(fmu: FrictionFmu) -> None:
     belt = Belt()
-    rows = coupled_errors(fmu, belt, monolithic(belt), quick=True)
-    failures = {(row["coupling"], row["failure"]) for row in rows if row["H"] == belt.end / 500}
-    assert failures == {("F_t held", "chatters"), ("F_t linear", "")}
+    rows = coupled_errors(fmu, belt, monolithic(belt), (500,))
+    assert [row["failure"] for row in rows] == ["chatters", ""]  # F_t held, F_t linear

@@ -30,7 +30,7 @@ from workshop.project import ROOT
 M, SIGMA = 1.0, 1e6
 TIME = math.sqrt(M / SIGMA)
 COUNT = 600  # steps
-GUIDE = (ROOT / "docs" / "machine.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs" / "machine.md").read_text(encoding="utf-8").partition("## Another mass")[2]
 TITLES = {  # of the rows in docs/machine.md
     JACOBI: "Jacobi, held values",
     REREAD: "Jacobi that reads",
@@ -39,12 +39,13 @@ TITLES = {  # of the rows in docs/machine.md
 }
 
 
-def exchange(
+def grows(
     fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0, output: str = "F_t"
-) -> np.ndarray:
-    """Velocities [m/s] of the mass, which starts at 1 um/s from rest of the contact; c damps it outside.
+) -> bool:
+    """Whether the mass, which starts at 1 um/s from rest of the contact, swings ever more.
 
-    The law is ElasticPlastic far below its limit, which sticks truly; the mass is integrated exactly.
+    c damps it outside. By more than 1 % in 200 steps: an undamped swing's samples miss its peak by less. The
+    law is ElasticPlastic far below its limit, which sticks truly; the mass is integrated exactly.
     """
     x = c * H / M
     kept = math.exp(-x)
@@ -74,15 +75,8 @@ def exchange(
                 session.set("V", v)
             session.step(H)
             speeds.append(v)
-    return np.array(speeds)
-
-
-def grows(
-    fmu: FrictionFmu, master: str, H: float, sigma_1: float, c: float = 0.0, output: str = "F_t"
-) -> bool:
-    """By more than 1 % in 200 steps; an undamped swing's samples miss its peak by less."""
-    speeds = np.abs(exchange(fmu, master, H, sigma_1, c, output))
-    return len(speeds) < COUNT or bool(speeds[500:].max() > 1.01 * speeds[300:400].max())
+    size = np.abs(speeds)
+    return len(size) < COUNT or bool(size[500:].max() > 1.01 * size[300:400].max())
 
 
 def promised(master: str, H: float) -> tuple[float, float]:
@@ -97,7 +91,7 @@ def promised(master: str, H: float) -> tuple[float, float]:
     return edges[0], edges[1]
 
 
-@pytest.mark.parametrize("fraction", [0.3, 0.7, 0.95])
+@pytest.mark.parametrize("fraction", [0.3, 0.95])
 @pytest.mark.parametrize("master", MASTERS)
 def test_the_fmu_turns_unstable_at_the_edges_of_the_table(
     fmu: FrictionFmu, master: str, fraction: float
@@ -111,11 +105,10 @@ def test_the_fmu_turns_unstable_at_the_edges_of_the_table(
     assert low == 0.0 or grows(fmu, master, H, 0.97 * low)
 
 
-@pytest.mark.parametrize("fraction", [0.3, 0.7])
 @pytest.mark.parametrize("master", [JACOBI, GAUSS_SEIDEL])
-def test_the_edges_of_the_mean_force(fmu: FrictionFmu, master: str, fraction: float) -> None:
+def test_the_edges_of_the_mean_force(fmu: FrictionFmu, master: str) -> None:
     """They lie H sigma / 2 higher, as docs/machine.md and the advice say."""
-    H = fraction * LARGEST_STEP[master] * TIME
+    H = 0.5 * LARGEST_STEP[master] * TIME
     low, high = (edge + H * SIGMA / 2 for edge in promised(master, H))
     assert grows(fmu, master, H, 1.03 * high, output="F_t_mean")
     assert not grows(fmu, master, H, 0.97 * high, output="F_t_mean")
@@ -133,25 +126,16 @@ def test_the_largest_step_is_that_of_the_table(fmu: FrictionFmu, master: str) ->
     assert not grows(fmu, master, H, math.fsum(damping_range(M, SIGMA, master, H)) / 2)
     H = 1.03 * limit * TIME
     assert damping_range(M, SIGMA, master, H) is None
-    assert all(grows(fmu, master, H, x * M / H) for x in np.linspace(0.0, 5.0, 100))
+    assert all(grows(fmu, master, H, x * M / H) for x in np.linspace(0.0, 5.0, 25))
 
 
-@pytest.mark.parametrize("fraction", [0.1, 0.6, 0.999])
 @pytest.mark.parametrize("master", MASTERS)
-def test_the_advised_damping_is_stable_and_hardly_more_than_the_least(
-    fmu: FrictionFmu, master: str, fraction: float
-) -> None:
-    H = fraction * LARGEST_STEP[master] * TIME
-    advised = least_damping(M, SIGMA, master, H)
-    assert not grows(fmu, master, H, advised)
-    assert advised <= 1.1001 * promised(master, H)[0]
-
-
-def test_held_without_damping_grows_at_every_step(fmu: FrictionFmu) -> None:
-    """sqrt(1 + H^2 sigma / m) a step: explicit Euler on the oscillator."""
-    speeds = np.abs(exchange(fmu, REREAD, 0.1 * TIME, 0.0))
-    peak = speeds[500:].max() / speeds[:100].max()
-    assert math.log(peak) / 500 == pytest.approx(math.log(math.sqrt(1.01)), rel=0.03)
+def test_the_advised_damping_is_stable_and_hardly_more_than_the_least(fmu: FrictionFmu, master: str) -> None:
+    for fraction in (0.1, 0.999):
+        H = fraction * LARGEST_STEP[master] * TIME
+        advised = least_damping(M, SIGMA, master, H)
+        assert not grows(fmu, master, H, advised)
+        assert advised <= 1.1001 * promised(master, H)[0]
 
 
 def test_damping_outside_sets_the_held_step(fmu: FrictionFmu) -> None:
@@ -161,21 +145,18 @@ def test_damping_outside_sets_the_held_step(fmu: FrictionFmu) -> None:
     assert grows(fmu, JACOBI, H, 0.0, c=0.97 * H * SIGMA)
 
 
-def run(capsys: pytest.CaptureFixture[str], master: str, *words: str) -> str:
-    scene = [f"--set={word}" for word in ("contact.model=Constant", "contact.sigma=1e6", *words)]
-    main(advise, ["--mass", "1", "--step", "1e-4", "--master", master, *scene])
-    return capsys.readouterr().out
-
-
 def test_the_advice_can_be_pasted(fmu: FrictionFmu, capsys: pytest.CaptureFixture[str]) -> None:
-    sigma_1 = float(run(capsys, JACOBI).rsplit("friction.sigma_1", 1)[1])
-    assert not grows(fmu, JACOBI, 1e-4, sigma_1)
-    assert run(capsys, GAUSS_SEIDEL, "friction.sigma_1=5").endswith("friction.sigma_1 0\n")
+    """And at break-away F_t is the static friction and sigma_1 V, as it says."""
 
+    def told(master: str, *words: str) -> str:
+        scene = [f"--set={word}" for word in ("contact.model=Constant", "contact.sigma=1e6", *words)]
+        main(advise, ["--mass", "1", "--step", "1e-4", "--master", master, *scene])
+        return capsys.readouterr().out
 
-def test_the_damping_and_static_friction(fmu: FrictionFmu, capsys: pytest.CaptureFixture[str]) -> None:
-    """At break-away F_t is the static friction and sigma_1 V, as the advice says."""
-    assert "At break-away F_t exceeds the static friction by sigma_1 V, 111.123 N for" in run(capsys, JACOBI)
+    said = told(JACOBI)
+    assert not grows(fmu, JACOBI, 1e-4, float(said.rsplit("friction.sigma_1", 1)[1]))
+    assert told(GAUSS_SEIDEL, "friction.sigma_1=5").endswith("friction.sigma_1 0\n")
+    assert "At break-away F_t exceeds the static friction by sigma_1 V, 111.123 N for" in said
     sticking = {
         "friction.model": "ElasticPlastic", "friction.staticRatio": 1.5, "friction.sigma_1": 111.123,
         "contact.model": "Constant", "contact.sigma": 1e6, "V": 0.1,
@@ -189,20 +170,16 @@ def test_a_step_that_nothing_makes_stable_is_said() -> None:
     assert "No friction.sigma_1 makes a step" in advice(M, SIGMA, JACOBI, 0.6 * TIME)[0]
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--mass", "0", "--step", "1e-4"], "mass 0 kg: must lie between"),
-        (["--mass", "1e300", "--step", "1e-300"], "step 1e-300 s: must lie between"),
-        (["--mass", "1", "--step", "1e300"], "step 1e+300 s: must lie between"),
-        (["--mass", "1"], "mass needs step and takes no inputs"),
-        (["--mass", "1", "--step", "1e-4", "--inputs", "drive.csv"], "mass needs step and takes no inputs"),
-        (["--mass", "1", "--step", "1e-4", "--linear"], "mass needs step and takes no inputs"),
-        (["--mass", "1", "--step", "1e-4", "--set", "friction.model=Coulomb"], "Coulomb never sticks"),
-    ],
-)
-def test_wrong_options_are_one_line(words: list[str], message: str) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(advise, words)
-    assert message in str(ended.value)
-    assert "\n" not in str(ended.value)
+def test_wrong_options_are_one_line() -> None:
+    needs = "mass needs step and takes no inputs"
+    for words, message in (
+        (["0", "--step", "1e-4"], "mass 0 kg: must lie between"),
+        (["1", "--step", "1e300"], "step 1e+300 s: must lie between"),
+        (["1"], needs),
+        (["1", "--step", "1e-4", "--inputs", "drive.csv"], needs),
+        (["1", "--step", "1e-4", "--set", "friction.model=Coulomb"], "Coulomb never sticks"),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            main(advise, ["--mass", *words])
+        assert message in str(ended.value)
+        assert "\n" not in str(ended.value)

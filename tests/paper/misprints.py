@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from frictioncontact.parameters import E_FULL, Surfaces
+from frictioncontact.parameters import E_FULL, SEPARATION, Surfaces
 
 
 def closed_form_area(surfaces: Surfaces, d: float, E: float = E_FULL) -> float:
@@ -28,15 +29,9 @@ def residual_eq_25(F_C: float, sigma: float, V_2: float, V_1: float, f: float, t
     return math.exp(-sigma * abs(V) * t / F_C) * t * -omega * math.sin(omega * t)
 
 
-def area_eq_20(
-    surfaces: Surfaces,
-    d: float,
-    E: float,
-    swapped: bool,
-    positive_exponent: bool,
-    lengths_over_R_q: bool = True,
-) -> float:
-    """A_r [m2] of Eq. 20-22 with each of its misprints on or off; all off is the FMU's."""
+def area_eq_20(swapped: bool, positive_exponent: bool, lengths_over_R_q: bool = True) -> float:
+    """A_r [m2] of Eq. 20-22 at 14 um with each of its misprints on or off; all off is the FMU's."""
+    surfaces, d, E = Surfaces(), SEPARATION, E_FULL
     c, decay = (surfaces.lambda_, surfaces.c) if swapped else (surfaces.c, surfaces.lambda_)
     omega_c = surfaces.critical_interference(E)
     scale = surfaces.R_q if lengths_over_R_q else 1e-6  # lengths in um, as in the nomenclature
@@ -48,18 +43,13 @@ def area_eq_20(
     return front * (elastic + plastic)
 
 
-def mean_over_cycle(function: object, centre: float, amplitude: float) -> float:
+def mean_over_cycle(function: Callable[[float], float], centre: float, amplitude: float) -> float:
     """Time mean of function(centre + amplitude cos theta)."""
-    return (
-        quad(
-            lambda theta: function(centre + amplitude * math.cos(theta)),  # type: ignore[operator]
-            0.0,
-            math.pi,
-            epsabs=0.0,
-            epsrel=1e-12,
-        )[0]
-        / math.pi
-    )
+
+    def at(theta: float) -> float:
+        return function(centre + amplitude * math.cos(theta))
+
+    return quad(at, 0.0, math.pi, epsabs=0.0, epsrel=1e-12)[0] / math.pi
 
 
 def yield_pressure_ratio(nu: float) -> float:

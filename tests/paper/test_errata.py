@@ -35,10 +35,8 @@ from frictioncontact.parameters import (
     start_values,
 )
 from frictioncontact.periodic import periodic_mean
-from workshop.paper.claims import mean_changes
-from workshop.paper.equations import force_eq_25
-from workshop.regimes.mean import coulomb_limit, soft_limit
-from workshop.report.text import IDENTIFY_INTRO
+from workshop.report.paper import force_eq_25, mean_change
+from workshop.report.regimes import coulomb_limit, scene, soft_limit
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "errata.md").read_text(encoding="utf-8")
 SURFACES = Surfaces()
@@ -58,7 +56,7 @@ def stated(number: int, *forms: str) -> None:
 
 
 def test_1_constants_are_swapped() -> None:
-    swapped = area_eq_20(SURFACES, SEPARATION, E_FULL, swapped=True, positive_exponent=False)
+    swapped = area_eq_20(swapped=True, positive_exponent=False)
     right = closed_form_area(SURFACES, SEPARATION)
     assert swapped < 1e-20  # m2, an atom's cross-section
     stated(1, f"{swapped:.3g} m²", f"{right:.4g} m²")
@@ -82,7 +80,7 @@ def test_3_eq_10_needs_the_modulus_itself_in_eq_9() -> None:
 
 
 def test_4_lengths_are_over_R_q() -> None:
-    in_um = area_eq_20(SURFACES, SEPARATION, E_FULL, False, False, lengths_over_R_q=False)
+    in_um = area_eq_20(False, False, lengths_over_R_q=False)
     stated(4, f"{in_um:.3g} m²")
 
 
@@ -93,14 +91,8 @@ def test_5_factor_counted_twice() -> None:
     x = SURFACES.lambda_ * SURFACES.critical_interference(E_FULL) / SURFACES.R_q
     change = (1.0 + math.exp(-factor * x)) / (1.0 + math.exp(-x)) - 1.0
     more_load = 1.0 / (1.0 - 0.33**2) - 1.0
-    stated(
-        5,
-        f"{ratio:.3f} Y",
-        f"{C_v:.3f}",
-        f"{factor:.3f}",
-        f"{-100 * change:.3f} %",
-        f"{100 * more_load:.1f} %",
-    )
+    stated(5, f"{ratio:.3f} Y", f"{C_v:.3f}", f"{factor:.3f}")
+    stated(5, f"{-100 * change:.3f} %", f"{100 * more_load:.1f} %")
 
 
 def test_5_load_is_proportional_to_the_yield_pressure() -> None:
@@ -118,11 +110,9 @@ def test_6_load_jumps_at_the_critical_interference() -> None:
 
 
 def test_7_no_variant_gives_the_printed_area() -> None:
-    variants = [
-        area_eq_20(SURFACES, SEPARATION, E_FULL, *flags) for flags in product((False, True), repeat=3)
-    ]
+    variants = [area_eq_20(*flags) for flags in product((False, True), repeat=3)]
     nearest = min(variants, key=lambda value: abs(math.log(value / 1.397e-7)))
-    assert nearest == area_eq_20(SURFACES, SEPARATION, E_FULL, swapped=False, positive_exponent=True)
+    assert nearest == area_eq_20(swapped=False, positive_exponent=True)
     assert abs(math.log(nearest / 1.397e-7)) > 1.0
     at = brentq(lambda d: closed_form_area(SURFACES, d) - 1.397e-7, 14e-6, 18e-6)
     stated(7, f"{nearest:.4g} m²", f"{nearest / 1.397e-7:.2f} times", f"{1e6 * at:.2f} µm")
@@ -134,41 +124,37 @@ def test_8_printed_stiffness_is_at_17_um() -> None:
     stated(8, f"{at_17:.4g} N/m", f"{at_14:.4g} N/m", f"{stiffness(SURFACES, SEPARATION):.4g} N/m")
 
 
-def test_9_exponent_of_the_mean_stiffness() -> None:
-    assert 2.07e11 / 2.326e11 - 1.0 == pytest.approx(-0.11, abs=5e-4)
-
-
 def test_10_means_rise(fmu: FrictionFmu) -> None:
-    by_fmu = mean_changes(fmu)
+    by_fmu = [mean_change(fmu, name)[2] for name in ("A_r", "sigma")]
     for model in ("exponential", "gaussian"):
-        changes = [
-            100.0
-            * (
-                mean_over_cycle(lambda d, f=f, model=model: f(SURFACES, d, model=model), SEPARATION, A_D)
-                / f(SURFACES, SEPARATION, model=model)
-                - 1.0
+        changes = []
+        for of in (area, stiffness):
+            mean = mean_over_cycle(
+                lambda d, of=of, model=model: of(SURFACES, d, model=model), SEPARATION, A_D
             )
-            for f in (area, stiffness)
-        ]
+            changes.append(100.0 * (mean / of(SURFACES, SEPARATION, model=model) - 1.0))
         stated(10, *(f"{change:+.2f} %" for change in changes))
         if model == "exponential":
             assert changes == pytest.approx(by_fmu, rel=1e-7)
             assert changes[0] == pytest.approx(100.0 * (i0(0.55) - 1.0), rel=1e-9)
 
 
-@pytest.mark.parametrize("quantity", [area, stiffness])
-@pytest.mark.parametrize("model", ["exponential", "gaussian"])
-def test_10_area_and_stiffness_are_convex(quantity: object, model: str) -> None:
-    gaps = np.linspace(6e-6, 24e-6, 40)
-    values = np.array([quantity(SURFACES, d, model=model) for d in gaps])  # type: ignore[operator]
-    assert np.all(np.diff(values, 2) > 0.0)
+def test_10_area_and_stiffness_are_convex() -> None:
+    for quantity, model in product((area, stiffness), ("exponential", "gaussian")):
+        values = [quantity(SURFACES, d, model=model) for d in np.linspace(6e-6, 24e-6, 40)]
+        assert np.all(np.diff(values, 2) > 0.0)
 
 
-def test_11_percentages() -> None:
+def limit(of: object, zeta: float) -> float:
+    return float(of(scene(0.0, zeta)))  # type: ignore[operator]
+
+
+def test_9_11_exponent_and_percentages() -> None:
+    assert 2.07e11 / 2.326e11 - 1.0 == pytest.approx(-0.11, abs=5e-4)
     stated(11, f"{100 * (1 - 48 / 55):.1f} %", f"{100 * (1 - 54 / 55):.1f} %")
 
 
-@pytest.mark.parametrize("t", [0.4e-5, 1.3e-5, 6.1e-5, 3.3e-4])
+@pytest.mark.parametrize("t", [1.3e-5, 3.3e-4])
 def test_12_eq_25_fails_eq_2(t: float) -> None:
     """The residual by finite differences of Eq. 25 is the one in closed form, and not zero."""
     sigma, V, V_1 = 2.5366e6, 0.5, 1.44
@@ -188,7 +174,7 @@ def test_12_mean_of_eq_25_drifts_to_coulomb(fmu: FrictionFmu) -> None:
     for n in (1, 2, 10, 1000):
         t = PERIOD * (n - 1 + (np.arange(400_000) + 0.5) / 400_000)
         means.append(float(np.mean(force_eq_25(COULOMB_FORCE, *drive, t))))
-    coulomb = COULOMB_FORCE * coulomb_limit(IDENTIFIED.V / row.V_1)
+    coulomb = COULOMB_FORCE * limit(coulomb_limit, IDENTIFIED.V / row.V_1)
     assert means[-1] == pytest.approx(coulomb, abs=1e-3)
     exact = periodic_mean(fmu, start_values(row, IDENTIFIED))
     stated(12, f"{means[0]:.2f}, {means[1]:.2f} and {means[2]:.2f} N", f"{coulomb:.2f} N", f"{exact:.2f} N")
@@ -206,9 +192,9 @@ def test_15_rows_2_3_6(fmu: FrictionFmu) -> None:
     printed = [periodic_mean(fmu, start_values(row, PRINTED)) for row in rows]
     identified = [periodic_mean(fmu, start_values(row, IDENTIFIED)) for row in rows]
     zeta = PRINTED.V / TABLE_2[2].V_1
-    coulomb, soft = COULOMB_FORCE * coulomb_limit(zeta), COULOMB_FORCE * soft_limit(zeta)
+    coulomb, soft = (COULOMB_FORCE * limit(of, zeta) for of in (coulomb_limit, soft_limit))
     assert coulomb <= printed[1] * (1.0 + 1e-5) <= soft
-    slowest = 1.44 * brentq(lambda z: soft_limit(z) - 27 / 55, 0.01, 0.99)
+    slowest = 1.44 * brentq(lambda z: limit(soft_limit, z) - 27 / 55, 0.01, 0.99)
     fastest = 1.44 * math.sin(0.5 * math.pi * 27 / 55)
     stated(
         15,
@@ -229,24 +215,15 @@ def test_15_least_squares_through_the_same_rows(fmu: FrictionFmu) -> None:
     linear = [MN * scale for scale in result.interval(0)]
     turns = [math.degrees(angle) for angle in result.interval(1)]
     second = f"second minimum at {math.degrees(result.minima[1].point[1]):.0f}°"
-    wide = (
-        f"any stiffness up to {MN * most:.0f} MN/m",
-        f"phases from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°",
-    )
     assert least == 0.0
     stated(
         15,
         f"{MN * result.values[0]:.3f} MN/m and {math.degrees(result.values[1]):.2f}°",
-        *wide,
+        f"any stiffness up to {MN * most:.0f} MN/m",
+        f"phases from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°",
         second,
         f"{linear[0]:.3f} to {linear[1]:.0f} MN/m and {turns[0]:.0f}° to {turns[1]:.0f}°",
     )
-    report = " ".join(IDENTIFY_INTRO.split())
-    residuals = [f"{residual:.2f}".replace("-", "−") for residual in result.residuals]
-    values = f"{MN * result.values[0]:.3f} MN/m and {math.degrees(result.values[1]):.1f}°"
-    errors = "residuals of {}, {} and {} N".format(*residuals)
-    for form in (*wide, second, values, errors):
-        assert form in report, form
 
 
 def test_16_modulus() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -11,14 +12,7 @@ from misprints import closed_form_area
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.gap.heights import (
-    area,
-    gaussian,
-    height_integral,
-    load,
-    separation,
-    stiffness,
-)
+from frictioncontact.gap.heights import area, gaussian, height_integral, load, separation, stiffness
 from frictioncontact.parameters import E_FULL, E_REDUCED, Surfaces
 
 DATA = Path(__file__).resolve().parents[2] / "data"
@@ -30,24 +24,15 @@ def package_rows() -> list[dict[str, str]]:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-@pytest.mark.parametrize("row", package_rows(), ids=lambda row: row["h"])
-def test_gaussian_integrals_match_contactmechanics(row: dict[str, str]) -> None:
-    for n in ("0", "1", "1.5"):
+def test_gaussian_integrals_match_contactmechanics() -> None:
+    for row, n in product(package_rows(), ("0", "1", "1.5")):
         # 1e-11: what the package, which integrates in one piece, leaves
         assert height_integral(float(row["h"]), float(n)) == pytest.approx(float(row[f"F_{n}"]), abs=1e-11)
 
 
-@pytest.mark.parametrize("h", [0.0, 1.0, 14 / 6, 4.0])
-def test_gaussian_integrals_match_closed_forms(h: float) -> None:
-    tail = 0.5 * math.erfc(h / math.sqrt(2.0))
-    peak = math.exp(-0.5 * h * h) / math.sqrt(2.0 * math.pi)
-    assert height_integral(h, 0.0) == pytest.approx(tail, rel=1e-11)
-    assert height_integral(h, 1.0) == pytest.approx(peak - h * tail, rel=1e-9)
-
-
-@pytest.mark.parametrize("E", [E_FULL, E_REDUCED, 1e9, 1e8, 1e6])
-@pytest.mark.parametrize("d", [6e-6, 14e-6, 20e-6])
-@pytest.mark.parametrize("surfaces", [TABLE_1, Surfaces(lambda_=0.3), Surfaces(c=0.01, lambda_=0.5, nu=0.0)])
+@pytest.mark.parametrize("E", [E_FULL, 1e8])
+@pytest.mark.parametrize("d", [6e-6, 14e-6])
+@pytest.mark.parametrize("surfaces", [TABLE_1, Surfaces(c=0.01, lambda_=0.5, nu=0.0)])
 def test_exponential_heights_are_the_fmus(fmu: FrictionFmu, surfaces: Surfaces, d: float, E: float) -> None:
     start = {"contact.c": surfaces.c, "contact.lambda": surfaces.lambda_, "contact.nu": surfaces.nu}
     with fmu.session({"d": d, "E": E, **start}) as session:
@@ -58,7 +43,7 @@ def test_exponential_heights_are_the_fmus(fmu: FrictionFmu, surfaces: Surfaces, 
     assert closed_form_area(surfaces, d, E) == pytest.approx(A_r, rel=1e-13)
 
 
-@pytest.mark.parametrize("E", [1e12, E_FULL, 1e9, 3e8, 1e8, 2e6, 1.0])
+@pytest.mark.parametrize("E", [E_FULL, 1e8, 1.0])
 def test_gaussian_area_matches_its_closed_form(E: float) -> None:
     """(s - h) for all heights above h, and (s - h - w) more for those above h + w."""
     h, w = 14 / 6, TABLE_1.critical_interference(E) / TABLE_1.R_q
@@ -71,12 +56,10 @@ def test_soft_gaussian_heights_stay_elastic() -> None:
     assert load(TABLE_1, 14e-6, 2e6, "gaussian") == load(TABLE_1, 14e-6, 2e6, "elastic") > 0.5
 
 
-def test_gap_between_the_densities_at_14_um() -> None:
-    gaussian = area(TABLE_1, 14e-6, model="gaussian")
-    assert gaussian == pytest.approx(9.998e-7, rel=1e-4)
-    assert area(TABLE_1, 14e-6) / gaussian == pytest.approx(0.52, abs=0.005)
-    # nearly all asperities yield here, so elastic ones alone touch on half the area (Eq. 8 against Eq. 15)
-    assert area(TABLE_1, 14e-6, model="elastic") / gaussian == pytest.approx(0.5, abs=1e-3)
+def test_elastic_asperities_alone_touch_on_half_the_area() -> None:
+    """Nearly all yield at 14 um (Eq. 8 against Eq. 15)."""
+    areas = [area(TABLE_1, 14e-6, model=model) for model in ("elastic", "gaussian")]
+    assert areas[0] / areas[1] == pytest.approx(0.5, abs=1e-3)
 
 
 def test_load_of_elastic_gaussian_is_greenwood_williamson() -> None:
@@ -98,11 +81,10 @@ def test_load_of_exponential_heights_in_closed_form() -> None:
 
 
 @pytest.mark.parametrize("model", ["exponential", "gaussian", "elastic"])
-@pytest.mark.parametrize("wanted", [0.1, 40.0, 240.0])
-@pytest.mark.parametrize("surfaces", [TABLE_1, Surfaces(lambda_=0.3)])
-def test_separation_inverts_load(surfaces: Surfaces, model: str, wanted: float) -> None:
-    d = separation(surfaces, wanted, E_REDUCED, model)
-    assert load(surfaces, d, E_REDUCED, model) == pytest.approx(wanted, rel=1e-9)
+def test_separation_inverts_load(model: str) -> None:
+    for surfaces, wanted in ((TABLE_1, 0.1), (Surfaces(lambda_=0.3), 240.0)):
+        d = separation(surfaces, wanted, E_REDUCED, model)
+        assert load(surfaces, d, E_REDUCED, model) == pytest.approx(wanted, rel=1e-9)
 
 
 def test_impossible_load_names_its_bound() -> None:

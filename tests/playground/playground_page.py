@@ -1,12 +1,14 @@
-"""The page as a person uses it, in a browser that tells what a page must not do."""
+"""The page as a person uses it, in a browser that tells what a page must not do, and the FMU beside it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 from playwright.sync_api import Page
 
+from frictioncontact.fmu import FrictionFmu, Value
 from workshop.browser import watch
 from workshop.presets import Preset
 
@@ -93,3 +95,18 @@ class Playground:
 
     def refusal(self, variable: str) -> str:
         return self.page.locator(f'[data-variable="{variable}"] .refusal').inner_text()
+
+
+def native_wave(fmu: FrictionFmu, values: Mapping[str, Value]) -> dict[str, list[float]]:
+    """The same numbers from the FMU's shared library: the calls of the page's wave, made through fmpy."""
+    samples, periods = 240, 2
+    with fmu.session(values) as session:
+        step = 1.0 / session.get("vibration.f") / samples
+        before, rows = session.read(["W_f", "Q_f"]), [session.read(["F_t", "F_y"])]
+        for _ in range(periods * samples):
+            session.step(step)
+            rows.append(session.read(["F_t", "F_y"]))
+        energies = (session.read(["W_f", "Q_f"]) - before) / periods
+        means = session.read(["F_t_settled", "F_y_settled"])
+    forces = np.transpose(rows).tolist()
+    return {"F_t_N": forces[0], "F_y_N": forces[1], "means": [*means], "energies": [*energies]}

@@ -6,12 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from native_wave import wave
-from playground_page import Playground
+from playground_page import Playground, native_wave
 from scipy.special import ellipk
 
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.periodic import periodic_mean
 from workshop.presets import Preset
 
 LIMIT = 1e-12  # of the largest force: another C library rounds exp and cos otherwise
@@ -33,31 +31,26 @@ def test_every_preset_equals_the_shared_library(
     assert len(offered) >= 13
     for preset in offered:
         playground.choose(preset)
-        native = wave(fmu, preset.values)
-        size = max(map(math.hypot, native.force, native.transverse))
-        shown = playground.wave()
-        np.testing.assert_allclose(shown["F_t_N"], native.force, rtol=0, atol=LIMIT * size)
-        np.testing.assert_allclose(shown["F_y_N"], native.transverse, rtol=0, atol=LIMIT * size)
-        assert playground.number("mean-force") == pytest.approx(native.mean, abs=LIMIT * size), preset.id
-        found = playground.number("transverse-mean")
-        assert found == pytest.approx(native.transverse_mean, abs=3e-6 * size), preset.id  # 0 below
-        if abs(native.transverse_mean) > 1e-3 * size:
-            assert found == pytest.approx(native.transverse_mean, abs=LIMIT * size), preset.id
+        native, shown = native_wave(fmu, preset.values), playground.wave()
+        size = float(np.hypot(native["F_t_N"], native["F_y_N"]).max())
+
+        def near(value: object, scale: float = size) -> object:
+            return pytest.approx(value, rel=0, abs=LIMIT * scale)
+
+        for name in ("F_t_N", "F_y_N"):
+            assert shown[name] == near(native[name]), preset.id
+        along, transverse = native["means"]
+        assert playground.number("mean-force") == near(along), preset.id
+        limit = 3e-6 if abs(transverse) < 1e-3 * size else LIMIT  # below, 0 is shown
+        assert playground.number("transverse-mean") == pytest.approx(transverse, rel=0, abs=limit * size)
         speeds = ("V", "V_y", "vibration.V_1", "vibration.V_2")
         path = sum(abs(preset.values.get(name, 0.0)) for name in speeds)  # m/s, at most
         energy = size * path / preset.values.get("vibration.f", 20e3)  # J a period, at most
-        assert playground.number("work") == pytest.approx(native.work, abs=LIMIT * energy), preset.id
-        assert playground.number("heat") == pytest.approx(native.heat, abs=LIMIT * energy), preset.id
-
-
-def test_the_mean_is_that_of_the_periodic_state(
-    playground: Playground, fmu: FrictionFmu, offered: list[Preset]
-) -> None:
-    for preset in offered:
-        playground.choose(preset)
-        limit = fmu.variables["F_C"].start if "F_C" not in preset.values else preset.values["F_C"]
-        expected = periodic_mean(fmu, preset.values)
-        assert playground.number("mean-force") == pytest.approx(expected, abs=2 * TOLERANCE * float(limit))
+        for name, number in zip(("work", "heat"), native["energies"], strict=True):
+            assert playground.number(name) == near(number, energy), preset.id
+        if preset.known is not None:
+            assert playground.number("known") == preset.known
+        assert playground.page.locator("#known").is_visible() == (preset.known is not None)
 
 
 def test_curve_and_map_go_through_the_exact_means(playground: Playground) -> None:
@@ -93,12 +86,12 @@ def test_the_curves_of_a_rigid_contact_are_the_formulas(playground: Playground) 
         assert playground.page.evaluate("values => rigid(values)", scene) is None
 
 
-@pytest.mark.parametrize("V_y", [0.0, 0.4])
-def test_a_transverse_vibration_has_its_curve_and_its_map(
-    playground: Playground, fmu: FrictionFmu, V_y: float
+@pytest.mark.parametrize("drive", [{"vibration.V_1": 1.0}, {"vibration.V_2": 1.0, "V_y": 0.4}])
+def test_curve_and_map_are_the_means_at_their_places(
+    playground: Playground, fmu: FrictionFmu, drive: dict[str, float]
 ) -> None:
     """Both are over the friction of steady sliding, which with oblique sliding is 55 N in the plane."""
-    scene = CONSTANT_STIFFNESS | {"vibration.V_1": 0.0, "vibration.V_2": 1.0, "V_y": V_y}
+    scene = CONSTANT_STIFFNESS | {"vibration.V_1": 0.0} | drive
     curve, cells = playground.page.evaluate(
         f"""async (values) => {{
             const fmu = await {CORE};
@@ -115,31 +108,3 @@ def test_a_transverse_vibration_has_its_curve_and_its_map(
     for changed, found in zip([*({"V": V} for V in curve[0]), *corners], [*curve[1], *cells], strict=True):
         with fmu.session(scene | changed) as session:
             assert found == pytest.approx(session.get("F_t_settled") / 55.0, abs=4 * TOLERANCE)
-
-
-def test_the_map_is_the_mean_at_each_of_its_places(playground: Playground, fmu: FrictionFmu) -> None:
-    columns, rows = 4, 3
-    cells = playground.page.evaluate(
-        f"""async ([values, columns, rows]) => {{
-            const fmu = await {CORE};
-            return [...regimeMap(fmu, values, columns, rows)];
-        }}""",
-        [CONSTANT_STIFFNESS, columns, rows],
-    )
-    kappas = np.geomspace(1e-2, 1e7, columns)
-    zetas = np.geomspace(1e-4, 10.0, rows)
-    for zeta, row in zip(zetas, np.reshape(cells, (rows, columns)), strict=True):
-        for kappa, found in zip(kappas, row, strict=True):
-            sigma = kappa * 2 * math.pi * 20e3 * 55.0
-            expected = periodic_mean(fmu, CONSTANT_STIFFNESS | {"V": zeta, "contact.sigma": sigma})
-            assert found == pytest.approx(expected / 55.0, abs=4 * TOLERANCE)
-
-
-def test_the_known_number_stands_beside(playground: Playground, offered: list[Preset]) -> None:
-    for preset in offered:
-        playground.choose(preset)
-        shown = playground.page.locator("#known").is_visible()
-        assert shown == (preset.known is not None)
-        if preset.known is not None:
-            assert playground.number("known") == preset.known
-            assert playground.page.locator("#known-from").inner_text() == preset.known_from

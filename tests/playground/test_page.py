@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -11,16 +10,8 @@ from playground_page import Playground
 from playwright.sync_api import Browser
 
 from workshop.browser import SIZES
-from workshop.description import description
 from workshop.playground.command import SCHEMES
 from workshop.presets import Preset
-
-PAINTED = """() => new Promise((resolve) => {
-    new PerformanceObserver((list) => {
-        const picture = list.getEntries().find(({ identifier }) => identifier === "first picture");
-        if (picture) resolve(picture.renderTime);
-    }).observe({ type: "element", buffered: true });
-})"""
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -28,9 +19,8 @@ PAINTED = """() => new Promise((resolve) => {
 def test_no_barrier_is_found(browser: Browser, html: Path, size: str, scheme: str) -> None:
     """By axe-core, whose rules are those of WCAG; and nothing is wider than the window."""
     width, height = SIZES[size]
-    context = browser.new_context(
-        viewport={"width": width, "height": height}, color_scheme=scheme, bypass_csp=True
-    )
+    look = {"viewport": {"width": width, "height": height}, "color_scheme": scheme}
+    context = browser.new_context(**look, bypass_csp=True)
     playground = Playground(context.new_page(), html)
     playground.open()
     playground.finish()
@@ -40,46 +30,6 @@ def test_no_barrier_is_found(browser: Browser, html: Path, size: str, scheme: st
     assert [f"{rule['id']}: {rule['help']}" for rule in found.response["violations"]] == []
     assert scroll_width == width
     assert playground.problems == []
-
-
-def test_every_control_has_its_own_name(playground: Playground) -> None:
-    sliders = playground.page.get_by_role("slider")
-    names = [sliders.nth(k).get_attribute("aria-label") for k in range(sliders.count())]
-    assert len(names) >= 8 and all(names) and len(set(names)) == len(names)
-
-
-def test_every_input_and_parameter_with_a_control_is_one_of_the_fmu(playground: Playground) -> None:
-    known = {variable["name"] for variable in description()["variables"]}
-    found = playground.page.locator("[data-variable]").evaluate_all(
-        "all => all.map((c) => c.dataset.variable)"
-    )
-    assert set(found) <= known
-    assert {
-        "V",
-        "d",
-        "E",
-        "F_C",
-        "vibration.f",
-        "vibration.V_1",
-        "vibration.a_d",
-        "vibration.phase_d",
-    } <= set(found)
-
-
-def test_the_file_names_no_other(html: Path) -> None:
-    text = html.read_text(encoding="utf-8")
-    sources = re.findall(r"(?:src|href)=\"([^\"#]+)\"", text)
-    assert [source for source in sources if not source.startswith(("data:", "https://doi.org/"))] == []
-    assert "default-src 'none'" in text
-    assert "[page.css]" not in text and "<!--[" not in text
-
-
-def test_the_first_thing_painted_is_the_picture(playground: Playground) -> None:
-    """A page painted without it first would be laid out twice, and the picture would come later."""
-    picture = playground.page.evaluate(PAINTED)
-    first = playground.page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
-    assert picture == first
-    assert playground.number("mean-force") > 0
 
 
 def test_a_browser_that_compiles_only_beside_the_page_and_knows_no_base64(
@@ -98,7 +48,8 @@ def test_a_browser_that_compiles_only_beside_the_page_and_knows_no_base64(
     assert playground.problems == []
 
 
-def test_the_core_imports_nothing(playground: Playground) -> None:
+def test_the_core_imports_nothing(playground: Playground, html: Path) -> None:
+    assert "default-src 'none'" in html.read_text(encoding="utf-8")
     imports, exports = playground.page.evaluate(
         """async () => {
             const text = atob(document.getElementById("wasm").textContent);
@@ -112,7 +63,7 @@ def test_the_core_imports_nothing(playground: Playground) -> None:
 
 
 def test_axes_have_labels_and_no_reduction_is_rounding(playground: Playground, offered: list[Preset]) -> None:
-    for preset in offered:
+    for preset in offered[::3]:
         playground.choose(preset)
         for figure in ("force", "loop"):
             for side in ("middle", "end"):  # of the x and of the y axis
@@ -135,10 +86,3 @@ def test_the_plane_is_shown_when_something_moves_in_it(playground: Playground) -
     playground.finish()
     assert playground.page.locator("#map-none").is_hidden()
     assert "V2" in playground.page.locator("#map-y").inner_text().replace("\n", "")
-
-
-def test_the_laws_with_a_static_friction_show_it(playground: Playground) -> None:
-    for law, has in (("Dahl", False), ("LuGre", True), ("ElasticPlastic", True)):
-        playground.pick("friction.model", law)
-        shown = playground.page.locator('[data-variable="friction.staticRatio"]').is_visible()
-        assert shown == has, law

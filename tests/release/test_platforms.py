@@ -7,60 +7,109 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scenario_runs import OUTPUTS, build_host, largest_difference, run
 
-from frictioncontact.fmu import FrictionFmu, simulate
-from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
+from frictioncontact.fmu import FrictionFmu, Value, simulate
+from frictioncontact.parameters import IDENTIFIED, PERIOD, PRINTED, TABLE_2, start_values
+from workshop.release.targets import build
 
 WINE = next(filter(None, map(shutil.which, ("wine64", "wine", "/usr/lib/wine/wine64"))), None)
 QEMU = next(filter(None, map(shutil.which, ("qemu-aarch64", "qemu-aarch64-static"))), None)
 ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")
 LIMIT = 1e-12  # of the largest value of each output in the scenario
+OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
+METHODS = ("collocation", "cvode", "backwardEuler", "trapezoid", "rk4", "explicitEuler")
+SCENE = start_values(TABLE_2[1], IDENTIFIED)
+FINE = [(PERIOD / 100, 100)]  # step [s], count
+
+
+def scenarios() -> list[tuple[dict[str, Value], list[tuple[float, int]]]]:
+    """Start values and steps; row 2 of Table 2, identified, first."""
+    of_paper = [start_values(row, found) for found in (IDENTIFIED, PRINTED) for row in TABLE_2]
+    of_paper[:2] = of_paper[1::-1]
+    tolerances = ({**SCENE, "solver.tolerance": tolerance} for tolerance in (1e-2, 1e-9, 1e-12))
+    return [
+        *((values, [*FINE, (1e-4, 20), (1e6 * PERIOD, 2)]) for values in of_paper),
+        *(({**SCENE, "solver.stepSize": 1e-8, "solver.method": name}, 2 * FINE) for name in METHODS),
+        *((values, [(PERIOD / 7, 70)]) for values in tolerances),
+        ({**SCENE, "friction.model": "Coulomb"}, [*FINE, (1e-3, 3)]),
+        ({**SCENE, "contact.model": "Constant", "contact.sigma": 2.5e6}, FINE),
+        ({"V": 0.01, "contact.stiffnessScale": 1e-6}, []),  # linear inputs
+    ]
+
+
+def words(fmu: FrictionFmu) -> str:
+    """The input of run_scenarios."""
+    lines = []
+    for values, steps in scenarios():
+        lines.append("scenario")
+        for name, value in values.items():
+            variable, number = fmu.variables[name], fmu.known.number(name, value, "scenario")
+            lines.append(f"{'real' if variable.type == 'Real' else 'integer'} {variable.valueReference}")
+            lines.append(float(number).hex())
+        lines += ["start", *(f"step {h.hex()} {count}" for h, count in steps)]
+    for k in range(50):
+        for name, rate, half in (("V", -40.0, 10), ("d", 1e-3, 5)):
+            sign = 1 if k % (2 * half) < half else -1
+            lines.append(f"rate {fmu.variables[name].valueReference} {(sign * rate).hex()}")
+        lines.append(f"step {(1e-4).hex()} 1")
+    return "\n".join(lines)
+
+
+def run(start: list[str], platform: str, library: Path, fmu: FrictionFmu) -> list[np.ndarray]:
+    """OUTPUTS of every scenario, over the largest value of each, by a host program beside the library."""
+    build(platform, ["run_scenarios"])
+    host = library.parent / "tests" / "release" / f"run_scenarios{'.exe' if platform == 'win64' else ''}"
+    numbers = [fmu.variables[OUTPUTS[k]].valueReference for k in (0, -1)]
+    command = [*start, host, library, fmu.description.guid, *numbers]
+    done = subprocess.run([*map(str, command)], input=words(fmu), capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr[-2000:]
+    rows = [line.split() for line in done.stdout.splitlines()]
+    table = np.array([[int(row[0]), *map(float.fromhex, row[1:])] for row in rows])
+    runs = [table[table[:, 0] == k + 1, 1:] for k in range(len(scenarios()))]
+    assert all(len(one) and np.isfinite(one).all() for one in runs)
+    return [one / np.maximum(np.abs(one).max(axis=0), 1e-300) for one in runs]
 
 
 @pytest.fixture(scope="module")
-def linux_runs(library: Callable[[str], Path], fmu: FrictionFmu) -> dict[str, np.ndarray]:
-    path = library("linux64")
-    return run([str(build_host("linux64", path))], path, fmu.description)
+def linux_runs(library: Callable[[str], Path], fmu: FrictionFmu) -> list[np.ndarray]:
+    return run([], "linux64", library("linux64"), fmu)
 
 
-def test_linux_agrees_with_the_default_build(linux_runs: dict[str, np.ndarray], fmu: FrictionFmu) -> None:
+def assert_same(runs: list[np.ndarray], others: list[np.ndarray]) -> None:
+    for k, (one, other) in enumerate(zip(runs, others, strict=True)):
+        assert np.abs(one - other).max() <= LIMIT, scenarios()[k]
+
+
+def test_linux_agrees_with_the_default_build(linux_runs: list[np.ndarray], fmu: FrictionFmu) -> None:
     """Another compiler and another importer, the same scenario."""
-    table = linux_runs["table2-row2-identified"][:100, 1:]
-    steps = simulate(fmu, start_values(TABLE_2[1], IDENTIFIED), PERIOD / 100, 100, outputs=OUTPUTS)
+    steps = simulate(fmu, SCENE, *FINE[0], outputs=OUTPUTS)
     for k, name in enumerate(OUTPUTS):
-        assert np.abs(table[:, k] - steps[name][1:]).max() <= LIMIT * np.abs(steps[name]).max(), name
+        ours, theirs = linux_runs[0][:100, k], steps[name][1:]
+        scale = np.abs(theirs).max()
+        assert ours / np.abs(ours).max() == pytest.approx(theirs / scale, rel=0, abs=LIMIT), name
 
 
-@pytest.mark.skipif(
-    not QEMU or not ARM_LIBRARIES.is_dir(), reason="qemu-user or libc6-arm64-cross is missing"
-)
-def test_linux_on_arm(
-    library: Callable[[str], Path], linux_runs: dict[str, np.ndarray], fmu: FrictionFmu
-) -> None:
-    path = library("aarch64-linux")
-    start = [str(QEMU), "-L", str(ARM_LIBRARIES), str(build_host("aarch64-linux", path))]
-    differences = largest_difference(linux_runs, run(start, path, fmu.description))
-    assert max(differences.values()) <= LIMIT, differences
+@pytest.mark.skipif(not (QEMU and ARM_LIBRARIES.is_dir()), reason="qemu-user or libc6-arm64-cross is missing")
+def test_linux_on_arm(library: Callable[[str], Path], linux_runs: list[np.ndarray], fmu: FrictionFmu) -> None:
+    start = [str(QEMU), "-L", str(ARM_LIBRARIES)]
+    assert_same(run(start, "aarch64-linux", library("aarch64-linux"), fmu), linux_runs)
 
 
 @pytest.mark.skipif(not WINE, reason="Wine is missing (Debian: wine64)")
 @pytest.mark.slow
 def test_windows(
     library: Callable[[str], Path],
-    linux_runs: dict[str, np.ndarray],
+    linux_runs: list[np.ndarray],
     fmu: FrictionFmu,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(os.environ, "WINEPREFIX", str(tmp_path / "wine"))
     monkeypatch.setitem(os.environ, "WINEDEBUG", "-all")
-    path = library("win64")
-    start = [str(WINE), str(build_host("win64", path))]
-    differences = largest_difference(linux_runs, run(start, path, fmu.description))
-    assert max(differences.values()) <= LIMIT, differences
+    assert_same(run([str(WINE)], "win64", library("win64"), fmu), linux_runs)

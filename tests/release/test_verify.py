@@ -31,89 +31,49 @@ def repack(fmu: Path, change: Callable[[Entries], None]) -> None:
             archive.writestr(name, content)
 
 
-def test_an_fmu_of_ours_passes(copy: Path) -> None:
-    lines = list(verify(copy))
-    assert len(lines) == 4
-    assert lines[0].startswith("FrictionContact ") and lines[0].endswith("the model description is unchanged")
-    assert lines[1].endswith("files as they were packed")
-    assert lines[2] == f"no {SUMS} lies beside it: the file as a whole is not compared"
-    assert lines[3].endswith("results as in the reference")
-
-
 def test_the_sums_beside_it_are_compared(copy: Path) -> None:
+    *_, beside, results = verify(copy)
+    assert beside == f"no {SUMS} lies beside it: the file as a whole is not compared"
+    assert results == "12 of 12 results as in the reference"
     write_sums([copy])
-    assert list(verify(copy))[2] == f"the file that {SUMS} beside it lists"
-    write_sums([copy])
+    assert f"the file that {SUMS} beside it lists" in verify(copy)
     with zipfile.ZipFile(copy, "a") as archive:
         archive.comment = b"other bytes, same files"
     with pytest.raises(UserError, match=f"is not the file that {SUMS} beside it lists"):
         list(verify(copy))
 
 
-def add(entries: Entries) -> None:
-    entries["binaries/linux64/other.so"] = b""
+def replace(entries: Entries, old: bytes, new: bytes) -> None:
+    entries["modelDescription.xml"] = entries["modelDescription.xml"].replace(old, new)
 
 
-def take_out(entries: Entries) -> None:
-    del entries["documentation/index.html"]
+CHANGES: dict[str, Callable[[Entries], object]] = {
+    "binaries/linux64/other.so was added to it": lambda e: e.update({"binaries/linux64/other.so": b""}),
+    "documentation/index.html was taken out of it": lambda e: e.pop("documentation/index.html"),
+    f"{SOURCE} was changed": lambda e: e.update({SOURCE: e[SOURCE] + b"\n"}),
+    "modelDescription.xml is not the one that its guid": lambda e: replace(e, b'start="55"', b'start="56"'),
+    "is none of ours: its model is BouncingBall": lambda e: replace(
+        e, b'modelName="FrictionContact"', b'modelName="BouncingBall"'
+    ),
+    "is no FMU: modelDescription.xml is missing or broken": lambda e: e.pop("modelDescription.xml"),
+    "holds no checksums": lambda e: e.pop(SUMS_INSIDE),
+}
 
 
-def edit_source(entries: Entries) -> None:
-    entries[SOURCE] += b"\n"
-
-
-def edit_description(entries: Entries) -> None:
-    entries["modelDescription.xml"] = entries["modelDescription.xml"].replace(b'start="55"', b'start="56"')
-
-
-def rename(entries: Entries) -> None:
-    entries["modelDescription.xml"] = entries["modelDescription.xml"].replace(
-        b'modelName="FrictionContact"', b'modelName="BouncingBall"'
-    )
-
-
-def drop_description(entries: Entries) -> None:
-    del entries["modelDescription.xml"]
-
-
-def drop_sums(entries: Entries) -> None:
-    del entries[SUMS_INSIDE]
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (add, "binaries/linux64/other.so was added to it"),
-        (take_out, "documentation/index.html was taken out of it"),
-        (edit_source, f"{SOURCE} was changed"),
-        (edit_description, "modelDescription.xml is not the one that its guid"),
-        (rename, "is none of ours: its model is BouncingBall"),
-        (drop_description, "is no FMU: modelDescription.xml is missing or broken"),
-        (drop_sums, "holds no checksums"),
-    ],
-)
-def test_a_change_is_named(copy: Path, change: Callable[[Entries], None], message: str) -> None:
-    repack(copy, change)
+@pytest.mark.parametrize("message", CHANGES)
+def test_a_change_is_named(copy: Path, message: str) -> None:
+    repack(copy, CHANGES[message])
     with pytest.raises(UserError, match=message):
         list(verify(copy))
 
 
-def test_damaged_bytes_are_named(copy: Path) -> None:
+def test_damaged_bytes_are_named(copy: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(copy) as archive:
         place = archive.getinfo(SOURCE).header_offset + 200
     content = bytearray(copy.read_bytes())
     content[place] ^= 0xFF
     copy.write_bytes(content)
-    with pytest.raises(UserError, match="is damaged"):
-        list(verify(copy))
-
-
-def test_what_is_no_fmu_is_named(tmp_path: Path) -> None:
     (tmp_path / "text").write_text("text")
-    for name, message in (
-        ("text", "is no FMU: not a zip archive"),
-        ("none", "is no file"),
-        (".", "is no file"),
-    ):
+    for name, message in ((copy.name, "is damaged"), ("text", "not a zip archive"), (".", "is no file")):
         with pytest.raises(UserError, match=message):
             list(verify(tmp_path / name))

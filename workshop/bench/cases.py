@@ -1,7 +1,8 @@
 """The scenes of the benchmarks, and what is right in each: the reference at every communication point."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -28,9 +29,12 @@ class Case:
     inputs: Mapping[str, np.ndarray] = field(default_factory=dict)  # count + 1 samples
     linear: bool = False
 
-    def job(self, start: float = 0.0, budget: float = 0.02, **settings: Value) -> Job:
-        values = {**self.start_values, **{name.replace("__", "."): value for name, value in settings.items()}}
-        return Job(values, self.step, self.count, start, self.inputs, self.linear, budget)
+    def job(
+        self, start: float = 0.0, budget: float = 0.02, settings: Mapping[str, Value] = MappingProxyType({})
+    ) -> Job:
+        return Job(
+            {**self.start_values, **settings}, self.step, self.count, start, self.inputs, self.linear, budget
+        )
 
     def scene_at(self, k: int, start: float) -> Scene:
         """The scene of step k, its inputs counted from the step's own start."""
@@ -56,14 +60,11 @@ def expected(case: Case, start: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def vibrating(sigma: float) -> Case:
+    values = {"vibration.V_1": 1.44, "vibration.a_d": 1.1e-6}
     return Case(
         f"vibrating-{sigma:.0e}".replace("+", ""),
         f"V and d vibrate, σ {sigma:.0e} N/m".replace("e+", "e"),
-        {
-            "vibration.V_1": 1.44,
-            "vibration.a_d": 1.1e-6,
-            "contact.stiffnessScale": sigma / STIFFNESS_PRINTED,
-        },
+        {**values, "contact.stiffnessScale": sigma / STIFFNESS_PRINTED},
         step=VIBRATING_STEP,
         starts=(0.0, 0.23 * PERIOD, 0.27 * PERIOD),
     )
@@ -91,18 +92,17 @@ def cases() -> list[Case]:
     gaps = np.random.default_rng(21).uniform(13e-6, 15e-6, 17)
     return [
         *(vibrating(sigma) for sigma in SIGMAS),
-        Case(
-            "vibrating-V",
-            "V vibrates, σ 2.5e6 N/m",
-            {"vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.5e6},
-            step=VIBRATING_STEP,
-            starts=(0.0, 0.23 * PERIOD, 0.27 * PERIOD),
+        replace(
+            vibrating(2.5e6),
+            name="vibrating-V",
+            title="V vibrates, σ 2.5e6 N/m",
+            start_values={"vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.5e6},
         ),
-        Case(
-            "vibrating-d",
-            "d vibrates, V 5 mm/s",
-            {"vibration.a_d": 1.1e-6},
-            step=VIBRATING_STEP,
+        replace(
+            vibrating(SIGMAS[-1]),
+            name="vibrating-d",
+            title="d vibrates, V 5 mm/s",
+            start_values={"vibration.a_d": 1.1e-6},
             starts=(0.0, 0.4 * PERIOD),
         ),
         Case("held", "no vibration, V and d held", {}, step=1e-6, count=16, inputs={"V": steps, "d": gaps}),

@@ -110,16 +110,14 @@ class Bench:
         if program.startswith("plain_") and not (self.programs / program).is_file():
             return failed("not in this build (built without SUNDIALS)")
         command = [str(self.programs / program), *map(str, arguments)]
+        how = {
+            "capture_output": True,
+            "text": True,
+            "timeout": TIME_LIMIT,
+            "env": {**os.environ, **environment},
+        }
         try:
-            done = subprocess.run(
-                command,
-                input="\n".join(lines),
-                capture_output=True,
-                text=True,
-                timeout=TIME_LIMIT,
-                env={**os.environ, **environment},
-                check=False,
-            )
+            done = subprocess.run(command, input="\n".join(lines), check=False, **how)
         except subprocess.TimeoutExpired:
             return failed(f"not finished after {TIME_LIMIT:.0f} s")
         if done.returncode:
@@ -158,9 +156,7 @@ def _parse(text: str, job: Job) -> Outcome:
             numbers[keyword] = float(rest)
     F, F_mean = np.array(rows).reshape(-1, 2).T
     costs = (numbers[name] / job.count for name in ("cpu", "evaluations"))
-    counted = {
-        name: int(numbers[name]) for name in ("allocations", "allocations_to_start") if name in numbers
-    }
+    counted = {name: int(value) for name, value in numbers.items() if name.startswith("allocations")}
     return Outcome(F, F_mean, *costs, **counted)
 
 

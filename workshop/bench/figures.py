@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from frictioncontact import style
-from workshop.bench.grade import Point
 
 METHODS = {  # that the chart shows: label and colour
     "collocation": ("the default", style.BLUE),
@@ -14,13 +14,12 @@ METHODS = {  # that the chart shows: label and colour
     "Radau 9": ("order 9", style.ORANGE),
     "Radau 13": ("order 13", style.RED),
     "plain CVODE": ("CVODE", style.GREEN),
-    "scipy Radau": ("scipy Radau", style.GREY),
 }
 SHOWN = ("vibrating-6e06", "vibrating-6e10", "vibrating-V", "vibrating-d", "linear", "sampled-20-linear-6e06")
 SMALLEST_ERROR = 1e-16
 
 
-def work_precision(points: Sequence[Point], titles: Mapping[str, str], folder: Path) -> list[Path]:
+def work_precision(points: Sequence[Any], titles: Mapping[str, str], folder: Path) -> list[Path]:
     """Small multiples of the scenes in SHOWN, of those that were measured; every method is in the CSV."""
     names = [name for name in SHOWN if name in titles] or list(titles)
     rows = -(-len(names) // 2)

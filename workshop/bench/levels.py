@@ -1,23 +1,13 @@
 """Levels of the model: how far simpler laws and contacts are from the scene's own, for typical scenes."""
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rich.progress import Progress
 
+from frictioncontact import command as shared
 from frictioncontact.advice.answer import PHASES, STEPS
-from frictioncontact.command import (
-    add_fmu,
-    add_output,
-    as_table,
-    command_line,
-    progress_bar,
-    say_written,
-    table_console,
-    write_csv,
-)
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import E_FULL, E_REDUCED, STIFFNESS_PRINTED, TABLE_2
 from workshop.bench.cases import Case, sampled, vibrating
@@ -96,72 +86,56 @@ def _stick_slip() -> Case:
     times = belt.end / count * np.arange(count + 1)
     velocity = np.array([belt.V(t) for t in times]) - monolithic(belt)(times)[1]
     values = {"F_C": belt.F_C, "contact.stiffnessScale": belt.sigma / STIFFNESS_PRINTED}
-    return Case(
-        "stick-slip",
-        "stick-slip on a belt",
-        values,
-        belt.end / count,
-        count,
-        inputs={"V": velocity},
-        linear=True,
-    )
-
-
-def _table_2() -> Iterator[Case]:
-    for row in TABLE_2:
-        E = E_REDUCED if row.softened else E_FULL
-        values = {"E": E, "vibration.V_1": row.V_1, "vibration.a_d": row.a_d}
-        yield Case(f"table-2-row-{row.number}", f"Table 2, row {row.number}", values)
+    where = {"step": belt.end / count, "count": count, "inputs": {"V": velocity}, "linear": True}
+    return Case("stick-slip", "stick-slip on a belt", values, **where)
 
 
 def scenes() -> list[Case]:
     """The scenes for which the table of levels is made."""
-    presliding = sampled(40, 2.5e6, linear=True)
+    wave = {"V": 0.3 * np.cos(2 * np.pi * np.arange(41) / 40)}
+    soft, stiff, presliding = vibrating(2.5e6), vibrating(6e12), sampled(40, 2.5e6, linear=True)
+    of_paper = [
+        Case(
+            f"table-2-row-{row.number}",
+            f"Table 2, row {row.number}",
+            {"E": E_REDUCED if row.softened else E_FULL, "vibration.V_1": row.V_1, "vibration.a_d": row.a_d},
+        )
+        for row in TABLE_2
+    ]
     return [
         Case("steady", "steady sliding, 0.1 ms steps", {}, step=1e-4),
-        *_table_2(),
-        replace(
-            presliding,
-            name="presliding",
-            title="presliding hysteresis",
-            inputs={"V": 0.3 * np.cos(2 * np.pi * np.arange(41) / 40)},
-        ),
+        *of_paper,
+        replace(presliding, name="presliding", title="presliding hysteresis", inputs=wave),
         _stick_slip(),
-        replace(vibrating(2.5e6), name="soft", title="soft contact, V and d vibrate"),
-        replace(vibrating(6e12), name="stiff", title="stiff contact, V and d vibrate"),
-        replace(
-            vibrating(2.5e6), name="many-periods", title="soft contact, 1 ms steps over 20 kHz", step=1e-3
-        ),
+        replace(soft, name="soft", title="soft contact, V and d vibrate"),
+        replace(stiff, name="stiff", title="stiff contact, V and d vibrate"),
+        replace(soft, name="many-periods", title="soft contact, 1 ms steps over 20 kHz", step=1e-3),
     ]
 
 
-def rows_of(fmu: FrictionFmu, phases: tuple[float, ...], progress: Progress) -> list[dict[str, object]]:
-    """The table: a row a scene, a column a level, its largest errors of F_t and F_t_mean over F_C."""
-    cases = scenes()
-    task = progress.add_task("Grading levels", total=len(cases))
-    rows: list[dict[str, object]] = []
-    for case in cases:
-        row: dict[str, object] = {"scene": case.title}
-        runs = runs_of(case, phases)
-        for level, settings in simpler(case).items():
-            errors = largest_errors(fmu, case, settings, runs)
-            row[level] = ", ".join(f"{error / case.F_C:.0e}" for error in errors)
-        rows.append(row)
-        progress.advance(task)
-    return rows
+def row_of(fmu: FrictionFmu, case: Case, phases: tuple[float, ...]) -> dict[str, object]:
+    """A scene's line of the table: a column a level, its largest errors of F_t and F_t_mean over F_C."""
+    runs = runs_of(case, phases)
+    row: dict[str, object] = {"scene": case.title}
+    for level, settings in simpler(case).items():
+        errors = largest_errors(fmu, case, settings, runs)
+        row[level] = ", ".join(f"{error / case.F_C:.0e}" for error in errors)
+    return row
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("bench/levels", __doc__)
+    parser = shared.command_line("bench/levels", __doc__)
     parser.add_argument("--quick", action="store_true", help="from two phases instead of five")
-    add_fmu(parser)
-    add_output(parser, REPORT)
+    shared.add_fmu(parser)
+    shared.add_output(parser, REPORT)
     return parser.parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:
-    with progress_bar() as progress, FrictionFmu(options.fmu or build_fmu(progress=progress)) as fmu:
-        rows = rows_of(fmu, PHASES[:2] if options.quick else PHASES, progress)
+    phases = PHASES[:2] if options.quick else PHASES
+    with shared.progress_bar() as progress, FrictionFmu(options.fmu or build_fmu()) as fmu:
+        rows = [row_of(fmu, case, phases) for case in progress.track(scenes(), description="Grading levels")]
     title = "Largest errors of F_t and of its mean, over F_C"
-    table_console().print(as_table(list(rows[0]), [[*map(str, row.values())] for row in rows], title))
-    say_written([write_csv(rows, options.output / "levels.csv")])
+    cells = [[*map(str, row.values())] for row in rows]
+    shared.table_console().print(shared.as_table(list(rows[0]), cells, title))
+    shared.say_written([shared.write_csv(rows, options.output / "levels.csv")])

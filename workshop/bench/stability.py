@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from rich.table import Table
 
-from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
+from frictioncontact.command import as_table, finish, say_written, table_console, write_csv
 from frictioncontact.fmu import FrictionFmu
 from workshop.bench import stability_figures
 from workshop.bench.coupling import (
@@ -17,9 +17,10 @@ from workshop.bench.coupling import (
     monolithic,
     theoretical_edge,
 )
-from workshop.bench.driver import bench_options, open_bench, renew_docs
+from workshop.bench.driver import bench_options, renew_docs
 from workshop.bench.exchange import against_cost
 from workshop.bench.stability_map import EDGES, METHODS, classify, measured_edge
+from workshop.build import build_fmu
 
 DESCRIPTION = """\
 Maps where each method is stable. First alone: z = sigma |V| h / F_C from 1e-3 to 1e8, with the theoretical
@@ -41,16 +42,8 @@ def edges(fmu: FrictionFmu) -> list[dict[str, object]]:
     for method, limits in EDGES.items():
         for (before, after), theory in limits.items():
             found = measured_edge(fmu, method, before, theory)
-            rows.append(
-                {
-                    "method": method,
-                    "from": before,
-                    "to": after,
-                    "theory_z": theory,
-                    "measured_z": found,
-                    "deviation": found / theory - 1,
-                }
-            )
+            row = {"method": method, "from": before, "to": after, "theory_z": theory, "measured_z": found}
+            rows.append({**row, "deviation": found / theory - 1})
     return rows
 
 
@@ -61,30 +54,26 @@ def main(argv: Sequence[str] | None = None) -> None:
 def run(options: argparse.Namespace) -> None:
     output, quick = options.output, options.quick
     belt = Belt()
-    with progress_bar() as progress, open_bench(progress) as bench:
-        task = progress.add_task("Mapping z against method", total=4)
-        behaviours = stability_map(bench.fmu, quick)
-        progress.advance(task)
-        found = edges(bench.fmu)
-        progress.update(task, advance=1, description="Mass on a belt: edges")
+    with FrictionFmu(build_fmu()) as fmu:
+        behaviours, found = stability_map(fmu, quick), edges(fmu)
         coupled = [
             {
                 "coupling": name,
                 "theory_H": theoretical_edge(belt, name),
-                "measured_H": coupled_edge(bench.fmu, belt, name),
+                "measured_H": coupled_edge(fmu, belt, name),
             }
             for name in COUPLINGS
         ]
-        progress.update(task, advance=1, description="Mass on a belt: stick-slip")
         reference = monolithic(belt)
-        errors = coupled_errors(bench.fmu, belt, reference, quick) + against_cost(bench.fmu)
-        progress.advance(task)
-    written = [
-        write_csv(behaviours, output / "stability.csv"),
-        write_csv(found, output / "stability-edges.csv"),
-        write_csv(coupled, output / "coupled-edges.csv"),
-        write_csv(errors, output / "coupled-errors.csv"),
-    ]
+        counts = (500, 2000, 8000) if quick else tuple(250 * 2**k for k in range(8))
+        errors = coupled_errors(fmu, belt, reference, counts) + against_cost(fmu)
+    tables = {
+        "stability": behaviours,
+        "stability-edges": found,
+        "coupled-edges": coupled,
+        "coupled-errors": errors,
+    }
+    written = [write_csv(rows, output / f"{name}.csv") for name, rows in tables.items()]
     written += stability_figures.draw_map(behaviours, found, output)
     written += stability_figures.draw_coupled(errors, coupled, reference, belt, output)
     if options.docs:

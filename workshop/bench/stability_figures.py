@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -23,27 +24,23 @@ COUPLING = {"F_t held": style.ORANGE, "F_t linear": style.BLUE, MODEL_EXCHANGE: 
 
 
 def draw_map(
-    rows: Sequence[Mapping[str, object]], edges: Sequence[Mapping[str, object]], folder: Path
+    rows: Sequence[Mapping[str, Any]], edges: Sequence[Mapping[str, Any]], folder: Path
 ) -> list[Path]:
-    methods = list(dict.fromkeys(str(row["method"]) for row in rows))
+    methods = list(dict.fromkeys(row["method"] for row in rows))
+    z = np.unique([row["z"] for row in rows])
+    half = (z[1] / z[0]) ** 0.5
     figure, axes = style.subplots(size=(6.4, 4.2))
-    for i, method in enumerate(methods):
-        own = [row for row in rows if row["method"] == method]
-        z = np.array([row["z"] for row in own], dtype=float)
-        half = (z[1] / z[0]) ** 0.5
-        for row, centre in zip(own, z, strict=True):
-            left, right = centre / half, centre * half
-            axes.barh(i, right - left, 0.72, left, color=BEHAVIOUR[str(row["behaviour"])], linewidth=0)
-        for edge in edges:
-            if edge["method"] == method:
-                axes.plot([edge["theory_z"]] * 2, [i - 0.48, i + 0.48], color=style.BLACK, linewidth=1.4)
-                axes.plot(edge["measured_z"], i, "x", color=style.BLACK, markersize=5)
-    axes.set_xscale("log")
-    axes.set_xlim(z[0] / half, z[-1] * half)
+    for row in rows:
+        left, colour = row["z"] / half, BEHAVIOUR[row["behaviour"]]
+        axes.barh(methods.index(row["method"]), row["z"] * half - left, 0.72, left, color=colour, linewidth=0)
+    for edge in edges:
+        i = methods.index(edge["method"])
+        axes.plot([edge["theory_z"]] * 2, [i - 0.48, i + 0.48], color=style.BLACK, linewidth=1.4)
+        axes.plot(edge["measured_z"], i, "x", color=style.BLACK, markersize=5)
+    axes.set(xscale="log", xlim=(z[0] / half, z[-1] * half), xlabel=r"$z = \sigma\,|V|\,h / F_C$")
     axes.set_yticks(range(len(methods)), methods)
     axes.invert_yaxis()
     axes.grid(False)
-    axes.set_xlabel(r"$z = \sigma\,|V|\,h / F_C$")
     axes.set_title("Steady sliding from rest: behaviour against z")
     handles: list[object] = [Patch(color=colour, label=name) for name, colour in BEHAVIOUR.items()]
     handles += [
@@ -55,8 +52,8 @@ def draw_map(
 
 
 def draw_coupled(
-    errors: Sequence[Mapping[str, object]],
-    edges: Sequence[Mapping[str, object]],
+    errors: Sequence[Mapping[str, Any]],
+    edges: Sequence[Mapping[str, Any]],
     reference: Trajectory,
     belt: Belt,
     folder: Path,
@@ -66,31 +63,26 @@ def draw_coupled(
     x, _, F = reference(t)
     motion.plot(1e3 * t, F / belt.F_C, color=style.BLACK, label=r"$F_t / F_C$")
     motion.plot(1e3 * t, belt.k * x / belt.F_C, color=style.GREEN, label=r"$k x / F_C$")
-    motion.set_xlabel("time [ms]")
-    motion.set_title("Mass on a belt that moves to and fro, solved as one system")
+    motion.set(xlabel="time [ms]", title="Mass on a belt that moves to and fro, solved as one system")
     motion.legend()
     for coupling, colour in COUPLING.items():
         own = [row for row in errors if row["coupling"] == coupling]
-        good = [row for row in own if not row["failure"]]
-        name = coupling.replace("F_t", "$F_t$")
-        panel.loglog(
-            [row["H"] for row in good], [row["error_F_t"] for row in good], "o-", color=colour, label=name
-        )
+        good, name = [row for row in own if not row["failure"]], coupling.replace("F_t", "$F_t$")
+        steps, of_F_t = ([row[key] for row in good] for key in ("H", "error_F_t"))
+        panel.loglog(steps, of_F_t, "o-", color=colour, label=name)
         bad = [row["H"] for row in own if row["failure"]]
-        panel.plot(
-            bad,
-            [2.0] * len(bad),
-            "x",
-            color=colour,
-            label=f"{name}: chatters" if bad else None,
-        )
-        for edge in edges:
-            if edge["coupling"] == coupling and np.isfinite(float(edge["theory_H"])):  # type: ignore[arg-type]
-                panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)
-                panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
+        label = f"{name}: chatters" if bad else None
+        panel.plot(bad, [2.0] * len(bad), "x", color=colour, label=label)
+    for edge in edges:
+        if np.isfinite(edge["theory_H"]):
+            colour = COUPLING[edge["coupling"]]
+            panel.axvline(edge["theory_H"], color=colour, linestyle="--", linewidth=1)
+            panel.plot(edge["measured_H"], 1e-6, "^", color=colour)
     panel.xaxis.set_minor_formatter(NullFormatter())
-    panel.set_xlabel("communication step; model exchange: time per evaluation of rates [s]")
-    panel.set_ylabel("largest error of $F_t$ over $F_C$")
-    panel.set_title("Jacobi master; dashed: stable up to here while it sticks")
+    panel.set(
+        xlabel="communication step; model exchange: time per evaluation of rates [s]",
+        ylabel="largest error of $F_t$ over $F_C$",
+        title="Jacobi master; dashed: stable up to here while it sticks",
+    )
     panel.legend()
     return style.save_both(figure, folder, "coupled")

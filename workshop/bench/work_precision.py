@@ -4,40 +4,30 @@ import argparse
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.table import Table
 
 from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
 from frictioncontact.doubts import FIXED_STEPS
-from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
 from workshop.bench import figures
 from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
-from workshop.bench.driver import (
-    Bench,
-    Job,
-    Outcome,
-    bench_options,
-    open_bench,
-    renew_docs,
-)
-from workshop.bench.grade import Point, grade_point
-from workshop.bench.peers import PLAIN_PROGRAMS, plain, scipy_radau
+from workshop.bench.driver import Bench, Job, Outcome, bench_options, open_bench, renew_docs
+from workshop.bench.peers import PLAIN_PROGRAMS, plain
 from workshop.project import ROOT
 
 DESCRIPTION = """\
 Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
-5, 9 and 13 that stops at reversals, CVODE with its defaults, scipy's Radau) over tolerances or steps: CPU
-time, evaluations of the right-hand side, and the largest error of F_t and of its mean against an
-independent reference. The peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is
-added to theirs. Then the error against the communication step for held and linear inputs, and the cost of
-one step against the number of vibration periods in it."""
+5, 9 and 13 that stops at reversals, CVODE with its defaults) over tolerances or steps: CPU time, evaluations
+of the right-hand side, and the largest error of F_t and of its mean against an independent reference. The
+peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is added to theirs. Then the
+error against the communication step for held and linear inputs, and the cost of one step against the number
+of vibration periods in it."""
 
 PAGE = ROOT / "docs" / "numerics.md"
 MATCHED_ERRORS = (1e-6, 1e-9)
@@ -54,22 +44,32 @@ class Effort:
     """How much is measured."""
 
     tolerances: Sequence[float]  # of the default, cvode and the peers in C
-    slow_tolerances: Sequence[float]  # of the peer in Python
     steps: Sequence[int]  # internal steps per communication step
-    budget: float  # s of CPU time for one setting in one round
     rounds: int  # in which everything in C takes turns; the least time counts
-    most_evaluations: int  # of the peer in Python in one run
+    budget: float = 0.001  # s of CPU time for one setting in one round
 
 
-FULL = Effort(
-    [10.0**-k for k in range(2, 13)],
-    [1e-3, 1e-4, 1e-6, 1e-8, 1e-10],
-    [4**k for k in range(9)],
-    0.001,
-    4,
-    15_000,
-)
-QUICK = Effort([1e-3, 1e-6, 1e-9, 1e-12], [1e-3, 1e-6], [1, 16, 256, 4096], 0.001, 2, 1500)
+FULL = Effort(10.0 ** -np.arange(2, 13), 4 ** np.arange(9), 4)
+QUICK = Effort((1e-3, 1e-6, 1e-9, 1e-12), (1, 16, 256, 4096), 1)
+QUICK_CASES = (vibrating(SIGMAS[1]).name, vibrating(SIGMAS[4]).name, "held")
+
+
+@dataclass(frozen=True)
+class Point:
+    """A method at a setting on a case: largest errors from all starts, over F_C; costs of a period."""
+
+    case: str
+    method: str
+    setting: float  # tolerance, or internal steps per communication step
+    error_F_t: float
+    error_F_t_mean: float
+    cpu: float  # s
+    evaluations: float
+    failure: str = ""
+
+    @property
+    def error(self) -> float:
+        return max(self.error_F_t, self.error_F_t_mean)
 
 
 @dataclass(frozen=True)
@@ -79,32 +79,20 @@ class Task:
     method: str
     setting: float
     run: Callable[[float], Outcome]
-    slow: bool = False  # it runs in Python: once, from one start
 
 
 def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[Task]:
-    def fmu(**settings: Value) -> Callable[[float], Outcome]:
-        return lambda start: bench.run(case.job(start, effort.budget, **settings))
+    def fmu(method: str, name: str, value: float) -> Callable[[float], Outcome]:
+        settings = {"solver.method": method, name: value}
+        return lambda start: bench.run(case.job(start, effort.budget, settings))
 
-    for tolerance in effort.tolerances:
+    for tolerance in map(float, effort.tolerances):
         for method in ("collocation", "cvode"):
-            yield Task(method, tolerance, fmu(solver__method=method, solver__tolerance=tolerance))
+            yield Task(method, tolerance, fmu(method, "solver.tolerance", tolerance))
         for method in PLAIN_PROGRAMS:
-            yield Task(
-                method,
-                tolerance,
-                partial(plain, bench, method, case, tolerance, effort.budget),
-            )
-    for steps in effort.steps:
-        for method in FIXED_STEPS:
-            yield Task(method, steps, fmu(solver__method=method, solver__stepSize=case.step / steps))
-    for tolerance in effort.slow_tolerances:
-        yield Task(
-            "scipy Radau",
-            tolerance,
-            partial(scipy_radau, case, tolerance, effort.most_evaluations),
-            slow=True,
-        )
+            yield Task(method, tolerance, partial(plain, bench, method, case, tolerance, effort.budget))
+    for steps, method in product(map(float, effort.steps), FIXED_STEPS):
+        yield Task(method, steps, fmu(method, "solver.stepSize", case.step / steps))
 
 
 def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
@@ -113,29 +101,39 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
     The first point is that of the calls, with no error: steps of length 0, whose time the peers' hold too.
     """
     references = {start: expected(case, start) for start in case.starts}
-    one = {case.starts[0]: references[case.starts[0]]}
     planned = list(tasks(bench, case, effort))
     points: list[Point] = []
     empty = replace(case.job(case.starts[0], effort.budget), calls=True)
-    calls = bench.run(empty)
+    calls = math.inf
     for turn in range(effort.rounds):
-        again = bench.run(empty)
-        calls = replace(again, cpu=min(again.cpu, calls.cpu))
+        calls = min(calls, PERIOD / case.step * bench.run(empty).cpu)
         for k, task in enumerate(planned):
-            if turn and (task.slow or points[k].failure or points[k].cpu > SLOW):
-                continue
-            known = one if task.slow else references
-            point = grade_point(case, known, task.method, task.setting, task.run)
             if turn == 0:
-                points.append(point)
-            else:
-                points[k] = replace(point, cpu=min(point.cpu, points[k].cpu))
-    cpu = PERIOD / case.step * calls.cpu
-    peers = (*PLAIN_PROGRAMS, "scipy Radau")
+                points.append(graded(case, references, task))
+            elif not points[k].failure and points[k].cpu < SLOW:
+                cpu = graded(case, references, task).cpu
+                points[k] = replace(points[k], cpu=min(cpu, points[k].cpu))
     return [
-        Point(case.name, CALLS, 0.0, math.nan, math.nan, cpu, 0.0),
-        *(replace(p, cpu=p.cpu + cpu) if p.method in peers else p for p in points),
+        Point(case.name, CALLS, 0.0, math.nan, math.nan, calls, 0.0),
+        *(replace(p, cpu=p.cpu + calls) if p.method in PLAIN_PROGRAMS else p for p in points),
     ]
+
+
+def graded(case: Case, references: Mapping[float, tuple[np.ndarray, np.ndarray]], task: Task) -> Point:
+    """From every start of the case."""
+    outcomes = [task.run(start) for start in references]
+    for outcome in outcomes:
+        if outcome.failure:
+            return Point(case.name, task.method, task.setting, *[math.nan] * 4, outcome.failure)
+    errors = np.max(
+        [
+            [np.abs(outcome.F - F).max(), np.abs(outcome.F_mean - F_mean).max()]
+            for outcome, (F, F_mean) in zip(outcomes, references.values(), strict=True)
+        ],
+        axis=0,
+    )
+    costs = np.median([(o.cpu, o.evaluations) for o in outcomes], axis=0)
+    return Point(case.name, task.method, task.setting, *errors / case.F_C, *PERIOD / case.step * costs)
 
 
 def cost_at(points: Sequence[Point], error: float) -> float:
@@ -157,32 +155,21 @@ def cost_at(points: Sequence[Point], error: float) -> float:
 def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
     """Error against the true vibration when V and d come from outside as samples, held or linear."""
     counts = (5, 20, 100) if quick else (5, 10, 20, 50, 100, 200, 400)
-    rows = []
-    for sigma in (6e6,) if quick else (6e6, 6e12):
-        for n in counts:
-            truth: tuple[np.ndarray, np.ndarray] | None = None
-            for linear in (False, True):
-                case = sampled(n, sigma, linear, periods=2)
-                inside = replace(case, start_values=vibrating(sigma).start_values, inputs={})
-                truth = truth or expected(inside, 0.13 * PERIOD)
-                outcome = bench.run(case.job(0.0, 0.0, solver__tolerance=1e-9))
-                errors = [
-                    float(np.abs(got - right).max()) / case.F_C
-                    for got, right in zip((outcome.F, outcome.F_mean), truth, strict=True)
-                ]
-                rows.append(
-                    {
-                        "sigma": sigma,
-                        "samples_per_period": n,
-                        "inputs": "linear" if linear else "held",
-                        "error_F_t": errors[0],
-                        "error_F_t_mean": errors[1],
-                    }
-                )
+    rows: list[dict[str, object]] = []
+    for sigma, n in product((6e6,) if quick else (6e6, 6e12), counts):
+        inside = replace(sampled(n, sigma, False, 2), start_values=vibrating(sigma).start_values, inputs={})
+        truth = expected(inside, 0.13 * PERIOD)
+        for linear in (False, True):
+            case = sampled(n, sigma, linear, periods=2)
+            outcome = bench.run(case.job(0.0, 0.0, {"solver.tolerance": 1e-9}))
+            both = zip((outcome.F, outcome.F_mean), truth, strict=True)
+            F_t, F_t_mean = (float(np.abs(got - right).max()) / case.F_C for got, right in both)
+            row = {"sigma": sigma, "samples_per_period": n, "inputs": "linear" if linear else "held"}
+            rows.append({**row, "error_F_t": F_t, "error_F_t_mean": F_t_mean})
     return rows
 
 
-def period_points(bench: Bench) -> list[dict[str, object]]:
+def period_points(bench: Bench, counts: Sequence[int] = PERIODS) -> list[dict[str, object]]:
     """Cost of one step from rest over ever more vibration periods, in every law.
 
     V rises from 0.3 to 0.7 V_1 and the load falls by half within a moving step; in a held one they keep
@@ -202,23 +189,18 @@ def period_points(bench: Bench) -> list[dict[str, object]]:
             "vibration.a_d": 1.1e-6,
         }
         one: Outcome | None = None
-        for kind, periods in product(("held", "moving"), PERIODS):
+        for kind, periods in product(("held", "moving"), counts):
             moves = kind == "moving"
             inputs = {name: ends if moves else np.full(2, ends.mean()) for name, ends in samples.items()}
             outcome = bench.run(Job(values, periods * PERIOD, inputs=inputs, linear=moves, budget=0.005))
             one = one or outcome
-            rows.append(
-                {
-                    "law": law,
-                    "limit": limit,
-                    "inputs": kind,
-                    "periods": periods,
-                    "evaluations": outcome.evaluations,
-                    "ratio": outcome.evaluations / one.evaluations,
-                    "cpu_ratio": outcome.cpu / one.cpu,
-                    "failure": outcome.failure,
-                }
-            )
+            costs = {
+                "evaluations": outcome.evaluations,
+                "ratio": outcome.evaluations / one.evaluations,
+                "cpu_ratio": outcome.cpu / one.cpu,
+                "failure": outcome.failure,
+            }
+            rows.append({"law": law, "limit": limit, "inputs": kind, "periods": periods, **costs})
     return rows
 
 
@@ -245,6 +227,7 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
     "CVODE": ("plain CVODE",),
     "fixed step": FIXED_STEPS,
 }
+PERIOD_COLUMNS = ["law", "limit", "held", "moving", "moving, CPU time"]
 
 
 def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[str]]:
@@ -260,11 +243,6 @@ def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[st
     ]
 
 
-def ratio_table(rows: Sequence[dict[str, object]], error: float) -> Table:
-    title = f"CPU time over the default's, errors of at most {error:.0e} F_C"
-    return as_table(["scene", "calls", *COLUMNS], ratio_cells(rows, error), title)
-
-
 def renew_tables(
     compared: Sequence[dict[str, object]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
 ) -> Path:
@@ -273,8 +251,7 @@ def renew_tables(
     rows = [[titles[name], *cells] for name, *cells in ratio_cells(compared, ERROR_OF_PAGE)]
     head = f"errors of at most {ERROR_OF_PAGE:.0e} `F_C`:".replace("e-0", "e-")
     text = with_table(text, head, ["scene", "calls", *COLUMNS], rows)
-    headings = ["law", "limit", "held", "moving", "moving, CPU time"]
-    text = with_table(text, "divides CPU times:", headings, period_cells(periods))
+    text = with_table(text, "divides CPU times:", PERIOD_COLUMNS, period_cells(periods))
     PAGE.write_text(text, encoding="utf-8")
     return PAGE
 
@@ -316,41 +293,28 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 def run(options: argparse.Namespace) -> None:
     output, quick = options.output, options.quick
-    effort = QUICK if quick else FULL
     chosen = [case for case in cases() if not quick or case.name in QUICK_CASES]
-    output.mkdir(parents=True, exist_ok=True)
+    points: list[Point] = []
     with progress_bar() as progress, open_bench(progress) as bench:
-        task = progress.add_task("Measuring", total=len(chosen) + 2)
-        points: list[Point] = []
-        for case in chosen:
-            progress.update(task, description=case.name)
-            points += measure(bench, case, effort)
-            progress.advance(task)
-        step_sizes = step_size_points(bench, quick)
-        progress.advance(task)
-        periods = period_points(bench)
-        progress.advance(task)
-    compared = ratios(points)
-    written = [
-        write_csv([p.row() for p in points], output / "work-precision.csv"),
-        write_csv(compared, output / "work-precision-ratios.csv"),
-        write_csv(step_sizes, output / "step-size.csv"),
-        write_csv(periods, output / "periods.csv"),
-    ]
-    titles = {case.name: case.title for case in chosen}
+        for case in progress.track(chosen, description="Measuring"):
+            points += measure(bench, case, QUICK if quick else FULL)
+        step_sizes, periods = step_size_points(bench, quick), period_points(bench)
+    compared, titles = ratios(points), {case.name: case.title for case in chosen}
+    tables: dict[str, Sequence[Mapping[str, object]]] = {
+        "work-precision": [asdict(p) for p in points],
+        "work-precision-ratios": compared,
+        "step-size": step_sizes,
+        "periods": periods,
+    }
+    written = [write_csv(rows, output / f"{name}.csv") for name, rows in tables.items()]
     written += figures.work_precision(points, titles, output)
     written += figures.step_sizes(step_sizes, output)
     written += figures.periods(periods, output)
     if options.docs:
         written += [*renew_docs(written), renew_tables(compared, periods, titles)]
     for error in MATCHED_ERRORS:
-        table_console().print(ratio_table(compared, error))
-    for law, limit, when_held, when_moving, time in period_cells(periods):
-        print(
-            f"{law}, limit {limit}: a step over 1e6 periods costs {when_held} times the evaluations of one, "
-            f"{when_moving} times with moving inputs ({time} times the CPU time)."
-        )
+        title = f"CPU time over the default's, errors of at most {error:.0e} F_C"
+        cells = ratio_cells(compared, error)
+        table_console().print(as_table(["scene", "calls", *COLUMNS], cells, title))
+    table_console().print(as_table(PERIOD_COLUMNS, period_cells(periods), "A step over 1e6 periods over one"))
     say_written(written)
-
-
-QUICK_CASES = (vibrating(SIGMAS[1]).name, vibrating(SIGMAS[4]).name, "held")

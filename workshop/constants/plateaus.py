@@ -25,7 +25,7 @@ from rich.progress import Progress
 from frictioncontact.command import progress_bar
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import Value
-from workshop.bench.cases import cases, expected
+from workshop.bench.cases import Case, cases, expected
 from workshop.bench.driver import Bench, open_bench
 from workshop.project import ROOT
 
@@ -69,66 +69,57 @@ def built(folder: Path, changed: Mapping[str, float]) -> Path:
     return library
 
 
-class Scenes:
-    """The scenes with what is right in them."""
-
-    def __init__(self, progress: Progress) -> None:
-        of = [
-            replace(case, name=f"{name}, {case.name}", start_values={**case.start_values, **setting})
-            for name, setting in SETTINGS.items()
-            for case in cases()
-        ]
-        task = progress.add_task("The reference", total=len(of))
-        self.right = []
-        for case in of:
-            start = case.starts[-1]  # not at a whole phase
-            self.right.append((case, start, *expected(case, start)))
-            progress.advance(task)
-
-    def take(self, bench: Bench) -> tuple[np.ndarray, float, str]:
-        """Evaluations of all runs, and the worst error over the tolerance, with its run."""
-        evaluations, worst, where = [], 0.0, ""
-        for case, start, F, mean in self.right:
-            limit = case.F_C * float(case.start_values.get("friction.staticRatio", 1.0))
-            for tolerance in TOLERANCES:
-                outcome = bench.run(case.job(start, 0.0, solver__tolerance=tolerance))
-                if outcome.failure:
-                    raise UserError(f"{case.name}: {outcome.failure}")
-                evaluations.append(outcome.evaluations)
-                off = max(np.abs(outcome.F - F).max(), np.abs(outcome.F_mean - mean).max())
-                if off / (limit * tolerance) > worst:
-                    worst, where = off / (limit * tolerance), f"{case.name} at {tolerance:g}"
-        return np.array(evaluations), worst, where
+Scenes = list[tuple[Case, float, np.ndarray, np.ndarray]]  # with a start and what is right from it
 
 
-def row(name: str, evaluations: float, worst: float, where: str) -> str:
-    return f"| {name} | {evaluations:.3f} | {worst:.3f} | {where} |"
+def scenes(progress: Progress) -> Scenes:
+    of = [
+        replace(case, name=f"{name}, {case.name}", start_values={**case.start_values, **setting})
+        for name, setting in SETTINGS.items()
+        for case in cases()
+    ]
+    found = []
+    for case in progress.track(of, description="The reference"):
+        start = case.starts[-1]  # not at a whole phase
+        found.append((case, start, *expected(case, start)))
+    return found
+
+
+def take(bench: Bench, scenes: Scenes) -> tuple[np.ndarray, float, str]:
+    """Evaluations of all runs, and the worst error over the tolerance, with its run."""
+    evaluations, errors = [], {}
+    for case, start, F, mean in scenes:
+        limit = case.F_C * float(case.start_values.get("friction.staticRatio", 1.0))
+        for tolerance in TOLERANCES:
+            outcome = bench.run(case.job(start, 0.0, {"solver.tolerance": tolerance}))
+            if outcome.failure:
+                raise UserError(f"{case.name}: {outcome.failure}")
+            evaluations.append(outcome.evaluations)
+            off = max(np.abs(outcome.F - F).max(), np.abs(outcome.F_mean - mean).max())
+            errors[f"{case.name} at {tolerance:g}"] = off / (limit * tolerance)
+    where = max(errors, key=errors.__getitem__)
+    return np.array(evaluations), errors[where], where
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Plateaus of the solver's constants.")
-    parser.add_argument("constants", nargs="*", metavar="CONSTANT")
+    parser.add_argument("constants", nargs="*", metavar="CONSTANT", choices=[[], *constants()])
     wanted = parser.parse_args().constants or list(constants())
-    for name in wanted:
-        if name not in constants():
-            parser.error(f"{name} is no constant of {TUNING.name}; there are: {', '.join(constants())}")
+    changes = [{}, *({name: factor * constants()[name]} for name in wanted for factor in (0.5, 2.0))]
     with (
         progress_bar() as progress,
         tempfile.TemporaryDirectory() as temporary,
         open_bench(progress) as bench,
     ):
-        scenes = Scenes(progress)
+        known, today = scenes(progress), None
         print("| constant | evaluations | worst error | in |\n|---|---|---|---|")
-        bench.library = built(Path(temporary), {})
-        today, worst, where = scenes.take(bench)
-        print(row("today", 1.0, worst, where), flush=True)
-        for name in wanted:
-            for factor in (0.5, 2.0):
-                value = factor * constants()[name]
-                bench.library = built(Path(temporary), {name: value})
-                changed, worst, where = scenes.take(bench)
-                ratio = math.exp(float(np.log(changed / today).mean()))
-                print(row(f"{name} = {value:g}", ratio, worst, where), flush=True)
+        for change in changes:
+            bench.library = built(Path(temporary), change)
+            evaluations, worst, where = take(bench, known)
+            today = evaluations if today is None else today
+            ratio = math.exp(float(np.log(evaluations / today).mean()))
+            name = ", ".join(f"{name} = {value:g}" for name, value in change.items()) or "today"
+            print(f"| {name} | {ratio:.3f} | {worst:.3f} | {where} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -34,10 +34,7 @@ PLAYGROUND = "playground.html"  # the page of the live FMU, inside the FMU and b
 QUICK = ("linux64", "aarch64-darwin")  # the compiler's two ways: with the linker's optimization, and without
 SUNDIALS = ROOT / "build" / "sundials-source"
 # Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
-TOOLCHAIN_LICENSES = {
-    "zig-license.txt": "LICENSE",
-    "mingw-w64-license.txt": "lib/libc/mingw/COPYING",
-}
+TOOLCHAIN_LICENSES = {"zig-license.txt": "LICENSE", "mingw-w64-license.txt": "lib/libc/mingw/COPYING"}
 
 
 def compile_platform(platform: str, progress: Progress | None = None, anew: bool = False) -> Path:

@@ -1,1 +1,1 @@
-"""The report as a web page and as image files."""
+"""The figures of the paper, the regimes and the identification, and the page that shows them."""

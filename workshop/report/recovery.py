@@ -1,8 +1,10 @@
 """Does an identification recover what made the data? Synthetic noisy measurements, fitted again and again."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from frictioncontact.errors import quiet
 from frictioncontact.fmu import FrictionFmu
@@ -13,9 +15,10 @@ from frictioncontact.identification.parameter import Parameter, parameter
 from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import search
 from frictioncontact.style import BLACK, BLUE, ORANGE
-from workshop.figure import Figure, Level, Line, Panel
+from workshop.report.figure import Figure, Level, Panel
 
 TRUTH = {"contact.stiffnessScale": 6e-7, "vibration.phase_d": 2.2, "F_C": 48.0}
+UNITS = ("1e-7", "deg", "N")
 NOISE = 0.5  # N, standard deviation of one mean
 NAMES = ("V", "vibration.V_1", "vibration.a_d")
 
@@ -91,26 +94,22 @@ def figure(fmu: FrictionFmu, seeds: int) -> Figure:
     """The intervals of every seed against the truth."""
     found = from_rows(fmu, seeds)
     panels = []
-    for k, name in enumerate(TRUTH):
-        factor, unit = {
-            "contact.stiffnessScale": (1e7, "1e-7"),
-            "vibration.phase_d": (np.degrees(1.0), "deg"),
-        }.get(name, (1.0, "N"))
-        good: tuple[list[float], list[float]] = ([], [])
-        missed: tuple[list[float], list[float]] = ([], [])
-        held = found.holds(name)
-        for seed, is_held in enumerate(held):
-            x, y = good if is_held else missed
-            x += [seed, seed, np.nan]
-            y += [*(factor * np.array(found.fits[seed].profiles[k])), np.nan]
-        items = [
-            Line(*good, f"contains the truth: {sum(held)} of {seeds}", BLUE),
-            Level(factor * TRUTH[name], "truth", BLACK, "dashed"),
-        ]
-        if missed[0]:
-            items.insert(1, Line(*missed, "misses it", ORANGE, width=2.4))
-        y_label = f"95 % interval [{unit}]"
-        panels.append(Panel(name, "seed", y_label, items, x_whole=True, x_range=(-1.0, seeds)))
+    for k, (name, factor, unit) in enumerate(zip(TRUTH, (1e7, np.degrees(1.0), 1.0), UNITS, strict=True)):
+        held = np.array(found.holds(name))
+        ends = factor * np.array([one.profiles[k] for one in found.fits])
+
+        def bars(
+            axes: Axes, which: np.ndarray, label: str, colour: str, width: float, ends: np.ndarray = ends
+        ) -> None:
+            axes.vlines(np.flatnonzero(which), *ends[which].T, color=colour, lw=width, label=label)
+
+        label = f"contains the truth: {sum(held)} of {seeds}"
+        items = [partial(bars, which=held, label=label, colour=BLUE, width=1.8)]
+        if not all(held):
+            items.append(partial(bars, which=~held, label="misses it", colour=ORANGE, width=2.4))
+        items.append(Level(factor * TRUTH[name], "truth", BLACK))
+        look = {"xlim": (-1.0, seeds), "xticks": range(0, seeds, 5)}
+        panels.append(Panel(name, "seed", f"95 % interval [{unit}]", items, look))
     caption = (
         f"Twelve synthetic mean forces with normal noise of {NOISE:g} N, fitted for three parameters, with "
         f"{seeds} seeds. Of 95 % intervals, about 95 in 100 should contain the truth."

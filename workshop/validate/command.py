@@ -5,18 +5,11 @@ from collections.abc import Sequence
 
 from rich.table import Table
 
-from frictioncontact import resources
-from frictioncontact.command import (
-    add_fmu,
-    add_output,
-    as_table,
-    can_draw,
-    command_line,
-    table_console,
-)
+from frictioncontact import resources, style
+from frictioncontact.command import add_fmu, add_output, as_table, command_line, table_console
 from frictioncontact.fmu import FrictionFmu
 from workshop.build import build_fmu
-from workshop.validate import elements, longitudinal, measurements, normal, record
+from workshop.validate import elements, figures, longitudinal, measurements, normal, record
 
 DESCRIPTION = """\
 Holds every law of friction against measurements that others published: sliding under longitudinal
@@ -34,25 +27,14 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def longitudinal_table(name: str, data: measurements.Sliding, fits: Sequence[longitudinal.Fit]) -> Table:
-    def stiffness(fit: longitudinal.Fit) -> str:
-        if fit.law in ("Dahl", "LuGre"):
-            return "any"
-        return "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
-
-    return as_table(
-        ["", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"],
-        [["measured", "", *(f"{force:.3f}" for force in data.vibrated), "", ""]]
-        + [
-            [
-                fit.law,
-                stiffness(fit),
-                *(f"{force:.4f}" for force in fit.model),
-                *(f"{measurements.rms(model - data.vibrated):.3f}" for model in (fit.model, fit.predicted)),
-            ]
-            for fit in fits
-        ],
-        f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]",
-    )
+    rows = [["measured", "", *(f"{force:.3f}" for force in data.vibrated), "", ""]]
+    for fit in fits:
+        found = "" if fit.stiffness is None else f"{1e-6 * fit.stiffness:.3g}"
+        stiffness = "any" if fit.law in ("Dahl", "LuGre") else found
+        errors = (measurements.rms(model - data.vibrated) for model in (fit.model, fit.predicted))
+        rows.append([fit.law, stiffness, *(f"{F:.4f}" for F in fit.model), *(f"{e:.3f}" for e in errors)])
+    headings = ["", "stiffness [N/um]", *(f"{1e3 * V:g} mm/s" for V in data.V), "rms", "rms predicted"]
+    return as_table(headings, rows, f"Longitudinal vibration, {name}: 26 kHz, 0.35 um. Mean friction [N]")
 
 
 def scatter_line(data: measurements.Record) -> str:
@@ -64,31 +46,28 @@ def scatter_line(data: measurements.Record) -> str:
 
 
 def cycles_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
-    rows = [
-        [
-            fit.law,
-            "" if fit.stiffness is None else f"{1e-3 * fit.stiffness:.2f}",
-            *(f"{fit.mu:.3f}", f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}", f"{fit.work:.3f}"),
-        ]
-        for fit in fits
-    ]
+    rows = []
+    for fit in fits:
+        stiffness = "" if fit.stiffness is None else f"{1e-3 * fit.stiffness:.2f}"
+        misfits = f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}"
+        rows.append([fit.law, stiffness, f"{fit.mu:.3f}", *misfits, f"{fit.work:.3f}"])
     same, later = record.repeated(data), record.predicted_cycles(data)
     error = measurements.rms(same.friction - later.friction) / record.sliding_friction(data)
     ratio = record.work(same.friction, later) / record.work(later.friction, later)
+    rows.append(["empirical: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"])
+    headings = ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"]
     return as_table(
-        ["", "stiffness [N/mm]", "mu", "rms fitted", "rms predicted", "work / measured"],
-        [*rows, ["empirical: mean of the two cycles", "", "", "", f"{error:.1%}", f"{ratio:.3f}"]],
-        "The cycles: fitted on two, 47 predicted. Misfit over the measured friction",
+        headings, rows, "The cycles: fitted on two, 47 predicted. Misfit over the measured friction"
     )
 
 
 def elements_table(fits: Sequence[elements.ElementFit]) -> Table:
-    names = (f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name for fit in fits)
-    return as_table(
-        ["", "rms fitted", "rms predicted"],
-        [[n, f"{f.rms_fitted:.1%}", f"{f.rms_predicted:.1%}"] for n, f in zip(names, fits, strict=True)],
-        "What would mend ElasticPlastic, fitted to the same two cycles",
-    )
+    rows = []
+    for fit in fits:
+        name = f"{fit.name}, {fit.tilt:.3f} N/N" if fit.tilt else fit.name
+        rows.append([name, f"{fit.rms_fitted:.1%}", f"{fit.rms_predicted:.1%}"])
+    title = "What would mend ElasticPlastic, fitted to the same two cycles"
+    return as_table(["", "rms fitted", "rms predicted"], rows, title)
 
 
 def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit]) -> Table:
@@ -97,26 +76,21 @@ def unloading_table(data: measurements.Record, fits: Sequence[record.RecordFit])
     forces = {
         "measured": part.friction,
         "ElasticPlastic, limit mu F_n": elastic_plastic.unloading,
-        "mu F_n alone, mu of ElasticPlastic": -elastic_plastic.mu * part.load,
         "Dahl, limit mu F_n, as the FMU has it": dahl.unloading,
         "Dahl, limit mu F_n, Eq. 2 alone": record.without_bound(data, dahl),
         "ElasticPlastic, constant limit": elastic_plastic.constant_limit,
         "Dahl, constant limit": dahl.constant_limit,
     }
-    return as_table(
-        ["", "rms", "least F / F_n", "largest"],
-        [
-            [
-                name,
-                "" if name == "measured" else f"{record.misfit_of_unloading(data, each):.1%}",
-                *(f"{ratio:.3f}" for ratio in record.over_the_load(data, each)),
-            ]
-            for name, each in forces.items()
-        ],
+    rows = []
+    for name, each in forces.items():
+        misfit = "" if name == "measured" else f"{record.misfit_of_unloading(data, each):.1%}"
+        rows.append([name, misfit, *(f"{ratio:.3f}" for ratio in record.over_the_load(data, each))])
+    title = (
         "The unloading, predicted by what the two cycles gave: rms over the "
         f"{record.friction_before_unloading(data):.2f} N before it, "
-        f"and |F| / F_n while F_n > {record.CARRYING} N",
+        f"and |F| / F_n while F_n > {record.CARRYING} N"
     )
+    return as_table(["", "rms", "least F / F_n", "largest"], rows, title)
 
 
 def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.NormalFit]) -> Table:
@@ -139,7 +113,6 @@ def normal_table(data: measurements.NormalVibration, fits: Sequence[normal.Norma
 def run(options: argparse.Namespace) -> None:
     console = table_console()
     path = options.fmu or build_fmu()
-    draws = can_draw()
 
     sliding = {}
     for name in ("dry", "oil"):
@@ -162,17 +135,13 @@ def run(options: argparse.Namespace) -> None:
         console.print(scatter_line(whole), cycles_table(whole, record_fits), sep="\n")
         console.print(elements_table(elements.fits(whole)), unloading_table(whole, record_fits), sep="\n")
 
-    if draws:
-        from frictioncontact import style
-        from workshop.validate import figures
-
-        drawn = {
-            "validation-longitudinal": figures.longitudinal(sliding),
-            "validation-normal": figures.normal(path, vibration, normal_fits),
-        }
-        if record_fits:
-            drawn["validation-cycles"] = figures.cycles(whole, record_fits)
-            drawn["validation-unloading"] = figures.unloading(whole, record_fits)
-        for name, figure in drawn.items():
-            style.save(figure, options.output / f"{name}.png")
-        print(f"Written: {len(drawn)} pictures in {options.output}")
+    drawn = {
+        "longitudinal": figures.longitudinal(sliding),
+        "normal": figures.normal(path, vibration, normal_fits),
+    }
+    if record_fits:
+        drawn["cycles"] = figures.cycles(whole, record_fits)
+        drawn["unloading"] = figures.unloading(whole, record_fits)
+    for name, figure in drawn.items():
+        style.save(figure, options.output / f"validation-{name}.png")
+    print(f"Written: {len(drawn)} pictures in {options.output}")

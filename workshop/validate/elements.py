@@ -22,7 +22,6 @@ Elements = tuple[np.ndarray, np.ndarray, float]  # stiffness [N/m] and limit / l
 @dataclass(frozen=True)
 class ElementFit:
     name: str
-    parameters: int  # fitted
     rms_fitted: float  # over the sliding friction
     rms_predicted: float
     tilt: float  # N/N
@@ -59,16 +58,14 @@ def tilted(x: Sequence[float]) -> Elements:
 def fits(record: Record) -> list[ElementFit]:
     """Every variant, fitted to the fitted cycles of the record."""
     one = np.log([4e4, 0.47])
-    found = []
-    for name, elements, guess in (
+    variants = (
         ("one element, ElasticPlastic", parallel(1), one),
         ("two in parallel", parallel(2), np.log([2e4, 2e4, 0.3, 0.17])),
         ("four in parallel", parallel(4), np.log([1e4, 1e4, 1e4, 1e4, 0.18, 0.14, 0.1, 0.05])),
         ("Iwan's distribution", iwan, np.array([*one, 0.3])),
         ("one element and a force proportional to the load", tilted, np.array([*one, 0.0])),
-    ):
-        found.append(_fit(record, name, elements, guess))
-    return found
+    )
+    return [_fit(record, *variant) for variant in variants]
 
 
 def _fit(
@@ -83,6 +80,4 @@ def _fit(
         lambda x: forces(cycles, elements(x)) - cycles.friction, guess, diff_step=1e-4, bounds=(-high, high)
     )
     error = forces(predicted, elements(result.x)) - predicted.friction
-    return ElementFit(
-        name, len(guess), rms(result.fun) / sliding, rms(error) / sliding, elements(result.x)[2]
-    )
+    return ElementFit(name, rms(result.fun) / sliding, rms(error) / sliding, elements(result.x)[2])

@@ -102,22 +102,11 @@ def normal(fmu: Path, data: NormalVibration, fits: Sequence[NormalFit]) -> Figur
         swings = ", ".join(f"{fit.swing:g}" for fit in chosen)
         lines[0].set_label(f"{law}, limit μ F_n; at the right,\nfrom above, α = {swings}")
     axes.plot(1e3 * V, 0 * V, color=style.GREY, ls="--", label="every law with a constant limit")
-    axes.semilogx(
-        1e3 * data.V,
-        100 * data.reduction,
-        "o",
-        color=style.BLACK,
-        label="measured; the laws are fitted to the left one",
-    )
-    axes.axvline(1e3 * data.between, ymax=0.55, color=style.GREY, lw=0.8)
-    style.note(
-        axes,
-        "measured too,\nnot at hand",
-        1e3 * data.between * 1.03,
-        2.0,
-        va="bottom",
-        transform=axes.transData,
-    )
+    label = "measured; the laws are fitted to the left one"
+    axes.semilogx(1e3 * data.V, 100 * data.reduction, "o", color=style.BLACK, label=label)
+    at, where = 1e3 * data.between, {"va": "bottom", "transform": axes.transData}
+    axes.axvline(at, ymax=0.55, color=style.GREY, lw=0.8)
+    style.note(axes, "measured too,\nnot at hand", 1.03 * at, 2.0, **where)
     axes.set(
         xlabel="sliding velocity [mm/s]",
         ylabel="fall of the friction [%]",

@@ -1,1 +1,0 @@
-"""The paper's equations, figures, tables and claims, from the FMU."""

@@ -1,1 +1,0 @@
-"""Between sticking and sliding: which regime a scene is in, and its mean force."""
