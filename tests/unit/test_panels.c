@@ -91,58 +91,6 @@ static void nodes_are_the_scene(void) {
     }
 }
 
-static void check_map(const FcMap* map, const FcMap* exact, double within) {
-    CHECK_NEAR(map->relaxation, exact->relaxation, within);
-    CHECK_NEAR(map->offset, exact->offset, within);
-    CHECK_NEAR(map->impulse_slope, exact->impulse_slope, within);
-    CHECK_NEAR(map->impulse_offset, exact->impulse_offset, within);
-    CHECK_NEAR(map->work_slope, exact->work_slope, within);
-    CHECK_NEAR(map->work_offset, exact->work_offset, within);
-    CHECK_NEAR(map->drag_slope, exact->drag_slope, within);
-    CHECK_NEAR(map->drag_offset, exact->drag_offset, within);
-    CHECK_NEAR(map->heat_square, exact->heat_square, within);
-    CHECK_NEAR(map->heat_slope, exact->heat_slope, within);
-    CHECK_NEAR(map->heat_offset, exact->heat_offset, within);
-}
-
-// Constant coefficients: every coefficient of the map is that of the closed form; in the plane those of two lines.
-static void maps_are_the_closed_form(void) {
-    const FcVibration none = {.f = 20e3};
-    FcContactParameters contact = soft_contact();
-    contact.model = FC_CONTACT_CONSTANT;
-    for (int k = 0; k < 16; k++) {
-        const double V = k % 2 ? 0.2 : -0.2;
-        const double z = k / 2 % 2 ? 1.0 : 0.02;
-        const bool on_line = k / 4 % 2;
-        FcScene scene = scene_of(&contact, &DAHL, none, (FcLinearInput){V, 0.0}, (FcLinearInput){14e-6, 0.0},
-                                 (FcLinearInput){58e9, 0.0});
-        FcPlane plane;
-        fc_plane_make(&plane, &scene);
-        plane.on_line = on_line;
-        const FcPart part = part_of(0.0, z * 55.0 / (1e6 * fabs(V)), (FcStraight){0.0, INFINITY},
-                                    on_line ? (V < 0.0 ? -1 : 1) : 0);
-        const FcNodes nodes = nodes_over(&plane, &part);
-        const FcFrom from = {.delta = {1e-5, on_line ? 0.0 : 2e-5},
-                             .speed = fabs(V),
-                             .push = fabs(V),
-                             .for_any = true,
-                             .is_still = k / 8 % 2};
-        FcPanel panel;
-        fc_free_panel(&plane, &nodes, &from, &panel);
-        const FcCoefficients at = fc_scene_coefficients(&scene, 0.0);
-        const FcMap exact = fc_map_of_constant_scene(&at, part.end);
-        CHECK_NEAR(panel.z, z, 1e-13);
-        check_map(&panel.along, &exact, 1e-12);
-        CHECK_NEAR(panel.rate, z / part.end, 1e-13);
-        if (!on_line) { // V_y = 0
-            CHECK_NEAR(panel.across.relaxation, exact.relaxation, 1e-12);
-            CHECK_NEAR(panel.across.impulse_slope, exact.impulse_slope, 1e-12);
-            CHECK_NEAR(panel.across.heat_square, exact.heat_square, 1e-12);
-            CHECK(panel.across.offset == 0.0 && panel.across.work_slope == 0.0);
-        }
-    }
-}
-
 // What is left of a start after a panel of constant coefficients over z.
 static double left_after(double z) {
     const double sigma = 1e6;
@@ -241,7 +189,6 @@ static void estimates_bound_the_errors(void) {
 
 int main(void) {
     nodes_are_the_scene();
-    maps_are_the_closed_form();
     panels_are_of_order_17();
     estimates_bound_the_errors();
     return check_result();
