@@ -8,7 +8,7 @@ static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the seq
 // The domain of docs/numerics.md.
 static const double MOST_KAPPA = 1e8;
 static const double MOST_PLANAR = 30.0;   // periods of a step,
-static const double LONG_PLANAR = 150.0;  // and of some
+static const double MOST_LEAP = 400.0;    // and of a leap: of one whose inputs move
 static const double SHORTEST = 1e-9;      // s, of a step
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
@@ -346,14 +346,16 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
     draw.state ^= next(&draw);
     Sequence sequence = {.tolerance = TOLERANCES[number % 5], .method = 1};
     ReferenceScene full = contact_drawn(&draw, plane);
-    const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
+    const bool leaps = plane && number % 4 == 3; // inputs move over many periods
+    const bool of_user = chance(&draw, 0.5) && !leaps, linear = chance(&draw, 0.5) || leaps;
+    const bool tunes = chance(&draw, 0.25);
     const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
     const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
-    const double most = plane     ? (!of_user && chance(&draw, 0.05) ? LONG_PLANAR : MOST_PLANAR)
+    const double most = plane     ? MOST_PLANAR
                         : !linear ? MOST_PERIODS
                         : of_user ? MOST_MOVING / MOST_STEPS
                                   : MOST_MOVING;
-    full.h = length(&draw, &full, most);
+    full.h = leaps ? log_between(&draw, 12.0, MOST_LEAP) / full.f : length(&draw, &full, most);
     for (int k = 0; k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
         if (of_user) {

@@ -3,41 +3,29 @@
 from __future__ import annotations
 
 import ctypes
+import re
 from functools import cache
 from typing import Any
 
 from workshop.build import build_targets
+from workshop.description import description
+from workshop.project import ROOT
 
-NUMBERS = """start h V d E load V_rate d_rate E_rate load_rate V_y V_y_rate f V_1 a_d phase_d V_2 phase_2
-    F_C mu staticRatio V_S sigma_1 sigma_2 delta_0 delta_y_0 contact_sigma stiffnessScale
-    R_q R eta A_n nu Y c lambda""".split()
+# The fields of a scene and their names in modelDescription.xml.
+FIELDS = dict(re.findall(r"X\((\w+), ([\w.]+)\)", (ROOT / "hunt/reference.h").read_text()))
+VARIABLES = {variable["name"]: variable for variable in description()["variables"]}
 CHOICES = {
-    "law": ("Dahl", "Coulomb", "ElasticPlastic", "LuGre"),
-    "limit": ("Constant", "Load"),
-    "contact": ("Asperities", "Constant", "Mindlin"),
-    "input": ("Separation", "Load"),
-    "initial": ("Given", "Settled"),
+    name: tuple(item["name"] for item in VARIABLES[variable]["items"])
+    for name, variable in FIELDS.items()
+    if "items" in VARIABLES.get(variable, ())
 }
 RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start work heat slips
     delta delta_y S path""".split()
-# Of the FMU, where its name is not the reference's.
-FMU_NAMES = {
-    **{name: f"vibration.{name}" for name in ("f", "V_1", "a_d", "phase_d", "V_2", "phase_2")},
-    **{name: f"friction.{name}" for name in ("mu", "staticRatio", "V_S", "sigma_1", "sigma_2", "limit")},
-    **{name: f"contact.{name}" for name in "stiffnessScale R_q R eta A_n nu Y c lambda input".split()},
-    "contact_sigma": "contact.sigma",
-    "law": "friction.model",
-    "contact": "contact.model",
-}
-NO_START_VALUES = ("start", "h", "initial", "slips")
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 
 
 class Scene(ctypes.Structure):
-    _fields_ = [
-        *((name, ctypes.c_double) for name in NUMBERS),
-        *((name, ctypes.c_int) for name in (*CHOICES, "slips")),
-    ]
+    _fields_ = [(name, ctypes.c_double) for name in (*FIELDS, "slips")]
 
 
 class Step(ctypes.Structure):
@@ -65,9 +53,12 @@ def scene(**values: Any) -> Scene:
 
 
 def start_values(of: Scene) -> dict[str, Any]:
-    """Of the FMU, but for the rates of its inputs."""
-    names = [n for n, _ in Scene._fields_ if n not in NO_START_VALUES and not n.endswith("_rate")]
-    return {FMU_NAMES.get(name, name): getattr(of, name) for name in names}
+    """Of the FMU, but for the rates of its inputs and the choice of the start."""
+    names = {name: variable for name, variable in FIELDS.items() if variable in VARIABLES and name != "initial"}
+    return {
+        variable: int(getattr(of, name)) if name in CHOICES else getattr(of, name)
+        for name, variable in names.items()
+    }
 
 
 def rest(now: Scene) -> tuple[float, float]:
