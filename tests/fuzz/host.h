@@ -191,4 +191,16 @@ static inline fmi2Status update(fmi2Component c) {
     return status;
 }
 
+// After a call that found this state before it. A refusal changes nothing.
+static inline void check_after(Fmi2Instance* instance, const StateBytes* before, fmi2Status status) {
+    HOLD(status == fmi2OK || status == fmi2Warning || status == fmi2Error, "the status is one of three");
+    if (status != fmi2Error) {
+        check_outputs(instance->component);
+        return;
+    }
+    const StateBytes after = state_of(instance->component);
+    HOLD(new_errors(instance) > 0, "an error comes with a message");
+    HOLD(same_state(before, &after), "an error changes nothing");
+}
+
 #endif
