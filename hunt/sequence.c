@@ -7,9 +7,7 @@
 
 #include "fmi2/variables.h"
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Fields of a scene
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Fields of a scene ----
 
 #define FIELD(name, variable) {#name, #variable},
 static const struct {
@@ -71,9 +69,7 @@ ReferenceScene scene_after(const ReferenceScene* before) {
     return s;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Text
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Text ----
 
 void sequence_text(const Sequence* sequence, char* text, size_t size) {
     size_t length = (size_t)snprintf(text, size, "tolerance=%g ", sequence->tolerance);

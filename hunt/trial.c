@@ -14,9 +14,7 @@ static const double DIGITS = 1e-13;          // of a deflection: so near to its 
 static const double NEAR_LINE_PERIODS = 3.3; // of a step at the most, for the reference's sake
 static const double LEAST_S = 1e-20;         // N, and J: S and the path are 0 if nothing acts
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The FMU
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The FMU ----
 
 typedef struct {
     FcFrictionContact contact;
@@ -73,9 +71,7 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     return true;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Grades
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Grades ----
 
 static double over(double error, double allowed) { return isnan(error) ? INFINITY : fabs(error) / allowed; }
 
