@@ -54,7 +54,9 @@ def scene(**values: Any) -> Scene:
 
 def start_values(of: Scene) -> dict[str, Any]:
     """Of the FMU, but for the rates of its inputs and the choice of the start."""
-    names = {name: variable for name, variable in FIELDS.items() if variable in VARIABLES and name != "initial"}
+    names = {
+        name: variable for name, variable in FIELDS.items() if variable in VARIABLES and name != "initial"
+    }
     return {
         variable: int(getattr(of, name)) if name in CHOICES else getattr(of, name)
         for name, variable in names.items()
