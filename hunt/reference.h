@@ -16,24 +16,20 @@ enum { CONTACT_ASPERITIES = 1, CONTACT_CONSTANT = 2, CONTACT_MINDLIN = 3 };
 enum { INPUT_SEPARATION = 1, INPUT_LOAD = 2 };
 enum { START_GIVEN = 1, START_SETTLED = 2 };
 
-// A scene and its step [start, start + h], in SI units: V, d, E and load at the start of the step, rates per second. Beside each
-// field stands its name in modelDescription.xml, if it has one there. A choice is the number of an item.
-#define SCENE_FIELDS(X)                                                                                      \
-    X(law, friction.model)                                                                                   \
-    X(limit, friction.limit)                                                                                 \
-    X(contact, contact.model)                                                                                \
-    X(input, contact.input)                                                                                  \
-    X(initial, initialState)                                                                                 \
-    X(start, start) X(h, h) X(V, V) X(d, d) X(E, E) X(load, load) X(V_rate, V_rate) X(d_rate, d_rate)        \
-        X(E_rate, E_rate) X(load_rate, load_rate) X(f, vibration.f) X(V_1, vibration.V_1)                    \
-            X(a_d, vibration.a_d) X(phase_d, vibration.phase_d) X(V_y, V_y) X(V_y_rate, V_y_rate)            \
-                X(V_2, vibration.V_2) X(phase_2, vibration.phase_2) X(delta_y_0, delta_y_0) X(F_C, F_C)      \
-                    X(mu, friction.mu) X(staticRatio, friction.staticRatio) X(V_S, friction.V_S)             \
-                        X(sigma_1, friction.sigma_1) X(sigma_2, friction.sigma_2) X(delta_0, delta_0)        \
-                            X(contact_sigma, contact.sigma) X(stiffnessScale, contact.stiffnessScale)        \
-                                X(R_q, contact.R_q) X(R, contact.R) X(eta, contact.eta) X(A_n, contact.A_n)  \
-                                    X(nu, contact.nu) X(Y, contact.Y) X(c, contact.c)                        \
-                                        X(lambda, contact.lambda)
+// A scene and its step [start, start + h], in SI units: V, d, E and load at the start of the step, rates per second. Beside
+// each field stands its name in modelDescription.xml, if it has one there. A choice is the number of an item.
+// clang-format off
+#define SCENE_FIELDS(X) \
+    X(law, friction.model) X(limit, friction.limit) X(contact, contact.model) X(input, contact.input) \
+    X(initial, initialState) X(start, start) X(h, h) X(V, V) X(d, d) X(E, E) X(load, load) X(V_rate, V_rate) \
+    X(d_rate, d_rate) X(E_rate, E_rate) X(load_rate, load_rate) X(f, vibration.f) X(V_1, vibration.V_1) \
+    X(a_d, vibration.a_d) X(phase_d, vibration.phase_d) X(V_y, V_y) X(V_y_rate, V_y_rate) X(V_2, vibration.V_2) \
+    X(phase_2, vibration.phase_2) X(delta_y_0, delta_y_0) X(F_C, F_C) X(mu, friction.mu) \
+    X(staticRatio, friction.staticRatio) X(V_S, friction.V_S) X(sigma_1, friction.sigma_1) \
+    X(sigma_2, friction.sigma_2) X(delta_0, delta_0) X(contact_sigma, contact.sigma) \
+    X(stiffnessScale, contact.stiffnessScale) X(R_q, contact.R_q) X(R, contact.R) X(eta, contact.eta) \
+    X(A_n, contact.A_n) X(nu, contact.nu) X(Y, contact.Y) X(c, contact.c) X(lambda, contact.lambda)
+// clang-format on
 #define FIELD(name, variable) double name;
 typedef struct {
     SCENE_FIELDS(FIELD)
