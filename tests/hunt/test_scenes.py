@@ -24,7 +24,7 @@ def hunt(*options: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.parametrize(("count", "plane"), [("200", []), ("24", ["--plane"])])
 def test_the_first_sequences_of_the_hunts_on_the_page(count: str, plane: list[str]) -> None:
-    """Of docs/reliability.md: every law, contact and limit, and jumps from step to step."""
+    """Of docs/reliability.md: every law, contact, limit, jumps; leaps of moving inputs in the plane."""
     done = hunt("--seed", "1", "--scenes", count, *plane)
     assert done.returncode == 0, done.stdout + done.stderr
     assert " 0 refused" in done.stdout and " 0 misses" in done.stdout
