@@ -53,7 +53,7 @@ static bool still_misses(const Sequence* sequence) {
 
 static void print_miss(Hunt* hunt, const Sequence* sequence, const char* text, const TrialStep* taken,
                        int step) {
-    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e: %s\n", LAW_NAMES[taken->scene.law - 1],
+    printf("miss law=%s ratio=%.3g of=%s step=%d kappa=%.1e: %s\n", law_name(taken->scene.law),
            taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], step + 1, scene_kappa(&taken->scene), text);
     if (hunt->options.minimize > 0 && !hunt->options.near_line && still_misses(sequence)) {
         hunt->options.minimize--;
@@ -68,7 +68,7 @@ static void print_miss(Hunt* hunt, const Sequence* sequence, const char* text, c
 static void print_step(const TrialStep* taken, int step) {
     const FmuStep* s = &taken->step;
     const ReferenceStep* t = &taken->truth;
-    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %d\n", step + 1,
+    printf("step %d: ratio %.3g of %s; S %g N, path %g m, from delta %.17g, %.17g side %g\n", step + 1,
            taken->verdict.ratio, GRADE_NAMES[taken->verdict.of], t->S, t->path, taken->scene.delta_0,
            taken->scene.delta_y_0, taken->scene.slips);
     for (int k = 0; k < RESULTS; k++) {
@@ -99,7 +99,7 @@ static void try_sequence(Hunt* hunt, Sequence sequence) {
     for (int k = 0; k < trial.steps; k++) {
         const TrialStep* taken = &trial.taken[k];
         const double ratio = taken->verdict.ratio;
-        Row* row = &hunt->law[taken->scene.law - 1];
+        Row* row = &hunt->law[(int)taken->scene.law - 1];
         row->steps++;
         row->worst = fmax(row->worst, ratio);
         if (!(ratio <= 1.0)) {
@@ -164,7 +164,7 @@ static long print_sums(const Hunt* hunt) {
         const Row* row = &hunt->law[k];
         misses += row->misses;
         steps += row->steps;
-        printf("| %s | %ld | %ld | %.2g |\n", LAW_NAMES[k], row->steps, row->misses, row->worst);
+        printf("| %s | %ld | %ld | %.2g |\n", law_name(k + 1), row->steps, row->misses, row->worst);
     }
     printf("\n%ld sequences of %ld steps, %ld refused, %ld beyond the reference, %ld misses\n",
            hunt->sequences, steps, hunt->refused, hunt->unknown, misses);

@@ -4,9 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots ----
 
 // P_0 .. P_STAGES of Legendre at x.
 static void legendre(Real x, Real P[STAGES + 1]) {
@@ -102,9 +100,7 @@ Real crossing(Function* function, const void* context, Real low, Real high) {
     }
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The contact
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The contact ----
 
 static Real power_3_2(Real x) { return x * sqrtl(x); }
 
@@ -154,9 +150,7 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
     return at;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The scene at a time
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The scene at a time ----
 
 // By an angle of at most an eighth of a turn, which the library need not reduce.
 Vector direction(Real turns) {
@@ -290,9 +284,7 @@ Real bound_rate(const World* w, const At* at, bool sticks) {
     return bound(w, at, sticks) * (sticks || !w->elastic ? at->bound_rate : at->kinetic_rate);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The step
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The step ----
 
 // Mean of the limit over a period of the vibration with the inputs of a time [N].
 static Real mean_limit(const World* w, Real t) {

@@ -38,9 +38,7 @@ Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0
 Vector direction(Real turns);        // (cos, sin) of 2 pi turns
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The scene at a time
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The scene at a time ----
 
 // The factors of F_n and sigma before their powers of e^(-lambda d / R_q), and the derivatives of their logarithms by E.
 typedef struct {

@@ -57,46 +57,37 @@ static void begin_interval(const char* name, double duration, double before) {
 
 // ---- between the march and its functions ----
 
-void __real_fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h);
-void __wrap_fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h);
-void __wrap_fc_append_panel(FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
+#define WRAP(type, name, ...)                                                                                \
+    type __real_##name(__VA_ARGS__);                                                                         \
+    type __wrap_##name(__VA_ARGS__);                                                                         \
+    type __wrap_##name(__VA_ARGS__)
+
+WRAP(void, fc_append_panel, FcCrossing* crossing, const FcNodes* nodes, FcPanel* panel, double h) {
     const From from = from_of(crossing, KINDS[fc_kind(crossing)]);
     __real_fc_append_panel(crossing, nodes, panel, h);
     print_panel(crossing, from, panel);
 }
 
-void __real_fc_append_known(FcCrossing* crossing, const FcMap* map, double t);
-void __wrap_fc_append_known(FcCrossing* crossing, const FcMap* map, double t);
-void __wrap_fc_append_known(FcCrossing* crossing, const FcMap* map, double t) {
+WRAP(void, fc_append_known, FcCrossing* crossing, const FcMap* map, double t) {
     const From from = from_of(crossing, "known");
     const FcPanel none = {.z = NAN, .end_error = NAN, .mean_error = NAN};
     __real_fc_append_known(crossing, map, t);
     print_panel(crossing, from, &none);
 }
 
-void __real_fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
-                          FcStepResult* result);
-void __wrap_fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
-                          FcStepResult* result);
-void __wrap_fc_march_step(const FcScene* scene, const FcSolverOptions* options, double duration,
-                          FcStepResult* result) {
+WRAP(void, fc_march_step, const FcScene* scene, const FcSolverOptions* options, double duration,
+     FcStepResult* result) {
     begin_interval("march", duration, result->evaluations);
     __real_fc_march_step(scene, options, duration, result);
 }
 
-FcMap __real_fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
-                          FcMap* across, double* before);
-FcMap __wrap_fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
-                          FcMap* across, double* before);
-FcMap __wrap_fc_march_map(const FcScene* scene, const FcSolverOptions* options, double duration, double start,
-                          FcMap* across, double* before) {
+WRAP(FcMap, fc_march_map, const FcScene* scene, const FcSolverOptions* options, double duration, double start,
+     FcMap* across, double* before) {
     begin_interval("map", duration, *before);
     return __real_fc_march_map(scene, options, duration, start, across, before);
 }
 
-bool __real_fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
-bool __wrap_fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message);
-bool __wrap_fc_friction_contact_advance(FcFrictionContact* contact, double t, double h, FcMessage* message) {
+WRAP(bool, fc_friction_contact_advance, FcFrictionContact* contact, double t, double h, FcMessage* message) {
     lists = true;
     printf("step from %.17g s of %.17g s\n", t, h);
     const bool is_taken = __real_fc_friction_contact_advance(contact, t, h, message);

@@ -6,9 +6,7 @@
 
 #include "moment.h"
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Panels
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Panels ----
 
 // STICKS: the bristle follows its law inside a bound, if there is one. CATCHES: it has broken away, and its kinetic bound has
 // risen since. SLIPS: along its bound.
@@ -334,9 +332,7 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
     march->state.delta = part.sums.end;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Cuts of the step
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Cuts of the step ----
 
 // Times in rising order.
 typedef struct {
@@ -424,9 +420,7 @@ static Real end_of_piece(const World* w, Real from, Real to, Real t) {
     return end;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The march through the step
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The march through the step ----
 
 // Whether a bristle that has broken away, but does not slip, catches up with its bound; else it sticks. On a ramp V or the
 // push after it decides, so that held steps come to the ramp that they sample.
@@ -602,9 +596,7 @@ static Real jump(const ReferenceScene* before, const World* w, State* state) {
     return 0.5L * at.sigma * (length - lies) * (length + lies);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Many equal periods
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Many equal periods ----
 
 // As long as it touches no bound, a period maps delta in an affine way, the same along and across, and its sums are
 // polynomials of degree 2 in delta: it multiplies (1, x, y, x^2 + y^2, impulse, work, heat, path) by a matrix, x = delta / unit.
@@ -836,9 +828,7 @@ static bool settle(World* w, State* state, Vector* mean) {
     return true;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The step
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The step ----
 
 // The force [N] at a time.
 static Vector force_at(const World* w, Real t, State state) {

@@ -16,22 +16,26 @@ enum { CONTACT_ASPERITIES = 1, CONTACT_CONSTANT = 2, CONTACT_MINDLIN = 3 };
 enum { INPUT_SEPARATION = 1, INPUT_LOAD = 2 };
 enum { START_GIVEN = 1, START_SETTLED = 2 };
 
-// A scene and its step [start, start + h].
+// A scene and its step [start, start + h], in SI units: V, d, E and load at the start of the step, rates per second. Beside
+// each field stands its name in modelDescription.xml, if it has one there. A choice is the number of an item.
+// clang-format off
+#define SCENE_FIELDS(X) \
+    X(law, friction.model) X(limit, friction.limit) X(contact, contact.model) X(input, contact.input) \
+    X(initial, initialState) X(start, start) X(h, h) X(V, V) X(d, d) X(E, E) X(load, load) X(V_rate, V_rate) \
+    X(d_rate, d_rate) X(E_rate, E_rate) X(load_rate, load_rate) X(f, vibration.f) X(V_1, vibration.V_1) \
+    X(a_d, vibration.a_d) X(phase_d, vibration.phase_d) X(V_y, V_y) X(V_y_rate, V_y_rate) X(V_2, vibration.V_2) \
+    X(phase_2, vibration.phase_2) X(delta_y_0, delta_y_0) X(F_C, F_C) X(mu, friction.mu) \
+    X(staticRatio, friction.staticRatio) X(V_S, friction.V_S) X(sigma_1, friction.sigma_1) \
+    X(sigma_2, friction.sigma_2) X(delta_0, delta_0) X(contact_sigma, contact.sigma) \
+    X(stiffnessScale, contact.stiffnessScale) X(R_q, contact.R_q) X(R, contact.R) X(eta, contact.eta) \
+    X(A_n, contact.A_n) X(nu, contact.nu) X(Y, contact.Y) X(c, contact.c) X(lambda, contact.lambda)
+// clang-format on
+#define FIELD(name, variable) double name;
 typedef struct {
-    double start;                              // s
-    double h;                                  // s
-    double V, d, E, load;                      // m/s, m, Pa, N at the start of the step
-    double V_rate, d_rate, E_rate, load_rate;  // per second
-    double V_y, V_y_rate;                      // m/s, m/s2
-    double f, V_1, a_d, phase_d, V_2, phase_2; // Hz, m/s, m, rad, m/s, rad
-    double F_C, mu, staticRatio, V_S;          // N, 1, 1, m/s
-    double sigma_1, sigma_2;                   // N s/m
-    double delta_0, delta_y_0;                 // m
-    double contact_sigma, stiffnessScale;      // N/m, 1
-    double R_q, R, eta, A_n, nu, Y, c, lambda; // m, m, 1/m2, m2, 1, Pa, 1, 1
-    int law, limit, contact, input, initial;
-    int slips; // other than 0 if a bristle with static friction slips at the start
+    SCENE_FIELDS(FIELD)
+    double slips; // other than 0 if a bristle with static friction slips at the start
 } ReferenceScene;
+#undef FIELD
 
 // The results of a step: the force at the end, its mean, and at the start with the inputs held after a jump [N]; work and
 // heat [J] of the step, the heat with that of the jump; whether a bristle with static friction slips at the end. These are

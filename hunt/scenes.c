@@ -3,104 +3,84 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "random.h"
+
 static const double TURN = 6.283185307179586;
 static const double TOLERANCES[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8}; // of the sequences in turn
 // The domain of docs/numerics.md.
 static const double MOST_KAPPA = 1e8;
 static const double MOST_PLANAR = 30.0;   // periods of a step,
-static const double LONG_PLANAR = 150.0;  // and of some
+static const double MOST_LEAP = 400.0;    // and of a leap: of one whose inputs move
 static const double SHORTEST = 1e-9;      // s, of a step
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Random numbers: splitmix64
-// ---------------------------------------------------------------------------------------------------------------------
+static double between(double low, double high) { return low + (high - low) * random_01(); }
+static double sign(void) { return random_chance(0.5) ? 1.0 : -1.0; }
 
-typedef struct {
-    uint64_t state;
-} Draw;
-
-static uint64_t next(Draw* draw) {
-    uint64_t z = draw->state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
-static double unit(Draw* draw) { return (double)(next(draw) >> 11) / 9007199254740992.0; }
-static double between(Draw* draw, double low, double high) { return low + (high - low) * unit(draw); }
-static double log_between(Draw* draw, double low, double high) { return low * pow(high / low, unit(draw)); }
-static bool chance(Draw* draw, double probability) { return unit(draw) < probability; }
-static double sign(Draw* draw) { return chance(draw, 0.5) ? 1.0 : -1.0; }
-static int pick(Draw* draw, int count) { return (int)(unit(draw) * count); }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Parts of a scene
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Parts of a scene ----
 
 static double top_speed(const ReferenceScene* s) {
     return fmax(fmax(hypot(s->V, s->V_y), fmax(s->V_1, s->V_2)), 1e-6);
 }
 
 // Next to a vibration also dips of |V|, and grazing reversals.
-static double velocity_along(Draw* draw, double V_1) {
-    const double kind = unit(draw);
+static double velocity_along(double V_1) {
+    const double kind = random_01();
     const bool swings = V_1 > 0.0 && kind < 0.8;
     return kind < 0.05   ? 0.0
-           : !swings     ? sign(draw) * log_between(draw, 1e-5, 10.0)
-           : kind < 0.25 ? sign(draw) * V_1 * (1.0 + sign(draw) * log_between(draw, 1e-9, 1e-1))
-           : kind < 0.35 ? sign(draw) * V_1 * log_between(draw, 1e-9, 1.0)
-                         : V_1 * between(draw, -3.0, 3.0);
+           : !swings     ? sign() * random_log(1e-5, 10.0)
+           : kind < 0.25 ? sign() * V_1 * (1.0 + sign() * random_log(1e-9, 1e-1))
+           : kind < 0.35 ? sign() * V_1 * random_log(1e-9, 1.0)
+                         : V_1 * between(-3.0, 3.0);
 }
 
 // In the plane: zeta, and any direction, or along or transverse.
-static void velocity(Draw* draw, const ReferenceScene* s, double* V, double* V_y) {
+static void velocity(const ReferenceScene* s, double* V, double* V_y) {
     if (s->V_2 == 0.0) {
-        *V = velocity_along(draw, s->V_1);
+        *V = velocity_along(s->V_1);
         *V_y = 0.0;
         return;
     }
     const double most = fmax(s->V_1, s->V_2);
-    if (chance(draw, 0.2)) { // V passes or touches 0 in each period, or nearly
+    if (random_chance(0.2)) { // V passes or touches 0 in each period, or nearly
         const bool on_line = s->V_1 == 0.0 || s->phase_2 == 0.0;
-        const double phase = on_line ? TURN / 2.0 * pick(draw, 2) : between(draw, 0.0, TURN);
-        const double nearly = 1.0 + sign(draw) * log_between(draw, 1e-10, 0.1);
-        *V = -nearly * s->V_1 * cos(phase) + most * sign(draw) * log_between(draw, 1e-7, 0.1);
-        *V_y = -nearly * s->V_2 * cos(phase + s->phase_2) +
-               (on_line ? 0.0 : most * log_between(draw, 1e-7, 0.1));
+        const double phase = on_line ? TURN / 2.0 * random_below(2) : between(0.0, TURN);
+        const double nearly = 1.0 + sign() * random_log(1e-10, 0.1);
+        *V = -nearly * s->V_1 * cos(phase) + most * sign() * random_log(1e-7, 0.1);
+        *V_y = -nearly * s->V_2 * cos(phase + s->phase_2) + (on_line ? 0.0 : most * random_log(1e-7, 0.1));
         return;
     }
-    const double size = most * log_between(draw, 1e-4, 10.0);
-    const double angle = chance(draw, 0.5) ? TURN / 4.0 * pick(draw, 4) : between(draw, 0.0, TURN);
+    const double size = most * random_log(1e-4, 10.0);
+    const double angle = random_chance(0.5) ? TURN / 4.0 * random_below(4) : between(0.0, TURN);
     *V = size * cos(angle) * (fabs(cos(angle)) > 1e-9);
     *V_y = size * sin(angle) * (fabs(sin(angle)) > 1e-9);
 }
 
 // A transverse vibration alone, or on a line, a circle or any ellipse.
-static void planar_vibration(Draw* draw, ReferenceScene* s) {
-    const double kind = unit(draw);
-    s->V_2 = log_between(draw, 1e-3, 3.0);
-    s->V_1 = kind < 0.3 ? 0.0 : s->V_2 * (kind < 0.5 ? 1.0 : log_between(draw, 1e-3, 10.0));
-    s->phase_2 = kind < 0.5 ? TURN / 4.0 * sign(draw) : kind < 0.6 ? 0.0 : between(draw, -TURN, TURN);
+static void planar_vibration(ReferenceScene* s) {
+    const double kind = random_01();
+    s->V_2 = random_log(1e-3, 3.0);
+    s->V_1 = kind < 0.3 ? 0.0 : s->V_2 * (kind < 0.5 ? 1.0 : random_log(1e-3, 10.0));
+    s->phase_2 = kind < 0.5 ? TURN / 4.0 * sign() : kind < 0.6 ? 0.0 : between(-TURN, TURN);
 }
 
-static void surfaces(Draw* draw, ReferenceScene* s) {
-    if (chance(draw, 0.25)) {
+static void surfaces(ReferenceScene* s) {
+    if (random_chance(0.25)) {
         double* const sizes[] = {&s->R_q, &s->R, &s->eta, &s->A_n, &s->c, &s->lambda};
         for (int k = 0; k < 6; k++) {
-            *sizes[k] *= log_between(draw, 0.7, 1.4);
+            *sizes[k] *= random_log(0.7, 1.4);
         }
-        s->nu = between(draw, 0.0, 0.49);
-        s->Y *= log_between(draw, 0.3, 30.0);
+        s->nu = between(0.0, 0.49);
+        s->Y *= random_log(0.3, 30.0);
     }
-    s->E = chance(draw, 0.7) ? between(draw, 20e9, 90e9) : log_between(draw, 5e9, 5e11);
+    s->E = random_chance(0.7) ? between(20e9, 90e9) : random_log(5e9, 5e11);
     const double length = s->R_q / s->lambda;
-    s->d = length * (chance(draw, 0.9) ? between(draw, 5.0, 9.0) : log_between(draw, 1.5, 60.0));
-    if (chance(draw, 0.65)) {
-        s->a_d = length * log_between(draw, 1e-4, 1.3);
+    s->d = length * (random_chance(0.9) ? between(5.0, 9.0) : random_log(1.5, 60.0));
+    if (random_chance(0.65)) {
+        s->a_d = length * random_log(1e-4, 1.3);
         s->a_d = fmin(s->a_d, 0.7 * s->d);
-        s->phase_d = chance(draw, 0.2) ? TURN / 4.0 * pick(draw, 4) : between(draw, -TURN, TURN);
+        s->phase_d = random_chance(0.2) ? TURN / 4.0 * random_below(4) : between(-TURN, TURN);
     }
 }
 
@@ -123,154 +103,148 @@ double scene_gain(const ReferenceScene* s) {
     return 2.0 * rest.limit / rest.sigma * (s->staticRatio - 1.0) * V_rate / (s->V_S * s->V_S);
 }
 
-static void friction(Draw* draw, ReferenceScene* s) {
-    s->law = 1 + pick(draw, 4);
-    s->limit = chance(draw, 0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;
-    s->F_C = log_between(draw, 1e-2, 1e4);
-    s->mu = log_between(draw, 0.03, 1.0);
-    s->contact = 1 + pick(draw, 3);
-    s->input = chance(draw, 0.45) ? INPUT_LOAD : INPUT_SEPARATION;
-    s->load = log_between(draw, 1e-1, 1e3);
-    const double most = chance(draw, 0.5) ? 1e3 : MOST_KAPPA;
-    const double scale = log_between(draw, LEAST_KAPPA, most) / scene_kappa(s);
+static void friction(ReferenceScene* s) {
+    s->law = 1 + random_below(4);
+    s->limit = random_chance(0.45) ? LIMIT_LOAD : LIMIT_CONSTANT;
+    s->F_C = random_log(1e-2, 1e4);
+    s->mu = random_log(0.03, 1.0);
+    s->contact = 1 + random_below(3);
+    s->input = random_chance(0.45) ? INPUT_LOAD : INPUT_SEPARATION;
+    s->load = random_log(1e-1, 1e3);
+    const double most = random_chance(0.5) ? 1e3 : MOST_KAPPA;
+    const double scale = random_log(LEAST_KAPPA, most) / scene_kappa(s);
     *(s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale) *= scale;
     if (s->law == LAW_LUGRE || s->law == LAW_ELASTIC_PLASTIC) {
-        s->staticRatio = chance(draw, 0.15) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
-        s->V_S = top_speed(s) * log_between(draw, 1e-3, 10.0);
+        s->staticRatio = random_chance(0.15) ? 1.0 : 1.0 + random_log(1e-3, 2.0);
+        s->V_S = top_speed(s) * random_log(1e-3, 10.0);
     }
     const double damping = reference_rest(s).limit / top_speed(s);
-    if (s->law != LAW_COULOMB && chance(draw, 0.3)) {
-        s->sigma_1 = damping * log_between(draw, 1e-4, 1.0);
+    if (s->law != LAW_COULOMB && random_chance(0.3)) {
+        s->sigma_1 = damping * random_log(1e-4, 1.0);
     }
-    if (chance(draw, 0.3)) {
-        s->sigma_2 = damping * log_between(draw, 1e-4, 1.0);
+    if (random_chance(0.3)) {
+        s->sigma_2 = damping * random_log(1e-4, 1.0);
     }
 }
 
-static double deflection(Draw* draw, const ReferenceScene* s) {
+static double deflection(const ReferenceScene* s) {
     const ReferenceRest rest = reference_rest(s);
-    const double limit = rest.limit / rest.sigma, kind = unit(draw);
+    const double limit = rest.limit / rest.sigma, kind = random_01();
     return kind < 0.4    ? 0.0
-           : kind < 0.45 ? limit * s->staticRatio * sign(draw)
-           : kind < 0.6  ? limit * sign(draw) * log_between(draw, 1.0, LARGEST_START)
-                         : limit * s->staticRatio * between(draw, -1.0, 1.0);
+           : kind < 0.45 ? limit * s->staticRatio * sign()
+           : kind < 0.6  ? limit * sign() * random_log(1.0, LARGEST_START)
+                         : limit * s->staticRatio * between(-1.0, 1.0);
 }
 
 // The length of a step [s]. If inputs move, the reference goes through each period, so there are fewer
 // periods.
-static double length(Draw* draw, const ReferenceScene* s, double most_periods) {
-    const double kind = unit(draw);
-    const double periods = kind < 0.1    ? log_between(draw, 1e-6, 1e-3)
-                           : kind < 0.9  ? log_between(draw, 1e-3, 4.0)
-                           : kind < 0.96 ? log_between(draw, 4.0, 30.0)
-                                         : log_between(draw, 30.0, most_periods);
+static double length(const ReferenceScene* s, double most_periods) {
+    const double kind = random_01();
+    const double periods = kind < 0.1    ? random_log(1e-6, 1e-3)
+                           : kind < 0.9  ? random_log(1e-3, 4.0)
+                           : kind < 0.96 ? random_log(4.0, 30.0)
+                                         : random_log(30.0, most_periods);
     return fmax(SHORTEST, periods / s->f);
 }
 
-static ReferenceScene contact_drawn(Draw* draw, bool plane) {
+static ReferenceScene contact_drawn(bool plane) {
     ReferenceScene s = start_values();
-    s.f = log_between(draw, 1e2, 1e5);
-    s.V_1 = chance(draw, 0.65) ? log_between(draw, 1e-3, 3.0) : 0.0;
+    s.f = random_log(1e2, 1e5);
+    s.V_1 = random_chance(0.65) ? random_log(1e-3, 3.0) : 0.0;
     if (plane) {
-        planar_vibration(draw, &s);
+        planar_vibration(&s);
     }
-    velocity(draw, &s, &s.V, &s.V_y);
-    surfaces(draw, &s);
-    friction(draw, &s);
+    velocity(&s, &s.V, &s.V_y);
+    surfaces(&s);
+    friction(&s);
     if (s.law != LAW_COULOMB) {
-        const double delta = deflection(draw, &s), angle = plane ? between(draw, 0.0, TURN) : 0.0;
+        const double delta = deflection(&s), angle = plane ? between(0.0, TURN) : 0.0;
         s.delta_0 = delta * cos(angle);
         s.delta_y_0 = delta * sin(angle);
     }
-    s.initial = chance(draw, 0.15) ? START_SETTLED : START_GIVEN;
-    if (chance(draw, 0.6)) {
-        s.start = log_between(draw, 1e-2, chance(draw, 0.1) ? 1e6 : 1e3) / s.f;
+    s.initial = random_chance(0.15) ? START_SETTLED : START_GIVEN;
+    if (random_chance(0.6)) {
+        s.start = random_log(1e-2, random_chance(0.1) ? 1e6 : 1e3) / s.f;
     }
     return s;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Steps at random
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Steps at random ----
 
-static double rate_of_E(Draw* draw, const ReferenceScene* s) {
-    return s->E * (log_between(draw, 0.11, 9.0) - 1.0) / s->h;
-}
+static double rate_of_E(const ReferenceScene* s) { return s->E * (random_log(0.11, 9.0) - 1.0) / s->h; }
 
-static void rates(Draw* draw, ReferenceScene* s) {
+static void rates(ReferenceScene* s) {
     const double top = top_speed(s);
-    if (chance(draw, 0.6)) {
+    if (random_chance(0.6)) {
         double to, to_y;
-        velocity(draw, s, &to, &to_y);
-        if (s->V_2 == 0.0 && chance(draw, 0.3)) { // V passes zero in the step, or just misses it
-            to = -s->V * log_between(draw, 1e-9, 10.0);
+        velocity(s, &to, &to_y);
+        if (s->V_2 == 0.0 && random_chance(0.3)) { // V passes zero in the step, or just misses it
+            to = -s->V * random_log(1e-9, 10.0);
         }
         s->V_rate = fmax(-3.0 * top, fmin(3.0 * top, to - s->V)) / s->h;
         s->V_y_rate = fmax(-3.0 * top, fmin(3.0 * top, to_y - s->V_y)) / s->h;
     }
-    if (chance(draw, 0.5)) {
-        const double room = s->d - s->a_d, most = chance(draw, 0.2) ? 18.0 : 2.0;
-        const double to = fmax(0.1 * room, room + between(draw, -1.0, 1.0) * most * s->R_q / s->lambda);
+    if (random_chance(0.5)) {
+        const double room = s->d - s->a_d, most = random_chance(0.2) ? 18.0 : 2.0;
+        const double to = fmax(0.1 * room, room + between(-1.0, 1.0) * most * s->R_q / s->lambda);
         s->d_rate = (to - room) / s->h;
     }
-    if (chance(draw, 0.3)) {
-        s->E_rate = rate_of_E(draw, s);
+    if (random_chance(0.3)) {
+        s->E_rate = rate_of_E(s);
     }
-    if (chance(draw, 0.6)) {
-        const double share = chance(draw, 0.5)   ? between(draw, 0.5, 2.0)
-                             : chance(draw, 0.6) ? log_between(draw, 1e-8, 10.0)
-                                                 : between(draw, -1.0, 0.1);
-        s->load_rate = (s->load > 0.0 ? s->load * (share - 1.0) : log_between(draw, 0.1, 1e3)) / s->h;
-    }
-}
-
-static void scale(Draw* draw, double* value, double most) {
-    if (chance(draw, 0.2)) {
-        *value *= log_between(draw, 1.0 / most, most);
+    if (random_chance(0.6)) {
+        const double share = random_chance(0.5)   ? between(0.5, 2.0)
+                             : random_chance(0.6) ? random_log(1e-8, 10.0)
+                                                  : between(-1.0, 0.1);
+        s->load_rate = (s->load > 0.0 ? s->load * (share - 1.0) : random_log(0.1, 1e3)) / s->h;
     }
 }
 
-static void change_parameters(Draw* draw, ReferenceScene* s) {
+static void scale(double* value, double most) {
+    if (random_chance(0.2)) {
+        *value *= random_log(1.0 / most, most);
+    }
+}
+
+static void change_parameters(ReferenceScene* s) {
     double* const factors[] = {&s->F_C, &s->mu, &s->V_S,
                                s->contact == CONTACT_CONSTANT ? &s->contact_sigma : &s->stiffnessScale};
     for (int k = 0; k < 4; k++) {
-        scale(draw, factors[k], 3.0);
+        scale(factors[k], 3.0);
     }
     s->V_S = fmin(fmax(s->V_S, 1e-3 * top_speed(s)), 10.0 * top_speed(s));
-    if (chance(draw, 0.2)) {
-        s->staticRatio = chance(draw, 0.2) ? 1.0 : 1.0 + log_between(draw, 1e-3, 2.0);
+    if (random_chance(0.2)) {
+        s->staticRatio = random_chance(0.2) ? 1.0 : 1.0 + random_log(1e-3, 2.0);
     }
 }
 
 // Inputs that jump, tunable parameters, the length of the step and its rates.
-static void step_at_random(Draw* draw, ReferenceScene* s) {
-    scale(draw, &s->V_1, 3.0);
-    scale(draw, &s->V_2, 3.0);
-    if (chance(draw, 0.3)) {
-        velocity(draw, s, &s->V, &s->V_y);
+static void step_at_random(ReferenceScene* s) {
+    scale(&s->V_1, 3.0);
+    scale(&s->V_2, 3.0);
+    if (random_chance(0.3)) {
+        velocity(s, &s->V, &s->V_y);
     }
-    scale(draw, &s->d, 1.1);
+    scale(&s->d, 1.1);
     s->d = fmax(s->d, 1.1 * s->a_d);
-    scale(draw, &s->E, 3.0);
-    if (chance(draw, 0.1)) {
-        s->load = chance(draw, 0.5) ? 0.0 : log_between(draw, 0.1, 1e3);
+    scale(&s->E, 3.0);
+    if (random_chance(0.1)) {
+        s->load = random_chance(0.5) ? 0.0 : random_log(0.1, 1e3);
     }
-    scale(draw, &s->load, 2.0);
-    scale(draw, &s->f, 2.0);
-    change_parameters(draw, s);
-    if (chance(draw, 0.1)) {
-        s->phase_d = between(draw, -TURN, TURN);
+    scale(&s->load, 2.0);
+    scale(&s->f, 2.0);
+    change_parameters(s);
+    if (random_chance(0.1)) {
+        s->phase_d = between(-TURN, TURN);
     }
-    const bool linear = chance(draw, 0.4);
-    s->h = length(draw, s, s->V_2 != 0.0 ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS);
+    const bool linear = random_chance(0.4);
+    s->h = length(s, s->V_2 != 0.0 ? MOST_PLANAR : linear ? MOST_MOVING : MOST_PERIODS);
     if (linear) {
-        rates(draw, s);
+        rates(s);
     }
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Steps of signals as users have them
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Steps of signals as users have them ----
 
 // Shares of the drawn load, velocity and amplitudes at the ends of steps; all 1 if there are none. A load of 0 is an open
 // contact.
@@ -300,12 +274,12 @@ static const Signal SIGNALS[] = {
 static double share(const double* of, int k) { return of ? of[k] : 1.0; }
 
 // Step k of the signal: from its value k - 1 to its value k, or held at that.
-static void step_of_signal(Draw* draw, const Signal* signal, int k, const ReferenceScene* full, bool linear,
+static void step_of_signal(const Signal* signal, int k, const ReferenceScene* full, bool linear,
                            ReferenceScene* s) {
     const double pressed = share(signal->load, k);
-    const double load = pressed > 0.0 ? full->load * pressed : chance(draw, 0.3) ? -0.1 * full->load : 0.0;
+    const double load = pressed > 0.0 ? full->load * pressed : random_chance(0.3) ? -0.1 * full->load : 0.0;
     // The separation that gives the load, or one that opens the contact.
-    const double lengths = pressed > 0.0 ? log(pressed) : -between(draw, 30.0, 600.0);
+    const double lengths = pressed > 0.0 ? log(pressed) : -between(30.0, 600.0);
     const double d = fmax(full->d - full->R_q / full->lambda * lengths, 1.1 * full->a_d);
     const bool moves = linear && k > 0;
     const double from = share(signal->V, moves ? k - 1 : k); // as the user samples it
@@ -320,16 +294,14 @@ static void step_of_signal(Draw* draw, const Signal* signal, int k, const Refere
         s->V_y_rate = (full->V_y * share(signal->V, k) - s->V_y) / s->h;
         s->d_rate = (d - s->d) / s->h;
         s->load_rate = (load - s->load) / s->h;
-        s->E_rate = chance(draw, 0.1) ? rate_of_E(draw, s) : 0.0;
+        s->E_rate = random_chance(0.1) ? rate_of_E(s) : 0.0;
     } else {
         s->d = d;
         s->load = load;
     }
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Sequences
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Sequences ----
 
 static bool is_in_domain(const ReferenceScene* s) {
     const ReferenceScene end = scene_after(s);
@@ -341,30 +313,32 @@ static bool is_in_domain(const ReferenceScene* s) {
 }
 
 Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
-    Draw draw = {.state = seed * 0xd1342543de82ef95u + number};
-    next(&draw);
-    draw.state ^= next(&draw);
+    random_state = seed * 0xd1342543de82ef95u + number;
+    random_bits();
+    random_state ^= random_bits();
     Sequence sequence = {.tolerance = TOLERANCES[number % 5], .method = 1};
-    ReferenceScene full = contact_drawn(&draw, plane);
-    const bool of_user = chance(&draw, 0.5), linear = chance(&draw, 0.5), tunes = chance(&draw, 0.25);
-    const Signal* signal = &SIGNALS[pick(&draw, sizeof SIGNALS / sizeof *SIGNALS)];
-    const int wanted = of_user ? MOST_STEPS : 1 + pick(&draw, 4);
-    const double most = plane     ? (!of_user && chance(&draw, 0.05) ? LONG_PLANAR : MOST_PLANAR)
+    ReferenceScene full = contact_drawn(plane);
+    const bool leaps = plane && number % 4 == 3; // inputs move over many periods
+    const bool of_user = random_chance(0.5) && !leaps, linear = random_chance(0.5) || leaps;
+    const bool tunes = random_chance(0.25);
+    const Signal* signal = &SIGNALS[random_below(sizeof SIGNALS / sizeof *SIGNALS)];
+    const int wanted = of_user ? MOST_STEPS : 1 + random_below(4);
+    const double most = plane     ? MOST_PLANAR
                         : !linear ? MOST_PERIODS
                         : of_user ? MOST_MOVING / MOST_STEPS
                                   : MOST_MOVING;
-    full.h = length(&draw, &full, most);
+    full.h = leaps ? random_log(12.0, MOST_LEAP) / full.f : length(&full, most);
     for (int k = 0; k < wanted; k++) {
         ReferenceScene s = k == 0 ? full : scene_after(&sequence.step[k - 1]);
         if (of_user) {
-            step_of_signal(&draw, signal, k, &full, linear, &s);
+            step_of_signal(signal, k, &full, linear, &s);
             if (tunes && k > 0) {
-                change_parameters(&draw, &s);
+                change_parameters(&s);
             }
         } else if (k > 0) {
-            step_at_random(&draw, &s);
+            step_at_random(&s);
         } else if (linear) {
-            rates(&draw, &s);
+            rates(&s);
         }
         if (!is_in_domain(&s)) {
             break;

@@ -5,61 +5,52 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Fields of a scene
-// ---------------------------------------------------------------------------------------------------------------------
+#include "fmi2/variables.h"
 
-const char* const LAW_NAMES[] = {"Dahl", "Coulomb", "ElasticPlastic", "LuGre", NULL};
-static const char* const LIMITS[] = {"Constant", "Load", NULL};
-static const char* const CONTACTS[] = {"Asperities", "Constant", "Mindlin", NULL};
-static const char* const INPUTS[] = {"Separation", "Load", NULL};
-static const char* const STARTS[] = {"Given", "Settled", NULL};
+// ---- Fields of a scene ----
 
-typedef struct {
-    const char* name;
-    size_t offset;
-    double start_value;
-    const char* const* choices; // of the numbers 1, 2, ..; NULL for a double
-} Field;
-
-#define NUMBER(name, start_value) {#name, offsetof(ReferenceScene, name), start_value, NULL}
-// clang-format off
-static const Field TABLE[] = {
-    {"law", offsetof(ReferenceScene, law), LAW_DAHL, LAW_NAMES},
-    {"limit", offsetof(ReferenceScene, limit), LIMIT_CONSTANT, LIMITS},
-    {"contact", offsetof(ReferenceScene, contact), CONTACT_ASPERITIES, CONTACTS},
-    {"input", offsetof(ReferenceScene, input), INPUT_SEPARATION, INPUTS},
-    {"initial", offsetof(ReferenceScene, initial), START_GIVEN, STARTS},
-    NUMBER(start, 0.0), NUMBER(h, 1e-4), NUMBER(V, 0.005), NUMBER(d, 14e-6), NUMBER(E, 58.556936170e9),
-    NUMBER(load, 312.44), NUMBER(V_rate, 0.0), NUMBER(d_rate, 0.0), NUMBER(E_rate, 0.0), NUMBER(load_rate, 0.0),
-    NUMBER(f, 20e3), NUMBER(V_1, 0.0), NUMBER(a_d, 0.0), NUMBER(phase_d, 0.0), NUMBER(V_y, 0.0), NUMBER(V_y_rate, 0.0),
-    NUMBER(V_2, 0.0), NUMBER(phase_2, 0.0), NUMBER(delta_y_0, 0.0), NUMBER(F_C, 55.0), NUMBER(mu, 0.176),
-    NUMBER(staticRatio, 1.0), NUMBER(V_S, 0.01), NUMBER(sigma_1, 0.0), NUMBER(sigma_2, 0.0), NUMBER(delta_0, 0.0),
-    NUMBER(contact_sigma, 2.5e6), NUMBER(stiffnessScale, 1.0), NUMBER(R_q, 6e-6), NUMBER(R, 1.7e-6), NUMBER(eta, 47e9),
-    NUMBER(A_n, 1e-4), NUMBER(nu, 0.33), NUMBER(Y, 410e6), NUMBER(c, 17.0), NUMBER(lambda, 3.0),
-};
-// clang-format on
-#undef NUMBER
+#define FIELD(name, variable) {#name, #variable},
+static const struct {
+    const char *name, *variable; // of modelDescription.xml
+} TABLE[] = {SCENE_FIELDS(FIELD)};
 enum { FIELDS = sizeof TABLE / sizeof *TABLE };
+_Static_assert(sizeof(ReferenceScene) == (FIELDS + 1) * sizeof(double), "a scene is its fields, and slips");
 
-static double get(const ReferenceScene* scene, const Field* field) {
-    const void* place = (const char*)scene + field->offset;
-    return field->choices ? (double)*(const int*)place : *(const double*)place;
+static double* field_of(ReferenceScene* scene, int k) { return (double*)(void*)scene + k; }
+
+// The variable of a field; NULL for the step and rates.
+static const FcVariableInfo* variable_of(int k) {
+    for (unsigned vr = 0; vr < fc_variables_count; vr++) {
+        if (strcmp(fc_variables[vr].name, TABLE[k].variable) == 0) {
+            return &fc_variables[vr];
+        }
+    }
+    return NULL;
 }
 
-static void set(ReferenceScene* scene, const Field* field, double value) {
-    void* place = (char*)scene + field->offset;
-    if (field->choices) {
-        *(int*)place = (int)value;
-    } else {
-        *(double*)place = value;
+// Its item's name if the field is a choice, which begin the table.
+static const char* item_of(int k, double item) { return variable_of(k)->literals[(int)item - 1]; }
+static bool is_choice(int k) { return variable_of(k) && variable_of(k)->literals; }
+
+const char* law_name(double law) { return item_of(0, law); }
+
+void put_scene(const ReferenceScene* scene, FcVariables* variables) {
+    ReferenceScene of = *scene;
+    for (int k = 0; k < FIELDS; k++) {
+        const FcVariableInfo* info = variable_of(k);
+        if (info && info->literals) {
+            *fc_variable_integer(variables, info) = (int)*field_of(&of, k);
+        } else if (info) {
+            *fc_variable_real(variables, info) = *field_of(&of, k);
+        }
     }
 }
 
 ReferenceScene start_values(void) {
-    ReferenceScene scene = {0};
+    ReferenceScene scene = {.h = 1e-4};
     for (int k = 0; k < FIELDS; k++) {
-        set(&scene, &TABLE[k], TABLE[k].start_value);
+        const FcVariableInfo* info = variable_of(k);
+        *field_of(&scene, k) = info ? info->start : *field_of(&scene, k);
     }
     return scene;
 }
@@ -78,9 +69,7 @@ ReferenceScene scene_after(const ReferenceScene* before) {
     return s;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Text
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Text ----
 
 void sequence_text(const Sequence* sequence, char* text, size_t size) {
     size_t length = (size_t)snprintf(text, size, "tolerance=%g ", sequence->tolerance);
@@ -88,12 +77,12 @@ void sequence_text(const Sequence* sequence, char* text, size_t size) {
         length += (size_t)snprintf(text + length, size - length, "method=%d ", sequence->method);
     }
     for (int step = 0; step < sequence->steps; step++) {
-        const ReferenceScene usual = step == 0 ? start_values() : scene_after(&sequence->step[step - 1]);
+        ReferenceScene usual = step == 0 ? start_values() : scene_after(&sequence->step[step - 1]);
+        ReferenceScene scene = sequence->step[step];
         length += (size_t)snprintf(text + length, size - length, step == 0 ? "" : "then ");
         for (int k = 0; k < FIELDS && length + 100 < size; k++) {
-            const Field* field = &TABLE[k];
-            const double value = get(&sequence->step[step], field);
-            if (value == get(&usual, field)) {
+            const double value = *field_of(&scene, k);
+            if (value == *field_of(&usual, k)) {
                 continue;
             }
             char word[40];
@@ -103,33 +92,32 @@ void sequence_text(const Sequence* sequence, char* text, size_t size) {
                     break;
                 }
             }
-            length += (size_t)snprintf(text + length, size - length, "%s=%s ", field->name,
-                                       field->choices ? field->choices[(int)value - 1] : word);
+            length += (size_t)snprintf(text + length, size - length, "%s=%s ", TABLE[k].name,
+                                       is_choice(k) ? item_of(k, value) : word);
         }
     }
 }
 
 // Sets the field that the word name=value names. Returns false if there is none, or no such value.
 static bool read_field(ReferenceScene* scene, const char* word) {
-    const size_t name = strcspn(word, "=");
-    const char* value = word + name + (word[name] == '=');
-    for (const Field* field = TABLE; field < TABLE + FIELDS; field++) {
-        if (strlen(field->name) != name || strncmp(word, field->name, name) != 0) {
-            continue;
-        }
-        for (int j = 0; field->choices && field->choices[j]; j++) {
-            if (strcmp(value, field->choices[j]) == 0) {
-                set(scene, field, j + 1);
-                return true;
-            }
-        }
-        char* end;
-        const double number = strtod(value, &end);
-        const bool is_number = !field->choices && end != value && *end == '\0';
-        set(scene, field, is_number ? number : 1.0);
-        return is_number;
+    char name[40], text[60], rest;
+    int k = 0;
+    if (sscanf(word, "%39[^=]=%59s", name, text) != 2) {
+        return false;
     }
-    return false;
+    while (k < FIELDS && strcmp(name, TABLE[k].name) != 0 && strcmp(name, TABLE[k].variable) != 0) {
+        k++;
+    }
+    if (k < FIELDS && is_choice(k)) {
+        const double items = variable_of(k)->max;
+        double item = 1.0;
+        while (item <= items && strcmp(text, item_of(k, item)) != 0) {
+            item += 1.0;
+        }
+        *field_of(scene, k) = fmin(item, items);
+        return item <= items;
+    }
+    return k < FIELDS && sscanf(text, "%lf%c", field_of(scene, k), &rest) == 1;
 }
 
 Sequence sequence_read(const char* text) {

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "friction_contact.h"
 #include "reference.h"
 
 enum { MOST_STEPS = 10, SEQUENCE_TEXT = 8000 };
@@ -17,10 +18,13 @@ typedef struct {
     ReferenceScene step[MOST_STEPS]; // of the later ones delta_0 and slips are not used
 } Sequence;
 
-// Table 1's surfaces and the start values of modelDescription.xml.
+// The start values of modelDescription.xml, and a step of 0.1 ms.
 ReferenceScene start_values(void);
 
-extern const char* const LAW_NAMES[]; // of the numbers from 1 on; NULL ends them
+const char* law_name(double law);
+
+// The variables of the FMU that a scene has.
+void put_scene(const ReferenceScene* scene, FcVariables* variables);
 
 // The scene that a step leaves: inputs at their ends and then held, and the parameters.
 ReferenceScene scene_after(const ReferenceScene* before);

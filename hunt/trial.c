@@ -14,9 +14,7 @@ static const double DIGITS = 1e-13;          // of a deflection: so near to its 
 static const double NEAR_LINE_PERIODS = 3.3; // of a step at the most, for the reference's sake
 static const double LEAST_S = 1e-20;         // N, and J: S and the path are 0 if nothing acts
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The FMU
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- The FMU ----
 
 typedef struct {
     FcFrictionContact contact;
@@ -25,44 +23,11 @@ typedef struct {
     FcFrictionState after; // the last step, whose work and heat were counted
 } FmuRun;
 
-static void set_variables(FcVariables* v, const ReferenceScene* s) {
-    v->V = s->V;
-    v->d = s->d;
-    v->E = s->E;
-    v->load = s->load;
-    v->V_y = s->V_y;
-    v->F_C = s->F_C;
-    v->delta_0 = s->delta_0;
-    v->delta_y_0 = s->delta_y_0;
-    v->initialState = s->initial;
-    v->friction = (FcFriction){.model = s->law,
-                               .limit = s->limit,
-                               .mu = s->mu,
-                               .staticRatio = s->staticRatio,
-                               .V_S = s->V_S,
-                               .sigma_1 = s->sigma_1,
-                               .sigma_2 = s->sigma_2};
-    v->contact = (FcContactParameters){.model = s->contact,
-                                       .input = s->input,
-                                       .sigma = s->contact_sigma,
-                                       .stiffnessScale = s->stiffnessScale,
-                                       .R_q = s->R_q,
-                                       .R = s->R,
-                                       .eta = s->eta,
-                                       .A_n = s->A_n,
-                                       .nu = s->nu,
-                                       .Y = s->Y,
-                                       .c = s->c,
-                                       .lambda = s->lambda};
-    v->vibration = (FcVibration){
-        .f = s->f, .V_1 = s->V_1, .a_d = s->a_d, .phase_d = s->phase_d, .V_2 = s->V_2, .phase_2 = s->phase_2};
-}
-
 // Starts a contact at the start of the scene, to be freed.
 static void open_run(FmuRun* run, const ReferenceScene* scene, const Sequence* sequence) {
     *run = (FmuRun){0};
     FcVariables* v = &run->contact.state.variables;
-    set_variables(v, scene);
+    put_scene(scene, v);
     v->solver.method = sequence->method;
     v->solver.tolerance = sequence->tolerance;
     v->solver.stepSize = scene->h / 300.0;
@@ -78,7 +43,7 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     step->delta_y_start = v->delta_y;
     step->slips_start = state->slips;
     step->force_before = v->sigma * hypot(v->delta, v->delta_y);
-    set_variables(v, scene);
+    put_scene(scene, v);
     state->next_rate_set = 1; // all 0
     if (!run->started || !fc_friction_contact_refresh(&run->contact, &run->message)) {
         return false;
@@ -106,9 +71,7 @@ static bool take_step(FmuRun* run, const ReferenceScene* scene, FmuStep* step) {
     return true;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Grades
-// ---------------------------------------------------------------------------------------------------------------------
+// ---- Grades ----
 
 static double over(double error, double allowed) { return isnan(error) ? INFINITY : fabs(error) / allowed; }
 

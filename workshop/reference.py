@@ -7,45 +7,32 @@ compares the results with closed forms.
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
 from workshop.build import build_targets
+from workshop.description import description
+from workshop.project import ROOT
 
-NUMBERS = """start h V d E load V_rate d_rate E_rate load_rate V_y V_y_rate f V_1 a_d phase_d V_2 phase_2
-    F_C mu staticRatio V_S sigma_1 sigma_2 delta_0 delta_y_0 contact_sigma stiffnessScale
-    R_q R eta A_n nu Y c lambda""".split()
+# The fields of a scene and their names in modelDescription.xml.
+FIELDS = dict(re.findall(r"X\((\w+), ([\w.]+)\)", (ROOT / "hunt/reference.h").read_text()))
+VARIABLES = {variable["name"]: variable for variable in description()["variables"]}
 CHOICES = {
-    "law": ("Dahl", "Coulomb", "ElasticPlastic", "LuGre"),
-    "limit": ("Constant", "Load"),
-    "contact": ("Asperities", "Constant", "Mindlin"),
-    "input": ("Separation", "Load"),
-    "initial": ("Given", "Settled"),
+    name: tuple(item["name"] for item in VARIABLES[variable]["items"])
+    for name, variable in FIELDS.items()
+    if "items" in VARIABLES.get(variable, ())
 }
 RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start W_f Q_f slips
     delta delta_y S path""".split()
 INPUTS = ("V", "d", "E", "load", "V_y")
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
-# Of the FMU, where its name is not the reference's.
-FMU_NAMES = {
-    **{name: f"vibration.{name}" for name in ("f", "V_1", "a_d", "phase_d", "V_2", "phase_2")},
-    **{name: f"friction.{name}" for name in ("mu", "staticRatio", "V_S", "sigma_1", "sigma_2", "limit")},
-    **{name: f"contact.{name}" for name in "stiffnessScale R_q R eta A_n nu Y c lambda input".split()},
-    "contact_sigma": "contact.sigma",
-    "law": "friction.model",
-    "contact": "contact.model",
-    "initial": "initialState",
-}
-NAMES = {FMU_NAMES.get(name, name): name for name in (*NUMBERS, *CHOICES)}
-NO_START_VALUES = ("start", "h", "initial", "slips", *(f"{name}_rate" for name in INPUTS))
+NAMES = {variable: name for name, variable in FIELDS.items()}
 
 
 class Scene(ctypes.Structure):
-    _fields_ = [
-        *((name, ctypes.c_double) for name in NUMBERS),
-        *((name, ctypes.c_int) for name in (*CHOICES, "slips")),
-    ]
+    _fields_ = [(name, ctypes.c_double) for name in (*FIELDS, "slips")]
 
     @property
     def vibrates(self) -> bool:
@@ -87,9 +74,9 @@ def scene_of(start_values: Mapping[str, Any]) -> Scene:
 
 
 def start_values(of: Scene) -> dict[str, Any]:
-    """Of the FMU, but for the rates of its inputs."""
-    values = {fmu: getattr(of, name) for fmu, name in NAMES.items() if name not in NO_START_VALUES}
-    return {n: CHOICES[NAMES[n]][v - 1] if NAMES[n] in CHOICES else v for n, v in values.items()}
+    """Of the FMU, but for the rates of its inputs and the choice of the start."""
+    values = {n: getattr(of, name) for n, name in NAMES.items() if n in VARIABLES and name != "initial"}
+    return {n: CHOICES[NAMES[n]][int(v) - 1] if NAMES[n] in CHOICES else v for n, v in values.items()}
 
 
 def rest(now: Scene) -> tuple[float, float]:

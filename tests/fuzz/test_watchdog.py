@@ -9,7 +9,7 @@ import pytest
 
 from workshop.build import build_targets
 
-CALLS = "30000"
+CALLS = "10000"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the watch reads another process's clock")

@@ -9,7 +9,7 @@ import pytest
 from model_exchange.exchange_scenes import drawn
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.reference import FMU_NAMES, INPUTS, after, changed, rest, start_values, step
+from workshop.reference import FIELDS, INPUTS, after, changed, rest, start_values, step
 
 GRADED = ("F_t", "F_y", "W_f", "Q_f")
 ALLOWED = 1e-6  # of the largest force, and of that times the path; the tolerance is 1e-8
@@ -34,7 +34,7 @@ def test_a_bound_that_jumps_below_the_bristle(fmu: FrictionFmu, planar: bool) ->
         with fmu.session(start_values(first) | {"solver.tolerance": 1e-8}) as session:
             session.step(first.h)
             for name in (*falls, *moves):
-                session.set(FMU_NAMES.get(name, name), getattr(then, name))
+                session.set(FIELDS[name], getattr(then, name))
             session.step(then.h)
             found = dict(zip(GRADED, session.read(GRADED), strict=True))
         S, path = max(truth.S, end.S), truth.path + end.path

@@ -7,15 +7,6 @@
 
 static const double E = 58.556936170e9; // Pa, of the materials of Table 1
 
-static void constant_stiffness_ignores_the_surfaces(void) {
-    FcContactParameters p = table_1(FC_CONTACT_ASPERITIES, FC_CONTACT_SEPARATION);
-    p.model = FC_CONTACT_CONSTANT;
-    const FcContactAtModulus at_E = fc_contact_at_modulus(&p, E);
-    CHECK(fc_contact_stiffness(&at_E, 3e-6) == 2.5e6 && fc_contact_response(&at_E, 3e-6).sigma == 2.5e6);
-    CHECK_NEAR(fc_contact_response(&at_E, 14e-6).A_r, 5.187698908e-7, 6e-10); // printed with ten digits
-    CHECK(fc_contact_slope_by_d(&at_E, 14e-6).sigma == 0.0 && fc_contact_slope_by_E(&p, E).sigma == 0.0);
-}
-
 typedef double (*Quantity)(const FcContactParameters* p, double d, double modulus);
 
 static double stiffness(const FcContactParameters* p, double d, double modulus) {
@@ -156,7 +147,6 @@ static void slopes_at_the_ends(void) {
 int main(void) {
     sums_over_the_asperities();
     slopes_at_the_ends();
-    constant_stiffness_ignores_the_surfaces();
     far_apart_nothing_touches();
     return check_result();
 }

@@ -9,7 +9,7 @@
 static const double F = 20e3; // Hz
 static const double PERIOD = 5e-5;
 static const double F_C = 55.0;
-enum { SAMPLES = 20000 };
+enum { SAMPLES = 5000 };
 
 typedef struct {
     FcContactParameters contact;
