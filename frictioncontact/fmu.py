@@ -11,10 +11,9 @@ wrong, FrictionError with the FMU's own message for a call that it refuses.
 from __future__ import annotations
 
 import atexit
+import io
 import shutil
 import tempfile
-import zipfile
-import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
@@ -23,6 +22,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, NoReturn, Self
 
+import fmpy
 import numpy as np
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
@@ -38,7 +38,6 @@ from fmpy.fmi2 import (
 
 from . import resources
 from .errors import FrictionError, UserError, shown
-from .platforms import library_in
 from .values import Value, Variables, pairs, path_of, real
 
 MODEL = "FrictionContact"
@@ -79,49 +78,60 @@ class FrictionFmu(Closing):
             print(contact.get("F_t_mean"))
     """
 
-    def __init__(self, path: str | Path) -> None:
-        self.path = path_of(path, "fmu")
+    def __init__(self, path: str | Path | bytes) -> None:
+        """bytes: those of such a file."""
+        self.path = Path("the file") if isinstance(path, bytes) else path_of(path, "fmu")
+        self._content = path if isinstance(path, bytes) else None
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
         try:
-            self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))
-        except zipfile.BadZipFile:
+            self._unzip()
+        except BaseException:
             self.close()
-            raise UserError(f"{path} is not an FMU: not a zip archive") from None
-        except (zlib.error, EOFError, RuntimeError) as error:
-            self.close()
-            raise UserError(f"{path} is not an FMU: damaged: {error}") from None
-        except OSError as error:
-            self.close()
-            what = "" if error.filename == str(path) else f"can't be unpacked into {self._temporary}: "
-            raise UserError(f"{path}: {what}{error.strerror or error}") from None
-        try:
-            self.description = read_model_description(str(self.directory), validate=False)
-        except Exception as error:  # whatever the reader makes of the text
-            self.close()
-            reason = (str(error) or type(error).__name__).splitlines()[0]
-            raise UserError(f"{path} is not an FMU: its modelDescription.xml: {reason}") from None
-        if self.description.modelName != MODEL:
-            self.close()
-            raise UserError(f"{path} is another FMU: {self.description.modelName}")
+            raise
         self.known = Variables(self.description)
         self.variables = self.known.all
-        self._library = self._slave()  # keeps the shared library loaded between sessions
+
+    def _unzip(self) -> None:
+        source, failed = self.path if self._content is None else io.BytesIO(self._content), ""
+        try:
+            self.directory = Path(extract(source, unzipdir=self._temporary))
+            failed = "its modelDescription.xml: "
+            self.description = read_model_description(str(self.directory), validate=False)
+        except Exception as error:  # whatever the readers make of what is none
+            if isinstance(error, OSError) and not failed:
+                at = "" if error.filename == str(self.path) else f"can't be unpacked into {self._temporary}: "
+                raise UserError(f"{self.path}: {at}{error.strerror or error}") from None
+            reason = (str(error) or type(error).__name__).splitlines()[0]
+            raise UserError(f"{self.path} is not an FMU: {failed}{reason}") from None
+        if self.description.modelName != MODEL or self.description.coSimulation is None:
+            raise UserError(f"{self.path} is another FMU: {self.description.modelName}")
+        self.library = self._library_here()
+        self._loaded = self._slave()  # keeps the shared library loaded between sessions
+
+    def _library_here(self) -> Path:
+        """Of the platform tuple of FMI 3.0, section 2.5.1.4.1, else of FMI 2.0's name.
+
+        FMPy takes linux64 on ARM too, though FMI 2.0 means x86-64 by it.
+        """
+        name = f"{self.description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        for folder in (fmpy.platform_tuple, fmpy.platform):
+            if (path := self.directory / "binaries" / folder / name).is_file():
+                return path
+        has = ", ".join(sorted(path.name for path in self.directory.glob("binaries/*")))
+        raise UserError(f"{self.path}: has no binary for this platform, {fmpy.platform}, only {has}")
 
     def _slave(self) -> FMU2Slave:
-        identifier = self.description.coSimulation.modelIdentifier
-        files = {path.relative_to(self.directory).as_posix() for path in self.directory.glob("binaries/*/*")}
-        library = library_in(files, identifier)
         return FMU2Slave(
             guid=self.description.guid,
-            modelIdentifier=identifier,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
             unzipDirectory=str(self.directory),
-            libraryPath=str(self.directory / library) if library else None,
+            libraryPath=str(self.library),
             instanceName="contact",
         )
 
-    def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | None]]:
+    def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | bytes | None]]:
         """Of a copy: the package's own FMU, or the file, opened there."""
-        return opened, (None if self.path == resources.fmu() else self.path,)
+        return opened, (self._content or (None if self.path == resources.fmu() else self.path),)
 
     def session(
         self,
@@ -345,8 +355,10 @@ def run(
     return rows
 
 
-def opened(file: str | Path | None) -> FrictionFmu:
-    """The FMU of a file, or the package's own; unzipped once in a process as long as it stays as it is."""
+def opened(file: str | Path | bytes | None) -> FrictionFmu:
+    """The FMU of a file or of its bytes, or the package's own; unzipped once in a process while it stays."""
+    if isinstance(file, bytes):
+        return _opened(file, ())
     path = resources.fmu() if file is None else path_of(file, "fmu")
     try:
         stat = path.stat()
@@ -358,7 +370,7 @@ def opened(file: str | Path | None) -> FrictionFmu:
 
 
 @cache
-def _opened(path: Path, version: tuple[int, ...]) -> FrictionFmu:
-    fmu = FrictionFmu(path)
+def _opened(file: Path | bytes, version: tuple[int, ...]) -> FrictionFmu:
+    fmu = FrictionFmu(file)
     atexit.register(fmu.close)
     return fmu

@@ -53,7 +53,7 @@ examples:
   %(prog)s mine.csv --fit contact.stiffnessScale --fit F_C=55 --set vibration.f=22e3
   %(prog)s mine.csv --fit contact.sigma=1e5..1e8 --set contact.model=Constant
   %(prog)s rig.csv --column "position=x [um]" --column F_t=force --nuisance offset --nuisance delay
-  %(prog)s mine.csv --uncertain F_t_mean=0.5 --uncertain vibration.V_1=10%% --bootstrap 1000"""
+  %(prog)s mine.csv --uncertain F_t_mean=0.5 --uncertain vibration.V_1=10%%"""
 
 EXAMPLE = resources.data() / "table2.csv"
 
@@ -73,9 +73,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         "its own error), or of another variable (one error in all rows); again for each",
     )  # fmt: skip
     parser.add_argument(
-        "--bootstrap", type=int, metavar="N", help="intervals by N refits of data with new noise, too"
-    )
-    parser.add_argument(
         "--nuisance", action="append", default=[], metavar="NAME",
         help=f"fault of the instrument to fit beside the parameters: {', '.join(INSTRUMENT)}; again for each",
     )  # fmt: skip
@@ -94,13 +91,12 @@ def run(options: argparse.Namespace) -> None:
             fit_of(options.fit),
             start=opened(options.fmu).known.assigned(options.set),
             uncertain=assignments(options.uncertain, "--uncertain"),
-            bootstrap=options.bootstrap,
             nuisance=options.nuisance,
             columns=assignments(options.column, "--column"),
             fmu=options.fmu,
             tell=lambda text: bar.update(task, description=text),
         )
-    show(table_console(), found.experiment, found.fit, found.spread)
+    show(table_console(), found.experiment, found.fit)
     if not options.quick and can_draw():
         from frictioncontact import style
         from frictioncontact.identification import figures  # takes a second, which --quick saves

@@ -39,7 +39,6 @@ class Fit:
     )  # of the instrument: value, half-width
     in_time: bool = False  # the forces are samples, whose own scatter is known
     correlated: float = 1.0  # how many samples of a series count as one
-    kappa: np.ndarray | None = None
     profiles: list[tuple[float, float]] | None = None  # intervals, as values
     misfits: list[str] = field(default_factory=list)  # what is wrong with the fit, in words
     remedies: list[str] = field(default_factory=list)  # with what else it fits

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.batch.prepare import Output
+from frictioncontact.batch.many import Output
 from frictioncontact.batch.run import Progress
 from frictioncontact.errors import quiet
 from frictioncontact.periodic import STILL, reduction

@@ -10,16 +10,15 @@ from numbers import Integral
 from pathlib import Path
 
 from frictioncontact import resources
-from frictioncontact.batch.many import processors, shown_progress
-from frictioncontact.batch.prepare import MOST_SAMPLES, check_whole
-from frictioncontact.batch.unpacked import description_and_library
+from frictioncontact.batch.many import MOST_SAMPLES, processors, shown_progress
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
+from frictioncontact.fmu import opened
 from frictioncontact.sweeps import workers as at
 from frictioncontact.sweeps.folder import Folder
 from frictioncontact.sweeps.group import Group, Job
 from frictioncontact.sweeps.scenarios import Scenarios, Vary, drawn, from_csv, grid
-from frictioncontact.values import Value, Variables, pairs, path_of
+from frictioncontact.values import Value, Variables, check_whole, pairs, path_of
 
 MOST_WORKERS = 1000
 MOST_GROUP = 1_000_000  # scenarios; a worker holds its group's rows, some 300 bytes each
@@ -110,7 +109,8 @@ def sweep(
     check_whole(samples, MOST_SAMPLES, "samples")
     check_whole(1 if workers is None else workers, MOST_WORKERS, "workers")
     content = _content(f"fmu {fmu}", fmu)
-    variables = Variables(description_and_library(content, f"fmu {fmu}")[0])
+    opened(fmu)  # names the file where it is none
+    variables = opened(content).known
     vary = {name: _listed(name, values) for name, values in pairs(vary, "vary").items()}
     scenarios = _scenarios(variables, vary, random, seed, csv)
     count, rows = scenarios.count, scenarios.rows

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from frictioncontact.batch.unpacked import description_and_library
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.batch.unpacked import description_and_library
 from frictioncontact.command import main
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu

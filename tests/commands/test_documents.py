@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frictioncontact import table2
 from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
 from frictioncontact.parameters import COULOMB_FORCE, IDENTIFIED, PERIOD, TABLE_2, start_values
-from frictioncontact.table2 import rows as table2
-from frictioncontact.table2.command import percent
+from frictioncontact.table2 import percent
 from workshop.fmu_docs import laws, tutorial
 from workshop.fmu_docs.readme import SCENE
 

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from frictioncontact.gap.heights import load
 
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.gap import command as gap
-from frictioncontact.gap.heights import load
 from frictioncontact.parameters import Surfaces
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-
 from frictioncontact.batch.unpacked import description_and_library
+
 from frictioncontact.errors import UserError
 from frictioncontact.sweeps import command
 from frictioncontact.sweeps.run import sweep

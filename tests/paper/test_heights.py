@@ -11,7 +11,7 @@ from misprints import closed_form_area
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.gap.heights import (
+from frictioncontact.gap import (
     area,
     gaussian,
     height_integral,

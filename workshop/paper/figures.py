@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from frictioncontact.fmu import FrictionFmu, simulate
-from frictioncontact.gap.heights import area, stiffness
+from frictioncontact.gap import area, stiffness
 from frictioncontact.parameters import (
     COULOMB_FORCE,
     FREQUENCY,

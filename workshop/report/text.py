@@ -7,7 +7,7 @@ from markdown_it import MarkdownIt
 
 from frictioncontact.parameters import IDENTIFIED
 from frictioncontact.periodic import reduction
-from frictioncontact.table2.rows import Result, conditions
+from frictioncontact.table2 import Result, conditions
 from workshop.figure import Figure
 from workshop.paper.claims import Claim
 from workshop.project import ROOT
