@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from frictioncontact.table2 import mean_force
 
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2
 from frictioncontact.periodic import periodic_waves, reduction
+from frictioncontact.table2 import mean_force
 from workshop.paper.figures import (
     A_D,
     PRINTED_AREA,

@@ -7,12 +7,12 @@ from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
-from frictioncontact.table2 import results
 from rich.progress import Progress
 
 from frictioncontact.command import add_fmu, add_output, command_line, progress_bar
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.table2 import results
 from workshop.build import build_fmu
 from workshop.figure import Figure
 from workshop.figures import contact as contact_figures
