@@ -16,8 +16,6 @@ from pathlib import Path
 
 import pytest
 
-from frictioncontact.errors import UserError
-from workshop import build
 from workshop.packing.archive import write_fmu
 from workshop.project import ROOT
 
@@ -36,7 +34,7 @@ if [[ -e $KILL_WHILE_LINKING && " $* " =~ " -o "([^ ]+) ]]; then
         *" -shared "*FrictionContact*) : >"$output"; kill -KILL 0 ;;
     esac
 fi
-exec cc "$@"
+exec cc "$@" -O0
 """
 
 
@@ -90,19 +88,6 @@ def test_killed_while_linking_and_two_at_once(project: Path, tmp_path: Path) -> 
     check_loads(project, tmp_path)
 
 
-@LINUX_ONLY
-def test_another_name(project: Path, tmp_path: Path) -> None:
-    """What came with a renamed project is made anew; here the table of variables, which is soon made."""
-    table = "from workshop.build import build_targets; build_targets('debug', ['variables'])"
-    environment = {**os.environ, "CMAKE_ARGS": "-DWITH_SUNDIALS=OFF"}
-    subprocess.run([sys.executable, "-c", table], cwd=project, env=environment, check=True)
-    made = (project / "build/debug/generated/variables.c").stat().st_mtime_ns
-    renamed = project.rename(tmp_path / "renamed")
-    subprocess.run([sys.executable, "-c", table], cwd=renamed, env=environment, check=True)
-    assert (renamed / "build/debug/generated/variables.c").stat().st_mtime_ns > made
-    assert f"{project}/" not in (renamed / "build/debug/CMakeCache.txt").read_text()
-
-
 def interrupted(process: subprocess.Popen[str], reached: Path) -> str:
     """What the command says when Control-C on a terminal reaches its group, once the file is there."""
     end = time.monotonic() + 600.0
@@ -124,11 +109,10 @@ def test_interrupted_while_building(project: Path, tmp_path: Path) -> None:
 
 
 # What it reaches is a folder: a file has a destructor, in which Control-C would be lost.
-SLOW_DESTRUCTOR = """\
-import os, time
+SLOW = """import os, time
 class Slow:
     def __del__(self):
-        os.mkdir({reached!r})
+        os.mkdir({!r})
         time.sleep(3600)
 Slow()
 time.sleep(3600)
@@ -138,13 +122,13 @@ time.sleep(3600)
 @LINUX_ONLY
 @pytest.mark.parametrize(
     "command",
-    [["workshop", "frictioncontact.sweeps.command", "--help"], ["frictioncontact", "simulate", "--help"]],
+    [["workshop", "frictioncontact.gap", "--help"], ["frictioncontact", "simulate", "--help"]],
     ids=["clone", "installed"],
 )
 def test_interrupted_while_importing(tmp_path: Path, command: list[str]) -> None:
     """With a slow numpy. Python drops an exception in a destructor, and imports may catch or change one."""
     reached = tmp_path / "reached"
-    (tmp_path / "numpy.py").write_text(SLOW_DESTRUCTOR.format(reached=str(reached)))
+    (tmp_path / "numpy.py").write_text(SLOW.format(str(reached)))
     process = subprocess.Popen(
         [sys.executable, "-m", *command],
         env={**os.environ, "PYTHONPATH": str(tmp_path)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -158,28 +142,12 @@ def test_what_is_no_library_is_not_packed(fmu_path: Path, tmp_path: Path) -> Non
     with zipfile.ZipFile(fmu_path) as archive:
         content = archive.read(BINARY)
     library, xml = tmp_path / "FrictionContact.so", ROOT / "modelDescription.xml"
-    parts = [content[:length] for length in (0, 3, 6, 50, 63, 64, len(content) // 2, len(content) - 1)]
-    output = library.with_suffix(".fmu")
+    parts = [content[:length] for length in (0, 3, 50, 64, len(content) // 2, len(content) - 1)]
     for part in (*parts, b"#!/bin/sh\n"):
         library.write_bytes(part)
         with pytest.raises(ValueError, match=f"^{library} is .*: remove it and build again$"):
-            write_fmu(output, xml, {"linux64": library}, {}, {})
-    folders = f"--sources fmu_src --table LICENSE --fmi-headers fmu_src --xml {xml}"
-    packer = [sys.executable, "-B", "-m", "workshop.packing.archive", str(output), *folders.split()]
-    done = subprocess.run(
-        [*packer, "--binary", f"linux64={library}"], cwd=ROOT, capture_output=True, text=True
-    )
-    assert done.returncode == 1
-    assert done.stderr == f"error: {library} is no shared library: remove it and build again\n"
+            write_fmu(library.with_suffix(".fmu"), xml, {"linux64": library}, {}, {})
     assert list(tmp_path.iterdir()) == [library]
-
-
-def test_a_folder_that_can_not_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
-    if not Path("/proc/version").exists():
-        pytest.skip("there is no read-only file system at hand")
-    monkeypatch.setattr(build, "presets", lambda: {"default": Path("/proc/build")})
-    with pytest.raises(UserError, match=r"^/proc/build can't be written: [^\n]+$"):
-        build.build_fmu()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="the rights are POSIX's")

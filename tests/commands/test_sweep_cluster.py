@@ -4,14 +4,26 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pandas as pd
 import pytest
 from deadly import deadly
 from distributed import Client
-from test_sweep import GRID, Ran, check_grid, command, environment, kept_rows, parts, ran, started, wait_for
+from test_sweep import (
+    GRID,
+    Ran,
+    Started,
+    check_grid,
+    command,
+    environment,
+    kept_rows,
+    parts,
+    ran,
+    started,
+    wait_for,
+)
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
@@ -20,7 +32,6 @@ from frictioncontact.sweeps.group import Job
 
 __all__ = ["ran", "started"]
 DASK = Path(sys.executable).parent / "dask"
-Started = Callable[..., subprocess.Popen]
 
 
 def with_another_version(folder: Path) -> dict[str, str]:
@@ -116,18 +127,15 @@ def test_no_workers_or_one_of_another_version(cluster: Cluster, ran: Ran, tmp_pa
     assert not (tmp_path / "sweep").exists()
 
 
-@pytest.mark.parametrize(
-    ("address", "message"),
-    [("tcp://127.0.0.1:1", "nothing answers there"), ("rubbish", "missing port number")],
-)
-def test_no_scheduler(
-    ran: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, address: str, message: str
-) -> None:
+def test_no_scheduler(ran: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers, "CONNECT_SECONDS", 1.0)
-    done = ran(tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", address)
-    assert done.returncode == 1
-    assert len(done.stderr.splitlines()) == 1, done.stderr
-    assert done.stderr.startswith(f"error: cluster {address}: {message}")
+    for address, message in (
+        ("tcp://127.0.0.1:1", "nothing answers there"),
+        ("rubbish", "missing port number"),
+    ):
+        done = ran(tmp_path / "sweep", "--vary", "V=0.1,0.2", "--cluster", address)
+        assert done.returncode == 1 and len(done.stderr.splitlines()) == 1
+        assert done.stderr.startswith(f"error: cluster {address}: {message}")
     assert list(tmp_path.iterdir()) == []
 
 

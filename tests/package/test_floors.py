@@ -69,7 +69,7 @@ def test_what_users_install_imports_nothing_of_the_workshop_or_the_tests() -> No
 
 def test_no_import_is_in_a_circle() -> None:
     graph = edges(only_at_import=True)
-    assert len(graph) > 100 and "frictioncontact.fmu" in graph["frictioncontact.table2.rows"]
+    assert len(graph) > 60 and "frictioncontact.fmu" in graph["frictioncontact.table2"]
     TopologicalSorter(graph).prepare()  # CycleError names the circle
 
 

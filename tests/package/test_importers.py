@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
@@ -72,25 +73,9 @@ def mean() -> float:
 
 
 def test_the_scene_in_fmpy(fmu_path: Path, mean: float) -> None:
-    result = simulate_fmu(
-        str(fmu_path),
-        start_values=SCENE,
-        output=["F_t_mean"],
-        output_interval=STEP,
-        stop_time=STEPS * STEP,
-        fmi_type="CoSimulation",
-    )
+    times = {"output_interval": STEP, "stop_time": STEPS * STEP, "fmi_type": "CoSimulation"}
+    result = simulate_fmu(str(fmu_path), start_values=SCENE, output=["F_t_mean"], **times)
     assert result["F_t_mean"][-1] == pytest.approx(mean, abs=1e-11)
-
-
-def test_the_scene_in_libcosim(fmu_path: Path, mean: float) -> None:
-    run = run_libcosim(fmu_path, SCENE, round(1e9 * STEP), STEPS)
-    assert run["F_t_mean"][-1] == pytest.approx(mean, abs=1e-11)
-
-
-def test_the_scene_in_ecos(fmu_path: Path, mean: float) -> None:
-    _, rows = run_ecos(fmu_path, SCENE, STEP, STEPS)
-    assert rows[-1, OUTPUTS.index("F_t_mean")] == pytest.approx(mean, abs=1e-11)
 
 
 def test_the_scene_in_fmuloader(fmu_path: Path, mean: float) -> None:
@@ -173,28 +158,17 @@ def test_fmpy_sends_no_input_derivatives(fmu_path: Path) -> None:
         simulate_fmu(str(fmu_path), input=drive, set_input_derivatives=True, stop_time=1e-3)
 
 
-def test_fmpy_simulate(fmu_path: Path, fmu: FrictionFmu) -> None:
-    """fmpy's own loop over the default experiment gives what single steps give."""
-    start = start_values(TABLE_2[1], IDENTIFIED)
-    result = simulate_fmu(str(fmu_path), start_values=start, output=list(OUTPUTS))
-    times = result["time"]
-    assert len(times) > 100 and times[-1] == pytest.approx(2e-4, rel=1e-12)
-    step = times[1] - times[0]
-    run = simulate(fmu, start, step, len(times) - 1)
-    for name in OUTPUTS:
-        scale = np.abs(run[name]).max()
-        assert result[name] == pytest.approx(run[name], rel=1e-9, abs=1e-9 * scale)
-
-
-def run_libcosim(path: Path, start: dict[str, float], step_ns: int, count: int) -> dict[str, np.ndarray]:
-    """Samples of the outputs after each of count steps; libcosim counts time in whole nanoseconds."""
+def run_libcosim(
+    path: Path, start: dict[str, float], step: float, count: int
+) -> tuple[list[float], np.ndarray]:
+    """Times before each of count steps [s], and outputs after it; libcosim counts in whole nanoseconds."""
     cosim = pytest.importorskip("libcosimpy.CosimExecution", reason="libcosimpy is not installed")
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
     log_output_level(CosimLogLevel.ERROR)
-    execution = cosim.CosimExecution.from_step_size(step_size=step_ns)
+    execution = cosim.CosimExecution.from_step_size(step_size=round(1e9 * step))
     slave = CosimLocalSlave(fmu_path=str(path), instance_name="contact")
     index = execution.add_local_slave(local_slave=slave)
     references = {variable.name.decode(): variable.reference for variable in execution.slave_variables(index)}
@@ -205,31 +179,9 @@ def run_libcosim(path: Path, start: dict[str, float], step_ns: int, count: int) 
     rows = []
     for _ in range(count):
         assert execution.step()
-        rows.append(
-            observer.last_real_values(
-                slave_index=index, variable_references=[references[name] for name in OUTPUTS]
-            )
-        )
-    return dict(zip(OUTPUTS, np.array(rows).T, strict=True))
-
-
-@pytest.mark.parametrize("step_ns", [500, 50_000, 1_000_000])
-def test_libcosim_agrees_with_fmpy(fmu_path: Path, fmu: FrictionFmu, step_ns: int) -> None:
-    """At the same times to the last bit, since F_t turns within 1e-8 s."""
-    start = start_values(TABLE_2[1], IDENTIFIED)
-    count = 200
-    by_libcosim = run_libcosim(fmu_path, start, step_ns, count)
-    times = [k * step_ns / 1e9 for k in range(count + 1)]
-    rows = []
-    with fmu.session(start) as session:
-        for begin, end in zip(times[:-1], times[1:], strict=True):
-            session.time = begin
-            session.step(end - begin)
-            rows.append(session.read())
-    for name, by_fmpy in zip(OUTPUTS, np.array(rows).T, strict=True):
-        scale = np.abs(by_fmpy).max()
-        assert scale > 0
-        assert np.abs(by_libcosim[name] - by_fmpy).max() <= 1e-12 * scale, name
+        wanted = [references[name] for name in OUTPUTS]
+        rows.append(observer.last_real_values(slave_index=index, variable_references=wanted))
+    return [k * round(1e9 * step) / 1e9 for k in range(count)], np.array(rows)
 
 
 def run_ecos(path: Path, start: dict[str, float], step: float, count: int) -> tuple[list[float], np.ndarray]:
@@ -248,21 +200,23 @@ def run_ecos(path: Path, start: dict[str, float], step: float, count: int) -> tu
     return times, np.array(rows)
 
 
-@pytest.mark.parametrize("step", [5e-7, 5e-5, 1e-3])
-def test_ecos_agrees_with_fmpy(fmu_path: Path, fmu: FrictionFmu, step: float) -> None:
-    """By fmi4c, a reader and loader of FMUs that has nothing of fmpy's or libcosim's."""
-    start = start_values(TABLE_2[1], IDENTIFIED)
-    times, by_ecos = run_ecos(fmu_path, start, step, 200)
+@pytest.mark.parametrize("run_other", [run_libcosim, run_ecos])
+def test_libcosim_and_ecos_agree_with_fmpy(
+    fmu_path: Path, fmu: FrictionFmu, mean: float, run_other: Callable[..., tuple[list[float], np.ndarray]]
+) -> None:
+    """In the scene, and at the same times to the last bit, since F_t turns within 1e-8 s."""
+    _, rows = run_other(fmu_path, SCENE, STEP, STEPS)
+    assert rows[-1, OUTPUTS.index("F_t_mean")] == pytest.approx(mean, abs=1e-11)
+    start, step = start_values(TABLE_2[1], IDENTIFIED), 5e-7
+    times, by_other = run_other(fmu_path, start, step, 200)
     rows = []
     with fmu.session(start) as session:
-        for time in times:
+        for k, time in enumerate(times):
             session.time = time
-            session.step(step)
+            session.step(times[k + 1] - time if run_other is run_libcosim and k < 199 else step)
             rows.append(session.read())
-    by_fmpy = np.array(rows)
-    scale = np.abs(by_fmpy).max(axis=0)
-    assert scale.all()
-    assert (np.abs(by_ecos - by_fmpy).max(axis=0) <= 1e-12 * scale).all()
+    scale = np.abs(rows).max(axis=0)
+    assert scale.all() and (np.abs(by_other - np.array(rows)).max(axis=0) <= 1e-12 * scale).all()
 
 
 def test_the_library_of_this_processor_is_taken_before_another_of_the_system(

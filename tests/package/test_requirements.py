@@ -29,21 +29,12 @@ def wrong(declared: list[str], pinned: dict[str, str]) -> list[str]:
     ]
 
 
-def test_what_every_user_needs_is_pinned_for_every_command() -> None:
-    assert wrong(PROJECT["project"]["dependencies"], pins("requirements.txt")) == []
-
-
-def test_the_extras_are_pinned_for_development() -> None:
-    extras = [one for group in PROJECT["project"]["optional-dependencies"].values() for one in group]
-    assert extras and wrong(extras, pins("requirements.txt", "requirements-dev.txt")) == []
-
-
-def test_what_builds_an_sdist_is_pinned() -> None:
+def test_what_is_declared_is_pinned_and_has_a_lower_bound() -> None:
+    needed, project = PROJECT["project"]["dependencies"], PROJECT["project"]
+    extras = [one for group in project["optional-dependencies"].values() for one in group]
+    builds = PROJECT["build-system"]["requires"]
     files = ("requirements.txt", "requirements-dev.txt", "requirements-release.txt")
-    assert wrong(PROJECT["build-system"]["requires"], pins(*files)) == []
-
-
-def test_every_declaration_has_a_lower_bound() -> None:
-    extras = [one for group in PROJECT["project"]["optional-dependencies"].values() for one in group]
-    declared = PROJECT["project"]["dependencies"] + extras + PROJECT["build-system"]["requires"]
-    assert [text for text in declared if ">=" not in text] == []
+    assert wrong(needed, pins(*files[:1])) == []  # for every command
+    assert extras and wrong(extras, pins(*files[:2])) == []
+    assert wrong(builds, pins(*files)) == []
+    assert [text for text in needed + extras + builds if ">=" not in text] == []
