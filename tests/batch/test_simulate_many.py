@@ -64,14 +64,9 @@ class TestNumbers:
     def test_samples_are_those_of_the_steps(self, fmu_path: Path) -> None:
         """Held V without vibration: F_t = F_C (1 - exp(-x)), x = sigma V t / F_C."""
         sigma, V, duration = 2.5e6, np.array([0.005, 0.02]), 0.01
-        got = simulate_many(
-            {"V": V, "contact.model": "Constant", "contact.sigma": sigma},
-            {"force": ("F_t", "samples"), "delta": "delta"},
-            unit="s",
-            duration=duration,
-            samples=4,
-            fmu=fmu_path,
-        )
+        values = {"V": V, "contact.model": "Constant", "contact.sigma": sigma}
+        outputs = {"force": ("F_t", "samples"), "delta": "delta"}
+        got = simulate_many(values, outputs, unit="s", duration=duration, samples=4, fmu=fmu_path)
         t = duration * np.arange(1, 5) / 4
         expected = F_C * -np.expm1(-sigma * np.outer(V, t) / F_C)
         assert got["force"] == pytest.approx(expected, rel=1e-9)

@@ -20,14 +20,9 @@ from workshop.fmu_docs.readme import SCENE
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])
 USING = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
-ROWS = [
-    [cell.strip() for cell in line.strip()[1:-1].split("|")]
-    for line in USING.splitlines()
-    if line.startswith("|")
-]
-BLOCK = re.compile(  # and what it prints
-    r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE
-)
+ROWS = [[cell.strip() for cell in line[1:].split("|")] for line in USING.splitlines() if line[:1] == "|"]
+# And what it prints.
+BLOCK = re.compile(r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
 EXAMPLES = [
     pytest.param(*block, id=f"{path.name}-{number}")
     for path in DOCUMENTS
