@@ -10,7 +10,7 @@ from collections.abc import Callable
 COMMANDS = {  # name -> its module, and what it does
     "table2": ("table2", "the six rows of the paper's Table 2"),
     "simulate": ("simulation", "one scene over time, as a table"),
-    "sweep": ("sweeps.command", "many scenarios on all cores or a Dask cluster, into Parquet"),
+    "sweep": ("sweeps.run", "many scenarios on all cores or a Dask cluster, into Parquet"),
     "identify": ("identification.command", "fits parameters to your measurements"),
     "advise": ("advice.command", "what to set for your scene and accuracy"),
     "law": ("law", "the friction law under vibration, for slower machines: a table or a picture"),

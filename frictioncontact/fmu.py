@@ -14,7 +14,6 @@ import atexit
 import io
 import shutil
 import tempfile
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import c_double, c_int, c_uint
 from functools import cache
@@ -24,17 +23,8 @@ from typing import Any, NoReturn, Self
 
 import fmpy
 import numpy as np
-from fmpy import extract, read_model_description
+from fmpy import extract, fmi2, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Slave,
-    calloc,
-    fmi2CallbackAllocateMemoryTYPE,
-    fmi2CallbackFreeMemoryTYPE,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-    free,
-)
 
 from . import resources
 from .errors import FrictionError, UserError, shown
@@ -47,12 +37,11 @@ OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
 
 
-class Closing(ABC):
+class Closing:
     """What is closed at the end of a `with` block."""
 
-    @abstractmethod
     def close(self) -> None:
-        """Gives back what it holds."""
+        raise NotImplementedError
 
     def __reduce__(self) -> NoReturn:
         raise UserError(f"a {type(self).__name__} can't be copied or pickled; open another one")
@@ -120,8 +109,8 @@ class FrictionFmu(Closing):
         has = ", ".join(sorted(path.name for path in self.directory.glob("binaries/*")))
         raise UserError(f"{self.path}: has no binary for this platform, {fmpy.platform}, only {has}")
 
-    def _slave(self) -> FMU2Slave:
-        return FMU2Slave(
+    def _slave(self) -> fmi2.FMU2Slave:
+        return fmi2.FMU2Slave(
             guid=self.description.guid,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             unzipDirectory=str(self.directory),
@@ -156,7 +145,7 @@ class FrictionFmu(Closing):
         shutil.rmtree(self._temporary, ignore_errors=True)
 
 
-def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2CallbackFunctions:
+def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2.fmi2CallbackFunctions:
     """Callbacks of an instance, which keep its messages; the caller keeps them while the instance lives."""
 
     def log(environment: object, instance: bytes, status: int, category: bytes, message: bytes) -> None:
@@ -164,10 +153,10 @@ def logging_callbacks(messages: list[str], warnings: list[str] | None = None) ->
         if warnings is not None and status == FMI2_WARNING:
             warnings.append(message.decode())
 
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(log)
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
+    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
+    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
     return callbacks
 
 
@@ -182,7 +171,7 @@ class Session(Closing):
     def __init__(
         self,
         fmu: FrictionFmu,
-        slave: FMU2Slave,
+        slave: fmi2.FMU2Slave,
         start_values: Mapping[str, Value],
         start: float,
         tolerance: float | None,

@@ -24,7 +24,6 @@ from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.parameters import E_FULL, Surfaces
 
-MODELS = ("exponential", "gaussian", "elastic")
 TAIL = 14.0  # from a height on: beyond, the normal density is below 1e-17 of the integrals from there
 SMALLEST_SEPARATION = 1e-3  # in units of R_q: below, mean planes touch and no asperity theory holds
 
@@ -134,7 +133,7 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     asked.add_argument("--separation", type=float, nargs="+", metavar="M", help="separations d [m]")
     add_set(parser, f"of E, {', '.join(SURFACES)}")
     parser.add_argument(
-        "--heights", choices=MODELS, default="exponential", help="height density and asperities"
+        "--heights", choices=HEIGHTS, default="exponential", help="height density and asperities"
     )
     return parser.parse_args(argv)
 

@@ -12,15 +12,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 import numpy.typing as npt
 
-from frictioncontact.command import (
-    add_fmu,
-    add_set,
-    can_draw,
-    command_line,
-    new_file,
-    print_frame,
-    say_written,
-)
+from frictioncontact import command as shared
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.files import write_whole
@@ -194,17 +186,17 @@ file are the names alone.
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("frictioncontact law", DESCRIPTION)
-    add_set(parser, "of the scene")
+    parser = shared.command_line("frictioncontact law", DESCRIPTION)
+    shared.add_set(parser, "of the scene")
     parser.add_argument(
         "--vary", action="append", default=[], metavar="NAME=VALUES",
         help="a,b,c or low:high:count[:log] of an input",
     )  # fmt: skip
-    parser.add_argument("--output", type=new_file, metavar="CSV", help="write the table there")
+    parser.add_argument("--output", type=shared.new_file, metavar="CSV", help="write the table there")
     parser.add_argument(
-        "--picture", type=new_file, metavar="PNG", help="draw the law over V there (.png, .svg, .pdf)"
+        "--picture", type=shared.new_file, metavar="PNG", help="draw the law over V there (.png, .svg, .pdf)"
     )
-    add_fmu(parser)
+    shared.add_fmu(parser)
     return parser.parse_args(argv)
 
 
@@ -235,8 +227,8 @@ def run(options: argparse.Namespace) -> None:
     if options.output:
         write_whole(options.output, table.to_csv(index=False))
     else:
-        print_frame(table, known, scene, **{"d/dV": "N s/m"})
-    if options.picture and can_draw():
+        shared.print_frame(table, known, scene, **{"d/dV": "N s/m"})
+    if options.picture and shared.can_draw():
         from frictioncontact import style
 
         for name, values in inputs.items():
@@ -244,4 +236,4 @@ def run(options: argparse.Namespace) -> None:
                 raise UserError(f"--picture draws the law over V alone: give one value of {name}")
         held = {name: float(values[0]) for name, values in inputs.items()}
         style.save(law.plot(np.unique(V), **held), options.picture)
-    say_written([path for path in (options.output, options.picture) if path])
+    shared.say_written([path for path in (options.output, options.picture) if path])

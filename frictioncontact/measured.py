@@ -27,9 +27,8 @@ class Contact:
     source: str = field(repr=False)
     valid: str = field(repr=False)  # where it was measured
     uncertainty: str = field(repr=False)
-    intervals: dict[str, list[float]] = field(
-        default_factory=dict, repr=False
-    )  # of start values, as uncertainty says
+    # Of start values, as uncertainty says.
+    intervals: dict[str, list[float]] = field(default_factory=dict, repr=False)
     data: Path | None = field(default=None, repr=False)  # the measured rows, a file that `identify` reads
 
     def __str__(self) -> str:

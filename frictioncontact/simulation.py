@@ -12,15 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from frictioncontact.command import (
-    add_column,
-    add_fmu,
-    add_set,
-    command_line,
-    new_file,
-    print_frame,
-    say_written,
-)
+from frictioncontact import command as shared
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError, warn
 from frictioncontact.files import write_whole
@@ -250,8 +242,8 @@ value.
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("frictioncontact simulate", DESCRIPTION)
-    add_set(parser, "of the scene")
+    parser = shared.command_line("frictioncontact simulate", DESCRIPTION)
+    shared.add_set(parser, "of the scene")
     parser.add_argument("--stop", type=float, required=True, help="end, s")
     parser.add_argument("--step", type=float, required=True, help="time between two rows, s")
     parser.add_argument(
@@ -259,12 +251,12 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
         help=f"columns time and any of {', '.join(INPUTS)}, or position; linear between their samples; in SI "
         "units, or with a unit as 'V [mm/s]'",
     )  # fmt: skip
-    add_column(parser)
+    shared.add_column(parser)
     parser.add_argument(
         "--outputs", nargs="+", default=OUTPUTS, metavar="NAME", help=f"variables ({' '.join(OUTPUTS)})"
     )
-    parser.add_argument("--output", type=new_file, metavar="CSV", help="file to write to")
-    add_fmu(parser)
+    parser.add_argument("--output", type=shared.new_file, metavar="CSV", help="file to write to")
+    shared.add_fmu(parser)
     return parser.parse_args(argv)
 
 
@@ -282,6 +274,6 @@ def run(options: argparse.Namespace) -> None:
     )
     if options.output:
         write_whole(options.output, table.to_csv(index=False))
-        say_written([options.output])
+        shared.say_written([options.output])
     else:
-        print_frame(table, fmu.known, scene)
+        shared.print_frame(table, fmu.known, scene)

@@ -16,29 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
-from frictioncontact.command import (
-    add_fmu,
-    as_table,
-    can_draw,
-    command_line,
-    progress_bar,
-    say_written,
-    shown,
-    table_console,
-    write_csv,
-)
+from frictioncontact import command as shared
+from frictioncontact import parameters as paper
 from frictioncontact.fmu import FrictionFmu, opened
-from frictioncontact.parameters import (
-    COULOMB_FORCE,
-    E_1_REDUCTION,
-    IDENTIFIED,
-    PRINTED,
-    STIFFNESS_PRINTED,
-    TABLE_2,
-    ParameterSet,
-    Row,
-    start_values,
-)
+from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, Row
 from frictioncontact.periodic import periodic_mean, periodic_waves, reduction
 
 if TYPE_CHECKING:
@@ -52,7 +33,7 @@ writes table2.csv and table2.png."""
 
 REMARKS = f"""\
 paper       as printed
-exact       Eq. 1-2 at the printed parameters: {STIFFNESS_PRINTED:.4g} N/m, V {PRINTED.V} m/s, phase 0 deg
+exact       Eq. 1-2 at the printed parameters: {PRINTED.stiffness:.4g} N/m, V {PRINTED.V} m/s, phase 0 deg
 identified  Eq. 1-2 with {IDENTIFIED.stiffness / 1e6:.4f} MN/m, phase {IDENTIFIED.phase_d} deg, and V \
 {IDENTIFIED.V} m/s, the velocity of Fig. 3-4.
             Stiffness, phase and V are three numbers adjusted to three informative rows (2, 3, 6): the
@@ -84,13 +65,13 @@ def results(fmu: FrictionFmu) -> Iterator[Result]:
 
 def mean_force(fmu: FrictionFmu, row: Row, parameters: ParameterSet) -> float:
     """Time mean of F_t [N] in the periodic state."""
-    return periodic_mean(fmu, start_values(row, parameters))
+    return periodic_mean(fmu, paper.start_values(row, parameters))
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("frictioncontact table2", DESCRIPTION)
+    parser = shared.command_line("frictioncontact table2", DESCRIPTION)
     parser.add_argument("--quick", action="store_true", help="no picture")
-    add_fmu(parser)
+    shared.add_fmu(parser)
     parser.add_argument("--output", type=Path, help="folder to write to, made if missing; else nothing is")
     return parser.parse_args(argv)
 
@@ -99,7 +80,7 @@ def run(options: argparse.Namespace) -> None:
     written = []
     if options.output:
         options.output.mkdir(parents=True, exist_ok=True)
-    with progress_bar() as progress:
+    with shared.progress_bar() as progress:
         fmu = opened(options.fmu)
         task = progress.add_task("Simulating Table 2", total=len(TABLE_2) + 1)
         table = []
@@ -107,15 +88,15 @@ def run(options: argparse.Namespace) -> None:
             table.append(result)
             progress.advance(task)
         if options.output:
-            written.append(write_csv(csv_rows(table), options.output / "table2.csv"))
-        if options.output and not options.quick and can_draw():
+            written.append(shared.write_csv(csv_rows(table), options.output / "table2.csv"))
+        if options.output and not options.quick and shared.can_draw():
             progress.update(task, description="Drawing")
             written.append(options.output / "table2.png")
             draw(fmu, table, written[1])
-    table_console().print(as_text(table))
+    shared.table_console().print(as_text(table))
     print(REMARKS)
-    print("FMU:", shown(fmu.path))
-    say_written(written)
+    print("FMU:", shared.shown(fmu.path))
+    shared.say_written(written)
 
 
 def csv_rows(table: Sequence[Result]) -> list[dict[str, float]]:
@@ -124,7 +105,7 @@ def csv_rows(table: Sequence[Result]) -> list[dict[str, float]]:
     return [
         {
             "row": result.row.number,
-            "E_1_reduction_percent": 100.0 * E_1_REDUCTION * result.row.softened,
+            "E_1_reduction_percent": 100.0 * paper.E_1_REDUCTION * result.row.softened,
             "a_d_um": round(1e6 * result.row.a_d, 6),
             "V_1_m_per_s": result.row.V_1,
             "paper_N": result.row.paper_force,
@@ -158,7 +139,7 @@ def as_text(table: Sequence[Result]) -> Table:
         for result, row in ((result, result.row) for result in table)
     ]
     title = "Table 2: mean friction force [N] and its reduction against row 1"
-    return as_table(headings, rows, title, names=0)
+    return shared.as_table(headings, rows, title, names=0)
 
 
 def percent(mean: float, without: float) -> str:
@@ -169,7 +150,7 @@ def conditions(row: Row, separator: str = ", ") -> str:
     """What is switched on in a row, for headings."""
     parts = []
     if row.softened:
-        parts.append(f"$E_1$ −{100 * E_1_REDUCTION:.0f} %")
+        parts.append(f"$E_1$ −{100 * paper.E_1_REDUCTION:.0f} %")
     if row.a_d:
         parts.append(f"$a_d$ {1e6 * row.a_d:.1f} µm")
     if row.V_1:
@@ -210,7 +191,7 @@ def _draw_waves(axes: Axes, fmu: FrictionFmu, result: Result) -> None:
     from frictioncontact import style
 
     for name, parameters in PARAMETERS.items():
-        run = periodic_waves(fmu, start_values(result.row, parameters), ("F_t",), samples=400)
+        run = periodic_waves(fmu, paper.start_values(result.row, parameters), ("F_t",), samples=400)
         axes.plot(1e6 * run["time"], run["F_t"], color=style.SOURCE[name], lw=1.7)
     axes.axhline(result.row.paper_force, color=style.SOURCE["paper"], ls=":", lw=1.8)
     axes.axhline(0.0, color=style.GREY, lw=0.8, zorder=0.5)
@@ -231,7 +212,7 @@ def _draw_means(axes: Axes, table: Sequence[Result]) -> None:
     for k, (name, values) in enumerate(columns.items()):
         bars = axes.bar(place + (k - 1) * width, values, 0.92 * width, color=style.SOURCE[name])
         axes.bar_label(bars, [f"{value:.1f}" for value in values], padding=2, fontsize=9)
-    axes.axhline(COULOMB_FORCE, color=style.GREY, lw=0.9, zorder=0.5)
+    axes.axhline(paper.COULOMB_FORCE, color=style.GREY, lw=0.9, zorder=0.5)
     axes.set_xticks(place, [conditions(result.row, "\n") for result in table])
     axes.set(ylabel="mean friction force [N]", ylim=(0.0, 66.0))
     axes.grid(axis="x", visible=False)

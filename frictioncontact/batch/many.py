@@ -101,66 +101,53 @@ def simulate_many(
         print(found["F_t_mean"].shape)
     """
     try:
-        batch, known = _batch(
-            values, outputs, fmu, settle, duration, samples, unit, settled, inputs, rates, steps, begin
-        )
+        library, contact = runner(resources.batch_host()), opened(fmu)
+        known, lengths = contact.known, None if steps is None else _row(_lengths(steps, "steps"), "steps")
+        samples = check_whole(samples if lengths is None else len(lengths), MOST_SAMPLES, "samples =")
+        if unit not in ("period", "s"):
+            raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
         if errors not in ("raise", "keep"):
             raise BatchError(f"errors = {errors!r}: must be 'raise' or 'keep'")
-        check_whole(1 if threads is None else threads, MOST_THREADS, "threads =")
+        workers = check_whole(processors() if threads is None else threads, MOST_THREADS, "threads =")
+        named = in_SI(_named(values), known.units(), "column")
+        if settled or (settle is None and unit == "period" and "initialState" not in named):
+            if "initialState" in named:
+                raise BatchError("column initialState: settled gives it already")
+            named = {**named, "initialState": "Settled"}
+        starts = {name: known.numbers(name, value, f"column {name}") for name, value in named.items()}
+        spans = {"settle": 0.0 if settle is None else settle, "duration": duration}
+        spans = {name: _lengths(value, name) for name, value in spans.items()}
+        shape, columns = _flat(starts | spans, None if isinstance(values, Mapping) else len(values))
+        batch = Batch(
+            library, loaded(library, contact.library), contact.description.guid.encode(), known,
+            shape, {name: columns[name] for name in starts}, columns["settle"], columns["duration"], samples,
+            _read(known, outputs), known.all["vibration.f"].valueReference if unit == "period" else None,
+            *_moving(known, pairs(inputs, "inputs"), pairs(rates, "rates"), samples), lengths,
+            real(begin, "begin"),
+        )  # fmt: skip
     except UserError as error:
         raise BatchError(str(error)) from None
-    warn_of(known, batch.starts | (inputs or {}), is_over_period=unit == "period")
+    warn_of(known, starts | (inputs or {}), is_over_period=unit == "period")
     with shown_progress(progress, batch.scenarios) as told:
-        results = batch.run(threads or processors(), errors == "raise", told)
+        results = batch.run(workers, errors == "raise", told)
     if errors == "raise":
         del results["reason"]
     return _frame(results, values.index) if not isinstance(values, Mapping) else results
 
 
-def _batch(
-    values: Mapping[str, npt.ArrayLike] | pd.DataFrame,
-    outputs: Outputs,
-    fmu: str | Path | bytes | None,
-    settle: npt.ArrayLike | None,
-    duration: npt.ArrayLike,
-    samples: int,
-    unit: Unit,
-    settled: bool,
-    inputs: Mapping[str, npt.ArrayLike] | None,
-    rates: Mapping[str, npt.ArrayLike] | None,
-    steps: npt.ArrayLike | None,
-    begin: float,
-) -> tuple[Batch, Variables]:
-    library = runner(resources.batch_host())
-    contact = opened(fmu)
-    known = contact.known
-    lengths = None if steps is None else _row(_lengths(steps, "steps"), "steps")
-    samples = samples if lengths is None else len(lengths)
-    if unit not in ("period", "s"):
-        raise BatchError(f"unit = {unit!r}: must be 'period' or 's'")
-    check_whole(samples, MOST_SAMPLES, "samples =")
-    named = in_SI(_named(values), known.units(), "column")
-    if settled or (settle is None and unit == "period" and "initialState" not in named):
-        if "initialState" in named:
-            raise BatchError("column initialState: settled gives it already")
-        named = {**named, "initialState": "Settled"}
-    starts = {name: known.numbers(name, value, f"column {name}") for name, value in named.items()}
-    settle = 0.0 if settle is None else settle
-    spans = {"settle": _lengths(settle, "settle"), "duration": _lengths(duration, "duration")}
-    shape = _common_shape(starts | spans, None if isinstance(values, Mapping) else len(values))
+def _flat(
+    columns: Mapping[str, np.ndarray], rows: int | None
+) -> tuple[tuple[int, ...], dict[str, np.ndarray]]:
+    """What the columns broadcast to, and each with one value where there is one for all, else all of them."""
+    shape = _common_shape(columns, rows)
     try:
-        columns = {name: _flat(column, shape) for name, column in (starts | spans).items()}
+        spread = {
+            name: (each.reshape(1) if each.size == 1 else np.broadcast_to(each, shape)).astype(float).ravel()
+            for name, each in columns.items()
+        }
     except (MemoryError, ValueError):  # more than can be addressed
         raise BatchError(f"no memory for {math.prod(shape)} scenarios") from None
-    moving = _moving(known, pairs(inputs, "inputs"), pairs(rates, "rates"), int(samples))
-    frequency = known.all["vibration.f"].valueReference if unit == "period" else None
-    held = {name: columns[name] for name in starts}
-    batch = Batch(
-        library, loaded(library, contact.library), contact.description.guid.encode(), known,
-        shape, held, columns["settle"], columns["duration"], int(samples), _read(known, outputs),
-        frequency, *moving, lengths, real(begin, "begin"),
-    )  # fmt: skip
-    return batch, known
+    return shape, spread
 
 
 def _common_shape(columns: Mapping[str, np.ndarray], rows: int | None = None) -> tuple[int, ...]:
@@ -177,13 +164,6 @@ def _common_shape(columns: Mapping[str, np.ndarray], rows: int | None = None) ->
             raise BatchError(f"column {name}: its {size} values do not go with the {those}")
         shape = wider
     return shape
-
-
-def _flat(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """One value where there is one for all, else all of them in the order of the shape."""
-    if array.size == 1:
-        return np.ascontiguousarray(array.reshape(1), dtype=float)
-    return np.ascontiguousarray(np.broadcast_to(array, shape), dtype=float).reshape(-1)
 
 
 def _lengths(value: object, where: str) -> np.ndarray:

@@ -44,11 +44,6 @@ class Batch:
     def scenarios(self) -> int:
         return math.prod(self.shape)
 
-    @property
-    def is_short(self) -> bool:
-        """Few steps of the default method, whose cost does not grow with their length."""
-        return self.scenarios * self.samples <= FEW and "solver.method" not in self.starts
-
     def run(
         self, threads: int, raises: bool, progress: Progress = lambda finished, refused: None
     ) -> dict[str, np.ndarray]:
@@ -60,8 +55,8 @@ class Batch:
             running = _Running(self, raises)
         except MemoryError:
             raise BatchError(f"no memory for the results of {self.scenarios} scenarios") from None
-        if self.is_short:
-            running.work_here(progress)
+        if self.scenarios * self.samples <= FEW and "solver.method" not in self.starts:
+            running.work_here(progress)  # the cost of the default method does not grow with its steps
         elif self.scenarios:
             running.work(min(threads, self.scenarios), progress)
         try:

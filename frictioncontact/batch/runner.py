@@ -71,7 +71,7 @@ def runner(path: Path) -> ctypes.CDLL:
 def loaded(library: ctypes.CDLL, fmu: Path) -> int:
     """Handle of an FMU's shared library for batch_begin. It stays loaded as long as the process lives."""
     why = ctypes.create_string_buffer(TEXT)
-    handle = library.batch_load(str(fmu).encode(), why, TEXT)
+    handle: int = library.batch_load(str(fmu).encode(), why, TEXT)
     if not handle:
         raise BatchError(f"the FMU's library can't be loaded: {why.value.decode(errors='replace')}")
     return handle

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -83,17 +84,15 @@ def _tried(remedies: list[Remedy], than: Fit, starts: Sequence[np.ndarray] = ())
     """Those that fit better than one coordinate more does by scatter, the best first."""
     found = []
     for words, experiment in remedies:
-        try:
-            fit = (
-                search(experiment, experiment.target, most=STARTS, given=starts)
-                if experiment.degrees > 0
-                else than
-            )
-        except FrictionError:
+        if experiment.degrees <= 0:
             continue
-        is_new = all(abs(fit.squares - one[2].squares) > 1e-6 * fit.squares for one in found)  # LuGre as Dahl
-        if is_new and than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:
-            found.append((words, experiment, fit))
+        with suppress(FrictionError):
+            fit = search(experiment, experiment.target, most=STARTS, given=starts)
+            is_new = all(
+                abs(fit.squares - one[2].squares) > 1e-6 * fit.squares for one in found
+            )  # LuGre as Dahl
+            if is_new and than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:
+                found.append((words, experiment, fit))
     return sorted(found, key=lambda one: one[2].squares)
 
 

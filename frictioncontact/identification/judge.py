@@ -15,7 +15,6 @@ from frictioncontact.identification.suspicion import CHANCE, FEW, suspicion
 
 SMALL = 1e-5  # a difference over the force that the search for the fit may leave
 LARGE = 0.2  # a misfit over the force that no scatter of a mean explains
-MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
 
 
 def judge(experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray]) -> None:
@@ -126,9 +125,6 @@ def _interval(result: Fit, k: int) -> list[str]:
             )
         elif half > _large(p, value):
             found.append(f"the data can't tell {p.name}: within 95 % it may be {low:.3g} to {high:.3g}{unit}")
-        linear = result.half_widths[k]
-        if not (open_low or open_high) and linear > 0.0 and not 1.0 / MISLEADS < half / linear < MISLEADS:
-            found.append(f"the linear interval of {p.name} misleads: trust the profile")
     elif result.half_widths[k] > _large(p, value):
         found.append(f"the data can't tell {p.name}")
     if value <= p.low * (1 + 1e-6) or value >= p.high * (1 - 1e-6):

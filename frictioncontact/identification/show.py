@@ -7,12 +7,10 @@ from rich.console import Console
 from rich.table import Table
 
 from frictioncontact.command import as_table
-from frictioncontact.identification.data import Measurements
 from frictioncontact.identification.experiment import Experiment
 from frictioncontact.identification.faults import described
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.identification.result import Fit
-from frictioncontact.parameters import E_FULL, SEPARATION
 
 MOST = 30  # rows shown
 
@@ -47,25 +45,8 @@ def show(console: Console, experiment: Experiment, result: Fit) -> None:
         say(f"no misfit is seen, but whether the law fits is open: {ask}")
     if result.hidden:
         say(f"these data would not show {' or '.join(result.hidden)} of a tenth: the parameters take it up")
-    names = [p.name for p in result.parameters]
-    if "contact.stiffnessScale" in names and isinstance(experiment.rows, Measurements):
-        scale = result.values[names.index("contact.stiffnessScale")]
-        say(f"asperity stiffness at 14 um, scaled: {_stiffness(experiment, scale):.5g} N/m")
     for warning in result.warnings:
         say(f"warning: {warning}")
-
-
-def _stiffness(experiment: Experiment, scale: float) -> float:
-    """sigma [N/m] at the separation and modulus of Table 1, with what else the first row has."""
-    plain = {
-        "contact.input": "Separation",
-        "d": SEPARATION,
-        "E": E_FULL,
-        "vibration.a_d": 0.0,
-        "contact.stiffnessScale": scale,
-    }
-    with experiment.fmu.session({**experiment.rows.conditions[0], **plain}) as session:
-        return session.get("sigma")
 
 
 def _values(result: Fit) -> Table:

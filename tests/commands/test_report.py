@@ -26,10 +26,3 @@ def test_every_section_and_figure_is_there(fmu_path: Path, tmp_path: Path) -> No
     assert len(sources) > 15 and {path.name for path in tmp_path.glob("*.svg")} == set(sources)
     assert "{{" not in body and "<script" not in body
     assert "://" not in re.sub(r"xmlns\S+|<code>.*?</code>", "", body)
-
-
-def test_output_that_cannot_be_written_is_named(fmu_path: Path, tmp_path: Path) -> None:
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    with pytest.raises(SystemExit, match=f"error: {re.escape(str(blocked))}"):
-        main(report, ["--quick", "--fmu", str(fmu_path), "--output", str(blocked)])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +13,6 @@ import frictioncontact as fc
 from frictioncontact import simulation as command
 from frictioncontact.command import main
 from frictioncontact.fmu import Value
-from workshop.reference import solution as reference
-from workshop.reference.arithmetic import MP
-from workshop.reference.start_values import scene_of
 
 SOFT: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 2.5e6, "solver.tolerance": 1e-8}
 STEP, COUNT = 3e-5, 8
@@ -25,44 +21,25 @@ TIME = [-1e-5, 1.3e-5, 3e-5, 3.7e-5, 9.1e-5, 9.1e-5, 1.6e-4]
 VELOCITY = [0.1, 0.4, -0.2, 0.3, 0.5, -0.6, 0.2]
 
 
-def pieces(time: list[float], values: list[float], end: float) -> list[tuple[float, float, float, float]]:
-    """Begin, end, value at the begin and slope of each straight piece of the samples from 0 to end."""
-    times, samples = [*time, max(end, time[-1]) + 1.0], [*values, values[-1]]
-    if time[0] > 0.0:
-        times, samples = [-1.0, *times], [values[0], *samples]
-    found = []
-    for a, b, left, right in zip(times[:-1], times[1:], samples[:-1], samples[1:], strict=True):
-        begin, stop = max(a, 0.0), min(b, end)
-        if stop > begin:
-            slope = (right - left) / (b - a)
-            found.append((begin, stop, left + slope * (begin - a), slope))
-    return found
-
-
-def right(values: dict[str, Value], time: list[float], velocity: list[float]) -> np.ndarray:
-    """F_t and its mean over each of COUNT rows [N], by the reference over every straight piece."""
-    scene, delta, rows = scene_of(values), MP.mpf(0), []
-    for k in range(COUNT):
-        impulse = MP.mpf(0)
-        for begin, end, value, slope in pieces(time, velocity, (k + 1) * STEP):
-            if end <= k * STEP:
-                continue
-            at = max(begin, k * STEP)
-            now = replace(scene, V=value + slope * (at - begin), V_rate=slope, start=MP.mpf(at))
-            delta, part = reference.advance(now, MP.mpf(at), end - at, delta)[:2]
-            impulse += part
-        rows.append((float(reference.force(now, MP.mpf(end), delta)), float(impulse) / STEP))
-    return np.array(rows)
+def right(law: str, time: list[float]) -> np.ndarray:
+    """F_t and its mean over each of COUNT rows [N]: Eq. 2, or a spring with a bound, over small steps."""
+    fine = 3000  # of a row, at whose ends every sample lies
+    h, forces = STEP / fine, [0.0]
+    for V in np.interp((np.arange(COUNT * fine) + 0.5) * h, time, VELOCITY):
+        x, F = V * h, forces[-1]
+        end = np.copysign(55.0, x)
+        dahl = end + (F - end) * np.exp(-2.5e6 * abs(x) / 55.0)
+        forces.append(dahl if law == "Dahl" else float(np.clip(F + 2.5e6 * x, -55.0, 55.0)))
+    means = (0.5 * (np.array(forces[1:]) + forces[:-1])).reshape(COUNT, fine).mean(axis=1)
+    return np.stack([forces[fine::fine], means], axis=1)
 
 
 @pytest.mark.parametrize(("law", "shift"), [("Dahl", 0.0), ("ElasticPlastic", 2e-5)])
 def test_inputs_are_linear_between_samples_that_fall_anywhere(fmu_path: Path, law: str, shift: float) -> None:
-    values = {**SOFT, "friction.model": law}
     time = [t + shift for t in TIME]
-    got = fc.simulate(
-        values, stop=COUNT * STEP, step=STEP, inputs={"time": time, "V": VELOCITY}, fmu=fmu_path
-    )
-    expected = right(values, time, VELOCITY)
+    scene, drive = {**SOFT, "friction.model": law}, {"time": time, "V": VELOCITY}
+    got = fc.simulate(scene, stop=COUNT * STEP, step=STEP, inputs=drive, fmu=fmu_path)
+    expected = right(law, time)
     assert got["F_t"][1:].to_numpy() == pytest.approx(expected[:, 0], abs=1e-6 * 55.0)
     assert got["F_t_mean"][1:].to_numpy() == pytest.approx(expected[:, 1], abs=1e-6 * 55.0)
 
@@ -95,25 +72,18 @@ def test_the_mean_is_over_the_time_since_the_row_before(fmu_path: Path, V: str, 
         ({"start": {"V": "5 mm/s"}}, "start: V: '5 mm/s' is not a number; write the number alone, in SI"),
         ({"start": [("V", 1.0)]}, "start = \"[('V', 1.0)]\": must be a mapping of names to values"),
         ({"outputs": ["F_tt"]}, "outputs: F_tt is no variable of the FMU; did you mean F_t?"),
-        ({"outputs": ["F_t,W_f"]}, "outputs: 'F_t,W_f' is no variable of the FMU; give one"),
         (
             {"outputs": ["friction.model"]},
             "outputs: friction.model is of type Enumeration; only Real",
         ),
         ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence of names"),
         ({"stop": 0.0}, "stop = 0.0: must be a positive number of seconds"),
-        ({"stop": True}, "stop = 'True' is not a number"),
         ({"step": 1e-12}, "step = 1e-12 s: stop / step must be at most"),
         ({"inputs": {"V": [1.0]}}, "inputs: needs a column time [s] and at least one of V, d, E, load"),
-        ({"inputs": {"time": [0.0], "F_C": [1.0]}}, "inputs: F_C is no input of the FMU; these are: V, d"),
         ({"inputs": {"time": [0.0, 1.0], "V": [1.0]}}, "inputs: V has 1 values and time has 2"),
         ({"inputs": {"time": [0.0, 1.0], "V": [-1e308, 1e308]}}, "inputs: V, row 0: -1e+308 must be"),
         ({"inputs": {"time": [1.0, 0.5], "V": [1.0, 1.0]}}, "inputs: time falls from 1 to 0.5 s at sample 1"),
-        ({"inputs": {"time": [], "V": []}}, "inputs: no samples"),
-        ({"inputs": {"time": [0.0], "V": np.ma.array([1.0], mask=[True])}}, "inputs: V, row 0: is masked"),
         ({"inputs": "drive.csv"}, "drive.csv: No such file"),
-        ({"inputs": 3.0}, "inputs = '3.0': must be the path of a CSV file, a mapping of names to values, or"),
-        ({"fmu": "absent.fmu"}, "absent.fmu: No such file"),
         ({"fmu": "."}, ".: Is a directory"),
     ],
 )

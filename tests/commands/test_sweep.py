@@ -21,9 +21,9 @@ from scipy.integrate import quad
 
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.sweeps import command as sweep_command
-from frictioncontact.sweeps.group import RESULTS
+from frictioncontact.sweeps import run as sweep_command
 from frictioncontact.sweeps.run import sweep
+from frictioncontact.sweeps.workers import RESULTS
 
 Ran = Callable[..., SimpleNamespace]
 Started = Callable[..., subprocess.Popen]
@@ -248,21 +248,6 @@ class TestRuns:
         assert said.startswith("stopped; what was computed is kept; the same sweep"), said
         assert sorted(path.name for path in output.iterdir()) == ["parts", "sweep.json"]
         assert all(path.suffix == ".parquet" for path in (output / "parts").iterdir())
-
-    def test_two_at_once(
-        self, fmu_path: Path, fmu: FrictionFmu, tmp_path: Path, ran: Ran, started: Started
-    ) -> None:
-        """They do the same work; the slower one may find the folder finished, and says so in a line."""
-        output, arguments = tmp_path / "sweep", (*GRID, "--group", "20", "--samples", "16", "--workers", "1")
-        whole = command(fmu.path, output, *arguments)
-        both = [started(whole, stderr=subprocess.PIPE, text=True) for _ in range(2)]
-        errors = [one.communicate(timeout=600)[1] for one in both]
-        assert 0 in [one.returncode for one in both]
-        for said in filter(None, errors):
-            assert "can't be written" in said and said.count("\n") == 1, said
-        check_grid(output, fmu)
-        assert ran(output, *arguments).returncode == 0
-        assert sorted(path.name for path in output.iterdir()) == ["results.parquet", "sweep.json"]
 
     def test_full_disk(self, fmu_path: Path, tmp_path: Path) -> None:
         """A limit of the size of files gives the error that a full disk gives, in the midst of a write."""

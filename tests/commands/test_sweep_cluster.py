@@ -28,7 +28,7 @@ from test_sweep import (
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.sweeps import workers
-from frictioncontact.sweeps.group import Job
+from frictioncontact.sweeps.workers import Job
 
 __all__ = ["ran", "started"]
 SWEEP = (*GRID, "--group", "10", "--samples", "16")

@@ -11,7 +11,7 @@ import pytest
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu
 from workshop.project import ROOT
-from workshop.validate import command, elements, longitudinal, measurements, normal, record
+from workshop.validate import command, longitudinal, measurements, normal, record
 
 PAGE = " ".join((ROOT / "docs" / "validation.md").read_text(encoding="utf-8").split())
 
@@ -39,21 +39,6 @@ def test_the_dry_rows(fmu_path: Path) -> None:
     assert dahl.least == pytest.approx(2 / np.pi * data.without * np.arcsin(zeta), rel=1e-3)
     assert dahl.most == pytest.approx(soft, rel=1e-3)
     assert np.all(data.vibrated > 3.7 * dahl.most)
-
-
-def test_the_oiled_rows_follow_no_law(fmu_path: Path) -> None:
-    data = measurements.sliding("oil")
-    fit, ratio = longitudinal.fit(fmu_path, data, "ElasticPlastic"), longitudinal.constant_ratio(data)
-    by_law, by_ratio = (measurements.rms(one.model - data.vibrated) for one in (fit, ratio))
-    assert by_law > by_ratio
-    assert f"ElasticPlastic is {by_law:.3f} N" in PAGE and f"({by_ratio:.3f} N)" in PAGE
-
-
-def test_a_baseline_predicts_a_row_without_having_seen_it() -> None:
-    data = measurements.sliding("dry")
-    others = np.arange(1, len(data.V))
-    slope, offset = np.polyfit(np.log(data.V[others]), data.vibrated[others], 1)
-    assert longitudinal.logarithm(data).predicted[0] == pytest.approx(offset + slope * math.log(data.V[0]))
 
 
 @pytest.mark.parametrize("law", normal.LAWS)
@@ -103,14 +88,6 @@ def in_short_pieces(part: measurements.Record, fit: record.RecordFit, bounded: b
             F = min(max(F, -limit), limit) if bounded else F
         forces.append(F)
     return np.array(forces)
-
-
-def test_elements_in_parallel_share_one_element_s_force() -> None:
-    part = record.fitted_cycles(measurements.record())
-    one = elements.forces(part, (np.array([4e4]), np.array([0.47]), 0.0))
-    halves = elements.forces(part, (np.array([2e4, 2e4]), np.array([0.235, 0.235]), 0.0))
-    assert halves == pytest.approx(one)
-    assert np.max(np.abs(one) / part.load) == pytest.approx(0.47)
 
 
 def test_the_command_prints_its_tables_and_draws(

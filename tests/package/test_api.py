@@ -28,13 +28,6 @@ def dry(fmu_path: Path) -> fc.Identification:
     return fc.identify(DRY, fit="contact.sigma", start=LAW, fmu=fmu_path)
 
 
-def test_a_law_that_misses_everything_is_told(dry: fc.Identification, fmu_path: Path) -> None:
-    """0.391 of 0.406 N (docs/validation.md), though no uncertainty is stated."""
-    dahl = fc.identify(DRY, "contact.sigma", start={"contact.model": "Constant"}, fmu=fmu_path)
-    assert dry.misfits == []
-    assert dahl.misfits[0].startswith("the law does not fit: the misfit, 0.391 N rms, is 0.944 of")
-
-
 def test_it_prints_what_the_command_prints(
     dry: fc.Identification, fmu_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -56,15 +49,11 @@ def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None
     ("arguments", "message"),
     [
         ({"data": "nowhere.csv"}, "nowhere.csv: No such file"),
-        ({"data": "a\0.csv"}, "data = 'a\\x00.csv': is no path"),
         ({"data": {"V [m/s]": [1.0]}}, "data: column 'F_t_mean [N]' is missing"),
         ({"fit": ["F_t"]}, "F_t can't be fitted; did you mean F_C? these can: V, d"),
-        ({"fit": ["contact.sigma", "contact.sigma"]}, "contact.sigma is to be fitted twice"),
         ({"fit": []}, "fit: names no parameter"),
-        ({"fit": 3}, "fit = 3: must be a name, names, or a mapping of names"),
         ({"fit": {"F_C": (1.0, 2.0, 3.0)}}, "F_C = (1.0, 2.0, 3.0): a range is (low, high)"),
         ({"uncertain": {"speed": 1.0}}, "the uncertainty of speed: speed is no variable that a file may"),
-        ({"uncertain": {"F_t": 1}}, "the uncertainty of F_t: rows of means"),
         ({"nuisance": ["gain"]}, "nuisance gain: must be one of offset, drift, delay, sign"),
         ({"nuisance": "delay"}, "nuisance delay: is for a series, with a column 'time [s]'"),
         ({"start": {"contact.model": "Mindlin"}}, "contact.sigma can't be fitted: contact.sigma has no"),
@@ -80,11 +69,9 @@ def test_wrong_fits_are_one_line(fmu_path: Path, arguments: dict, message: str) 
     [
         ({"scene": {"solver.tolerance": 1e-3}}, "solver.tolerance does not describe a scene; these do: V, d"),
         ({"accuracy": 2.0}, "accuracy 2: must lie between 1e-08 and 1"),
-        ({"output": "W_f"}, "output W_f: must be one of both, F_t, F_t_mean"),
         ({"inputs": {"time": [0.0, 1.0, 3.0], "V": [0.0] * 3}}, "inputs: time must grow in even steps"),
         ({"mass": 1.0}, "mass needs step and takes no inputs"),
         ({"mass": 0.0, "step": 1e-4}, "mass 0 kg: must lie"),
-        ({"mass": 1.0, "step": 1e-4, "linear": True}, "mass needs step and takes no inputs"),
         ({"mass": 1.0, "step": 1e-4, "master": "Gauss"}, "master = 'Gauss': must be one of 'Jacobi', "),
     ],
 )

@@ -13,8 +13,7 @@ import pandas as pd
 import pytest
 
 import frictioncontact as fc
-from frictioncontact.tables import table
-from frictioncontact.units import factor
+from frictioncontact.tables import factor, table
 
 SI = {"time": [0.0, 1.5e-3, 4e-3], "V": [0.0005, 0.02, -0.03], "F_t": [1000.0, 2250.0, -500.0]}
 UNITS = {"time": "s", "V": "m/s", "F_t": "N"}

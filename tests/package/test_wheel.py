@@ -99,15 +99,10 @@ QUIET = ("--quiet", "--disable-pip-version-check")
 
 
 def download(folder: Path, *packages: str) -> None:
-    pins = [
-        line
-        for name in ("requirements.txt", "requirements-dev.txt", "constraints.txt")
-        for line in (ROOT / name).read_text(encoding="utf-8").splitlines()
-        if "==" in line
-    ]
-    constraints = folder / "constraints.txt"
-    constraints.write_text("\n".join(pins) + "\n")
-    command = [sys.executable, "-m", "pip", "download", *QUIET, "-c", str(constraints)]
+    files = (ROOT / name for name in ("requirements.txt", "requirements-dev.txt", "constraints.txt"))
+    lines = [line for file in files for line in file.read_text(encoding="utf-8").splitlines()]
+    (folder / "pins.txt").write_text("\n".join(line for line in lines if "==" in line))
+    command = [sys.executable, "-m", "pip", "download", *QUIET, "-c", str(folder / "pins.txt")]
     subprocess.run([*command, "-d", str(folder / "found"), *packages], check=True)
 
 
