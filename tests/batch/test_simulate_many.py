@@ -138,11 +138,6 @@ class TestShapes:
         got = simulate_many({"V": np.empty((0, 3))}, errors="keep", fmu=fmu_path)
         assert got["F_t_mean"].shape == got["reason"].shape == (0, 3)
 
-    def test_bytes_of_an_fmu(self, fmu_path: Path) -> None:
-        values = {"V": [0.1, 0.2], **VIBRATING}
-        by_path, by_bytes = (simulate_many(values, fmu=one) for one in (fmu_path, fmu_path.read_bytes()))
-        assert (by_path["F_t_mean"] == by_bytes["F_t_mean"]).all()
-
 
 class TestRefusals:
     def test_kept_with_the_message(self, fmu: FrictionFmu, fmu_path: Path) -> None:

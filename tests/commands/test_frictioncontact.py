@@ -75,10 +75,7 @@ def test_wrong_arguments_are_one_line(capsys: pytest.CaptureFixture[str]) -> Non
             simulation.arguments(words)
         name = "frictioncontact simulate"
         assert capsys.readouterr().err == f"{name}: error: {message}; see {name} --help\n"
-
-
-def test_a_negative_number_is_a_value() -> None:
-    """Also in the form -1e-4, which argparse takes for an option up to Python 3.13."""
+    # A value, and no option, for which argparse takes the form -1e-4 up to Python 3.13.
     assert simulation.arguments(["--stop", "1", "--step", "-1e-4"]).step == -1e-4
 
 

@@ -321,12 +321,3 @@ def test_scatter_is_seldom_suspicious() -> None:
         result = SimpleNamespace(residuals=left @ random.standard_normal(12), slopes=slopes)
         told += suspicion(experiment, result, {"of a drift": np.arange(12.0)})[0] < CHANCE
     assert told <= stats.binom.ppf(0.99, 120, CHANCE)
-
-
-def test_command_prints_and_draws(fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    law = ["--set", "friction.model=ElasticPlastic", "--set", "contact.model=Constant"]
-    words = [str(ROOT / "data" / "dry.csv"), "--fit", "contact.sigma", *law]
-    main(identify, [*words, "--fmu", str(fmu_path), "--output", str(tmp_path)])
-    assert "contact.sigma" in capsys.readouterr().out
-    assert (tmp_path / "identify.png").stat().st_size > 10_000
-    assert (tmp_path / "identify.svg").is_file()

@@ -26,15 +26,6 @@ def table(fmu_path: Path, folder: Path, *arguments: str) -> pd.DataFrame:
     return made.loc[:, :"F_mean"].drop(columns=["scenario", "F_mean"])
 
 
-def test_grid(fmu_path: Path, tmp_path: Path) -> None:
-    words = ["--vary", "V=1:100:3:log", "--vary", "friction.model=Dahl,Coulomb", "--set", "d=15e-6"]
-    assert table(fmu_path, tmp_path, *words).to_dict("list") == {
-        "V": pytest.approx([1, 1, 10, 10, 100, 100]),
-        "friction.model": ["Dahl", "Coulomb"] * 3,
-        "d": [15e-6] * 6,
-    }
-
-
 def test_csv_with_units(fmu_path: Path, tmp_path: Path) -> None:
     path = tmp_path / "scenarios.csv"
     path.write_text(

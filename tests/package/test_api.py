@@ -28,14 +28,15 @@ def dry(fmu_path: Path) -> fc.Identification:
     return fc.identify(DRY, fit="contact.sigma", start=LAW, fmu=fmu_path)
 
 
-def test_it_prints_what_the_command_prints(
-    dry: fc.Identification, fmu_path: Path, capsys: pytest.CaptureFixture[str]
+def test_it_prints_and_draws_what_the_command_does(
+    dry: fc.Identification, fmu_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = [f"{name}={value}" for name, value in LAW.items()]
-    options = ["--fit", "contact.sigma", "--set", words[0], "--set", words[1], "--quick"]
-    main(identify_command, [str(DRY), *options, "--fmu", str(fmu_path)])
+    words = [word for name, value in LAW.items() for word in ("--set", f"{name}={value}")]
+    options = ["--fit", "contact.sigma", "--output", str(tmp_path), "--fmu", str(fmu_path)]
+    main(identify_command, [str(DRY), *words, *options])
     printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
-    assert printed == [line.rstrip() for line in str(dry).splitlines()]
+    assert printed[:-1] == [line.rstrip() for line in str(dry).splitlines()]
+    assert (tmp_path / "identify.png").stat().st_size > 10_000 and (tmp_path / "identify.svg").is_file()
 
 
 def test_it_draws_and_leaves_the_user_s_settings(dry: fc.Identification) -> None:

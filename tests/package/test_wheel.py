@@ -139,17 +139,6 @@ def test_the_lines_of_the_readme(user: User) -> None:
     assert len(code.splitlines()) <= 8
 
 
-def test_table_2(user: User) -> None:
-    printed = user.run("frictioncontact", "table2")
-    table = [line.split("│")[1:-1] for line in printed.splitlines() if line.startswith("│")]
-    assert [float(cells[8]) for cells in table] == [55.00, 21.56, 26.44, 55.00, 55.00, 27.44]
-    assert not (user.work / "table2.csv").exists()
-    said = user.run("frictioncontact", "table2", "--output", "paper")
-    assert [path.name for path in (user.work / "paper").iterdir()] == ["table2.csv"], (
-        said
-    )  # without matplotlib
-
-
 def test_commands_that_need_no_extra(user: User) -> None:
     """Besides those of the pages' lines."""
     version = user.run("frictioncontact", "version")
