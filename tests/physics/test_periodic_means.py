@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frictioncontact.gap.heights import stiffness
+from frictioncontact.gap import stiffness
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu

@@ -21,7 +21,7 @@ from frictioncontact.batch import simulate_many
 from frictioncontact.command import finish
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.sweeps.group import OUTPUTS
+from frictioncontact.sweeps.workers import OUTPUTS
 from workshop.build import build_fmu
 from workshop.project import ROOT
 
