@@ -35,6 +35,7 @@ FMI2_WARNING = 1
 INPUTS = ("V", "d", "E", "load", "V_y")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
+_OPENING = Lock()  # FMPy changes the folder of the process where it loads a library
 
 
 class Closing:
@@ -56,7 +57,7 @@ class Closing:
 class FrictionFmu(Closing):
     """The unzipped FMU and its model description, from which sessions are opened.
 
-    path      the .fmu file, for example `fc.FMU`
+    path      the .fmu file, for example `fc.FMU`, or its bytes
     raises    UserError: no such file, or not an FMU of this model
 
     It is closed at the end of a `with` block, or by `close()`.
@@ -68,7 +69,6 @@ class FrictionFmu(Closing):
     """
 
     def __init__(self, path: str | Path | bytes) -> None:
-        """bytes: those of such a file."""
         self.path = Path("the file") if isinstance(path, bytes) else path_of(path, "fmu")
         self._content = path if isinstance(path, bytes) else None
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
@@ -346,16 +346,18 @@ def run(
 
 def opened(file: str | Path | bytes | None) -> FrictionFmu:
     """The FMU of a file or of its bytes, or the package's own; unzipped once in a process while it stays."""
-    if isinstance(file, bytes):
-        return _opened(file, ())
-    path = resources.fmu() if file is None else path_of(file, "fmu")
-    try:
-        stat = path.stat()
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from None
-    if path.is_dir():
-        raise UserError(f"{path}: Is a directory")
-    return _opened(path, (stat.st_ino, stat.st_mtime_ns, stat.st_size))
+    version: tuple[int, ...] = ()
+    if not isinstance(file, bytes):
+        file = resources.fmu() if file is None else path_of(file, "fmu")
+        try:
+            stat = file.stat()
+        except OSError as error:
+            raise UserError(f"{file}: {error.strerror}") from None
+        if file.is_dir():
+            raise UserError(f"{file}: Is a directory")
+        version = (stat.st_ino, stat.st_mtime_ns, stat.st_size)
+    with _OPENING:
+        return _opened(file, version)
 
 
 @cache

@@ -162,11 +162,9 @@ def simulate(
         loaded.known.readable(name, "outputs")
     values = loaded.known.values(start, "start")
     ends = _ends(real(stop, "stop"), real(step, "step"))
-    moving = (
-        samples(inputs, loaded.known, float(ends[-1]), columns)
-        if inputs is not None
-        else Samples(np.zeros(1), {})
-    )
+    moving = Samples(np.zeros(1), {})
+    if inputs is not None:
+        moving = samples(inputs, loaded.known, float(ends[-1]), columns)
     times = moving.steps(ends)
     begins = np.concatenate([[0.0], times[:-1]])
     lengths = times - begins
