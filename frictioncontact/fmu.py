@@ -15,6 +15,7 @@ import io
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import chdir
 from ctypes import c_double, c_int, c_uint
 from functools import cache
 from pathlib import Path
@@ -86,22 +87,26 @@ class FrictionFmu(Closing):
             self.directory = Path(extract(source, unzipdir=self._temporary))
             failed = "its modelDescription.xml: "
             self.description = read_model_description(str(self.directory), validate=False)
+            failed = "its library: "
+            self.library = self._library_here()
+            with chdir("."):  # FMPy stays in the folder of a library that can't be loaded
+                self._loaded = self._slave()  # keeps the shared library loaded between sessions
+        except UserError:
+            raise
         except Exception as error:  # whatever the readers make of what is none
             if isinstance(error, OSError) and not failed:
                 at = "" if error.filename == str(self.path) else f"can't be unpacked into {self._temporary}: "
                 raise UserError(f"{self.path}: {at}{error.strerror or error}") from None
             reason = (str(error) or type(error).__name__).splitlines()[0]
             raise UserError(f"{self.path} is not an FMU: {failed}{reason}") from None
-        if self.description.modelName != MODEL or self.description.coSimulation is None:
-            raise UserError(f"{self.path} is another FMU: {self.description.modelName}")
-        self.library = self._library_here()
-        self._loaded = self._slave()  # keeps the shared library loaded between sessions
 
     def _library_here(self) -> Path:
         """Of the platform tuple of FMI 3.0, section 2.5.1.4.1, else of FMI 2.0's name.
 
         FMPy takes linux64 on ARM too, though FMI 2.0 means x86-64 by it.
         """
+        if self.description.modelName != MODEL or self.description.coSimulation is None:
+            raise UserError(f"{self.path} is another FMU: {self.description.modelName}")
         name = f"{self.description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
         for folder in (fmpy.platform_tuple, fmpy.platform):
             if (path := self.directory / "binaries" / folder / name).is_file():

@@ -78,8 +78,6 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> None:
     written = []
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
     with shared.progress_bar() as progress:
         fmu = opened(options.fmu)
         task = progress.add_task("Simulating Table 2", total=len(TABLE_2) + 1)

@@ -6,7 +6,6 @@
 gives arrays "mean", "least" and "work" of the shape that V[:, None] and scale broadcast to.
 
 The scenarios run in host/batch.c through the FMI functions of the FMU itself, on threads of this process.
-Everything is checked before anything runs.
 """
 
 from __future__ import annotations

@@ -92,7 +92,6 @@ def run(options: argparse.Namespace) -> None:
         from frictioncontact import style
         from frictioncontact.identification import figures  # takes a second, which --quick saves
 
-        options.output.mkdir(parents=True, exist_ok=True)
         path = options.output / "identify.png"
         style.save(figures.picture(found.experiment, found.fit), path, path.with_suffix(".svg"))
         print(f"Written: {path} and .svg")

@@ -112,8 +112,7 @@ def sweep(
     check_whole(samples, MOST_SAMPLES, "samples")
     check_whole(1 if workers is None else workers, MOST_WORKERS, "workers")
     content = _content(f"fmu {fmu}", fmu)
-    opened(fmu)  # names the file where it is none
-    variables = opened(content).known
+    variables = opened(fmu).known
     vary = {name: _listed(name, values) for name, values in pairs(vary, "vary").items()}
     scenarios = _scenarios(variables, vary, random, seed, csv)
     count, rows = scenarios.count, scenarios.rows

@@ -218,6 +218,10 @@ class TestFiles:
         with zipfile.ZipFile(fmu_path) as source, zipfile.ZipFile(other_platform, "w") as archive:
             archive.writestr("modelDescription.xml", source.read("modelDescription.xml"))
             archive.writestr("binaries/other64/FrictionContact.so", b"")
+        no_library = tmp_path / "no_library.fmu"
+        with zipfile.ZipFile(fmu_path) as source, zipfile.ZipFile(no_library, "w") as archive:
+            for name in source.namelist():
+                archive.writestr(name, b"no" if name.endswith(".so") else source.read(name))
         empty, damaged = tmp_path / "empty.fmu", tmp_path / "damaged.fmu"
         for path, name in ((empty, "readme.txt"), (damaged, "modelDescription.xml")):
             with zipfile.ZipFile(path, "w") as archive:
@@ -225,6 +229,7 @@ class TestFiles:
         for path, message in (
             (empty, "is not an FMU: its modelDescription.xml: "),
             (damaged, "is not an FMU: its modelDescription.xml: "),
+            (no_library, "is not an FMU: its library: "),
             (other_platform, ": has no binary for this platform, .*, only other64"),
             (Path(__file__), "is not an FMU: File is not a zip file"),
             (tmp_path / "none.fmu", ": No such file"),

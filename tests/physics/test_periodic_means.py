@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frictioncontact.gap import stiffness
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
+from frictioncontact.gap import stiffness
 from frictioncontact.parameters import (
     IDENTIFIED,
     IDENTIFIED_ABSOLUTE,
