@@ -96,7 +96,7 @@ LATE, OFFSET, DRIFT = 13e-3, 0.6, 0.12  # s, N, N/s
 @pytest.fixture(scope="module")
 def rig_record() -> pd.DataFrame:
     """A loop of Dahl's, 2.2e6 N/m and 18 N, as a bad rig writes it."""
-    frame = made_loop(np.random.default_rng(3), "Dahl", 18.0, 2.2e6, samples=400, finer=2)
+    frame = made_loop(np.random.default_rng(3), "Dahl", 18.0, 2.2e6, samples=600, finer=2)
     random, time = np.random.default_rng(4), 1e-3 * frame["time [ms]"].to_numpy()
     late = np.interp(time - LATE, time, frame["F_t [N]"], left=0.0)
     scatter = 0.12 * random.standard_normal(len(time))
