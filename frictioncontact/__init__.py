@@ -36,10 +36,9 @@ if TYPE_CHECKING:
     from .errors import BatchError, FrictionError, FrictionWarning, UserError
     from .fmu import FrictionFmu
     from .identification.api import Identification, identify
-    from .law.law import FrictionLaw, friction_law
-    from .measured.contacts import Contact, Contacts
-    from .simulation.run import simulate
-    from .simulation.variables import variables
+    from .law import FrictionLaw, friction_law
+    from .measured import Contact, Contacts
+    from .simulation import simulate, variables
     from .sweeps.run import Swept, sweep
 
     FMU: Path
@@ -47,11 +46,11 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOME = {
-    "simulate": "simulation.run",
-    "variables": "simulation.variables",
-    "friction_law": "law.law",
-    "FrictionLaw": "law.law",
-    "Contact": "measured.contacts",
+    "simulate": "simulation",
+    "variables": "simulation",
+    "friction_law": "law",
+    "FrictionLaw": "law",
+    "Contact": "measured",
     "simulate_many": "batch",
     "identify": "identification.api",
     "Identification": "identification.api",
@@ -97,7 +96,7 @@ def __getattr__(name: str) -> object:
 
         value = fmu()
     elif name == "contacts":
-        from .measured.contacts import contacts
+        from .measured import contacts
 
         value = contacts()
     elif name == "__version__":

@@ -7,12 +7,12 @@ import signal
 import sys
 from collections.abc import Callable
 
-COMMANDS = {  # name -> its room, and what it does
+COMMANDS = {  # name -> its module, and what it does
     "table2": ("table2", "the six rows of the paper's Table 2"),
     "simulate": ("simulation", "one scene over time, as a table"),
-    "sweep": ("sweeps", "many scenarios on all cores or a Dask cluster, into Parquet"),
-    "identify": ("identification", "fits parameters to your measurements"),
-    "advise": ("advice", "what to set for your scene and accuracy"),
+    "sweep": ("sweeps.run", "many scenarios on all cores or a Dask cluster, into Parquet"),
+    "identify": ("identification.command", "fits parameters to your measurements"),
+    "advise": ("advice.command", "what to set for your scene and accuracy"),
     "law": ("law", "the friction law under vibration, for slower machines: a table or a picture"),
     "contacts": ("measured", "contacts that were measured, as start values"),
     "gap": ("gap", "the separation for a normal load, and the load for a separation"),
@@ -41,7 +41,7 @@ def _chosen() -> Callable[[], None]:
     from frictioncontact.command import main_of
 
     del sys.argv[1]
-    return main_of(importlib.import_module(f"frictioncontact.{COMMANDS[name][0]}.command"))
+    return main_of(importlib.import_module(f"frictioncontact.{COMMANDS[name][0]}"))
 
 
 def _usage() -> None:

@@ -11,34 +11,24 @@ wrong, FrictionError with the FMU's own message for a call that it refuses.
 from __future__ import annotations
 
 import atexit
+import io
 import shutil
 import tempfile
-import zipfile
-import zlib
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import chdir
 from ctypes import c_double, c_int, c_uint
 from functools import cache
 from pathlib import Path
 from threading import Lock
 from typing import Any, NoReturn, Self
 
+import fmpy
 import numpy as np
-from fmpy import extract, read_model_description
+from fmpy import extract, fmi2, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Slave,
-    calloc,
-    fmi2CallbackAllocateMemoryTYPE,
-    fmi2CallbackFreeMemoryTYPE,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-    free,
-)
 
 from . import resources
 from .errors import FrictionError, UserError, shown
-from .platforms import library_in
 from .values import Value, Variables, pairs, path_of, real
 
 MODEL = "FrictionContact"
@@ -46,14 +36,14 @@ FMI2_WARNING = 1
 INPUTS = ("V", "d", "E", "load", "V_y")
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 SETTLED = {"initialState": "Settled"}  # start values: the periodic state
+_OPENING = Lock()  # FMPy changes the folder of the process where it loads a library
 
 
-class Closing(ABC):
+class Closing:
     """What is closed at the end of a `with` block."""
 
-    @abstractmethod
     def close(self) -> None:
-        """Gives back what it holds."""
+        raise NotImplementedError
 
     def __reduce__(self) -> NoReturn:
         raise UserError(f"a {type(self).__name__} can't be copied or pickled; open another one")
@@ -68,7 +58,7 @@ class Closing(ABC):
 class FrictionFmu(Closing):
     """The unzipped FMU and its model description, from which sessions are opened.
 
-    path      the .fmu file, for example `fc.FMU`
+    path      the .fmu file, for example `fc.FMU`, or its bytes
     raises    UserError: no such file, or not an FMU of this model
 
     It is closed at the end of a `with` block, or by `close()`.
@@ -79,49 +69,63 @@ class FrictionFmu(Closing):
             print(contact.get("F_t_mean"))
     """
 
-    def __init__(self, path: str | Path) -> None:
-        self.path = path_of(path, "fmu")
+    def __init__(self, path: str | Path | bytes) -> None:
+        self.path = Path("the file") if isinstance(path, bytes) else path_of(path, "fmu")
+        self._content = path if isinstance(path, bytes) else None
         self._temporary = Path(tempfile.mkdtemp(prefix="friction-fmu-"))
         try:
-            self.directory = Path(extract(str(path), unzipdir=str(self._temporary)))
-        except zipfile.BadZipFile:
+            self._unzip()
+        except BaseException:
             self.close()
-            raise UserError(f"{path} is not an FMU: not a zip archive") from None
-        except (zlib.error, EOFError, RuntimeError) as error:
-            self.close()
-            raise UserError(f"{path} is not an FMU: damaged: {error}") from None
-        except OSError as error:
-            self.close()
-            what = "" if error.filename == str(path) else f"can't be unpacked into {self._temporary}: "
-            raise UserError(f"{path}: {what}{error.strerror or error}") from None
-        try:
-            self.description = read_model_description(str(self.directory), validate=False)
-        except Exception as error:  # whatever the reader makes of the text
-            self.close()
-            reason = (str(error) or type(error).__name__).splitlines()[0]
-            raise UserError(f"{path} is not an FMU: its modelDescription.xml: {reason}") from None
-        if self.description.modelName != MODEL:
-            self.close()
-            raise UserError(f"{path} is another FMU: {self.description.modelName}")
+            raise
         self.known = Variables(self.description)
         self.variables = self.known.all
-        self._library = self._slave()  # keeps the shared library loaded between sessions
 
-    def _slave(self) -> FMU2Slave:
-        identifier = self.description.coSimulation.modelIdentifier
-        files = {path.relative_to(self.directory).as_posix() for path in self.directory.glob("binaries/*/*")}
-        library = library_in(files, identifier)
-        return FMU2Slave(
+    def _unzip(self) -> None:
+        source, failed = self.path if self._content is None else io.BytesIO(self._content), ""
+        try:
+            self.directory = Path(extract(source, unzipdir=self._temporary))
+            failed = "its modelDescription.xml: "
+            self.description = read_model_description(str(self.directory), validate=False)
+            failed = "its library: "
+            self.library = self._library_here()
+            with chdir("."):  # FMPy stays in the folder of a library that can't be loaded
+                self._loaded = self._slave()  # keeps the shared library loaded between sessions
+        except UserError:
+            raise
+        except Exception as error:  # whatever the readers make of what is none
+            if isinstance(error, OSError) and not failed:
+                at = "" if error.filename == str(self.path) else f"can't be unpacked into {self._temporary}: "
+                raise UserError(f"{self.path}: {at}{error.strerror or error}") from None
+            reason = (str(error) or type(error).__name__).splitlines()[0]
+            raise UserError(f"{self.path} is not an FMU: {failed}{reason}") from None
+
+    def _library_here(self) -> Path:
+        """Of the platform tuple of FMI 3.0, section 2.5.1.4.1, else of FMI 2.0's name.
+
+        FMPy takes linux64 on ARM too, though FMI 2.0 means x86-64 by it.
+        """
+        if self.description.modelName != MODEL or self.description.coSimulation is None:
+            raise UserError(f"{self.path} is another FMU: {self.description.modelName}")
+        name = f"{self.description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        for folder in (fmpy.platform_tuple, fmpy.platform):
+            if (path := self.directory / "binaries" / folder / name).is_file():
+                return path
+        has = ", ".join(sorted(path.name for path in self.directory.glob("binaries/*")))
+        raise UserError(f"{self.path}: has no binary for this platform, {fmpy.platform}, only {has}")
+
+    def _slave(self) -> fmi2.FMU2Slave:
+        return fmi2.FMU2Slave(
             guid=self.description.guid,
-            modelIdentifier=identifier,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
             unzipDirectory=str(self.directory),
-            libraryPath=str(self.directory / library) if library else None,
+            libraryPath=str(self.library),
             instanceName="contact",
         )
 
-    def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | None]]:
+    def __reduce__(self) -> tuple[Callable[..., FrictionFmu], tuple[Path | bytes | None]]:
         """Of a copy: the package's own FMU, or the file, opened there."""
-        return opened, (None if self.path == resources.fmu() else self.path,)
+        return opened, (self._content or (None if self.path == resources.fmu() else self.path),)
 
     def session(
         self,
@@ -146,7 +150,7 @@ class FrictionFmu(Closing):
         shutil.rmtree(self._temporary, ignore_errors=True)
 
 
-def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2CallbackFunctions:
+def logging_callbacks(messages: list[str], warnings: list[str] | None = None) -> fmi2.fmi2CallbackFunctions:
     """Callbacks of an instance, which keep its messages; the caller keeps them while the instance lives."""
 
     def log(environment: object, instance: bytes, status: int, category: bytes, message: bytes) -> None:
@@ -154,10 +158,10 @@ def logging_callbacks(messages: list[str], warnings: list[str] | None = None) ->
         if warnings is not None and status == FMI2_WARNING:
             warnings.append(message.decode())
 
-    callbacks = fmi2CallbackFunctions()
-    callbacks.logger = fmi2CallbackLoggerTYPE(log)
-    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
+    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
+    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
     return callbacks
 
 
@@ -172,7 +176,7 @@ class Session(Closing):
     def __init__(
         self,
         fmu: FrictionFmu,
-        slave: FMU2Slave,
+        slave: fmi2.FMU2Slave,
         start_values: Mapping[str, Value],
         start: float,
         tolerance: float | None,
@@ -345,20 +349,24 @@ def run(
     return rows
 
 
-def opened(file: str | Path | None) -> FrictionFmu:
-    """The FMU of a file, or the package's own; unzipped once in a process as long as it stays as it is."""
-    path = resources.fmu() if file is None else path_of(file, "fmu")
-    try:
-        stat = path.stat()
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from None
-    if path.is_dir():
-        raise UserError(f"{path}: Is a directory")
-    return _opened(path, (stat.st_ino, stat.st_mtime_ns, stat.st_size))
+def opened(file: str | Path | bytes | None) -> FrictionFmu:
+    """The FMU of a file or of its bytes, or the package's own; unzipped once in a process while it stays."""
+    version: tuple[int, ...] = ()
+    if not isinstance(file, bytes):
+        file = resources.fmu() if file is None else path_of(file, "fmu")
+        try:
+            stat = file.stat()
+        except OSError as error:
+            raise UserError(f"{file}: {error.strerror}") from None
+        if file.is_dir():
+            raise UserError(f"{file}: Is a directory")
+        version = (stat.st_ino, stat.st_mtime_ns, stat.st_size)
+    with _OPENING:
+        return _opened(file, version)
 
 
 @cache
-def _opened(path: Path, version: tuple[int, ...]) -> FrictionFmu:
-    fmu = FrictionFmu(path)
+def _opened(file: Path | bytes, version: tuple[int, ...]) -> FrictionFmu:
+    fmu = FrictionFmu(file)
     atexit.register(fmu.close)
     return fmu

@@ -13,6 +13,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,12 +21,12 @@ import numpy as np
 import numpy.typing as npt
 
 from frictioncontact.errors import UserError, did_you_mean, shown, warn
-from frictioncontact.units import factor, is_unit
 from frictioncontact.values import LARGEST, number, numbers_of, path_of
 
 if TYPE_CHECKING:
     import pandas as pd
     from fmpy.model_description import ScalarVariable
+    from pint import UnitRegistry
 
     Source = str | Path | Mapping[str, npt.ArrayLike] | pd.DataFrame
 
@@ -253,3 +254,34 @@ def _with_points(columns: list[list[str]], separator: str, path: Path) -> list[l
     return [
         [cell.replace(",", ".") if COMMA.fullmatch(cell) else cell for cell in cells] for cells in columns
     ]
+
+
+def factor(unit: str, si: str, where: str) -> float:
+    """From a unit to the SI unit of the same kind; UserError where it is of another kind, or no unit."""
+    if unit == si:
+        return 1.0
+    given, wanted = _root(unit), _root(si)
+    if given is None or given[1] != wanted[1]:
+        raise UserError(f"{where} takes {f'a unit like {si}' if si != '1' else 'no unit'}, not {shown(unit)}")
+    return given[0] / wanted[0]
+
+
+def is_unit(text: str) -> bool:
+    return _root(text) is not None
+
+
+@cache
+def _root(unit: str) -> Any:
+    """Factor and unit in base units; None of what is no unit. rad/s is not Hz: radians stay."""
+    powers = re.sub(r"(?<=[^\W\d])(-?\d)", r"**\1", unit)  # mm2, s-1
+    with suppress(Exception):  # pint raises whatever its parser comes to
+        return _registry().get_root_units(_registry().parse_units(powers))
+
+
+@cache
+def _registry() -> UnitRegistry:
+    import pint  # where a heading has a unit
+
+    registry: UnitRegistry = pint.UnitRegistry()
+    registry.define("newton_second = newton * second = Ns")
+    return registry

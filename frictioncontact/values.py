@@ -54,6 +54,13 @@ def real(value: Any, where: str) -> float:
     raise UserError(f"{where} = {shown(value)} is not a number")
 
 
+def check_whole(value: Any, most: int, where: str) -> int:
+    is_whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not is_whole or not 1 <= value <= most:
+        raise UserError(f"{where} {value}: must be a whole number from 1 to {most}")
+    return int(value)
+
+
 def path_of(value: Any, where: str) -> Path:
     """A path from Python code."""
     if not isinstance(value, (str, os.PathLike)) or "\0" in str(value):

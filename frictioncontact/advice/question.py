@@ -12,7 +12,7 @@ from frictioncontact.advice.stuck_mass import between
 from frictioncontact.doubts import warn_of
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
-from frictioncontact.simulation.inputs import Samples, samples
+from frictioncontact.simulation import Samples, samples
 from frictioncontact.values import pairs, real
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import BatchError
+from ..values import Variables
 from .runner import DONE, REFUSED, STATISTICS, TEXT, Column, Plan, Result, Start
-from .unpacked import LoadedFmu
 
 Progress = Callable[[int, int], None]  # is told how many scenarios are finished and how many of them refused
 POLL = 0.05  # s between looks at the threads
@@ -23,7 +23,10 @@ STOP = 0.5  # s that threads have to come to the end of their step
 class Batch:
     """Scenarios of a shape; a column has a value for each, flat, or one for all."""
 
-    fmu: LoadedFmu
+    runner: ctypes.CDLL
+    fmu: int  # the runner's handle
+    guid: bytes
+    variables: Variables
     shape: tuple[int, ...]
     starts: dict[str, np.ndarray]
     settle: np.ndarray
@@ -41,11 +44,6 @@ class Batch:
     def scenarios(self) -> int:
         return math.prod(self.shape)
 
-    @property
-    def is_short(self) -> bool:
-        """Few steps of the default method, whose cost does not grow with their length."""
-        return self.scenarios * self.samples <= FEW and "solver.method" not in self.starts
-
     def run(
         self, threads: int, raises: bool, progress: Progress = lambda finished, refused: None
     ) -> dict[str, np.ndarray]:
@@ -57,8 +55,8 @@ class Batch:
             running = _Running(self, raises)
         except MemoryError:
             raise BatchError(f"no memory for the results of {self.scenarios} scenarios") from None
-        if self.is_short:
-            running.work_here(progress)
+        if self.scenarios * self.samples <= FEW and "solver.method" not in self.starts:
+            running.work_here(progress)  # the cost of the default method does not grow with its steps
         elif self.scenarios:
             running.work(min(threads, self.scenarios), progress)
         try:
@@ -77,7 +75,7 @@ class _Running:
     failures: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        batch, self.runner = self.batch, self.batch.fmu.runner
+        batch, self.runner = self.batch, self.batch.runner
         references = sorted({reference for reference, _ in batch.read.values()})
         self.values, results = {}, []
         for name, (reference, statistic) in batch.read.items():
@@ -87,7 +85,7 @@ class _Running:
                 Result(references.index(reference), STATISTICS.index(statistic), array.ctypes.data)
             )
         self.plan = Plan(
-            guid=batch.fmu.guid,
+            guid=batch.guid,
             scenarios=batch.scenarios,
             starts=len(batch.starts),
             start=_array(Start, [self._start(name, column) for name, column in batch.starts.items()]),
@@ -108,12 +106,12 @@ class _Running:
         )
         if batch.frequency is not None:
             self.plan.frequency = ctypes.pointer(ctypes.c_uint(batch.frequency))
-        self.handle = self.runner.batch_begin(batch.fmu.handle, ctypes.byref(self.plan))
+        self.handle = self.runner.batch_begin(batch.fmu, ctypes.byref(self.plan))
         if not self.handle:
             raise BatchError(f"no memory for {batch.scenarios} scenarios")
 
     def _start(self, name: str, column: np.ndarray) -> Start:
-        variable = self.batch.fmu.variables.all[name]
+        variable = self.batch.variables.all[name]
         return Start(variable.valueReference, variable.type != "Real", _column(column))
 
     def work(self, threads: int, progress: Progress) -> None:

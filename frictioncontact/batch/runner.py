@@ -1,12 +1,9 @@
 """The batch runner of host/batch.h through ctypes: loaded once, its structures declared."""
 
 import ctypes
-import tempfile
 from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 from functools import cache
 from pathlib import Path
-
-import fmpy
 
 from ..errors import BatchError
 
@@ -70,19 +67,11 @@ def runner(path: Path) -> ctypes.CDLL:
     return library
 
 
-def load_fmu(library: ctypes.CDLL, name: str, content: bytes) -> int:
-    """Handle of an FMU's shared library for batch_begin. It stays loaded as long as the process lives.
-
-    Once it is loaded, it no longer needs its file.
-    """
+@cache
+def loaded(library: ctypes.CDLL, fmu: Path) -> int:
+    """Handle of an FMU's shared library for batch_begin. It stays loaded as long as the process lives."""
     why = ctypes.create_string_buffer(TEXT)
-    with tempfile.TemporaryDirectory(prefix="friction-batch-", ignore_cleanup_errors=True) as folder:
-        path = Path(folder) / f"{name}{fmpy.sharedLibraryExtension}"
-        try:
-            path.write_bytes(content)
-        except OSError as error:
-            raise BatchError(f"{path}: can't be written: {error.strerror}") from None
-        handle = library.batch_load(str(path).encode(), why, TEXT)
+    handle: int = library.batch_load(str(fmu).encode(), why, TEXT)
     if not handle:
         raise BatchError(f"the FMU's library can't be loaded: {why.value.decode(errors='replace')}")
     return handle

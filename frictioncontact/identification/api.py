@@ -16,7 +16,6 @@ from frictioncontact.command import TABLE
 from frictioncontact.doubts import unused, warn_of
 from frictioncontact.errors import UserError, did_you_mean, quiet
 from frictioncontact.fmu import FrictionFmu, Value, opened
-from frictioncontact.identification.bootstrap import bootstrap as refits_of
 from frictioncontact.identification.data import FORCE, MEASURED, Measurements, Series, Stated, read
 from frictioncontact.identification.experiment import INSTRUMENT, Experiment, Rows
 from frictioncontact.identification.fit import fit as fitted
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     Asked = Sequence[str] | Mapping[str, float | tuple[float, float] | None]
 
 DEFAULT = ("contact.stiffnessScale", "vibration.phase_d")
-LEAST_REFITS = 40  # below, there is no 2.5 % quantile
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,7 +43,6 @@ class Identification:
 
     fit: Fit
     experiment: Experiment = field(repr=False)
-    spread: np.ndarray | None = field(repr=False)  # coordinates of every refit, [refit, parameter]
 
     @property
     def values(self) -> dict[str, float]:
@@ -89,7 +86,7 @@ class Identification:
 
     def __str__(self) -> str:
         text = io.StringIO()
-        show(Console(file=text, width=TABLE), self.experiment, self.fit, self.spread)
+        show(Console(file=text, width=TABLE), self.experiment, self.fit)
         return text.getvalue()
 
     def plot(self) -> Figure:
@@ -107,7 +104,6 @@ def identify(
     *,
     start: Mapping[str, Value] | None = None,
     uncertain: Mapping[str, float | str] | None = None,
-    bootstrap: int | None = None,
     nuisance: Iterable[str] = (),
     columns: Mapping[str, str] | None = None,
     fmu: str | Path | None = None,
@@ -122,7 +118,6 @@ def identify(
     fit        names of the parameters; or name -> start value, (low, high) that it stays in, or None
     start      start values that all rows share, SI units; of an enumeration an item or its number
     uncertain  standard uncertainties: name -> SI value or per cent ("5%")
-    bootstrap  number of refits to data with new noise, at least 40, for intervals by simulation
     nuisance   faults of the instrument to fit beside the parameters: "offset" and "drift" of the force,
                "delay" of the force in a record, "sign" (1 or -1, whichever fits better)
     columns    headings of other names: "V" or "V [mm/s]" -> the heading in the data
@@ -139,13 +134,6 @@ def identify(
         print(found)
         fc.simulate({**law, **found.values, "V": 1e-3}, stop=1e-3, step=1e-4)
     """
-    if bootstrap is not None:
-        if not isinstance(bootstrap, (int, np.integer)):
-            raise UserError(f"bootstrap = {bootstrap!r}: must be a whole number")
-        if bootstrap < LEAST_REFITS:
-            raise UserError(
-                f"bootstrap {bootstrap}: must be at least {LEAST_REFITS}, to have a 2.5 % quantile"
-            )
     loaded = opened(fmu)
     constants = loaded.known.values(start, "start")
     stated = [_stated(loaded, name, value) for name, value in pairs(uncertain, "uncertain").items()]
@@ -168,8 +156,7 @@ def identify(
             plain = experiment.like(rows, [name for name in instrument if name != "sign"])
             experiment = min((plain, experiment), key=lambda one: search(one, one.target).squares)
         found = fitted(experiment, tell)
-        spread = None if bootstrap is None else refits_of(experiment, found, bootstrap, tell)
-    return Identification(found, experiment, spread)
+    return Identification(found, experiment)
 
 
 def _instrument(nuisance: Iterable[str], rows: Measurements | Series) -> list[str]:

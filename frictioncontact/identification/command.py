@@ -4,17 +4,8 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from frictioncontact import command as shared
 from frictioncontact import resources
-from frictioncontact.command import (
-    add_column,
-    add_fmu,
-    add_output,
-    add_set,
-    can_draw,
-    command_line,
-    progress_bar,
-    table_console,
-)
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import opened
 from frictioncontact.identification.api import DEFAULT, identify
@@ -53,59 +44,54 @@ examples:
   %(prog)s mine.csv --fit contact.stiffnessScale --fit F_C=55 --set vibration.f=22e3
   %(prog)s mine.csv --fit contact.sigma=1e5..1e8 --set contact.model=Constant
   %(prog)s rig.csv --column "position=x [um]" --column F_t=force --nuisance offset --nuisance delay
-  %(prog)s mine.csv --uncertain F_t_mean=0.5 --uncertain vibration.V_1=10%% --bootstrap 1000"""
+  %(prog)s mine.csv --uncertain F_t_mean=0.5 --uncertain vibration.V_1=10%%"""
 
 EXAMPLE = resources.data() / "table2.csv"
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("frictioncontact identify", DESCRIPTION, EPILOG)
+    parser = shared.command_line("frictioncontact identify", DESCRIPTION, EPILOG)
     parser.add_argument("csv", type=Path, nargs="?", default=EXAMPLE, help="measurements (data/table2.csv)")
     parser.add_argument(
         "--fit", action="append", metavar="NAME[=START|=LOW..HIGH]",
         help="parameter to fit, with a start value or a range that it stays in, in SI units; again for each "
         "(contact.stiffnessScale and vibration.phase_d)",
     )  # fmt: skip
-    add_set(parser, "of all rows")
+    shared.add_set(parser, "of all rows")
     parser.add_argument(
         "--uncertain", action="append", default=[], metavar="NAME=VALUE|PERCENT%",
         help="standard uncertainty, in SI units or per cent: of the measured force, of a column (each row "
         "its own error), or of another variable (one error in all rows); again for each",
     )  # fmt: skip
     parser.add_argument(
-        "--bootstrap", type=int, metavar="N", help="intervals by N refits of data with new noise, too"
-    )
-    parser.add_argument(
         "--nuisance", action="append", default=[], metavar="NAME",
         help=f"fault of the instrument to fit beside the parameters: {', '.join(INSTRUMENT)}; again for each",
     )  # fmt: skip
-    add_column(parser)
+    shared.add_column(parser)
     parser.add_argument("--quick", action="store_true", help="no picture")
-    add_fmu(parser)
-    add_output(parser, resources.output())
+    shared.add_fmu(parser)
+    shared.add_output(parser, resources.output())
     return parser.parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:
-    with progress_bar() as bar:
+    with shared.progress_bar() as bar:
         task = bar.add_task("", total=None)
         found = identify(
             options.csv,
             fit_of(options.fit),
             start=opened(options.fmu).known.assigned(options.set),
             uncertain=assignments(options.uncertain, "--uncertain"),
-            bootstrap=options.bootstrap,
             nuisance=options.nuisance,
             columns=assignments(options.column, "--column"),
             fmu=options.fmu,
             tell=lambda text: bar.update(task, description=text),
         )
-    show(table_console(), found.experiment, found.fit, found.spread)
-    if not options.quick and can_draw():
+    show(shared.table_console(), found.experiment, found.fit)
+    if not options.quick and shared.can_draw():
         from frictioncontact import style
         from frictioncontact.identification import figures  # takes a second, which --quick saves
 
-        options.output.mkdir(parents=True, exist_ok=True)
         path = options.output / "identify.png"
         style.save(figures.picture(found.experiment, found.fit), path, path.with_suffix(".svg"))
         print(f"Written: {path} and .svg")

@@ -6,15 +6,17 @@ of the column NAME. A column "time" makes a series.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.interpolate import make_smoothing_spline
+from scipy.optimize import brentq
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.identification.position import smoothed
 from frictioncontact.tables import OWN, POSITION, SUFFIX, TIME, accepted, table
 
 if TYPE_CHECKING:
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 
 MEASURED, FORCE = "F_t_mean", "F_t"
 LOAD = "load"
+SMALL = 0.03  # of a step: a scatter of a position that does not matter, or the curve of an exact one
+MEDIAN = 0.6745  # of the size of normal noise with a standard deviation of 1
 FOLLOWS = {"contact.input": "Load", "friction.limit": "Load"}  # from a column or a constant load
 
 
@@ -218,3 +222,29 @@ def _told(V: np.ndarray) -> np.ndarray:
     told = np.ones(len(V), dtype=bool)
     told[turns] = told[turns + 1] = False
     return told
+
+
+def scatter(time: np.ndarray, position: np.ndarray) -> float:
+    """Standard deviation [m] of the noise: of four samples each, what no parabola explains."""
+    times = np.stack([time[k : len(time) - 3 + k] for k in range(4)])
+    positions = np.stack([position[k : len(time) - 3 + k] for k in range(4)])
+    gaps = times[:, None] - times[None, :] + np.eye(4)[:, :, None]
+    weights = 1.0 / np.prod(gaps, axis=1)
+    miss = np.sum(weights * positions, axis=0) / np.sqrt(np.sum(weights**2, axis=0))
+    return float(np.median(np.abs(miss))) / MEDIAN
+
+
+def smoothed(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, float]:
+    """The smoothest spline as far from the position as its scatter, and that [m], 0 if it is small."""
+    noise = scatter(time, position) if len(time) > 8 else 0.0
+    if noise <= SMALL * float(np.std(np.diff(position))):
+        return position, 0.0
+    place, height = (time - time[0]) / (time[-1] - time[0]), position / noise
+
+    def curve(stiffness: float) -> np.ndarray:
+        return make_smoothing_spline(place, height, lam=math.exp(stiffness))(place)
+
+    def excess(stiffness: float) -> float:
+        return float(np.mean((curve(stiffness) - height) ** 2)) - 1.0
+
+    return noise * curve(brentq(excess, -60.0, 60.0, xtol=0.1)), noise

@@ -105,10 +105,6 @@ class Experiment(ABC):
         """The same with other rows and nuisances of the instrument."""
         return type(self)(self.fmu, rows, self.parameters, instrument)  # type: ignore[call-arg, arg-type]
 
-    def kappa(self, point: np.ndarray) -> np.ndarray | None:
-        """sigma V_1 / (2 pi f F) of every row, F the limit, at the mean separation; None of a series."""
-        return None
-
     def value(self, values: Mapping[str, Any], name: str) -> np.ndarray:
         """Of a variable in scenes with these start values."""
         return np.asarray(values.get(name, float(self.fmu.variables[name].start)))
@@ -241,9 +237,3 @@ class Rows(Experiment):
             k, row = refused[0]
             self.problem = f"row {row + 1}: {found['reason'][k, row]}"
         return found["F_t_settled"]
-
-    def kappa(self, point: np.ndarray) -> np.ndarray:
-        values = {**self._values(point[None, :]), "vibration.a_d": 0.0}
-        found = simulate_many(values, ("sigma", "F_n"), settle=0.0, duration=0.0, fmu=self.fmu.path)
-        V_1, f = (self.value(values, name) for name in ("vibration.V_1", "vibration.f"))
-        return (found["sigma"] * V_1 / (2.0 * math.pi * f * self.limit(values, found["F_n"])))[0]

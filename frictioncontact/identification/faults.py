@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -61,23 +63,15 @@ def remedies(experiment: Experiment, result: Fit) -> list[str]:
     tried = _tried([*_with_one_more(experiment), *alone], result)
     if good := [one for one in tried if not misfits(*one[1:])]:
         return [f"it fits with {_said(*one)}" for one in good]
-    best = _together(experiment, result)
-    if best[2] is not result and not misfits(*best[1:]):
-        return [f"it fits with {_said(*best)}"]
-    best = min([*tried, best], key=lambda one: one[2].squares)
-    if best[2].squares > MOST * result.squares:
+    best = next((one for one in tried if not one[0]), None)
+    while best and (further := _tried(_with_one_more(best[1]), best[2], [best[2].coordinates])):
+        best = further[0]
+        if not misfits(*best[1:]):
+            return [f"it fits with {_said(*best)}"]
+    best = min([*tried, *([best] if best else [])], key=lambda one: one[2].squares, default=None)
+    if best is None or best[2].squares > MOST * result.squares:
         return []
     return [f"the misfit falls to {np.sqrt(np.mean(best[2].residuals ** 2)):.3g} N rms with {_said(*best)}"]
-
-
-def _together(experiment: Experiment, result: Fit) -> Tried:
-    """Faults of the instrument, each the best beside those before it, until they explain the misfit."""
-    best: Tried = ("", experiment, result)
-    while tried := _tried(_with_one_more(best[1]), best[2]):
-        best = tried[0]
-        if not misfits(*best[1:]):
-            break
-    return best
 
 
 def _with_one_more(experiment: Experiment) -> list[Remedy]:
@@ -86,17 +80,19 @@ def _with_one_more(experiment: Experiment) -> list[Remedy]:
     return [("", experiment.like(experiment.rows, (*experiment.instrument, name))) for name in more]
 
 
-def _tried(remedies: list[Remedy], than: Fit) -> list[Tried]:
+def _tried(remedies: list[Remedy], than: Fit, starts: Sequence[np.ndarray] = ()) -> list[Tried]:
     """Those that fit better than one coordinate more does by scatter, the best first."""
     found = []
     for words, experiment in remedies:
-        try:
-            fit = search(experiment, experiment.target, most=STARTS) if experiment.degrees > 0 else than
-        except FrictionError:
+        if experiment.degrees <= 0:
             continue
-        is_new = all(abs(fit.squares - one[2].squares) > 1e-6 * fit.squares for one in found)  # LuGre as Dahl
-        if is_new and than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:
-            found.append((words, experiment, fit))
+        with suppress(FrictionError):
+            fit = search(experiment, experiment.target, most=STARTS, given=starts)
+            is_new = all(
+                abs(fit.squares - one[2].squares) > 1e-6 * fit.squares for one in found
+            )  # LuGre as Dahl
+            if is_new and than.squares - fit.squares > stats.chi2.isf(CHANCE, 1) * fit.variance:
+                found.append((words, experiment, fit))
     return sorted(found, key=lambda one: one[2].squares)
 
 

@@ -25,7 +25,6 @@ def fit(experiment: Experiment, tell: Tell = silent) -> Fit:
     UserError where there are fewer rows than parameters; FrictionError where the FMU refuses every start.
     """
     result = with_profiles(experiment, search(experiment, experiment.target, tell), tell)
-    result = dataclasses.replace(result, kappa=experiment.kappa(result.point))
     of_faults = shapes(experiment, result)
     judge(experiment, result, of_faults)
     if result.misfits:

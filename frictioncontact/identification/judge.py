@@ -13,22 +13,16 @@ from frictioncontact.identification.result import Fit
 from frictioncontact.identification.search import SAME
 from frictioncontact.identification.suspicion import CHANCE, FEW, suspicion
 
-# kappa = sigma V_1 / (2 pi f F): mean friction changes by less than 0.3 % of F_C (1.5 % near V = V_1) per
-# e-fold of sigma outside of these, the first pair with d constant, the second where it vibrates.
-INFORMATIVE = {False: (0.1, 100.0), True: (0.01, 3000.0)}
-STIFFNESS_LIKE = ("contact.stiffnessScale", "contact.sigma", "d", "E", "load")
 SMALL = 1e-5  # a difference over the force that the search for the fit may leave
 LARGE = 0.2  # a misfit over the force that no scatter of a mean explains
-MISLEADS = 1.25  # ratio of a profile's half-width to the linear one, or its inverse
 
 
 def judge(experiment: Experiment, result: Fit, shapes: Mapping[str, np.ndarray]) -> None:
-    """Adds misfits and warnings to a fit with kappa and profiles."""
+    """Adds misfits and warnings to a fit with profiles."""
     result.misfits.extend(misfits(experiment, result, shapes))
     result.warnings.extend(
         [
             *_count(experiment, result),
-            *_kappa(experiment, result),
             *(text for k in range(len(result.parameters)) for text in _interval(result, k)),
             *_correlated(result),
             *_minima(result),
@@ -107,45 +101,6 @@ def _count(experiment: Experiment, result: Fit) -> list[str]:
     return []
 
 
-def _kappa(experiment: Experiment, result: Fit) -> list[str]:
-    if result.kappa is None:
-        return []
-    conditions = experiment.rows.conditions
-    fitted = {p.name: value for p, value in zip(result.parameters, result.values, strict=True)}
-    rows = [{**condition, **fitted} for condition in conditions]
-    if any(row.get("friction.limit") == "Load" and row.get("vibration.a_d", 0.0) for row in rows):
-        return []
-    if any(row.get(name, 0.0) for row in rows for name in ("V_y", "vibration.V_2")):
-        return []  # the bounds are of a motion along a line
-    reversing = [k for k, row in enumerate(rows) if _moves(row)]
-    if not reversing and not set(fitted) & {"V", "vibration.V_1", "vibration.a_d"}:
-        if any(row.get("friction.model") == "LuGre" or row.get("friction.sigma_2", 0.0) for row in rows):
-            return []
-        return [
-            "no row has V < V_1, nor both V_1 and a_d: the means are F_C, and tell nothing about anything "
-            "else"
-        ]
-    stiff = ", ".join(p.name for p in result.parameters if p.name in STIFFNESS_LIKE)
-    if not stiff or not reversing:
-        return []
-    bounds = [INFORMATIVE[rows[k].get("vibration.a_d", 0.0) > 0.0] for k in reversing]
-    kappa = result.kappa[reversing]
-    name = "kappa = sigma V_1 / (2 pi f F_C)"
-    if all(value > high for value, (_, high) in zip(kappa, bounds, strict=True)):
-        side = f"at least {kappa.min():.3g}: beyond {min(high for _, high in bounds):g}"
-    elif all(value < low for value, (low, _) in zip(kappa, bounds, strict=True)):
-        side = f"at most {kappa.max():.3g}: below {max(low for low, _ in bounds):g}"
-    else:
-        return []
-    return [f"{name} is {side} the mean friction says nearly nothing about {stiff}"]
-
-
-def _moves(row: dict) -> bool:
-    """Whether the mean can differ from F_C: V reverses, or it varies while the stiffness does."""
-    V_1 = float(row.get("vibration.V_1", 0.0))
-    return abs(float(row.get("V", 0.0))) < V_1 or V_1 * float(row.get("vibration.a_d", 0.0)) > 0.0
-
-
 def _interval(result: Fit, k: int) -> list[str]:
     p, value = result.parameters[k], result.values[k]
     low, high = result.profiles[k]
@@ -170,9 +125,6 @@ def _interval(result: Fit, k: int) -> list[str]:
             )
         elif half > _large(p, value):
             found.append(f"the data can't tell {p.name}: within 95 % it may be {low:.3g} to {high:.3g}{unit}")
-        linear = result.half_widths[k]
-        if not (open_low or open_high) and linear > 0.0 and not 1.0 / MISLEADS < half / linear < MISLEADS:
-            found.append(f"the linear interval of {p.name} misleads: trust the profile")
     elif result.half_widths[k] > _large(p, value):
         found.append(f"the data can't tell {p.name}")
     if value <= p.low * (1 + 1e-6) or value >= p.high * (1 - 1e-6):

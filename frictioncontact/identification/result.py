@@ -34,12 +34,10 @@ class Fit:
     model: np.ndarray  # N
     residuals: np.ndarray  # N, model minus measurement
     slopes: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  # of the residuals, as weighed
-    nuisances: dict[str, tuple[float, float]] = field(
-        default_factory=dict
-    )  # of the instrument: value, half-width
+    # Of the instrument: value, half-width.
+    nuisances: dict[str, tuple[float, float]] = field(default_factory=dict)
     in_time: bool = False  # the forces are samples, whose own scatter is known
     correlated: float = 1.0  # how many samples of a series count as one
-    kappa: np.ndarray | None = None
     profiles: list[tuple[float, float]] | None = None  # intervals, as values
     misfits: list[str] = field(default_factory=list)  # what is wrong with the fit, in words
     remedies: list[str] = field(default_factory=list)  # with what else it fits

@@ -1,7 +1,7 @@
 """The least sum of squares of an experiment: scipy's least squares from the best of some sampled starts."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy import stats
@@ -27,14 +27,23 @@ def silent(text: str) -> None:
     """For who does not want to be told."""
 
 
-def search(experiment: Experiment, target: np.ndarray, tell: Tell = silent, most: int = STARTS) -> Fit:
-    """The fit to a target (as Experiment.target), from so many starts, without profiles and judgement."""
+def search(
+    experiment: Experiment,
+    target: np.ndarray,
+    tell: Tell = silent,
+    most: int = STARTS,
+    given: Sequence[np.ndarray] = (),
+) -> Fit:
+    """The fit to a target (as Experiment.target), without profiles and judgement.
+
+    From given coordinates of the parameters, or so many starts of start_points.
+    """
     if experiment.degrees < 0:
         names = ", ".join(p.name for p in experiment.parameters)
         have = f"{len(experiment.force)} {experiment.word}s"
         raise UserError(f"{have} can't give {len(experiment.parameters)} parameters ({names})")
     found = []
-    starts = start_points(experiment, target)[:most]
+    starts = [experiment.start(x) for x in given] or start_points(experiment, target)[:most]
     for k, start in enumerate(starts):
         tell(f"search {k + 1} of {len(starts)}")
         found.append(solve(experiment, start, target))

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from frictioncontact.batch import simulate_many
-from frictioncontact.batch.prepare import Outputs
+from frictioncontact.batch.many import Outputs
 from frictioncontact.doubts import WITH_STATIC_FRICTION
 from frictioncontact.fmu import FrictionFmu
 from frictioncontact.identification.data import Series
 from frictioncontact.identification.experiment import TOLERANCE, Experiment, Nuisance
 from frictioncontact.identification.parameter import Parameter
-from frictioncontact.simulation.inputs import moving
+from frictioncontact.simulation import moving
 
 
 class Record(Experiment):

@@ -7,19 +7,16 @@ from rich.console import Console
 from rich.table import Table
 
 from frictioncontact.command import as_table
-from frictioncontact.identification.bootstrap import quantiles
-from frictioncontact.identification.data import Measurements
 from frictioncontact.identification.experiment import Experiment
 from frictioncontact.identification.faults import described
 from frictioncontact.identification.parameter import Parameter
 from frictioncontact.identification.result import Fit
-from frictioncontact.parameters import E_FULL, SEPARATION
 
 MOST = 30  # rows shown
 
 
-def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarray | None = None) -> None:
-    """Misfits, values and intervals, rows, correlations, warnings. spread: the refits of bootstrap()."""
+def show(console: Console, experiment: Experiment, result: Fit) -> None:
+    """Misfits, values and intervals, rows, correlations, warnings."""
 
     def say(text: str) -> None:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
@@ -30,7 +27,7 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
         say(f"PERHAPS {text}\n")
     if result.judged and not result.misfits:
         say("The law fits: its differences to the data look like their scatter.\n")
-    console.print(_values(result, spread))
+    console.print(_values(result))
     if experiment.word == "row":
         console.print(_rows(experiment, result))
     if len(result.parameters) > 1:
@@ -48,39 +45,19 @@ def show(console: Console, experiment: Experiment, result: Fit, spread: np.ndarr
         say(f"no misfit is seen, but whether the law fits is open: {ask}")
     if result.hidden:
         say(f"these data would not show {' or '.join(result.hidden)} of a tenth: the parameters take it up")
-    names = [p.name for p in result.parameters]
-    if "contact.stiffnessScale" in names and isinstance(experiment.rows, Measurements):
-        scale = result.values[names.index("contact.stiffnessScale")]
-        say(f"asperity stiffness at 14 um, scaled: {_stiffness(experiment, scale):.5g} N/m")
     for warning in result.warnings:
         say(f"warning: {warning}")
 
 
-def _stiffness(experiment: Experiment, scale: float) -> float:
-    """sigma [N/m] at the separation and modulus of Table 1, with what else the first row has."""
-    plain = {
-        "contact.input": "Separation",
-        "d": SEPARATION,
-        "E": E_FULL,
-        "vibration.a_d": 0.0,
-        "contact.stiffnessScale": scale,
-    }
-    with experiment.fmu.session({**experiment.rows.conditions[0], **plain}) as session:
-        return session.get("sigma")
-
-
-def _values(result: Fit, spread: np.ndarray | None) -> Table:
+def _values(result: Fit) -> Table:
     headings = ["parameter", "unit", "value", "95 % interval, linear", "by profile"]
     rows = []
     for k, p in enumerate(result.parameters):
         intervals = [result.interval(k), result.profiles[k]]
-        if spread is not None:
-            intervals.append(quantiles(result, spread, k))
         rows.append([p.name, p.unit, f"{result.values[k]:.6g}", *(_interval(p, *one) for one in intervals)])
         if p.unit == "rad":
             degrees = [_interval(p, *one, math.degrees(1.0)) for one in intervals]
             rows.append(["", "deg", f"{math.degrees(result.values[k]):.6g}", *degrees])
-    headings += [] if spread is None else [f"by {len(spread)} refits"]
     return as_table(headings, rows, "Fitted parameters")
 
 
@@ -104,12 +81,11 @@ def _rows(experiment: Experiment, result: Fit) -> Table:
             f"{experiment.force[k]:.3f}",
             f"{result.model[k]:.3f}",
             f"{result.residuals[k]:+.3f}",
-            f"{result.kappa[k]:.3g}",
         ]
         for k in range(min(len(result.model), MOST))
     ]
     rows += [["..."]] if len(result.model) > MOST else []
-    headings = ("row", "measured", "fitted", "difference", "kappa")
+    headings = ("row", "measured", "fitted", "difference")
     return as_table(headings, rows, "Mean friction force [N]", names=0)
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from frictioncontact.errors import UserError
 from frictioncontact.files import reason, whole_file, write_whole
-from frictioncontact.sweeps.group import Group, Part
+from frictioncontact.sweeps.workers import Group, Part
 
 
 class Folder:

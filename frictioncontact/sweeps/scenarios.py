@@ -13,10 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from frictioncontact.batch.prepare import check_whole
 from frictioncontact.errors import UserError, shown
 from frictioncontact.tables import table
-from frictioncontact.values import Value, Variables, number
+from frictioncontact.values import Value, Variables, check_whole, number
 
 MOST_SCENARIOS = 1_000_000_000
 MOST_VALUES = 10_000_000  # of one variable of a grid, which are held

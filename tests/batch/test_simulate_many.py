@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import signal
 import subprocess
@@ -18,7 +17,7 @@ from batch.one_by_one import sampled_period
 
 from frictioncontact.batch import BatchError, simulate_many
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.sweeps.group import OUTPUTS
+from frictioncontact.sweeps.workers import OUTPUTS
 
 VIBRATING = {"vibration.V_1": 1.44}
 F_C, V_1 = 55.0, 1.44  # N, m/s
@@ -41,29 +40,22 @@ def random_scenarios(count: int, seed: int) -> pd.DataFrame:
 
 
 class TestNumbers:
-    @pytest.mark.parametrize("threads", [1, 3])
-    def test_mean_of_coulomb_friction(self, fmu_path: Path, threads: int) -> None:
+    def test_mean_of_coulomb_friction(self, fmu_path: Path) -> None:
         """2 / pi F_C asin(V / V_1): no bristle, and a bristle that is stiff."""
         V = np.linspace(0.01, 1.4, 40)
-        got = simulate_many(
-            {"V": V[:, None], "friction.model": ["Coulomb", "Dahl"], **VIBRATING},
-            threads=threads,
-            fmu=fmu_path,
-        )
+        values = {"V": V[:, None], "friction.model": ["Coulomb", "Dahl"], **VIBRATING}
+        got = simulate_many(values, threads=3, fmu=fmu_path)
         expected = 2.0 / np.pi * F_C * np.arcsin(V / V_1)
         assert got["F_t_mean"].shape == (40, 2)
         assert got["F_t_mean"][:, 0] == pytest.approx(expected, rel=1e-9)
         assert got["F_t_mean"][:, 1] == pytest.approx(expected, rel=2e-5)
 
-    @pytest.mark.parametrize("samples", [1, 5, 64, 300])
-    @pytest.mark.parametrize("threads", [1, 2])
-    def test_bits_of_single_sessions(
-        self, fmu: FrictionFmu, fmu_path: Path, samples: int, threads: int
-    ) -> None:
+    @pytest.mark.parametrize(("samples", "threads"), [(1, 2), (64, 1)])
+    def test_bits_of_single_sessions(self, fmu: FrictionFmu, samples: int, threads: int) -> None:
         """One instance that is reset gives what a fresh one gives, in the same steps."""
-        scenarios = random_scenarios(60, samples)
+        scenarios = random_scenarios(40, samples)
         outputs = {name: output for name, output in OUTPUTS.items() if name != "reduction"}
-        got = simulate_many(scenarios, outputs, settle=200.0, samples=samples, threads=threads, fmu=fmu_path)
+        got = simulate_many(scenarios, outputs, settle=200.0, samples=samples, threads=threads, fmu=fmu.path)
         for row, values in enumerate(scenarios.to_dict("records")):
             expected = sampled_period(fmu, values, 200.0, samples)
             assert {name: got[name].iloc[row] for name in got} == {n: expected[n] for n in got}, values
@@ -71,14 +63,9 @@ class TestNumbers:
     def test_samples_are_those_of_the_steps(self, fmu_path: Path) -> None:
         """Held V without vibration: F_t = F_C (1 - exp(-x)), x = sigma V t / F_C."""
         sigma, V, duration = 2.5e6, np.array([0.005, 0.02]), 0.01
-        got = simulate_many(
-            {"V": V, "contact.model": "Constant", "contact.sigma": sigma},
-            {"force": ("F_t", "samples"), "delta": "delta"},
-            unit="s",
-            duration=duration,
-            samples=4,
-            fmu=fmu_path,
-        )
+        values = {"V": V, "contact.model": "Constant", "contact.sigma": sigma}
+        outputs = {"force": ("F_t", "samples"), "delta": "delta"}
+        got = simulate_many(values, outputs, unit="s", duration=duration, samples=4, fmu=fmu_path)
         t = duration * np.arange(1, 5) / 4
         expected = F_C * -np.expm1(-sigma * np.outer(V, t) / F_C)
         assert got["force"] == pytest.approx(expected, rel=1e-9)
@@ -104,22 +91,12 @@ class TestNumbers:
                     assert row[k] == session.get("F_t")
 
     def test_settle_and_duration_of_every_scenario(self, fmu_path: Path) -> None:
-        """Work of steady sliding is F_C V t."""
-        duration = np.array([1.0, 2.0, 5.0])
-        got = simulate_many(
-            {"V": 0.3}, {"work": ("W_f", "change")}, unit="s", settle=[1.0, 0.5, 2.0],
-            duration=duration, fmu=fmu_path)  # fmt: skip
+        """Work of steady sliding is F_C V t; a period is that of the scenario."""
+        duration, f, work = np.array([1.0, 2.0, 5.0]), np.array([1e4, 2e4, 4e4]), {"work": ("W_f", "change")}
+        settle = [1.0, 0.5, 2.0]
+        got = simulate_many({"V": 0.3}, work, unit="s", settle=settle, duration=duration, fmu=fmu_path)
         assert got["work"] == pytest.approx(F_C * 0.3 * duration, rel=1e-9)
-
-    def test_period_is_that_of_the_scenario(self, fmu_path: Path) -> None:
-        f = np.array([10e3, 20e3, 40e3])
-        got = simulate_many(
-            {"V": 0.3, "vibration.f": f},
-            {"work": ("W_f", "change")},
-            settle=100.0,
-            duration=1.0,
-            fmu=fmu_path,
-        )
+        got = simulate_many({"V": 0.3, "vibration.f": f}, work, settle=100.0, fmu=fmu_path)
         assert got["work"] == pytest.approx(F_C * 0.3 / f, rel=1e-9)
 
     def test_settled_start_is_where_settling_ends(self, fmu_path: Path) -> None:
@@ -136,10 +113,6 @@ class TestNumbers:
         assert settled["mean"] == pytest.approx(waited["mean"], abs=1e-7 * F_C)
         assert settled["heat"] == pytest.approx(settled["work"], rel=1e-6)
 
-    def test_settled_is_not_given_twice(self, fmu_path: Path) -> None:
-        with pytest.raises(BatchError, match="column initialState: settled gives it already"):
-            simulate_many({"initialState": "Given"}, settled=True, fmu=fmu_path)
-
     def test_enumerations_by_name_or_number(self, fmu_path: Path) -> None:
         by_name = simulate_many({"V": 0.2, "friction.model": ["Dahl", "Coulomb"], **VIBRATING}, fmu=fmu_path)
         by_number = simulate_many({"V": 0.2, "friction.model": [1, 2], **VIBRATING}, fmu=fmu_path)
@@ -155,32 +128,15 @@ class TestShapes:
         assert list(got.index) == ["a", "b"]
         assert list(got.columns) == ["F[0]", "F[1]", "W"]
 
-    def test_frame_without_columns(self, fmu_path: Path) -> None:
-        got = simulate_many(pd.DataFrame(index=["a", "b"]), fmu=fmu_path)
-        assert list(got.index) == ["a", "b"]
-
-    @pytest.mark.parametrize(("settle", "size"), [([1.0, 2.0, 3.0], "3"), ([[1.0], [2.0]], "2 x 1")])
-    def test_frame_is_not_broadcast(self, fmu_path: Path, settle: list, size: str) -> None:
+    def test_frame_is_not_broadcast(self, fmu_path: Path) -> None:
         """Else its index would not fit the results, which was found after they had all been computed."""
-        for rows in (1, 2):
-            frame = pd.DataFrame({"V": [0.1] * rows})
-            with pytest.raises(BatchError, match=f"its {size} values do not go with the {rows} rows of the"):
-                simulate_many(frame, settle=settle, fmu=fmu_path)
+        with pytest.raises(BatchError, match="its 2 x 1 values do not go with the 2 rows of the"):
+            simulate_many(pd.DataFrame({"V": [0.1] * 2}), settle=[[1.0], [2.0]], fmu=fmu_path)
 
-    def test_no_column_is_one_scenario(self, fmu_path: Path) -> None:
+    def test_one_scenario_and_none(self, fmu_path: Path) -> None:
         assert simulate_many({}, fmu=fmu_path)["F_t_mean"].shape == ()
-
-    def test_no_row_is_no_scenario(self, fmu_path: Path) -> None:
         got = simulate_many({"V": np.empty((0, 3))}, errors="keep", fmu=fmu_path)
         assert got["F_t_mean"].shape == got["reason"].shape == (0, 3)
-
-    def test_bytes_of_an_fmu(self, fmu_path: Path) -> None:
-        values = {"V": [0.1, 0.2], **VIBRATING}
-        by_path, by_bytes = (
-            simulate_many(values, fmu=fmu_path),
-            simulate_many(values, fmu=fmu_path.read_bytes()),
-        )
-        assert (by_path["F_t_mean"] == by_bytes["F_t_mean"]).all()
 
 
 class TestRefusals:
@@ -209,32 +165,19 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("values", "message"),
         [
-            ({"V": [0.1, np.nan]}, "column V, row 1: nan is not a finite number"),
             ({"V": [[0.1, 0.2], [0.1, np.inf]]}, r"column V, row \(1, 1\): inf is not a finite number"),
-            ({"V": [0.1, "abc"]}, "column V, row 0: '0.1' is not a number"),
             ({"V": np.array([0.1, "abc"], dtype=object)}, "column V, row 1: 'abc' is not a number"),
-            ({"V": [0.1, None]}, "column V, row 1: 'None' is not a number"),
-            ({"V": 1j}, r"column V: '1j' is not a number"),
-            ({"V": np.array([True])}, "column V, row 0: 'True' is not a number"),
             ({"V": [0.1, 0.2], "d": [14e-6] * 3}, "column d: its 3 values do not go with the 2 of those"),
-            ({"v": 0.1}, "column v: v is no variable of the FMU; did you mean V?"),
             ({"F_t": 0.1}, "column F_t: F_t is an output of the FMU and can't be set"),
-            ({"friction.model": ["Dahl", "Dahle"]}, "column friction.model, row 1: 'Dahle' is not one of"),
             ({"friction.model": [1, 1.5]}, "column friction.model, row 1: 1.5 is not one of Dahl, "),
             (pd.DataFrame({"V": [0.1, pd.NA]}), "column V, row 1: '<NA>' is not a number"),
             (pd.DataFrame([[1, 2]], columns=["V", "V"]), "column V: is there twice"),
-            ({3: 0.1}, "column 3: 3 is no variable of the FMU"),
             ({"V": np.ma.array([[0.1, 0.2]], mask=[[0, 1]])}, r"column V, row \(0, 1\): is masked"),
             ({"V": [[0.1, 0.2], [0.3]]}, "column V: its rows are not of one length"),
-            ({"V": [0.1, 10**400]}, "column V, row 1: '1000"),
-            ({"V": np.array([5], dtype="m8[s]")}, "column V, row 0: '5 seconds' is not a number"),
             ([0.1, 0.2], "values: must be a mapping of names to values, or a pandas frame"),
-            (
-                {"V": np.ones((10**6, 1)), "d": np.full(10**6, 14e-6)},
-                "no memory for 1000000000000 scenarios",
-            ),
+            ({"V": np.ones((10**6, 1)), "d": np.full(10**6, 14e-6)}, "no memory for 1000000000000 scenarios"),
         ],
-    )  # fmt: skip
+    )
     def test_wrong_values(self, fmu_path: Path, values: dict, message: str) -> None:
         with pytest.raises(BatchError, match=message) as caught:
             simulate_many(values, fmu=fmu_path)
@@ -243,40 +186,25 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            ({"outputs": ["F"]}, "outputs: F is no variable of the FMU"),
             ({"outputs": "F_t"}, "outputs = 'F_t': must be a sequence"),
-            ({"outputs": ["friction.model"]}, "outputs: friction.model is of type Enumeration"),
             ({"outputs": {"a": ("F_t", "median")}}, "output a: 'median' is not one of end, change, mean"),
-            ({"samples": 0}, "samples = 0: must be a whole number from 1 to"),
             ({"samples": 10**11}, "samples = 100000000000: must be a whole number from 1 to"),
-            (
-                {"outputs": {"all": ("F_t", "samples")}, "samples": 10**6, "settle": np.ones((10**6, 1))},
-                "no memory for the results of 2000000 scenarios",
-            ),
             ({"settle": [1.0, -2.0]}, "settle, row 1: -2 must be at least 0"),
-            ({"duration": [1.0] * 3}, "column duration: its 3 values do not go with the 2 of those"),
             ({"unit": "ms"}, "unit = 'ms': must be 'period' or 's'"),
             ({"errors": "ignore"}, "errors = 'ignore'"),
-            ({"threads": 0}, "threads = 0: must be a whole number from 1 to 1024"),
             ({"threads": 1.5}, "threads = 1.5: must be a whole number from 1 to 1024"),
-            ({"threads": 10**6}, "threads = 1000000: must be a whole number from 1 to 1024"),
-            ({"outputs": None}, "outputs = None: must be a sequence"),
-            ({"outputs": {"a": ("F_t",)}}, r"output a: \('F_t',\) is neither a variable nor \(variable,"),
-            ({"outputs": [3]}, "outputs: 3 is no variable"),
-            ({"outputs": [["F_t"]]}, "outputs: \\['F_t'\\] is no variable"),
-            ({"steps": [[1.0]]}, "steps: must be a row of numbers"),
-            ({"steps": [1.0, -1.0]}, "steps, row 1: -1 must be at least 0"),
             ({"inputs": {"V": [0.1]}, "steps": [1.0, 1.0]}, "input V: 1 values for 2 steps"),
             ({"inputs": {"F_C": [0.1]}}, "input F_C: F_C is a parameter of the FMU, not one of V, d, E"),
-            ({"inputs": {"V": [math.nan]}}, "input V, row 0: nan is not a finite number"),
             ({"rates": {"V": [0.1]}}, "rate of V: inputs has no values of V"),
-            ({"inputs": {"V": [0.1]}, "rates": {"V": [0.1, 0.2]}}, "rate of V: 2 values for 1 steps"),
-            ({"begin": "now"}, "begin = 'now' is not a number"),
+            (
+                {"values": {"initialState": 1}, "settled": True},
+                "column initialState: settled gives it already",
+            ),
         ],
     )
     def test_wrong_arguments(self, fmu_path: Path, arguments: dict, message: str) -> None:
         with pytest.raises(BatchError, match=message):
-            simulate_many({"V": [0.1, 0.2]}, **arguments, fmu=fmu_path)
+            simulate_many(**{"values": {"V": [0.1, 0.2]}, "fmu": fmu_path, **arguments})
 
 
 class TestFiles:
@@ -286,23 +214,27 @@ class TestFiles:
         assert list(tmp_path.iterdir()) == []
 
     def test_not_an_fmu(self, fmu_path: Path, tmp_path: Path) -> None:
-        not_zip, no_description, other_platform, damaged = (tmp_path / f"{k}.fmu" for k in range(4))
-        not_zip.write_text("no zip")
-        with zipfile.ZipFile(no_description, "w") as archive:
-            archive.writestr("readme.txt", "")
+        other_platform = tmp_path / "other.fmu"
         with zipfile.ZipFile(fmu_path) as source, zipfile.ZipFile(other_platform, "w") as archive:
             archive.writestr("modelDescription.xml", source.read("modelDescription.xml"))
             archive.writestr("binaries/other64/FrictionContact.so", b"")
-        with zipfile.ZipFile(damaged, "w") as archive:
-            archive.writestr("modelDescription.xml", "<fmi")
+        no_library = tmp_path / "no_library.fmu"
+        with zipfile.ZipFile(fmu_path) as source, zipfile.ZipFile(no_library, "w") as archive:
+            for name in source.namelist():
+                archive.writestr(name, b"no" if name.endswith(".so") else source.read(name))
+        empty, damaged = tmp_path / "empty.fmu", tmp_path / "damaged.fmu"
+        for path, name in ((empty, "readme.txt"), (damaged, "modelDescription.xml")):
+            with zipfile.ZipFile(path, "w") as archive:
+                archive.writestr(name, "<fmi")
         for path, message in (
-            (not_zip, "is no FMU: File is not a zip file"),
-            (no_description, "is no FMU: it has no modelDescription.xml"),
-            (other_platform, "has no binary for this platform, .*, only other64"),
-            (damaged, "its modelDescription.xml can't be read"),
-            (tmp_path / "none.fmu", "No such file"),
+            (empty, "is not an FMU: its modelDescription.xml: "),
+            (damaged, "is not an FMU: its modelDescription.xml: "),
+            (no_library, "is not an FMU: its library: "),
+            (other_platform, ": has no binary for this platform, .*, only other64"),
+            (Path(__file__), "is not an FMU: File is not a zip file"),
+            (tmp_path / "none.fmu", ": No such file"),
         ):
-            with pytest.raises(BatchError, match=f"{path}: {message}") as caught:
+            with pytest.raises(BatchError, match=f"^{path} ?{message}") as caught:
                 simulate_many({}, fmu=path)
             assert "\n" not in str(caught.value)
 
@@ -366,11 +298,5 @@ class TestStops:
     def test_progress_tells_all(self, fmu_path: Path) -> None:
         seen: list[tuple[int, int]] = []
         d = np.where(np.arange(300) % 3, 14e-6, -1.0)
-        simulate_many(
-            {"d": d},
-            errors="keep",
-            progress=lambda finished, refused: seen.append((finished, refused)),
-            fmu=fmu_path,
-        )
-        assert seen[-1] == (300, 100)
-        assert seen == sorted(seen)
+        simulate_many({"d": d}, errors="keep", progress=lambda *told: seen.append(told), fmu=fmu_path)
+        assert seen[-1] == (300, 100) and seen == sorted(seen)

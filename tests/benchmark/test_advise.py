@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frictioncontact import simulation as simulate
 from frictioncontact.advice import command as advise
 from frictioncontact.advice.coulomb_bound import coulomb_errors
 from frictioncontact.command import main
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
-from frictioncontact.simulation import command as simulate
 from workshop.bench.cases import Case
 from workshop.bench.levels import largest_errors, runs_of
 from workshop.reference import changed, scene_of, settled, start_values, step

@@ -6,7 +6,7 @@ import os
 
 import pyarrow as pa
 
-from frictioncontact.sweeps.group import Group, Job, Part
+from frictioncontact.sweeps.workers import Group, Job, Part
 
 
 def deadly(job: Job, group: Group) -> Part:

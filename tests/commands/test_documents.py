@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frictioncontact import table2
 from frictioncontact.fmu import OUTPUTS, FrictionFmu, simulate
 from frictioncontact.parameters import (
     COULOMB_FORCE,
@@ -21,22 +22,16 @@ from frictioncontact.parameters import (
     TABLE_2,
     start_values,
 )
-from frictioncontact.table2 import rows as table2
-from frictioncontact.table2.command import percent
+from frictioncontact.table2 import percent
 from workshop.fmu_docs import laws, tutorial
 from workshop.fmu_docs.readme import SCENE
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])
 USING = (ROOT / "docs" / "using.md").read_text(encoding="utf-8")
-ROWS = [
-    [cell.strip() for cell in line.strip()[1:-1].split("|")]
-    for line in USING.splitlines()
-    if line.startswith("|")
-]
-BLOCK = re.compile(  # and what it prints
-    r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE
-)
+ROWS = [[cell.strip() for cell in line[1:].split("|")] for line in USING.splitlines() if line[:1] == "|"]
+# And what it prints.
+BLOCK = re.compile(r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?", re.DOTALL | re.MULTILINE)
 EXAMPLES = [
     pytest.param(*block, id=f"{path.name}-{number}")
     for path in DOCUMENTS
@@ -79,13 +74,8 @@ def test_fmpy_example_of_the_readme_runs_the_scene_of_its_picture(fmu: FrictionF
     words = [word for word in command[1].split() if word != "--show-plot"]
     result = tmp_path / "result.csv"
     words[words.index("--output-file") + 1] = str(result)
-    subprocess.run(
-        [sys.executable, "-m", "fmpy", *words],
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-        timeout=600,
-    )
+    fmpy = [sys.executable, "-m", "fmpy"]
+    subprocess.run([*fmpy, *words], cwd=ROOT, check=True, capture_output=True, timeout=600)
     rows = np.genfromtxt(result, delimiter=",", names=True)
     drawn = simulate(fmu, SCENE, 5e-7, 400)
     for name in OUTPUTS:
@@ -140,21 +130,6 @@ def test_static_friction_under_vibration_is_what_the_page_says(fmu: FrictionFmu)
     assert laws.vibrated(fmu, 1.001 * breaks) < 60.0
     for V in (1e-5, 0.01, 1.0):
         assert laws.break_away(fmu, V) == pytest.approx(82.5, rel=1e-3)
-
-
-def test_what_the_page_of_the_solver_names_is_there() -> None:
-    page = (ROOT / "docs" / "solver.md").read_text(encoding="utf-8")
-    sources = ROOT / "fmu_src"
-    code = "".join(path.read_text(encoding="utf-8") for path in sources.rglob("*.[ch]"))
-    named = set(re.findall(r"`([^`]+)`", page))
-    for path in (name for name in named if re.fullmatch(r"[\w/]+\.(h|c|py)", name)):
-        folders = (ROOT, sources, sources / "solver")
-        assert any((folder / path).exists() for folder in folders), path
-    for name in named:
-        if re.fullmatch(r"(fc_|Fc|FC_)\w*|[A-Z_]{3,}", name):
-            assert re.search(rf"\b{name}\b", code), name
-        if module := re.fullmatch(r"\.venv/bin/python -m ([\w.]+)", name):
-            assert (ROOT / module[1].replace(".", "/")).with_suffix(".py").exists(), name
 
 
 def test_every_variable_is_explained_with_its_unit_and_start(fmu: FrictionFmu) -> None:

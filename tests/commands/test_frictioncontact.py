@@ -9,29 +9,23 @@ import sys
 import pytest
 
 from frictioncontact import __main__ as entry
-from frictioncontact import command
+from frictioncontact import command, gap, simulation
+from frictioncontact.identification import command as identify
 from workshop import __main__ as clone
 from workshop import build
 
-ROOMS = {name: room for name, (room, _) in entry.COMMANDS.items() if room}
 
-
-def usage(room: str, capsys: pytest.CaptureFixture[str]) -> str:
-    with pytest.raises(SystemExit) as ended:
-        importlib.import_module(f"frictioncontact.{room}.command").arguments(["--help"])
-    assert ended.value.code == 0
-    return capsys.readouterr().out
-
-
-@pytest.mark.parametrize("name", ROOMS)
 def test_help_says_what_it_is_called(
-    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    text = usage(ROOMS[name], capsys)
-    assert text.startswith(f"usage: frictioncontact {name} ") and "scripts/" not in text
-    monkeypatch.setattr(command, "called_as", "scripts/other")
-    text = usage(ROOMS[name], capsys)
-    assert text.startswith("usage: scripts/other ") and f"frictioncontact {name}" not in text
+    for name, (module, _) in entry.COMMANDS.items():
+        for called in (None, "scripts/other") if module else ():
+            monkeypatch.setattr(command, "called_as", called)
+            with pytest.raises(SystemExit, match=r"^0$"):
+                importlib.import_module(f"frictioncontact.{module}").arguments(["--help"])
+            text = capsys.readouterr().out
+            assert text.startswith(f"usage: {called or f'frictioncontact {name}'} ")
+            assert (f"frictioncontact {name}" if called else "scripts/") not in text
 
 
 def test_scripts_build_before_unless_an_fmu_is_named(
@@ -41,7 +35,6 @@ def test_scripts_build_before_unless_an_fmu_is_named(
     built = []
     monkeypatch.setattr(build, "build_fmu", lambda: built.append("built"))
     monkeypatch.setattr(command, "called_as", None)
-    identify = importlib.import_module("frictioncontact.identification.command")
     for arguments, builds in ((["--fmu", "mine.fmu"], 0), ([], 1)):
         monkeypatch.setattr(sys, "argv", ["identify", *arguments])
         clone.prepare(identify, "identification")
@@ -52,7 +45,7 @@ def test_scripts_build_before_unless_an_fmu_is_named(
         clone.prepare(identify, "identification")
     assert capsys.readouterr().err.startswith("scripts/identify: error: unrecognized") and len(built) == 1
     monkeypatch.setattr(sys, "argv", ["gap"])
-    clone.prepare(importlib.import_module("frictioncontact.gap.command"), "gap")
+    clone.prepare(gap, "gap")
     assert len(built) == 1
 
 
@@ -62,52 +55,28 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_the_commands_are_listed() -> None:
+def test_the_commands_are_listed_and_run(fmu_path: object) -> None:
     done = run()
-    assert done.returncode == 0
-    assert all(f"  {name} " in done.stdout for name in entry.COMMANDS)
-
-
-def test_a_command_that_is_none() -> None:
+    assert done.returncode == 0 and all(f"  {name} " in done.stdout for name in entry.COMMANDS)
     done = run("simulte")
     assert done.returncode == 1
-    assert done.stderr.startswith(
-        "error: 'simulte' is no command; did you mean simulate? these are: table2, "
-    )
+    assert done.stderr.startswith("error: 'simulte' is no command; did you mean simulate? these are: table2")
+    lines = run("version").stdout.splitlines()
+    assert lines[0].startswith("frictioncontact 0.") and lines[1].endswith("FrictionContact.fmu")
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
+def test_wrong_arguments_are_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, message in (
         (["--stop", "1"], "the following arguments are required: --step"),
         (["--stop", "1", "--step", "fast"], "argument --step: invalid float value: 'fast'"),
         (["--stop", "1", "--step", "1", "V=2"], "unrecognized arguments: V=2; write --set V=2"),
-    ],
-)
-def test_wrong_arguments_are_one_line(
-    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    simulate = importlib.import_module("frictioncontact.simulation.command")
-    with pytest.raises(SystemExit, match=r"^2$"):
-        simulate.arguments(words)
-    name = "frictioncontact simulate"
-    assert capsys.readouterr().err == f"{name}: error: {message}; see {name} --help\n"
-
-
-def test_a_negative_number_is_a_value() -> None:
-    """Also in the form -1e-4, which argparse takes for an option up to Python 3.13."""
-    simulate = importlib.import_module("frictioncontact.simulation.command")
-    assert simulate.arguments(["--stop", "1", "--step", "-1e-4"]).step == -1e-4
-
-
-def test_a_subcommand_gets_its_arguments() -> None:
-    done = run("gap", "--load", "100")
-    assert done.returncode == 0 and "start values: d 1.62784943e-05" in done.stdout
-
-
-def test_version_names_package_and_fmu(fmu_path: object) -> None:
-    lines = run("version").stdout.splitlines()
-    assert lines[0].startswith("frictioncontact 0.") and lines[1].endswith("FrictionContact.fmu")
+    ):
+        with pytest.raises(SystemExit, match=r"^2$"):
+            simulation.arguments(words)
+        name = "frictioncontact simulate"
+        assert capsys.readouterr().err == f"{name}: error: {message}; see {name} --help\n"
+    # A value, and no option, for which argparse takes the form -1e-4 up to Python 3.13.
+    assert simulation.arguments(["--stop", "1", "--step", "-1e-4"]).step == -1e-4
 
 
 def test_a_sweep_without_its_extra_has_help_and_says_how_to_get_it() -> None:
@@ -115,12 +84,10 @@ def test_a_sweep_without_its_extra_has_help_and_says_how_to_get_it() -> None:
         "import sys; sys.modules['pyarrow'] = None; sys.argv = ['frictioncontact', 'sweep', *{}];"
         "from frictioncontact.__main__ import main; main()"
     )
-
-    def sweep(*arguments: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-c", program.format(arguments)]
-        return subprocess.run(command, capture_output=True, text=True)
-
-    assert sweep("--help").stdout.startswith("usage: frictioncontact sweep")
-    done = sweep("--vary", "V=0.1,0.2")
-    assert done.returncode == 1 and done.stdout == ""
-    assert done.stderr == "error: sweeps need pyarrow: pip install 'frictioncontact[sweep]'\n"
+    for words, start, said in (
+        (["--help"], "usage: frictioncontact sweep", ""),
+        (["--vary", "V=1,2"], "", "error: sweeps need pyarrow: pip install 'frictioncontact[sweep]'\n"),
+    ):
+        code = [sys.executable, "-c", program.format(words)]
+        done = subprocess.run(code, capture_output=True, text=True)
+        assert (done.stdout[: len(start)], done.stderr) == (start, said)

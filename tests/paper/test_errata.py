@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import i0
 
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.gap.heights import area, load, stiffness
+from frictioncontact.gap import area, load, stiffness
 from frictioncontact.identification.command import EXAMPLE
 from frictioncontact.identification.data import read
 from frictioncontact.identification.experiment import Rows

@@ -12,7 +12,14 @@ from misprints import closed_form_area
 
 from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.gap.heights import area, gaussian, height_integral, load, separation, stiffness
+from frictioncontact.gap import (
+    area,
+    gaussian,
+    height_integral,
+    load,
+    separation,
+    stiffness,
+)
 from frictioncontact.parameters import E_FULL, E_REDUCED, Surfaces
 
 DATA = Path(__file__).resolve().parents[2] / "data"

@@ -8,7 +8,7 @@ from physics.closed_forms import coulomb_along
 
 from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.gap.heights import stiffness
+from frictioncontact.gap import stiffness
 from frictioncontact.parameters import IDENTIFIED_ABSOLUTE, SEPARATION, TABLE_2, Surfaces, start_values
 from frictioncontact.periodic import periodic_mean
 from workshop.project import ROOT

@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-import argparse
 import math
+import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -25,7 +25,7 @@ FAULTS = ("none", "offset", "drift", "delay", "gain", "flipped sign", "wrong law
 EACH = 25  # rigs of a fault
 CHANCE = 0.01  # of the scatter alone to miss by as much as what a rig can show
 NARROW = 2.0  # an interval from a value to less than so many times of it
-STRIBECK = {"friction.staticRatio": 1.3, "friction.V_S": 0.02}  # V_S [m/s]
+STRIBECK = {"friction.staticRatio": 1.3, "friction.V_S": 0.02}  # V_S [m/s]; also in rig_scene
 
 
 @dataclass(frozen=True)
@@ -49,33 +49,23 @@ def rig(fault: str, seed: int) -> Rig:
     record = fault == "delay" or (fault != "peak to peak" and random.random() < 0.35)
     kind = "record" if record else str(random.choice(["rows by V", "rows by V_1"]))
     sigma = F_C / random.uniform(0.5e-6, 5e-6)  # N/m
-    of_law = STRIBECK if law == "LuGre" else {}
     frame = loop(random, law, F_C, sigma) if record else measured_rows(random, law, F_C, sigma, kind)
     force = "F_t [N]" if record else "F_t_mean [N]"
     exact = frame[force].to_numpy()
-    frame[force] = with_fault(random, fault, frame, exact, F_C) + scatter * F_C * random.standard_normal(
-        len(frame)
-    )
+    frame[force] = with_fault(random, fault, frame, exact, F_C)
+    frame[force] += scatter * F_C * random.standard_normal(len(frame))
     if fault == "peak to peak":
         frame["vibration.V_1 [mm/s]"] *= 2.0
-    start = {
-        "friction.model": assumed,
-        "contact.model": "Constant",
-        **(of_law if assumed in ("LuGre",) else {}),
-    }
-    if assumed == "LuGre" and not of_law:
-        start |= STRIBECK
+    start = {"friction.model": assumed, "contact.model": "Constant"} | (
+        STRIBECK if assumed == "LuGre" else {}
+    )
     truth = {"F_C": F_C} | ({} if assumed == "Coulomb" else {"contact.sigma": sigma})
     stated = {force.split()[0]: scatter * F_C} if not record and random.random() < 0.5 else None
     return Rig(fault, kind, frame, start, truth, scatter * F_C, stated)
 
 
 def rig_scene(law: str, F_C: float, sigma: float, **values: float) -> Any:
-    ratio = (
-        {"staticRatio": STRIBECK["friction.staticRatio"], "V_S": STRIBECK["friction.V_S"]}
-        if law == "LuGre"
-        else {}
-    )
+    ratio = {"staticRatio": 1.3, "V_S": 0.02} if law == "LuGre" else {}
     return scene(law=law, contact="Constant", F_C=F_C, contact_sigma=sigma, **ratio, **values)
 
 
@@ -113,9 +103,8 @@ def loop(
         if k + 2 < len(t):
             before, now = after(now, found, V=V[k + 1], V_rate=(V[k + 2] - V[k + 1]) / h)
     x = np.concatenate([[0.0], np.cumsum(0.5 * (V[1:] + V[:-1]) * h)])
-    return pd.DataFrame({"time [ms]": 1e3 * t, "position [um]": 1e6 * x, "F_t [N]": force})[
-        ::finer
-    ].reset_index(drop=True)
+    frame = pd.DataFrame({"time [ms]": 1e3 * t, "position [um]": 1e6 * x, "F_t [N]": force})
+    return frame[::finer].reset_index(drop=True)
 
 
 def with_fault(
@@ -171,8 +160,8 @@ def verdict(case: tuple[str, int]) -> Verdict:
     )  # fmt: skip
 
 
-def verdicts(each: int = EACH, faults: tuple[str, ...] = FAULTS) -> Iterator[Verdict]:
-    cases = [(fault, seed) for fault in faults for seed in range(each)]
+def verdicts(each: int = EACH) -> Iterator[Verdict]:
+    cases = [(fault, seed) for fault in FAULTS for seed in range(each)]
     with ProcessPoolExecutor() as pool:
         yield from pool.map(verdict, cases, chunksize=5)
 
@@ -198,24 +187,17 @@ def table(found: list[Verdict], of: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--each", type=int, default=EACH, help="rigs of a fault")
-    parser.add_argument("--faults", nargs="+", default=FAULTS)
-    parser.add_argument("--sentences", action="store_true", help="print what a user reads of each rig")
-    options = parser.parse_args()
-    found = list(verdicts(options.each, tuple(options.faults)))
-    if options.sentences:
-        for one in found:
-            about = f"{one.rig.fault}, {one.rig.kind}, {one.rig.start['friction.model']}"
-            print(f"[{about}; the data show it: {one.shows}; held: {one.held}] {one.said}\n")
-    by_fault = {fault: lambda one, fault=fault: one.rig.fault == fault for fault in options.faults}
-    kinds = {
-        kind: lambda one, kind=kind: one.rig.kind == kind for kind in ("rows by V", "rows by V_1", "record")
-    }
+    """The table; what a user reads of each rig with --sentences; so many rigs of a fault with a number."""
+    words = sys.argv[1:]
+    found = list(verdicts(next((int(word) for word in words if word.isdigit()), EACH)))
+    for one in found if "--sentences" in words else ():
+        about = f"{one.rig.fault}, {one.rig.kind}, {one.rig.start['friction.model']}"
+        print(f"[{about}; the data show it: {one.shows}; held: {one.held}] {one.said}\n")
+    by_fault = {fault: lambda one, fault=fault: one.rig.fault == fault for fault in FAULTS}
+    kinds = ("rows by V", "rows by V_1", "record")
+    by_kind = {kind: lambda one, kind=kind: one.rig.kind == kind for kind in kinds}
     pd.set_option("display.width", 250, "display.max_columns", 20)
-    print(table(found, by_fault | kinds).to_string())
+    print(table(found, by_fault | by_kind).to_string())
 
 
 if __name__ == "__main__":

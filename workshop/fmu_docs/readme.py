@@ -13,12 +13,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from frictioncontact import style
+from frictioncontact import style, table2
 from frictioncontact.command import add_fmu, add_output, command_line
 from frictioncontact.fmu import SETTLED, FrictionFmu, simulate
 from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
-from frictioncontact.table2 import figure as table2_figure
-from frictioncontact.table2 import rows as table2
 from workshop.build import build_fmu
 from workshop.fmu_docs import diagrams, directions, laws, march
 from workshop.fmu_docs.tutorial import PAGES, blocks
@@ -173,7 +171,7 @@ def draw_tutorial(folder: Path) -> list[Path]:
 def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
     """All pictures; gives their paths."""
     drawings: dict[str, Callable[[Path], None]] = {
-        "table2": partial(table2_figure.draw, fmu, list(table2.results(fmu))),
+        "table2": partial(table2.draw, fmu, list(table2.results(fmu))),
         "overview": partial(overview, fmu),
         "fmpy_example": partial(fmpy_example, fmu),
         "output-choice": diagrams.draw_choice,

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from frictioncontact.command import add_fmu, add_output, command_line, progress_bar
 from frictioncontact.files import write_whole
 from frictioncontact.fmu import FrictionFmu
-from frictioncontact.table2.rows import results
+from frictioncontact.table2 import results
 from workshop.build import build_fmu
 from workshop.project import ROOT
 from workshop.report import heights, paper, recovery, regimes

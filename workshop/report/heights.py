@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from frictioncontact.gap.heights import area, gaussian
+from frictioncontact.gap import area, gaussian
 from frictioncontact.parameters import SEPARATION, Surfaces
 from frictioncontact.style import BLACK, BLUE, GREEN, GREY, ORANGE
 from workshop.report.figure import Figure, Level, Line, Panel

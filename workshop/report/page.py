@@ -8,7 +8,7 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 from frictioncontact.periodic import reduction
-from frictioncontact.table2.rows import Result, conditions
+from frictioncontact.table2 import Result, conditions
 from workshop.project import ROOT
 from workshop.report.figure import Figure, text
 

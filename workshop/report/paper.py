@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter
 
 from frictioncontact.fmu import FrictionFmu, simulate
-from frictioncontact.gap.heights import area, stiffness
+from frictioncontact.gap import area, stiffness
 from frictioncontact.parameters import (
     COULOMB_FORCE,
     FREQUENCY,
@@ -30,7 +30,7 @@ from frictioncontact.parameters import (
 )
 from frictioncontact.periodic import periodic_mean, periodic_waves, reduction
 from frictioncontact.style import BLACK, BLUE, GREEN, GREY, ORANGE
-from frictioncontact.table2.rows import mean_force
+from frictioncontact.table2 import mean_force
 from workshop.report.figure import Figure, Level, Line, Panel
 
 A_D = 1.1e-6  # m, amplitude of the separation in the paper's section 3.2

@@ -1,13 +1,16 @@
-"""`contacts`: contacts that were measured, as start values with their source, range and uncertainty."""
+"""Contacts that were measured: `contacts`, as start values with their source, range and uncertainty."""
 
 from __future__ import annotations
 
+import argparse
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from frictioncontact import resources
+from frictioncontact.command import command_line
 from frictioncontact.errors import UserError, did_you_mean, shown
 
 if TYPE_CHECKING:
@@ -24,9 +27,8 @@ class Contact:
     source: str = field(repr=False)
     valid: str = field(repr=False)  # where it was measured
     uncertainty: str = field(repr=False)
-    intervals: dict[str, list[float]] = field(
-        default_factory=dict, repr=False
-    )  # of start values, as uncertainty says
+    # Of start values, as uncertainty says.
+    intervals: dict[str, list[float]] = field(default_factory=dict, repr=False)
     data: Path | None = field(default=None, repr=False)  # the measured rows, a file that `identify` reads
 
     def __str__(self) -> str:
@@ -57,3 +59,20 @@ def contacts() -> Contacts:
     for entry in table.values():
         entry["data"] = folder / entry["data"] if "data" in entry else None
     return Contacts({name: Contact(name, **entry) for name, entry in table.items()})
+
+
+DESCRIPTION = """\
+Contacts that were measured: without a name the list, with one its start values, where they hold, how
+uncertain they are, and their source.
+
+  %(prog)s steel-dry"""
+
+
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("frictioncontact contacts", DESCRIPTION)
+    parser.add_argument("name", nargs="?", help="of a contact")
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    print(contacts()[options.name] if options.name else contacts())

@@ -11,7 +11,7 @@ from frictioncontact.command import add_fmu, command_line, print_frame
 from frictioncontact.errors import quiet
 from frictioncontact.fmu import opened
 from frictioncontact.identification.data import read
-from frictioncontact.measured.contacts import contacts
+from frictioncontact.measured import contacts
 
 DESCRIPTION = """\
 Holds the measured contacts against the means that they were fitted to: measured, by the FMU, the difference.

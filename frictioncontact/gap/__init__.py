@@ -1,1 +1,0 @@
-"""The contact of rough surfaces: stiffness and area from their heights."""

@@ -1,1 +1,0 @@
-"""The friction law of a contact under vibration, as a function."""

@@ -1,1 +1,0 @@
-"""Contacts that were measured, as data."""

@@ -1,1 +1,0 @@
-"""The web page with the FMU alive in it."""

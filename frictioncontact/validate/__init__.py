@@ -1,1 +1,0 @@
-"""Holds the measured contacts against their measurements."""
