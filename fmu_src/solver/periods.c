@@ -270,7 +270,7 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         }
     }
     const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
-    if (hypot(moved.x, moved.y) >= *least || all == 0.0) {
+    if (hypot(moved.x, moved.y) >= *least || fabs(all) < 1e-100) { // none, but for rounding
         return false;
     }
     const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
