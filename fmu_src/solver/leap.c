@@ -65,13 +65,14 @@ static double begin_of_periods(const FcScene* scene, double k, double count) {
                : 0.0;
 }
 
-void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double periods,
-             FcStepResult* total) {
+double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double periods,
+               FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
     double longest = periods;
     double tries_at = 0.0;
     double alone = FEWEST; // periods that are taken one by one before the next try, if no block is smooth
-    for (double k = 0.0; k < periods && total->evaluations <= FC_MOST_EVALUATIONS;) {
+    double k = 0.0;
+    while (k < periods && total->evaluations <= FC_MOST_EVALUATIONS) {
         bool slipped = false;
         if (law.is_bounded) { // the first period says whether it slips
             total->meetings = total->slip_side = 0;
@@ -126,4 +127,5 @@ void fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* opt
             k += 1.0;
         }
     }
+    return k;
 }

@@ -157,6 +157,12 @@ static bool sample(const Block* block, double k, Numbers* numbers) {
     return lies_on_bound(block, k + 1.0, result.delta);
 }
 
+// The bound [m]; of surfaces that are apart 1e100 m, for which there is no number.
+static double bound_of(const FcCoefficients* at) {
+    static const double FAR = 1e100;
+    return at->limit < FAR * at->sigma ? at->limit / at->sigma : FAR;
+}
+
 // The effect of an error of each number of a map on a force of 1 N.
 static Numbers weights(const Block* block, const Numbers* typical) {
     const FcScene begin = scene_at(block, 0.0);
@@ -164,8 +170,7 @@ static Numbers weights(const Block* block, const Numbers* typical) {
     const FcCoefficients at = fc_scene_coefficients(&begin, 0.0);
     const FcCoefficients at_end = fc_scene_coefficients(&end, 0.0);
     const double sigma = fc_most(block->of->options->stiffness_at_end, fc_most(at.sigma, at_end.sigma));
-    const double delta =
-        fc_most(fc_size(block->start), fc_most(at.limit / at.sigma, at_end.limit / at_end.sigma));
+    const double delta = fc_most(fc_size(block->start), fc_most(bound_of(&at), bound_of(&at_end)));
     const double path = fc_drive_largest_speed(&begin.drive, block->period) * block->period + DBL_MIN;
     const double damping = block->of->scene->friction->sigma_1;
     // Errors of the deflection add up until they have relaxed.

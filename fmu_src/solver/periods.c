@@ -270,7 +270,7 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         }
     }
     const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
-    if (hypot(moved.x, moved.y) >= *least || all == 0.0) {
+    if (hypot(moved.x, moved.y) >= *least || fabs(all) < 1e-100) { // none, but for rounding
         return false;
     }
     const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
@@ -378,14 +378,14 @@ static Walk walk_from(FcIntegration law, const FcScene* scene, const FcSolverOpt
                   .total = *start};
 }
 
-static void step_over_equal_periods(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
-                                    double periods, FcStepResult* total) {
+static double step_over_equal_periods(FcIntegration law, const FcScene* scene, const FcSolverOptions* options,
+                                      double periods, FcStepResult* total) {
     Walk walk = walk_from(law, scene, options, total);
     if (!law.is_bounded) {
         free_map_of(&walk);
         take_free(&walk, periods, &walk.total);
         *total = walk.total;
-        return;
+        return walk.done;
     }
     while (walk.done < periods && walk.total.evaluations <= FC_MOST_EVALUATIONS) {
         walk_to_repetition(&walk, periods);
@@ -399,6 +399,7 @@ static void step_over_equal_periods(FcIntegration law, const FcScene* scene, con
         }
     }
     *total = walk.total;
+    return walk.done;
 }
 
 // The options of a step with several intervals whose contact may stiffen.
@@ -430,10 +431,11 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
             "at most %.9g of them are computed: the largest step is %.9g s",
             h, periods, MOST_CHANGING_PERIODS, MOST_CHANGING_PERIODS / f);
     }
+    double done = periods;
     if (periods < 2.0) {
         fc_take_pieces(law, scene, options, h, result);
     } else if (is_linear) {
-        fc_leap(law, scene, options, periods, result);
+        done = fc_leap(law, scene, options, periods, result);
         if (has_rest) {
             const FcScene later = fc_scene_later(scene, periods / f);
             fc_take_pieces(law, &later, options, rest, result);
@@ -441,7 +443,7 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
     } else if (fc_scene_is_loose(scene)) {
         fc_loose_step(result);
     } else {
-        step_over_equal_periods(law, scene, options, periods, result);
+        done = step_over_equal_periods(law, scene, options, periods, result);
         if (has_rest) {
             fc_take_pieces(law, scene, options, rest, result);
         }
@@ -450,8 +452,8 @@ bool fc_periods_step(FcIntegration law, const FcScene* scene, const FcSolverOpti
         return fc_message_set(
             message,
             "the step of %.9g s needs more than %.0e evaluations: an input or the separation moves over "
-            "too many orders of magnitude in it; use smaller steps, or cut the motion",
-            h, FC_MOST_EVALUATIONS);
+            "too many orders of magnitude in it, or no period is like another; use steps of at most %.1g s",
+            h, FC_MOST_EVALUATIONS, done < periods && done >= 1.0 ? 0.5 * done / f : 0.01 * h);
     }
     return true;
 }

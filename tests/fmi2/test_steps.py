@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from ctypes import c_double
@@ -100,3 +101,19 @@ def test_a_settled_start_does_not_follow_surfaces_that_are_apart(instance: Insta
     sigma, F_t, evaluations = instance.get("sigma", "F_t", "solver.evaluations")
     assert (sigma, F_t) == (0.0, 0.0)
     assert evaluations < 1e7
+
+
+def test_a_step_that_costs_too_much_is_refused_with_one_that_does_not(instance: Instance) -> None:
+    """V_y moves through 600 000 periods, in which the bristle sticks and slips in a circle."""
+    assert instance.choose({"friction.model": 3}) == OK
+    assert instance.set({"vibration.V_1": 0.0025, "V": 0.0125, "friction.V_S": 8e-4}) == OK
+    assert instance.set({"contact.stiffnessScale": 5.38e-6}) == OK
+    instance.initialize()
+    assert instance.set_input_rates({"V_y": 5.72e-5}) == OK
+    assert instance.step(0.0, 30.0) == ERROR
+    advice = re.search(
+        r"needs more than .* evaluations.*use steps of at most (\S+) s$", instance.last_message.text
+    )
+    assert advice
+    assert instance.set_input_rates({"V_y": 5.72e-5}) == OK
+    assert instance.step(0.0, float(advice[1])) == OK
