@@ -15,7 +15,7 @@
 
 // The largest number of steps in a communication step, like FC_MOST_EVALUATIONS (solver.h): more would seem
 // to hang.
-#define MOST_FIXED_STEPS 5e6
+#define MOST_FIXED_STEPS 1e6
 
 // The part of a step that makes no further step, since hosts round their steps. Half of it does for hosts
 // that round more coarsely; twice of it stretches the steps by as much more.
@@ -135,6 +135,18 @@ static Integrals within_bound(const FcScene* scene, double t, Integrals y) {
     return (Integrals){at.delta, y.impulse, y.work, at.heat, at.drag};
 }
 
+static double steps_in(double h, double size) { return fc_most(1.0, ceil(h / size - STEP_ROUNDING)); }
+
+bool fc_check_fixed_steps(double size, double h, FcMessage* message) {
+    const double steps = steps_in(h, size);
+    return steps <= MOST_FIXED_STEPS ||
+           fc_message_set(
+               message,
+               "solver.stepSize = %.5g s cuts the communication step of %.5g s into %.5g steps; at most %.0e "
+               "are allowed",
+               size, h, steps, MOST_FIXED_STEPS);
+}
+
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message) {
     assert(h >= 0.0 && options->step_size > 0.0);
@@ -142,14 +154,7 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
         return true;
     }
     const double size = options->step_size;
-    const double steps = fc_most(1.0, ceil(h / size - STEP_ROUNDING));
-    if (!(steps <= MOST_FIXED_STEPS)) {
-        return fc_message_set(
-            message,
-            "solver.stepSize = %.5g s cuts the communication step of %.5g s into %.5g steps; at most %.0e "
-            "are allowed",
-            size, h, steps, MOST_FIXED_STEPS);
-    }
+    const double steps = steps_in(h, size);
     const double step = h / steps;
     if ((method == FC_METHOD_EXPLICIT_EULER &&
          !check_stability(scene, "explicitEuler", EXPLICIT_EULER_LIMIT, size, step, h, message)) ||

@@ -270,7 +270,7 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         }
     }
     const double all = (1.0 - x.x) * (1.0 - y.y) - x.y * y.x;
-    if (hypot(moved.x, moved.y) >= *least || fabs(all) < 1e-100) { // none, but for rounding
+    if (hypot(moved.x, moved.y) >= *least || all == 0.0) {
         return false;
     }
     const FcVector start = {((1.0 - y.y) * moved.x + y.x * moved.y) / all,
@@ -280,7 +280,8 @@ static bool take_newton_step(const FcScene* scene, const Met* met, int n, double
         return false;
     }
     *least = fc_has_static_friction(scene->friction) ? hypot(moved.x, moved.y) : INFINITY;
-    const double part = length > 0.0 ? fc_least(1.0, MOST_OF_NEWTON * size_of(total) / length) : 1.0;
+    const double most = MOST_OF_NEWTON * size_of(total);
+    const double part = length > most ? most / length : 1.0;
     const FcBristle reached = fc_reach(scene, (FcBristle){.delta = met->from.x + part * start.x,
                                                           .delta_y = met->from.y + part * start.y,
                                                           .slips = total->slips});
