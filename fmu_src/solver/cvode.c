@@ -60,6 +60,9 @@ struct FcCvode {
     char reason[160];   // CVODE's last error message
 };
 
+// CVODE refuses 0, and squares what an error is over it.
+static const double LEAST_ALLOWED = 1e-100;
+
 // The largest number of evaluations in a communication step, a second of computing: each makes a scene.
 static const double MOST_EVALUATIONS = 2e5;
 
@@ -185,7 +188,7 @@ static void set_allowed(FcCvode* solver, const FcScene* scene, const FcSolverOpt
     const double of[STATES] = {delta,        delta,        force * h,       force * h,
                                force * path, force * path, delta * path / h};
     for (int k = 0; k < STATES; k++) {
-        NV_Ith_S(solver->allowed, k) = of[k] >= DBL_MIN ? of[k] : DBL_MIN; // CVODE refuses 0
+        NV_Ith_S(solver->allowed, k) = fc_most(of[k], LEAST_ALLOWED);
     }
 }
 
@@ -235,6 +238,7 @@ static double integrate_regime(FcCvode* solver, double duration) {
         const double step = stribeck_step(solver->scene, solver->start + tau);
         CVodeSetStopTime(cvode, fc_least(tau + step, duration));
         flag = CVode(cvode, duration, solver->y, &tau, CV_ONE_STEP);
+        solver->evaluations += 1.0; // of the indicators
         if (flag >= 0 && solver->evaluations > MOST_EVALUATIONS) {
             snprintf(solver->reason, sizeof solver->reason,
                      "it needs more than %.0e evaluations; use smaller steps or collocation",

@@ -14,8 +14,9 @@
 #include "solver/pieces.h"
 
 // The largest number of steps in a communication step, like FC_MOST_EVALUATIONS (solver.h): more would seem
-// to hang.
-#define MOST_FIXED_STEPS 1e6
+// to hang. Each step of a bounded law costs as much as five.
+#define MOST_FIXED_STEPS 5e6
+#define MOST_BOUNDED_STEPS 1e6
 
 // The part of a step that makes no further step, since hosts round their steps. Half of it does for hosts
 // that round more coarsely; twice of it stretches the steps by as much more.
@@ -137,14 +138,15 @@ static Integrals within_bound(const FcScene* scene, double t, Integrals y) {
 
 static double steps_in(double h, double size) { return fc_most(1.0, ceil(h / size - STEP_ROUNDING)); }
 
-bool fc_check_fixed_steps(double size, double h, FcMessage* message) {
+bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message) {
     const double steps = steps_in(h, size);
-    return steps <= MOST_FIXED_STEPS ||
+    const double most = fc_is_bounded(scene->friction) ? MOST_BOUNDED_STEPS : MOST_FIXED_STEPS;
+    return steps <= most ||
            fc_message_set(
                message,
                "solver.stepSize = %.5g s cuts the communication step of %.5g s into %.5g steps; at most %.0e "
                "are allowed",
-               size, h, steps, MOST_FIXED_STEPS);
+               size, h, steps, most);
 }
 
 bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions* options, double h,

@@ -16,7 +16,7 @@ static FcIntegration integration(const FcScene* scene, bool is_planar) {
 // By cvode or a fixed step, piece by piece.
 static bool other_step(const FcScene* scene, FcMethod method, FcCvode* cvode, const FcSolverOptions* options,
                        double h, FcStepResult* result, FcMessage* message) {
-    if (method != FC_METHOD_CVODE && !fc_check_fixed_steps(options->step_size, h, message)) {
+    if (method != FC_METHOD_CVODE && !fc_check_fixed_steps(scene, options->step_size, h, message)) {
         return false;
     }
     FcPieces pieces;

@@ -11,7 +11,7 @@ bool fc_fixed_step(const FcScene* scene, FcMethod method, const FcSolverOptions*
                    FcStepResult* result, FcMessage* message);
 
 // Whether steps of that size [s] are few enough for a communication step of h [s], which may be cut into pieces.
-bool fc_check_fixed_steps(double size, double h, FcMessage* message);
+bool fc_check_fixed_steps(const FcScene* scene, double size, double h, FcMessage* message);
 
 // SUNDIALS CVODE keeps its memory between steps, never its state. fc_cvode_new gives NULL, with *message
 // filled, without memory or in a build without SUNDIALS; fc_cvode_free takes NULL.
