@@ -240,16 +240,6 @@ double fc_drive_displacement(const FcDrive* drive, double t0, double t1) {
     return (fc_drive_V_at_phase(drive, middle, at_middle) - V_c * bent) * duration;
 }
 
-double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at_t0, double t1,
-                                     FcPhase at_t1) {
-    const double duration = t1 - t0;
-    if (!(0.5 * drive->omega * duration > SERIES_UP_TO)) {
-        return fc_drive_displacement(drive, t0, t1);
-    }
-    return linear(drive->V, 0.5 * (t0 + t1)) * duration +
-           drive->vibration.V_1 / drive->omega * (at_t1.sine - at_t0.sine);
-}
-
 // The integral of tau sin(omega tau) over an interval centred at tau = 0, s being omega times half its
 // length. It vanishes like s^3.
 static double sine_moment(double omega, double s) {
@@ -362,8 +352,8 @@ static double angle_of_reversal(double V, double V_1) {
 
 static FcDriveEvent none_before(double end) { return (FcDriveEvent){.time = end}; }
 
-static FcDriveEvent event_at(const FcDrive* drive, double time, bool reversal) {
-    return (FcDriveEvent){.time = time, .reversal = reversal, .phase = fc_drive_phase(drive, time)};
+static FcDriveEvent event_at(double time, bool reversal) {
+    return (FcDriveEvent){.time = time, .reversal = reversal};
 }
 
 static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, double end) {
@@ -375,10 +365,10 @@ static FcDriveEvent first_of_held_vibration(const FcDrive* drive, double t, doub
         const double root = angle_of_reversal(V, V_1);
         const double time =
             t + fc_least(angle_ahead(now, root, least), angle_ahead(now, -root, least)) / drive->omega;
-        return time < end ? event_at(drive, time, true) : none_before(end);
+        return time < end ? event_at(time, true) : none_before(end);
     }
     const double time = t + angle_ahead(now, (V > 0.0) == (V_1 > 0.0) ? FC_PI : 0.0, least) / drive->omega;
-    return time < end && is_dip(drive, time) ? event_at(drive, time, false) : none_before(end);
+    return time < end && is_dip(drive, time) ? event_at(time, false) : none_before(end);
 }
 
 // The largest |V| at the floating-point number next to a root t.
@@ -411,10 +401,10 @@ static FcDriveEvent first_of_linear_vibration(const FcDrive* drive, double t, do
         }
         const double V_to = fc_drive_V(drive, to);
         if ((V_from < 0.0) != (V_to < 0.0)) {
-            return event_at(drive, root_of_V(drive, from, to), true);
+            return event_at(root_of_V(drive, from, to), true);
         }
         if (!stops_at_end && is_dip(drive, to)) {
-            return event_at(drive, to, false);
+            return event_at(to, false);
         }
         from = to;
         V_from = V_to;
@@ -429,7 +419,7 @@ FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end) {
     }
     if (drive->vibration.V_1 == 0.0) {
         const double root = -drive->V.value / drive->V.rate;
-        return root > t && root < end ? event_at(drive, root, true) : none_before(end);
+        return root > t && root < end ? event_at(root, true) : none_before(end);
     }
     return drive->V.rate == 0.0 ? first_of_held_vibration(drive, t, end)
                                 : first_of_linear_vibration(drive, t, end);

@@ -119,8 +119,6 @@ double fc_velocity_time_of_change(const FcVelocity* at, double change);
 
 // integral of V over [t0, t1] [m], exact.
 double fc_drive_displacement(const FcDrive* drive, double t0, double t1);
-double fc_drive_displacement_between(const FcDrive* drive, double t0, FcPhase at_t0, double t1,
-                                     FcPhase at_t1);
 
 // integral of the displacement from t0 on over [t0, t1] [m s], exact.
 double fc_drive_displacement_integral(const FcDrive* drive, double t0, double t1);
@@ -132,10 +130,9 @@ double fc_drive_square(const FcDrive* drive, double t0, double t1);
 typedef struct {
     double time;   // s
     bool reversal; // V changes sign here
-    FcPhase phase; // there
 } FcDriveEvent;
 
-// The first event after t and before end; if there is none, the time end and no phase. An event exactly at t
+// The first event after t and before end; if there is none, the time end. An event exactly at t
 // does not count. At t = 0, the start of a scene, an event counts at any distance ahead. For t > 0 an event
 // that is ahead by no more than the rounding of the phase or of V is t itself.
 FcDriveEvent fc_drive_next_event(const FcDrive* drive, double t, double end);
