@@ -121,6 +121,11 @@ static void settle(const Walk* walk, FcStepResult* total) {
     total->delta_y = walk->law.is_planar ? across->offset / map->relaxation : total->delta_y;
 }
 
+// What a period costs beside its evaluations, in evaluations: a closed form takes one, and as long as some 10. The power of a
+// map, too, takes as long as some 30.
+static const double OF_A_PERIOD = 10.0;
+static const double OF_A_POWER = 30.0;
+
 // Whether the period after n free ones meets the bound; n may be infinite.
 static bool meets_after(Walk* walk, double n) {
     FcStepResult end = walk->total;
@@ -128,6 +133,7 @@ static bool meets_after(Walk* walk, double n) {
         settle(walk, &end);
     } else {
         take_free(walk, n, &end);
+        walk->total.evaluations += OF_A_POWER;
     }
     const FcBristle bristle = {.delta = end.delta, .delta_y = end.delta_y};
     const FcBristle reached = fc_reach(walk->scene, bristle);
@@ -299,9 +305,6 @@ static bool still_drifts(const Walk* walk, FcVector* mean) {
     return !(hypot(mean->x - before.x, mean->y - before.y) <= allowed);
 }
 
-// Takes `periods`, which may be infinitely many, and stops if periods repeat. Those since met_at do, or a
-// single free one if met_at is negative. If too many meetings do not repeat, met_at is up to a third of
-// them ago.
 static void walk_to_repetition(Walk* walk, double periods) {
     FcStepResult* total = &walk->total;
     walk->met_at = -1.0;
@@ -316,6 +319,7 @@ static void walk_to_repetition(Walk* walk, double periods) {
     FcVector mean = {INFINITY, INFINITY}; // N s, impulse of a period up to the last one that was kept
     const int most = (walk->law.is_planar && isinf(periods) ? LONGER_IF_DRIFTING : 1) * MOST_MEETINGS;
     while (walk->done < periods && total->evaluations <= FC_MOST_EVALUATIONS && meetings < most) {
+        total->evaluations += OF_A_PERIOD;
         const FcStepResult before = *total;
         total->meetings = 0;
         walk->law.step(walk->scene, walk->options, walk->period, total);

@@ -65,7 +65,7 @@ static inline FcStepResult fc_result_from(FcBristle start, double evaluations) {
 // step that needs more is refused, so that no host seems to hang. Only inputs that move over many orders of magnitude reach
 // it, and motions that never repeat.
 #ifndef FC_MOST_EVALUATIONS
-#define FC_MOST_EVALUATIONS 3e6
+#define FC_MOST_EVALUATIONS 4e6
 #endif
 
 #endif
