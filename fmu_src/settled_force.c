@@ -210,6 +210,9 @@ bool fc_settled_force_slope(const FcFrictionContact* contact, size_t variable, F
         if (!slope_over(&held, variable, range, &found, &error, &missed, &evaluations, message)) {
             return false;
         }
+        if (isnan(error + missed)) { // no settled force
+            break;
+        }
         const double size = hypot(found.x, found.y);
         const bool is_good =
             missed <= GOOD_OVER_FORCE * force &&

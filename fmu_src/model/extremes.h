@@ -1,8 +1,11 @@
-// fmin and fmax in line: compilers call the library for them, since it says which sign a 0 has. A NaN is passed over.
+// fmin and fmax in line: compilers call the library for them, since it says which sign a 0 has. A NaN is passed over, without
+// a floating-point exception.
 #ifndef FC_MODEL_EXTREMES_H
 #define FC_MODEL_EXTREMES_H
 
-static inline double fc_least(double a, double b) { return b < a || a != a ? b : a; }
-static inline double fc_most(double a, double b) { return b > a || a != a ? b : a; }
+#include <math.h>
+
+static inline double fc_least(double a, double b) { return isless(b, a) || a != a ? b : a; }
+static inline double fc_most(double a, double b) { return isgreater(b, a) || a != a ? b : a; }
 
 #endif
