@@ -63,6 +63,9 @@ struct FcCvode {
 // CVODE refuses 0, and squares what an error is over it.
 static const double LEAST_ALLOWED = 1e-100;
 
+// The shortest communication step [s]: CVODE multiplies steps with each other, and numbers below 1e-308 take it long.
+static const double SHORTEST = 1e-50;
+
 // The largest number of evaluations in a communication step, a second of computing: each makes a scene.
 static const double MOST_EVALUATIONS = 2e5;
 
@@ -255,6 +258,12 @@ static double integrate_regime(FcCvode* solver, double duration) {
 bool fc_cvode_step(FcCvode* solver, const FcScene* scene, const FcSolverOptions* options, double h,
                    FcStepResult* result, FcMessage* message) {
     assert(solver && h >= 0.0 && options->tolerance > 0.0);
+    if (h > 0.0 && h < SHORTEST) {
+        return fc_message_set(
+            message,
+            "solver.method = cvode: the communication step of %.5g s is below %.0e s; use collocation", h,
+            SHORTEST);
+    }
     FcFriction friction = *scene->friction; // the damping is not a part of the result
     friction.sigma_1 = friction.sigma_2 = 0.0;
     FcScene undamped = *scene;
