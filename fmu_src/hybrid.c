@@ -150,9 +150,10 @@ bool fc_hybrid_indicators(FcFrictionContact* contact, double z[FC_EVENT_INDICATO
     z[0] = z[1] = z[2] = z[3] = 1.0;
     if (fc_scene_depends_on_d(&now.scene)) {
         const double closed_by = fc_scene_closed_by(&now.scene);
-        const bool was_open = contact->state.past.sigma == 0.0; // an open contact leaves no past
-        const bool is_closed = closed_by > 0.0 && !(was_open && fc_scene_stiffness(&now.scene, 0.0) > 0.0);
-        z[3] = was_open && !is_closed ? -closed_by : closed_by; // a stiffness below the least number is 0
+        // An open contact leaves no past, nor does a closed one whose stiffness is below the least number.
+        const bool was_open = contact->state.past.sigma == 0.0 &&
+                              (closed_by <= 0.0 || fc_scene_stiffness(&now.scene, 0.0) > 0.0);
+        z[3] = was_open ? -closed_by : closed_by;
     }
     if (!fc_scene_is_loose(&now.scene)) {
         if (v->friction.model != FC_ELASTIC_PLASTIC) {

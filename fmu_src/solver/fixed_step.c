@@ -14,7 +14,7 @@
 #include "solver/pieces.h"
 
 // The largest number of steps in a communication step, like FC_MOST_EVALUATIONS (solver.h): more would seem
-// to hang. Each step of a bounded law costs as much as five.
+// to hang. Fewer with a bound, at which each step makes a scene. Chosen empirically, for a second of computing.
 #define MOST_FIXED_STEPS 5e6
 #define MOST_BOUNDED_STEPS 1e6
 
