@@ -73,6 +73,7 @@ class _Running:
     raises: bool
     values: dict[str, np.ndarray] = field(init=False)
     failures: list[str] = field(default_factory=list)
+    ended: list[int] = field(default_factory=list)  # threads that use it no longer
 
     def __post_init__(self) -> None:
         batch, self.runner = self.batch, self.batch.runner
@@ -117,8 +118,10 @@ class _Running:
     def work(self, threads: int, progress: Progress) -> None:
         """Until no scenario is left. Whatever is raised meanwhile ends the threads first."""
         workers = [threading.Thread(target=self._work, daemon=True) for _ in range(threads)]
+        begun = 0
         try:
             for worker in workers:
+                begun += 1
                 worker.start()
             for worker in workers:
                 while worker.is_alive():
@@ -128,11 +131,10 @@ class _Running:
         except BaseException:
             self.runner.batch_stop(self.handle)
             until = time.monotonic() + STOP
-            for worker in workers:
-                if worker.ident is not None:
-                    worker.join(max(0.0, until - time.monotonic()))
-            # A thread in a long step still uses the batch through its own reference to this object.
-            if not any(worker.is_alive() for worker in workers):
+            while len(self.ended) < begun and time.monotonic() < until:
+                time.sleep(0.001)
+            # A thread in a long step, or one about to begin, still uses the batch through its own reference.
+            if len(self.ended) == begun:
                 self.end()
             raise
 
@@ -145,9 +147,12 @@ class _Running:
 
     def _work(self) -> None:
         why = ctypes.create_string_buffer(TEXT)
-        if not self.runner.batch_work(self.handle, why, TEXT):
-            self.failures.append(why.value.decode(errors="replace"))
-            self.runner.batch_stop(self.handle)
+        try:
+            if not self.runner.batch_work(self.handle, why, TEXT):
+                self.failures.append(why.value.decode(errors="replace"))
+                self.runner.batch_stop(self.handle)
+        finally:
+            self.ended.append(threading.get_ident())
 
     def results(self, raises: bool) -> dict[str, np.ndarray]:
         if self.failures:
