@@ -14,7 +14,7 @@ from frictioncontact.fmu import FrictionFmu
 from workshop.bench.exchange import (
     CALLS,
     LAWS,
-    LawBelt,
+    Belt,
     Run,
     errors,
     exchange,
@@ -34,7 +34,7 @@ def rows() -> Iterator[tuple[str, str, float, float, float]]:
         yield (law, way, *map(float, numbers))  # type: ignore[misc]
 
 
-def again(fmu: FrictionFmu, belt: LawBelt, way: str, calls: float) -> Run:
+def again(fmu: FrictionFmu, belt: Belt, way: str, calls: float) -> Run:
     interface, how = way.split(", ")
     if interface == "co-simulation":
         coupling = COUPLINGS[how]
@@ -48,7 +48,7 @@ def test_table(fmu: FrictionFmu, law: str) -> None:
 
     At 1e-10 both solutions of the whole, which share no code, are one.
     """
-    belt = LawBelt(law=law)
+    belt = Belt(law=law)
     truth = reference(belt)
     of_law = [row for row in rows() if row[0] == law]
     assert len(of_law) == 4

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 
 import numpy as np
 
@@ -30,11 +29,10 @@ class Case:
     linear: bool = False
 
     def job(
-        self, start: float = 0.0, budget: float = 0.02, settings: Mapping[str, Value] = MappingProxyType({})
+        self, start: float = 0.0, budget: float = 0.02, settings: Mapping[str, Value] | None = None
     ) -> Job:
-        return Job(
-            {**self.start_values, **settings}, self.step, self.count, start, self.inputs, self.linear, budget
-        )
+        values = {**self.start_values, **(settings or {})}
+        return Job(values, self.step, self.count, start, self.inputs, self.linear, budget)
 
     def scene_at(self, k: int, start: float) -> Scene:
         """The scene of step k, its inputs counted from the step's own start."""

@@ -17,7 +17,7 @@ PLAIN_PROGRAMS = {
 
 
 def plain_values(case: Case, tolerance: float) -> dict[str, float]:
-    """The equation's few numbers, under the names of bench.PLAIN."""
+    """The equation's few numbers, in the order of bench/plain_equation.h."""
     scene = scene_of(case.start_values)
     asperities = scene.contact != 1 + CHOICES["contact"].index("Constant")
     return {
@@ -37,4 +37,7 @@ def plain_values(case: Case, tolerance: float) -> dict[str, float]:
 
 def plain(bench: Bench, method: str, case: Case, tolerance: float, budget: float, start: float) -> Outcome:
     """One of PLAIN_PROGRAMS."""
-    return bench.run_plain(PLAIN_PROGRAMS[method], case.job(start, budget), plain_values(case, tolerance))
+    job, values = case.job(start, budget), plain_values(case, tolerance)
+    lines = job.lines({"V": 0, "d": 1})
+    lines += [f"real {k} {value!r}" for k, value in enumerate(values.values())]
+    return bench.call([PLAIN_PROGRAMS[method]], [*lines, "output 0", "output 1"], job)

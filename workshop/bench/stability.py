@@ -2,13 +2,14 @@
 
 import argparse
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from rich.table import Table
 
 from frictioncontact.command import as_table, finish, say_written, table_console, write_csv
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench import stability_figures
+from workshop.bench import figures
 from workshop.bench.coupling import (
     COUPLINGS,
     Belt,
@@ -56,26 +57,19 @@ def run(options: argparse.Namespace) -> None:
     belt = Belt()
     with FrictionFmu(build_fmu()) as fmu:
         behaviours, found = stability_map(fmu, quick), edges(fmu)
+        edge_of = {"theory_H": theoretical_edge, "measured_H": partial(coupled_edge, fmu)}
         coupled = [
-            {
-                "coupling": name,
-                "theory_H": theoretical_edge(belt, name),
-                "measured_H": coupled_edge(fmu, belt, name),
-            }
+            {"coupling": name} | {key: edge(belt, name) for key, edge in edge_of.items()}
             for name in COUPLINGS
         ]
         reference = monolithic(belt)
         counts = (500, 2000, 8000) if quick else tuple(250 * 2**k for k in range(8))
         errors = coupled_errors(fmu, belt, reference, counts) + against_cost(fmu)
-    tables = {
-        "stability": behaviours,
-        "stability-edges": found,
-        "coupled-edges": coupled,
-        "coupled-errors": errors,
-    }
+    tables = {"stability": behaviours, "stability-edges": found}
+    tables |= {"coupled-edges": coupled, "coupled-errors": errors}
     written = [write_csv(rows, output / f"{name}.csv") for name, rows in tables.items()]
-    written += stability_figures.draw_map(behaviours, found, output)
-    written += stability_figures.draw_coupled(errors, coupled, reference, belt, output)
+    written += figures.stability(behaviours, found, output)
+    written += figures.coupled(errors, coupled, reference, belt, output)
     if options.docs:
         written += renew_docs(written)
     console = table_console()

@@ -125,15 +125,10 @@ def graded(case: Case, references: Mapping[float, tuple[np.ndarray, np.ndarray]]
     for outcome in outcomes:
         if outcome.failure:
             return Point(case.name, task.method, task.setting, *[math.nan] * 4, outcome.failure)
-    errors = np.max(
-        [
-            [np.abs(outcome.F - F).max(), np.abs(outcome.F_mean - F_mean).max()]
-            for outcome, (F, F_mean) in zip(outcomes, references.values(), strict=True)
-        ],
-        axis=0,
-    )
+    misses = np.array([(o.F, o.F_mean) for o in outcomes]) - [*references.values()]  # [start, which, step]
+    errors = np.abs(misses).max(axis=(0, 2)) / case.F_C
     costs = np.median([(o.cpu, o.evaluations) for o in outcomes], axis=0)
-    return Point(case.name, task.method, task.setting, *errors / case.F_C, *PERIOD / case.step * costs)
+    return Point(case.name, task.method, task.setting, *errors, *PERIOD / case.step * costs)
 
 
 def cost_at(points: Sequence[Point], error: float) -> float:
@@ -162,10 +157,10 @@ def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
         for linear in (False, True):
             case = sampled(n, sigma, linear, periods=2)
             outcome = bench.run(case.job(0.0, 0.0, {"solver.tolerance": 1e-9}))
-            both = zip((outcome.F, outcome.F_mean), truth, strict=True)
-            F_t, F_t_mean = (float(np.abs(got - right).max()) / case.F_C for got, right in both)
+            misses = np.subtract((outcome.F, outcome.F_mean), truth)
+            errors = (np.abs(misses).max(axis=1) / case.F_C).tolist()
             row = {"sigma": sigma, "samples_per_period": n, "inputs": "linear" if linear else "held"}
-            rows.append({**row, "error_F_t": F_t, "error_F_t_mean": F_t_mean})
+            rows.append(row | dict(zip(("error_F_t", "error_F_t_mean"), errors, strict=True)))
     return rows
 
 
@@ -194,30 +189,25 @@ def period_points(bench: Bench, counts: Sequence[int] = PERIODS) -> list[dict[st
             inputs = {name: ends if moves else np.full(2, ends.mean()) for name, ends in samples.items()}
             outcome = bench.run(Job(values, periods * PERIOD, inputs=inputs, linear=moves, budget=0.005))
             one = one or outcome
-            costs = {
-                "evaluations": outcome.evaluations,
-                "ratio": outcome.evaluations / one.evaluations,
-                "cpu_ratio": outcome.cpu / one.cpu,
-                "failure": outcome.failure,
-            }
-            rows.append({"law": law, "limit": limit, "inputs": kind, "periods": periods, **costs})
+            ratio, cpu_ratio = outcome.evaluations / one.evaluations, outcome.cpu / one.cpu
+            costs = {"evaluations": outcome.evaluations, "ratio": ratio, "cpu_ratio": cpu_ratio}
+            row = {"law": law, "limit": limit, "inputs": kind, "periods": periods}
+            rows.append({**row, **costs, "failure": outcome.failure})
     return rows
 
 
 def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
     """Cost of each method over that of collocation at each of the matched errors."""
-    methods = [m for m in dict.fromkeys(p.method for p in points) if m not in ("collocation", CALLS)]
+    own: dict[str, dict[str, list[Point]]] = {}  # by case and method
+    for p in points:
+        own.setdefault(p.case, {}).setdefault(p.method, []).append(p)
     rows: list[dict[str, object]] = []
-    for error in MATCHED_ERRORS:
-        for case in dict.fromkeys(p.case for p in points):
-            own = {
-                m: [p for p in points if p.case == case and p.method == m] for m in (*methods, DEFAULT, CALLS)
-            }
-            base = cost_at(own[DEFAULT], error)
-            calls = own[CALLS][0].cpu / base
-            row = {m: cost_at(own[m], error) / base for m in methods}
-            row |= {"calls": calls, BARE: min((row[m] for m in RADAU if m in row), default=math.nan) - calls}
-            rows.append({"error": error, "case": case, "collocation_us_per_period": 1e6 * base, **row})
+    for error, (case, methods) in product(MATCHED_ERRORS, own.items()):
+        base = cost_at(methods[DEFAULT], error)
+        calls = methods[CALLS][0].cpu / base
+        row = {m: cost_at(its, error) / base for m, its in methods.items() if m not in (DEFAULT, CALLS)}
+        row |= {"calls": calls, BARE: min((row[m] for m in RADAU if m in row), default=math.nan) - calls}
+        rows.append({"error": error, "case": case, "collocation_us_per_period": 1e6 * base, **row})
     return rows
 
 
@@ -230,21 +220,17 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
 PERIOD_COLUMNS = ["law", "limit", "held", "moving", "moving, CPU time"]
 
 
-def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[str]]:
+def ratio_cells(rows: Sequence[Mapping[str, Any]], error: float) -> list[list[str]]:
     """A line a scene: the calls' part of the default's time, and each peer's time over the default's."""
     return [
-        [
-            str(row["case"]),
-            f"{100 * float(str(row['calls'])):.0f} %",
-            *(cheapest(row, names) for names in COLUMNS.values()),
-        ]
+        [row["case"], f"{100 * row['calls']:.0f} %", *(cheapest(row, names) for names in COLUMNS.values())]
         for row in rows
         if row["error"] == error
     ]
 
 
 def renew_tables(
-    compared: Sequence[dict[str, object]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
+    compared: Sequence[Mapping[str, Any]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
 ) -> Path:
     """The tables of docs/numerics.md, each under the words before it: of speed, and of long steps."""
     text = PAGE.read_text(encoding="utf-8")
@@ -268,23 +254,21 @@ def with_table(text: str, head: str, headings: Sequence[str], rows: Sequence[Seq
 
 def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
     """A line a law and limit: evaluations of the longest step, held and moving, and the latter's CPU time."""
-    longest = {
-        (row["law"], row["limit"], row["inputs"]): row for row in rows if row["periods"] == PERIODS[-1]
-    }
+    longest = [row for row in rows if row["periods"] == PERIODS[-1]]
+    held, moving = ([row for row in longest if row["inputs"] == kind] for kind in ("held", "moving"))
     cells = []
-    for law, limit in dict.fromkeys(key[:2] for key in longest):
-        held, moving = (longest[law, limit, kind] for kind in ("held", "moving"))
-        costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (held, moving)]
-        cells.append([law, limit, *costs, f"{float(format(moving['cpu_ratio'], '.2g')):.0f}"])
+    for one, other in zip(held, moving, strict=True):
+        costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (one, other)]
+        cells.append([one["law"], one["limit"], *costs, f"{float(format(other['cpu_ratio'], '.2g')):.0f}"])
     return cells
 
 
-def cheapest(row: dict[str, object], names: Sequence[str]) -> str:
+def cheapest(row: Mapping[str, Any], names: Sequence[str]) -> str:
     """The least ratio of these methods."""
-    known = [float(str(row[name])) for name in names if name in row and not math.isnan(float(str(row[name])))]
-    if not known:
+    least = min((row[name] for name in names if not math.isnan(row.get(name, math.nan))), default=math.nan)
+    if math.isnan(least):
         return "not reached"
-    return f"{min(known):.3g}" if min(known) < 1000 else f"{min(known):.0f}"
+    return f"{least:.3g}" if least < 1000 else f"{least:.0f}"
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -300,12 +284,9 @@ def run(options: argparse.Namespace) -> None:
             points += measure(bench, case, QUICK if quick else FULL)
         step_sizes, periods = step_size_points(bench, quick), period_points(bench)
     compared, titles = ratios(points), {case.name: case.title for case in chosen}
-    tables: dict[str, Sequence[Mapping[str, object]]] = {
-        "work-precision": [asdict(p) for p in points],
-        "work-precision-ratios": compared,
-        "step-size": step_sizes,
-        "periods": periods,
-    }
+    tables: dict[str, Sequence[Mapping[str, object]]]
+    tables = {"work-precision": [*map(asdict, points)], "work-precision-ratios": compared}
+    tables |= {"step-size": step_sizes, "periods": periods}
     written = [write_csv(rows, output / f"{name}.csv") for name, rows in tables.items()]
     written += figures.work_precision(points, titles, output)
     written += figures.step_sizes(step_sizes, output)

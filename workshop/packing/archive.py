@@ -17,7 +17,6 @@ FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 CHECKSUMS = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
 # ELF, PE, Mach-O, universal Mach-O
 BINARY_BEGINNINGS = (b"\x7fELF", b"MZ", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
-BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": ".dylib"}
 
 
 def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, Path]:
@@ -30,14 +29,6 @@ def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, 
     files["fmi2/variables.c"] = table
     files |= {name: fmi_headers / name for name in FMI_HEADERS}
     return files
-
-
-def binary_name(platform: str, identifier: str) -> str:
-    """binaries/linux64/FrictionContact.so and its like: platform is linux64, win64, aarch64-darwin, ..."""
-    system = platform.rsplit("-", maxsplit=1)[-1].rstrip("0123456789")
-    if system not in BINARY_SUFFIXES:
-        raise ValueError(f"unknown FMI platform {platform}")
-    return f"binaries/{platform}/{identifier}{BINARY_SUFFIXES[system]}"
 
 
 def whole_binary(path: Path) -> bytes:
@@ -104,7 +95,8 @@ def write_fmu(
     identifier = model_description.read(xml).coSimulation.modelIdentifier
     c_files = sorted(name for name in sources if name.endswith(".c"))
     entries = {"modelDescription.xml": packaged_xml(xml, c_files)}
-    entries |= {binary_name(platform, identifier): whole_binary(path) for platform, path in binaries.items()}
+    for platform, path in binaries.items():
+        entries[f"binaries/{platform}/{identifier}{path.suffix}"] = whole_binary(path)
     entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
     entries["sources/buildDescription.xml"] = build_description(identifier, c_files)
     entries |= {name: path.read_bytes() for name, path in others.items()}
@@ -137,18 +129,11 @@ def main() -> None:
     parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers")
     parser.add_argument("--binary", type=_pair, action="append", default=[], metavar="PLATFORM=FILE")
     parser.add_argument("--file", type=_pair, action="append", default=[], metavar="NAME=FILE")
-    parser.add_argument(
-        "--folder", type=_pair, action="append", default=[], metavar="NAME=FOLDER", help="all files in it"
-    )
-    arguments = parser.parse_args()
-    write_fmu(
-        arguments.output,
-        arguments.xml,
-        dict(arguments.binary),
-        source_files(arguments.sources, arguments.table, arguments.fmi_headers),
-        dict(arguments.file)
-        | {f"{name}/{path.name}": path for name, folder in arguments.folder for path in folder.iterdir()},
-    )
+    parser.add_argument("--folder", type=_pair, action="append", default=[], metavar="NAME=FOLDER")
+    given = parser.parse_args()
+    others = {f"{name}/{path.name}": path for name, folder in given.folder for path in folder.iterdir()}
+    sources = source_files(given.sources, given.table, given.fmi_headers)
+    write_fmu(given.output, given.xml, dict(given.binary), sources, others | dict(given.file))
 
 
 if __name__ == "__main__":

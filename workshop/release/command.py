@@ -12,13 +12,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from fmpy.validation import validate_fmu
 from rich.progress import Progress
 
-from frictioncontact.command import finish, progress_bar, shown
+from frictioncontact.command import command_line, progress_bar, shown
 from frictioncontact.errors import UserError
 from frictioncontact.files import whole_file
 from workshop.fmu_docs.page import page as index_page
@@ -78,20 +78,16 @@ def pack(output: Path, libraries: dict[str, Path], parts: Path, files: dict[str,
 
     parts: CMake's folder of one of the platforms; files: name in the FMU -> file, besides what CMake lists.
     """
-    arguments = [f"@{parts / 'generated' / 'package.txt'}"]
-    for platform, library in libraries.items():
-        arguments += ["--binary", f"{platform}={library}"]
-    for name, path in TOOLCHAIN_LICENSES.items():
-        arguments += ["--file", f"documentation/licenses/{name}={zig().parent / path}"]
-    for name, path in files.items():
-        arguments += ["--file", f"{name}={path}"]
+    licenses = {f"documentation/licenses/{n}": zig().parent / path for n, path in TOOLCHAIN_LICENSES.items()}
+    words = [f"@{parts / 'generated' / 'package.txt'}"]
+    words += [f"--binary={platform}={library}" for platform, library in libraries.items()]
+    words += [f"--file={name}={path}" for name, path in (licenses | files).items()]
     packer = [sys.executable, "-B", "-m", "workshop.packing.archive"]
     with whole_file(output) as unchecked:
-        run = subprocess.run(
-            [*packer, str(unchecked.absolute()), *arguments], cwd=ROOT, capture_output=True, text=True
-        )
-        if run.returncode:
-            raise UserError(f"packing fails: {' '.join(run.stderr.split())[-300:]}")
+        command = [*packer, str(unchecked.absolute()), *words]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+        if done.returncode:
+            raise UserError(f"packing fails: {' '.join(done.stderr.split())[-300:]}")
         problems = validate_fmu(str(unchecked))
         if problems:
             raise UserError(f"the validator finds: {' '.join(problems[0].split())}")
@@ -144,30 +140,19 @@ def sundials_version() -> str:
     return f"{'.'.join(numbers)} (sha256 {(SUNDIALS / 'archive.sha256').read_text().strip()})"
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="scripts/release",
-        description="Build one FrictionContact.fmu for Linux, Windows and macOS, cross-compiled with zig.",
-    )
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu"
-    )
-    parser.add_argument(
-        "--platforms", nargs="+", choices=list(PLATFORMS), metavar="PLATFORM", help=", ".join(PLATFORMS)
-    )
-    parser.add_argument(
-        "--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick"
-    )
-    parser.add_argument(
-        "--check",
-        type=Path,
-        metavar="FMU",
-        help="tell whether a file is one of ours, as it was packed, and gives its reference results",
-    )
-    finish(_run, parser.parse_args())
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    description = "Build one FrictionContact.fmu for Linux, Windows and macOS, cross-compiled with zig."
+    parser = command_line("scripts/release", description)
+    add = parser.add_argument
+    add("-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu")
+    add("--platforms", nargs="+", choices=list(PLATFORMS), metavar="PLATFORM", help=", ".join(PLATFORMS))
+    add("--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick")
+    what = "tell whether a file is one of ours, as it was packed, and gives its reference results"
+    add("--check", type=Path, metavar="FMU", help=what)
+    return parser.parse_args(argv)
 
 
-def _run(options: argparse.Namespace) -> None:
+def run(options: argparse.Namespace) -> None:
     if options.check:
         for line in verify(options.check):
             print(f"ok  {line}", flush=True)

@@ -40,11 +40,7 @@ def zig() -> Path:
             "the cross compiler is missing: the Python package ziglang of requirements-release.txt is not "
             "installed; scripts/setup release installs it"
         )
-    folder = Path(found.submodule_search_locations[0])
-    for name in ("zig", "zig.exe"):
-        if (folder / name).is_file():
-            return folder / name
-    raise UserError(f"the cross compiler is missing: no zig in the package ziglang, {folder}")
+    return Path(found.submodule_search_locations[0]) / "zig"
 
 
 def environment() -> dict[str, str]:
