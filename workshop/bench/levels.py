@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,15 +16,8 @@ from workshop.bench.driver import REPORT
 from workshop.build import build_fmu
 from workshop.reference import Scene, changed, follow, rest, scene_of, settled_deflection
 
-
-@dataclass(frozen=True)
-class Run:
-    """What the reference gives from a start [s] and a deflection [m]: step by step F_t and its mean [N]."""
-
-    start: float
-    delta_0: float
-    steps: list[Scene]
-    right: list[tuple[float, float]]
+# Step by step a scene, and what the reference gives for it: F_t and its mean [N].
+Run = list[tuple[Scene, tuple[float, float]]]
 
 
 def runs_of(case: Case, phases: tuple[float, ...]) -> list[Run]:
@@ -43,11 +36,8 @@ def runs_of(case: Case, phases: tuple[float, ...]) -> list[Run]:
 
 def _run(case: Case, start: float, delta_0: float) -> Run:
     ratios = [1.0] * case.count if case.inputs else STEPS
-    steps = [
-        changed(case.scene_at(k, start), h=ratio * case.step, delta_0=delta_0)
-        for k, ratio in enumerate(ratios)
-    ]
-    return Run(start, delta_0, steps, [(found.F_t, found.F_t_mean) for found in follow(steps)])
+    steps = [changed(case.scene_at(k, start), h=x * case.step, delta_0=delta_0) for k, x in enumerate(ratios)]
+    return [(scene, (found.F_t, found.F_t_mean)) for scene, found in zip(steps, follow(steps), strict=True)]
 
 
 def largest_errors(
@@ -57,9 +47,10 @@ def largest_errors(
     errors = np.zeros(2)
     first = {name: float(samples[0]) for name, samples in case.inputs.items()}
     for run in runs:
-        values = {**case.start_values, "delta_0": run.delta_0, **settings, **first}
-        with fmu.session(values, run.start) as session:
-            for scene, right in zip(run.steps, run.right, strict=True):
+        begin, _ = run[0]
+        values = {**case.start_values, "delta_0": begin.delta_0, **settings, **first}
+        with fmu.session(values, begin.start) as session:
+            for scene, right in run:
                 for name in case.inputs:
                     session.set(name, getattr(scene, name))
                 if case.linear and case.inputs:

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from frictioncontact import style
+from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
 
@@ -43,11 +44,9 @@ def scene(law: str, kappa: float, direction: str) -> dict[str, Value]:
 
 def mean(fmu: FrictionFmu, start_values: dict[str, Value], V: np.ndarray) -> np.ndarray:
     """Settled mean friction over F_C at each V [m/s]."""
-    found = []
-    for each in V:
-        with fmu.session(start_values | {"V": float(each)}) as session:
-            found.append(session.get("F_t_settled") / COULOMB_FORCE)
-    return np.array(found)
+    return (
+        simulate_many(start_values | {"V": V}, ["F_t_settled"], fmu=fmu.path)["F_t_settled"] / COULOMB_FORCE
+    )
 
 
 def draw(fmu: FrictionFmu, path: Path) -> None:

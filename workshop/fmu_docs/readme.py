@@ -95,20 +95,16 @@ def fmpy_example(fmu: FrictionFmu, path: Path) -> None:
     """The result of the README's `fmpy simulate`: the default experiment from rest."""
     run = simulate(fmu, SCENE, 5e-7, 400)
     time = 1e6 * run["time"]
-    figure, panels = style.subplots(3, 1, size=(7.6, 5.6), sharex=True)
-    for axes, names, scale, label in (
-        (panels[0], ("F_t", "F_t_mean"), 1.0, "force [N]"),
-        (panels[1], ("sigma",), 1e-6, "stiffness [MN/m]"),
-        (panels[2], ("W_f",), 1e3, "work [mJ]"),
-    ):
-        for name, width in zip(names, (2.0, 1.0), strict=False):
-            axes.plot(time, scale * run[name], lw=width, label=name)
-        axes.set_ylabel(label)
-        axes.legend(loc="upper right", ncols=2)
-    panels[0].set_ylim(top=72.0)
-    panels[1].set_ylim(top=10.5)
-    panels[2].legend(loc="upper left")
-    panels[2].set(xlabel="time [µs]", xlim=(0.0, time[-1]))
+    figure, (force, stiffness, work) = style.subplots(3, 1, size=(7.6, 5.6), sharex=True)
+    force.plot(time, run["F_t"], lw=2.0, label="F_t")
+    force.plot(time, run["F_t_mean"], lw=1.0, label="F_t_mean")
+    stiffness.plot(time, 1e-6 * run["sigma"], lw=2.0, label="sigma")
+    work.plot(time, 1e3 * run["W_f"], lw=2.0, label="W_f")
+    force.set(ylabel="force [N]", ylim=(None, 72.0))
+    stiffness.set(ylabel="stiffness [MN/m]", ylim=(None, 10.5))
+    work.set(ylabel="work [mJ]", xlabel="time [µs]", xlim=(0.0, time[-1]))
+    for axes, place in ((force, "upper right"), (stiffness, "upper right"), (work, "upper left")):
+        axes.legend(loc=place, ncols=2)
     style.save(figure, path)
 
 

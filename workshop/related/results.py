@@ -38,14 +38,10 @@ class Experiment:
 def experiments() -> list[Experiment]:
     """Those of validation.exp."""
     values = {preset.id: preset.values for preset in presets()}
+    found = [dict(each.attrib) for each in etree.parse(FOLDER / "validation.exp").getroot()]
     return [
-        Experiment(
-            each.get("name"),
-            values.get(each.get("name"), {}),
-            float(each.get("stopTime")),
-            float(each.get("stepSize")),
-        )
-        for each in etree.parse(FOLDER / "validation.exp").getroot()
+        Experiment(x["name"], values.get(x["name"], {}), float(x["stopTime"]), float(x["stepSize"]))
+        for x in found
     ]
 
 

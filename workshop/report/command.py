@@ -12,7 +12,7 @@ from frictioncontact.fmu import FrictionFmu
 from frictioncontact.table2 import results
 from workshop.build import build_fmu
 from workshop.project import ROOT
-from workshop.report import heights, paper, recovery, regimes
+from workshop.report import paper, recovery, regimes
 from workshop.report.figure import Figure
 from workshop.report.page import page
 
@@ -31,11 +31,8 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="coarser maps, no PNG")
     add_fmu(parser)
     add_output(parser, ROOT / "build" / "report")
-    parser.add_argument(
-        "--docs",
-        action="store_true",
-        help="also renew the figures that docs/ shows, docs/pictures/paper-*.png",
-    )
+    what = "also renew the figures that docs/ shows, docs/pictures/paper-*.png"
+    parser.add_argument("--docs", action="store_true", help=what)
     return parser.parse_args(argv)
 
 
@@ -43,7 +40,7 @@ def jobs(fmu: FrictionFmu, quick: bool) -> list[Callable[[], Figure]]:
     of_regimes = (regimes.means, regimes.regimes, regimes.reduction, regimes.sensitivity_cuts)
     return [
         *(partial(figure, fmu) for figure in paper.FIGURES),
-        heights.areas,
+        paper.heights,
         *(partial(figure, fmu.path, quick) for figure in of_regimes),
         partial(recovery.figure, fmu, 4 if quick else 20),
     ]

@@ -21,7 +21,6 @@ CYCLE = 4.0  # s
 FIRST = 12.75  # s, where the second cycle begins; the first one starts from rest
 FITTED = 2  # cycles
 CYCLES = 49  # from FIRST on, the fitted ones among them
-UNLOADED = 5.0  # s, until which no load is on
 UNLOADING = (209.4, 212.0)  # s
 LEAST_LOAD = 1e-3  # N; below it the measured load is the sensor's noise
 CARRYING = 0.7  # N; below it force over load is dominated by what the sensors miss

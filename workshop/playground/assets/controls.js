@@ -77,9 +77,7 @@ class Control {
       return;
     }
     const shown = value * this.variable.factor;
-    if (document.activeElement !== this.field || Number(this.field.value) !== shown) {
-      this.field.value = plain(shown, 6);
-    }
+    if (document.activeElement !== this.field || Number(this.field.value) !== shown) this.field.value = plain(shown);
     this.slider.value = this.toSlider(value);
     this.slider.setAttribute("aria-valuetext", withUnit(shown, unitText(this.variable)));
   }

@@ -13,13 +13,8 @@ function handy(units, size) {
 }
 
 function extent(numbers) {
-  let low = Infinity;
-  let high = -Infinity;
-  for (const number of numbers) {
-    if (number < low) low = number;
-    if (number > high) high = number;
-  }
-  return [low, high];
+  const known = [...numbers].filter((number) => !Number.isNaN(number));
+  return [Math.min(...known), Math.max(...known)];
 }
 
 // Round limits around zero and all values; the limit of friction keeps them still while a slider moves.
@@ -124,10 +119,6 @@ class Figures {
     });
     setHtml("loop-text", V_1 > 0 ? "The area is the work of the vibration." : "The area is the work.");
     setHtml("loop-x", `${V_1 > 0 ? "Displacement of the vibration" : "Sliding distance"} in ${lengthUnit}`);
-  }
-
-  setCurve(curve) {
-    this.curve = curve;
   }
 
   // here: {ratio, V, mean, without, amplitude: "1" or "2", rigid: what a rigid contact would give, or null}; measured:

@@ -6,6 +6,15 @@ const json = (id) => JSON.parse(document.getElementById(id).textContent);
 const description = json("description");
 const presets = json("presets");
 
+function element(name, properties, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+// The members of each group, in the order in which the groups appear.
+const grouped = (members) => Object.entries(Object.groupBy(members, ({ group }) => group));
+
 class Page {
   constructor(module) {
     this.fmu = new Fmu(module, description);
@@ -52,7 +61,7 @@ class Page {
 
   receive({ id, curve: newCurve, map, done }) {
     if (newCurve && id === this.asked.id) {
-      this.figures.setCurve(newCurve);
+      this.figures.curve = newCurve;
       if (this.state) this.figures.showMean(this.state.here, this.preset?.measured);
     }
     if (map !== undefined) this.figures.map.setMap(map);
@@ -65,35 +74,22 @@ class Page {
   }
 
   makeControls() {
-    for (const spec of json("controls-json")) {
-      const variable = this.fmu.variables.get(spec.name);
-      if (!variable) continue;
-      const control = new Control(spec, variable, (name, value) => this.set(name, value));
-      this.controls.set(spec.name, control);
-      this.groupFor(spec.group).append(control.root);
+    for (const [group, specs] of grouped(json("controls-json"))) {
+      const fieldset = element("fieldset", {}, element("legend", { textContent: group }));
+      for (const spec of specs) {
+        const variable = this.fmu.variables.get(spec.name);
+        const control = new Control(spec, variable, (name, value) => this.change({ [name]: value }, name));
+        this.controls.set(spec.name, control);
+        fieldset.append(control.root);
+      }
+      document.getElementById("controls").append(fieldset);
     }
-  }
-
-  groupFor(name) {
-    const id = `group-${name}`;
-    const known = document.getElementById(id);
-    if (known) return known;
-    const group = document.createElement("fieldset");
-    group.id = id;
-    group.append(Object.assign(document.createElement("legend"), { textContent: name }));
-    document.getElementById("controls").append(group);
-    return group;
   }
 
   makePresets() {
     const select = document.getElementById("preset");
-    for (const preset of presets) {
-      let group = [...select.children].find((child) => child.label === preset.group);
-      if (!group) {
-        group = Object.assign(document.createElement("optgroup"), { label: preset.group });
-        select.append(group);
-      }
-      group.append(new Option(preset.title, preset.id));
+    for (const [label, members] of grouped(presets)) {
+      select.append(element("optgroup", { label }, ...members.map(({ title, id }) => new Option(title, id))));
     }
     select.addEventListener("change", () => this.choose(presets.find(({ id }) => id === select.value)));
   }
@@ -117,9 +113,10 @@ class Page {
     else this.values[name] = value;
   }
 
-  set(name, value) {
-    this.keep(name, value);
-    this.touched = name;
+  // A person touches a variable, by which these values change.
+  change(values, touched) {
+    for (const [name, value] of Object.entries(values)) this.keep(name, value);
+    this.touched = touched;
     this.wrong = "";
     this.refresh();
   }
@@ -128,14 +125,13 @@ class Page {
     const amplitude = swing(this.full());
     const inside = (value, [low, high]) => Math.min(Math.max(value, low), high);
     if (kind === "mean") {
-      this.set("V", amplitude > 0 ? inside(x, [CURVE_LOW, CURVE_HIGH]) * amplitude : inside(x, [1e-6, 10]));
+      const V = amplitude > 0 ? inside(x, [CURVE_LOW, CURVE_HIGH]) * amplitude : inside(x, [1e-6, 10]);
+      this.change({ V }, "V");
     } else if (amplitude > 0) {
       const moved = this.unlessRefused(() => sceneAt(this.fmu, this.full(), inside(x, MAP.kappa), inside(y, MAP.zeta)));
       if (!moved) return; // the scene that was to be moved is refused
-      for (const name of ["V", stiffnessName(moved)]) this.keep(name, moved[name]);
-      this.touched = "V";
-      this.wrong = "";
-      this.refresh();
+      const name = stiffnessName(moved);
+      this.change({ V: moved.V, [name]: moved[name] }, "V");
     }
   }
 
@@ -280,8 +276,7 @@ class Page {
   makeCopies() {
     const bar = document.getElementById("copy-kinds");
     for (const kind of Object.keys(COPIES)) {
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: kind });
-      button.addEventListener("click", () => this.openCopy(kind));
+      const button = element("button", { type: "button", textContent: kind, onclick: () => this.openCopy(kind) });
       button.dataset.kind = kind;
       bar.append(button);
     }
