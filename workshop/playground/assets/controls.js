@@ -92,7 +92,7 @@ class Control {
 
   // Whether the variable has an effect in this scene.
   matters(valueOf) {
-    return Object.entries(this.spec.when ?? {}).every(([name, items]) => {
+    return Object.entries(this.spec.when).every(([name, items]) => {
       const value = valueOf(name);
       return value === undefined || items.includes(value);
     });
