@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
+from frictioncontact.command import as_table, progress_bar, say_written, table_console, write_csv
 from frictioncontact.doubts import FIXED_STEPS
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
 from workshop.bench import figures
@@ -271,8 +271,8 @@ def cheapest(row: Mapping[str, Any], names: Sequence[str]) -> str:
     return f"{least:.3g}" if least < 1000 else f"{least:.0f}"
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, bench_options("work-precision", DESCRIPTION).parse_args(argv))
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    return bench_options("work-precision", DESCRIPTION).parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:

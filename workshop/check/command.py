@@ -1,12 +1,5 @@
 """scripts/check: the long runs that look for crashes, leaks, races, hangs and drift.
 
-    scripts/check                  all of them, an hour and more
-    scripts/check fuzz soak        these
-    scripts/check --quick ...      minutes
-    scripts/check hunt --minutes 10 --seed 1
-    scripts/check near-line
-    scripts/check --ci             sanitizers, valgrind and fuzzers in under four minutes
-
 Each prints its figures and the command behind them. docs/reliability.md says what they found.
 """
 

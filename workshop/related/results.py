@@ -13,11 +13,10 @@ from pathlib import Path
 from lxml import etree
 
 from frictioncontact.command import write_csv
+from workshop.presets import RELATED as FOLDER
 from workshop.presets import presets
-from workshop.project import ROOT
 from workshop.reference import changed, follow, rest, scene_of, settled_deflection
 
-FOLDER = ROOT / "data" / "related"
 COLUMNS = ("time", "F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,8 +60,7 @@ class Record:
 
 def record() -> Record:
     """The whole record."""
-    with gzip.open(FOLDER / "friction-record.csv.gz", "rt", encoding="utf-8") as file:
-        return Record(*np.loadtxt(file, delimiter=",", skiprows=1, unpack=True))
+    return Record(*np.loadtxt(FOLDER / "friction-record.csv.gz", delimiter=",", skiprows=1, unpack=True))
 
 
 @dataclass(frozen=True)
