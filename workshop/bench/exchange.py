@@ -7,8 +7,8 @@ exchange a host's CVODE takes bristle and mass together. Cost is the number of c
 FMU. Errors are the largest at 250 points: of F_t over F_C, of x over F_C / k.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -87,27 +87,19 @@ def against_cost(fmu: FrictionFmu) -> list[dict[str, object]]:
     return rows
 
 
-def table(fmu: FrictionFmu) -> Iterator[tuple[str, str, int, float, float, int]]:
-    """Law, way, calls, errors of F_t and x, events."""
-    for law in LAWS:
-        belt = Belt(law=law)
-        truth = reference(belt)
-        for coupling in COUPLINGS:
-            for count in STEPS:
-                run = simulate(fmu, belt, coupling, count)
-                way = f"co-simulation, {coupling}, {count} steps"
-                yield law, way, run.calls, *errors(belt, run, truth), 0
-        for tolerance in TOLERANCES:
-            run = exchange(fmu, belt, tolerance)
-            way = f"model exchange, tolerance {tolerance:g}"
-            yield law, way, run.calls, *errors(belt, run, truth), run.events
-
-
 def main() -> None:
     print(f"{'law':15}{'way':43}{'calls':>8}{'F_t / F_C':>12}{'k x / F_C':>12}{'events':>8}")
     with FrictionFmu(build_fmu()) as fmu:
-        for law, way, calls, of_F_t, of_x, events in table(fmu):
-            print(f"{law:15}{way:43}{calls:8}{of_F_t:12.1e}{of_x:12.1e}{events or '':>8}")
+        for belt in (Belt(law=law) for law in LAWS):
+            for coupling, count in product(COUPLINGS, STEPS):
+                show(belt, f"co-simulation, {coupling}, {count} steps", simulate(fmu, belt, coupling, count))
+            for tolerance in TOLERANCES:
+                show(belt, f"model exchange, tolerance {tolerance:g}", exchange(fmu, belt, tolerance))
+
+
+def show(belt: Belt, way: str, run: Run) -> None:
+    of_F_t, of_x = errors(belt, run, reference(belt))
+    print(f"{belt.law:15}{way:43}{run.calls:8}{of_F_t:12.1e}{of_x:12.1e}{run.events or '':>8}")
 
 
 if __name__ == "__main__":

@@ -216,7 +216,7 @@ class Page {
   // The name and the note of the scene.
   showScene() {
     const preset = this.preset;
-    const same = preset && this.isUnchanged(preset.values);
+    const same = preset && this.hashOf("", preset.values) === this.hashOf("", this.values);
     document.getElementById("preset").value = preset?.id ?? "";
     setText("changed", preset && !same ? "changed" : "");
     setHtml("note", preset?.note ?? "");
@@ -227,19 +227,11 @@ class Page {
     }
   }
 
-  isUnchanged(values) {
-    return [...this.fmu.variables.values()].every(({ name, start }) => this.valueOf(name) === (values[name] ?? start));
-  }
-
   // The address of the scene and the texts to copy, once the hand rests.
   showAddress() {
-    history.replaceState(null, "", this.hash());
+    history.replaceState(null, "", this.hashOf(this.preset?.id, this.values));
     this.showCopy();
     document.body.dataset.address = "done";
-  }
-
-  hash() {
-    return this.hashOf(this.preset?.id, this.values);
   }
 
   hashOf(id, values) {
