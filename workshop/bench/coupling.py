@@ -134,7 +134,7 @@ def monolithic(belt: Belt) -> Trajectory:
 def coupled_errors(
     fmu: FrictionFmu, belt: Belt, reference: Trajectory, counts: Sequence[int]
 ) -> list[dict[str, object]]:
-    """Largest error of F_t over F_C, and of x over F_C / k, against the communication step."""
+    """The largest errors against the communication step."""
     rows: list[dict[str, object]] = []
     for coupling in COUPLINGS:
         for count in counts:
@@ -146,11 +146,16 @@ def coupled_errors(
             except FrictionError as error:
                 row["failure"] = str(error)
                 continue
-            right = reference(H * np.arange(len(got))).T
-            row["error_x"] = float(np.abs(got[:, 0] - right[:, 0]).max() * belt.k / belt.F_C)
-            row["error_F_t"] = float(np.abs(got[:, 2] - right[:, 2]).max() / belt.F_C)
-            row["failure"] = "chatters" if len(got) <= count or row["error_F_t"] > CHATTER else ""
+            of_F_t, of_x = largest_errors(belt, got, reference(H * np.arange(len(got))).T)
+            failure = "chatters" if len(got) <= count or of_F_t > CHATTER else ""
+            row |= {"error_F_t": of_F_t, "error_x": of_x, "failure": failure}
     return rows
+
+
+def largest_errors(belt: Belt, rows: np.ndarray, right: np.ndarray) -> tuple[float, float]:
+    """Of F_t over F_C, and of x over F_C / k."""
+    x, _, F_t = np.abs(rows - right).max(axis=0).tolist()
+    return F_t / belt.F_C, x * belt.k / belt.F_C
 
 
 def stick_map(belt: Belt, coupling: str, H: float) -> np.ndarray:

@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.coupling import COUPLINGS, Belt, acceleration, cosimulate, monolithic
+from workshop.bench.coupling import COUPLINGS, Belt, acceleration, cosimulate, largest_errors, monolithic
 from workshop.build import build_fmu
 from workshop.exchange import Host
 
@@ -69,9 +69,7 @@ def simulate(fmu: FrictionFmu, belt: Belt, coupling: str, count: int) -> Run:
 
 
 def errors(belt: Belt, run: Run, truth: np.ndarray) -> tuple[float, float]:
-    """Of F_t and x."""
-    error = np.abs(run.rows - truth).max(0)
-    return error[2] / belt.F_C, error[0] * belt.k / belt.F_C
+    return largest_errors(belt, run.rows, truth)
 
 
 def against_cost(fmu: FrictionFmu) -> list[dict[str, object]]:
@@ -82,7 +80,7 @@ def against_cost(fmu: FrictionFmu) -> list[dict[str, object]]:
     for tolerance in TOLERANCES:
         run = exchange(fmu, belt, tolerance)
         of_F_t, of_x = errors(belt, run, truth)
-        found = {"H": belt.end / run.evaluations, "error_F_t": float(of_F_t), "error_x": float(of_x)}
+        found = {"H": belt.end / run.evaluations, "error_F_t": of_F_t, "error_x": of_x}
         rows.append({"coupling": MODEL_EXCHANGE, **found, "failure": ""})
     return rows
 

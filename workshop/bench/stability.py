@@ -1,13 +1,6 @@
-"""Where each method is stable: alone, over z = sigma |V| h / F_C, and coupled to a mass on a belt.
-
-Alone: steady sliding from rest, V and sigma constant. The force starts at 0 and should rise to F_C without
-passing it. With e = 1 - F_t / F_C,
-    monotone   |e| falls and keeps its sign
-    rings      e changes sign from step to step, and falls
-    stable     settles at F_C with an e of changing sign that is below the method's own tolerance
-    diverges   |e| grows
-    refuses    fmi2Error
-"""
+"""Maps where each method is stable. First alone: z = sigma |V| h / F_C from 1e-3 to 1e8, with the theoretical
+limits over the measured edges. Then coupled: a mass on a belt, advanced side by side with the FMU, with
+friction held over a step or moving at its derivative, against a monolithic reference."""
 
 import argparse
 import math
@@ -24,11 +17,6 @@ from workshop.bench import coupling, figures
 from workshop.bench.driver import bench_options, renew_docs
 from workshop.bench.exchange import against_cost
 from workshop.build import build_fmu
-
-DESCRIPTION = """\
-Maps where each method is stable. First alone: z = sigma |V| h / F_C from 1e-3 to 1e8, with the theoretical
-limits over the measured edges. Then coupled: a mass on a belt, advanced side by side with the FMU, with
-friction held over a step or moving at its derivative, against a monolithic reference."""
 
 SIGMA, V, F_C = 2.5e6, VELOCITY_IDENTIFIED, COULOMB_FORCE
 STEPS = 40
@@ -82,6 +70,14 @@ def _unchecked(order: int, z: float) -> np.ndarray:
 
 
 def classify(fmu: FrictionFmu, method: str, z: float) -> str:
+    """Steady sliding from rest, in which the force should rise from 0 to F_C. With e = 1 - F_t / F_C,
+
+    monotone   |e| falls and keeps its sign
+    rings      e changes sign from step to step, and falls
+    stable     settles at F_C with an e of changing sign that is below the method's own tolerance
+    diverges   |e| grows
+    refuses    fmi2Error
+    """
     try:
         error = 1.0 - forces(fmu, method, z)
     except FrictionError:
@@ -127,7 +123,7 @@ def edges(fmu: FrictionFmu) -> list[dict[str, object]]:
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    return bench_options("stability", DESCRIPTION).parse_args(argv)
+    return bench_options("stability", __doc__).parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:

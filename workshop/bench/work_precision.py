@@ -1,4 +1,9 @@
-"""Speed against accuracy: every method of the FMU and its peers, scene by scene."""
+"""Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
+5, 9 and 13 that stops at reversals, CVODE with its defaults) over tolerances or steps: CPU time, evaluations
+of the right-hand side, and the largest error of F_t and of its mean against an independent reference. The
+peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is added to theirs. Then the
+error against the communication step for held and linear inputs, and the cost of one step against the number
+of vibration periods in it."""
 
 import argparse
 import math
@@ -20,14 +25,6 @@ from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrati
 from workshop.bench.driver import Bench, Job, Outcome, bench_options, open_bench, renew_docs
 from workshop.bench.peers import PLAIN_PROGRAMS, plain
 from workshop.project import ROOT
-
-DESCRIPTION = """\
-Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
-5, 9 and 13 that stops at reversals, CVODE with its defaults) over tolerances or steps: CPU time, evaluations
-of the right-hand side, and the largest error of F_t and of its mean against an independent reference. The
-peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is added to theirs. Then the
-error against the communication step for held and linear inputs, and the cost of one step against the number
-of vibration periods in it."""
 
 PAGE = ROOT / "docs" / "numerics.md"
 MATCHED_ERRORS = (1e-6, 1e-9)
@@ -272,7 +269,7 @@ def cheapest(row: Mapping[str, Any], names: Sequence[str]) -> str:
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    return bench_options("work-precision", DESCRIPTION).parse_args(argv)
+    return bench_options("work-precision", __doc__).parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:

@@ -1,4 +1,6 @@
-"""Wheels with the FMU inside: scripts/wheel makes this platform's, scripts/release those of all platforms."""
+"""\
+Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
+page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
 
 import argparse
 import os
@@ -17,10 +19,6 @@ from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release.build_hook import PAGE
 from workshop.release.targets import PLATFORMS
-
-DESCRIPTION = """\
-Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
-page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
 
 
 def wheels(fmu: Path, page: Path, hosts: Mapping[str, Path], output: Path) -> list[Path]:
@@ -54,7 +52,7 @@ def packed(target: str, output: Path, files: Sequence[Path], tag: str = "") -> P
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("scripts/wheel", DESCRIPTION)
+    parser = command_line("scripts/wheel", __doc__)
     add_output(parser, ROOT / "build" / "wheel")
     return parser.parse_args(argv)
 

@@ -182,17 +182,15 @@ class Figures {
   }
 }
 
-const written = new Map(); // what setText and setHtml last put into an element, by its id
+const written = new Map(); // what was last put into an element, by its id
 
-function setText(id, text) {
-  if (written.get(id) !== text) document.getElementById(id).textContent = text;
-  written.set(id, text);
+function put(id, property, content) {
+  if (written.get(id) !== content) document.getElementById(id)[property] = content;
+  written.set(id, content);
 }
 
-function setHtml(id, html) {
-  if (written.get(id) !== html) document.getElementById(id).innerHTML = html;
-  written.set(id, html);
-}
+const setText = (id, text) => put(id, "textContent", text);
+const setHtml = (id, html) => put(id, "innerHTML", html);
 
 // Shows a number in a handy unit; the value attribute holds it in full, in SI.
 function setNumber(id, value, unit, units) {

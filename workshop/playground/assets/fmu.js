@@ -87,9 +87,6 @@ class Fmu {
 
   // The memory may have grown since the last call, which takes the old view away.
   view() {
-    if (!this.dataView || this.dataView.buffer !== this.core.memory.buffer) {
-      this.dataView = new DataView(this.core.memory.buffer);
-    }
-    return this.dataView;
+    return new DataView(this.core.memory.buffer);
   }
 }

@@ -81,7 +81,6 @@ async function work() {
     }
     mapKey = key;
   } catch (error) {
-    if (!(error instanceof Refusal)) throw error;
-    postMessage({ id, refusal: error.message });
+    if (!(error instanceof Refusal)) throw error; // the page shows what the FMU refuses
   }
 }
