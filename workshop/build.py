@@ -47,24 +47,22 @@ def build_targets(
     progress: Progress | None = None,
     options: Sequence[str] = (),
     environment: Mapping[str, str] | None = None,
-    anew: bool = False,
 ) -> Path:
     """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
 
     Commands that are started together build one after the other. What a killed build left, and what came with
-    a copied or renamed project, is built anew, as is all where that is asked for.
-    environment: the whole of it, in place of this process's.
+    a copied or renamed project, is built anew. environment: the whole of it, in place of this process's.
     """
     if progress is None:
         with progress_bar() as own:
-            return build_targets(preset, targets, own, options, environment, anew)
+            return build_targets(preset, targets, own, options, environment)
     folder = presets()[preset]
     task = progress.add_task("Waiting for another build", total=100)
     with _locked(folder):
         progress.update(task, description="Configuring")
         cmake = [sys.executable, "-m", "cmake"]
         unfinished = folder / "unfinished"
-        anew = anew or unfinished.exists() or _is_of_another_folder(folder)
+        anew = unfinished.exists() or _is_of_another_folder(folder)
         settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
         settings += [*shlex.split(os.environ.get("CMAKE_ARGS", "")), *(["--fresh"] if anew else [])]
         chosen = ["--target", *targets] if targets else []
@@ -73,6 +71,13 @@ def build_targets(
             _run([*cmake, *words], environment, unfinished, partial(progress.update, task))
     progress.remove_task(task)
     return folder
+
+
+def forget(preset: str) -> None:
+    """All of a preset is built anew the next time."""
+    folder = presets()[preset]
+    with _locked(folder):
+        (folder / "unfinished").touch()
 
 
 @contextmanager

@@ -89,8 +89,12 @@ class Host(Closing):
         return (c_uint * len(found))(*found)
 
     def _instantiated(self) -> FMU2Counted:
-        known, folder = self.fmu.description, str(self.fmu.directory)
-        model = FMU2Counted(known.guid, known.modelExchange.modelIdentifier, folder, "contact")
+        model = FMU2Counted(
+            guid=self.fmu.description.guid,
+            modelIdentifier=self.fmu.description.modelExchange.modelIdentifier,
+            unzipDirectory=str(self.fmu.directory),
+            instanceName="contact",
+        )
         self.messages: list[str] = []
         self._callbacks = logging_callbacks(self.messages)
         model.instantiate(callbacks=self._callbacks)

@@ -95,11 +95,9 @@ def _start(model: ModelDescription, variable: ScalarVariable) -> str:
 def _allowed(variable: ScalarVariable) -> str:
     """The bounds, in the unit of the Unit column."""
     low, high = variable.min, variable.max
-    if low is not None and high is not None:
-        return f"{low} … {high}"
     if low is not None:
-        return f"≥ {low}"
-    return f"≤ {high}" if high is not None else ""
+        return f"≥ {low}" if high is None else f"{low} … {high}"
+    return "" if high is None else f"≤ {high}"
 
 
 if __name__ == "__main__":

@@ -50,8 +50,8 @@ def _switched_on(axes: Axes, fmu: FrictionFmu) -> None:
             force.append(session.get("F_t"))
     mean = np.mean(np.reshape(force[before:], (4, 200)), axis=1)
     axes.plot(1e6 * np.array(times), force, color=style.BLUE, lw=2, label="$F_t$")
-    ends, label = np.array([50, 100, 150, 200]), "its mean over each period"
-    axes.hlines(mean, ends - 50, ends, color=style.ORANGE, lw=2.2, label=label)
+    axes.hlines(mean, [0, 50, 100, 150], [50, 100, 150, 200], color=style.ORANGE, lw=2.2)
+    axes.plot([], [], color=style.ORANGE, lw=2.2, label="its mean over each period")
     axes.axvline(0.0, color=style.GREY, lw=1.0, ls="--")
     axes.set(
         xlabel="time [µs]", ylabel="friction force [N]", title="Vibration of 20 kHz switched on at t = 0"

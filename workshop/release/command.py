@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from fmpy.validation import validate_fmu
@@ -21,6 +21,7 @@ from rich.progress import Progress
 from frictioncontact.command import command_line, progress_bar, shown
 from frictioncontact.errors import UserError
 from frictioncontact.files import whole_file
+from workshop.build import forget
 from workshop.fmu_docs.page import page as index_page
 from workshop.playground.page import page_text
 from workshop.project import ROOT
@@ -37,12 +38,9 @@ SUNDIALS = ROOT / "build" / "sundials-source"
 TOOLCHAIN_LICENSES = {"zig-license.txt": "LICENSE", "mingw-w64-license.txt": "lib/libc/mingw/COPYING"}
 
 
-def compile_platform(platform: str, progress: Progress | None = None, anew: bool = False) -> Path:
-    """The library of a platform, in CMake's folder for it, inspected; beside it the wheel's batch host.
-
-    anew: everything is compiled, whatever has been compiled before.
-    """
-    folder = build(platform, ["fmu_parts", "friction_batch"], progress, anew)
+def compile_platform(platform: str, progress: Progress | None = None) -> Path:
+    """The library of a platform, in CMake's folder for it, inspected; beside it the wheel's batch host."""
+    folder = build(platform, ["fmu_parts", "friction_batch"], progress)
     library = folder / f"FrictionContact{PLATFORMS[platform].suffix}"
     release_inspect.check(platform, library)
     release_inspect.check(platform, batch_host(library), "batch_")
@@ -93,12 +91,8 @@ def pack(output: Path, libraries: dict[str, Path], parts: Path, files: dict[str,
             raise UserError(f"the validator finds: {' '.join(problems[0].split())}")
 
 
-def make_release(output: Path, platforms: Iterable[str], progress: Progress, anew: bool = False) -> None:
-    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not.
-
-    anew: every file is compiled, whatever has been compiled before.
-    """
-    platforms = list(platforms)
+def make_release(output: Path, platforms: Sequence[str], progress: Progress) -> None:
+    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not."""
     zig()
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
@@ -112,7 +106,7 @@ def make_release(output: Path, platforms: Iterable[str], progress: Progress, ane
     task = progress.add_task("Compiling", total=len(platforms) + 3)
     for platform in platforms:
         progress.update(task, advance=1, description=f"Compiling for {platform}")
-        libraries[platform] = compile_platform(platform, progress, anew)
+        libraries[platform] = compile_platform(platform, progress)
     with tempfile.TemporaryDirectory(prefix="release-") as temporary:
         folder = Path(temporary)
         progress.update(task, advance=1, description="Writing pages")
@@ -160,8 +154,10 @@ def run(options: argparse.Namespace) -> None:
     name = "release-quick" if options.quick else "release"
     output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
     platforms = options.platforms or (QUICK if options.quick else list(PLATFORMS))
+    for platform in () if options.quick else platforms:
+        forget(platform)
     with progress_bar() as progress:
-        make_release(output, platforms, progress, anew=not options.quick)
+        make_release(output, platforms, progress)
     print(f"SUNDIALS {sundials_version()}")
     print(f"zig {importlib.metadata.version('ziglang')}")
     for line in output.with_name(SUMS).read_text().splitlines():

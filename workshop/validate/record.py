@@ -133,22 +133,14 @@ def fit(fmu: FrictionFmu, record: Record, law: str) -> RecordFit:
     found = least_squares(
         lambda x: model(x, cycles) - cycles.friction, guess, diff_step=1e-4, x_scale=[1.0, 0.2]
     )
-    friction = model(found.x, whole)
-    predicted = predicted_cycles(record)
+    friction, constant = model(found.x, whole), model(found.x, whole, "Constant")
+    predicted, unloading = predicted_cycles(record), whole.time >= UNLOADING[0]
     of_predicted = friction[np.isin(whole.time, predicted.time)]
+    misfits = rms(found.fun) / sliding, rms(of_predicted - predicted.friction) / sliding
+    works = work(of_predicted, predicted) / work(predicted.friction, predicted)
     stiffness, mu = map(float, np.exp(found.x))
-    unloading = whole.time >= UNLOADING[0]
-    return RecordFit(
-        law,
-        None if law == "Coulomb" else stiffness,
-        mu,
-        friction,
-        rms(found.fun) / sliding,
-        rms(of_predicted - predicted.friction) / sliding,
-        work(of_predicted, predicted) / work(predicted.friction, predicted),
-        friction[unloading],
-        model(found.x, whole, "Constant")[unloading],
-    )
+    known = None if law == "Coulomb" else stiffness
+    return RecordFit(law, known, mu, friction, *misfits, works, friction[unloading], constant[unloading])
 
 
 def without_bound(record: Record, fit: RecordFit) -> np.ndarray:
