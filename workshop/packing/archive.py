@@ -5,6 +5,7 @@ The same input gives the same bytes: names are sorted and timestamps fixed.
 
 import argparse
 import hashlib
+import re
 import struct
 import sys
 import zipfile
@@ -47,21 +48,14 @@ def whole_binary(path: Path) -> bytes:
 def packaged_xml(path: Path, sources: list[str]) -> bytes:
     """The model description as it goes into the FMU: with its guid and the list of its C sources."""
     xml = path.read_bytes()
-    guid = model_description.guid_of(xml)
-    text = xml.decode()
+    text, files = xml.decode(), "".join(f'      <File name="{name}"/>\n' for name in sources)
     for interface in ("ModelExchange", "CoSimulation"):
-        text = _with_sources(path, text, interface, sources)
+        listed = f">\n    <SourceFiles>\n{files}    </SourceFiles>\n  </{interface}>"
+        text, count = re.subn(rf"(<{interface}\n[^<]*?)/>", rf"\1{listed}", text)
+        if count != 1:
+            raise ValueError(f"{path}: expected one {interface} element without content")
+    guid = model_description.guid_of(xml)
     return text.replace(f'guid="{model_description.GUID_PLACEHOLDER}"', f'guid="{guid}"').encode()
-
-
-def _with_sources(path: Path, text: str, interface: str, sources: list[str]) -> str:
-    head, found, rest = text.partition(f"<{interface}\n")
-    attributes, closed, rest = rest.partition("/>")
-    if not found or not closed or "<" in attributes:
-        raise ValueError(f"{path}: expected one {interface} element without content")
-    files = "".join(f'      <File name="{name}"/>\n' for name in sources)
-    listed = f">\n    <SourceFiles>\n{files}    </SourceFiles>\n  </{interface}>"
-    return f"{head}<{interface}\n{attributes}{listed}{rest}"
 
 
 def build_description(identifier: str, sources: list[str]) -> bytes:
