@@ -9,7 +9,7 @@ import numpy as np
 from frictioncontact import command as shared
 from frictioncontact.advice.answer import PHASES, STEPS
 from frictioncontact.fmu import FrictionFmu, Value
-from frictioncontact.parameters import E_FULL, E_REDUCED, STIFFNESS_PRINTED, TABLE_2
+from frictioncontact.parameters import STIFFNESS_PRINTED, TABLE_2, start_values
 from workshop.bench.cases import Case, sampled, vibrating
 from workshop.bench.coupling import Belt, monolithic
 from workshop.bench.driver import REPORT
@@ -85,17 +85,9 @@ def scenes() -> list[Case]:
     """The scenes for which the table of levels is made."""
     wave = {"V": 0.3 * np.cos(2 * np.pi * np.arange(41) / 40)}
     soft, stiff, presliding = vibrating(2.5e6), vibrating(6e12), sampled(40, 2.5e6, linear=True)
-    of_paper = [
-        Case(
-            f"table-2-row-{row.number}",
-            f"Table 2, row {row.number}",
-            {"E": E_REDUCED if row.softened else E_FULL, "vibration.V_1": row.V_1, "vibration.a_d": row.a_d},
-        )
-        for row in TABLE_2
-    ]
     return [
         Case("steady", "steady sliding, 0.1 ms steps", {}, step=1e-4),
-        *of_paper,
+        *(Case(f"row-{row.number}", f"Table 2, row {row.number}", start_values(row)) for row in TABLE_2),
         replace(presliding, name="presliding", title="presliding hysteresis", inputs=wave),
         _stick_slip(),
         replace(soft, name="soft", title="soft contact, V and d vibrate"),

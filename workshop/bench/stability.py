@@ -25,10 +25,7 @@ ROUNDING = 1e-12
 RK4_LIMIT = 2.785293563405282
 
 FMU_METHODS = ("collocation", "cvode", "backwardEuler", "trapezoid", "rk4", "explicitEuler")
-UNCHECKED = {
-    "rk4, unchecked": 4,
-    "explicitEuler, unchecked": 1,
-}  # what an FMU without the check does: its order
+UNCHECKED = {"rk4, unchecked": 4, "explicitEuler, unchecked": 1}  # an FMU without the check, of this order
 METHODS = (*FMU_METHODS, *UNCHECKED)
 
 # Where one behaviour gives way to another, in theory.

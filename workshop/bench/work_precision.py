@@ -21,9 +21,8 @@ from frictioncontact.command import as_table, progress_bar, say_written, table_c
 from frictioncontact.doubts import FIXED_STEPS
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
 from workshop.bench import figures
-from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
+from workshop.bench.cases import PLAIN_PROGRAMS, SIGMAS, Case, cases, expected, plain, sampled, vibrating
 from workshop.bench.driver import Bench, Job, Outcome, bench_options, open_bench, renew_docs
-from workshop.bench.peers import PLAIN_PROGRAMS, plain
 from workshop.project import ROOT
 
 PAGE = ROOT / "docs" / "numerics.md"
@@ -69,27 +68,24 @@ class Point:
         return max(self.error_F_t, self.error_F_t_mean)
 
 
-@dataclass(frozen=True)
-class Task:
-    """A method at a setting: outcome from a start [s] for which there is a reference."""
-
-    method: str
-    setting: float
-    run: Callable[[float], Outcome]
+Run = Callable[[float], Outcome]  # from a start [s] for which there is a reference
+References = Mapping[float, tuple[np.ndarray, np.ndarray]]
 
 
-def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[Task]:
-    def fmu(method: str, name: str, value: float) -> Callable[[float], Outcome]:
+def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[tuple[str, float, Run]]:
+    """Each method at each setting."""
+
+    def fmu(method: str, name: str, value: float) -> Run:
         settings = {"solver.method": method, name: value}
         return lambda start: bench.run(case.job(start, effort.budget, settings))
 
     for tolerance in map(float, effort.tolerances):
         for method in ("collocation", "cvode"):
-            yield Task(method, tolerance, fmu(method, "solver.tolerance", tolerance))
+            yield method, tolerance, fmu(method, "solver.tolerance", tolerance)
         for method in PLAIN_PROGRAMS:
-            yield Task(method, tolerance, partial(plain, bench, method, case, tolerance, effort.budget))
+            yield method, tolerance, partial(plain, bench, method, case, tolerance, effort.budget)
     for steps, method in product(map(float, effort.steps), FIXED_STEPS):
-        yield Task(method, steps, fmu(method, "solver.stepSize", case.step / steps))
+        yield method, steps, fmu(method, "solver.stepSize", case.step / steps)
 
 
 def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
@@ -106,9 +102,9 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
         calls = min(calls, PERIOD / case.step * bench.run(empty).cpu)
         for k, task in enumerate(planned):
             if turn == 0:
-                points.append(graded(case, references, task))
+                points.append(graded(case, references, *task))
             elif not points[k].failure and points[k].cpu < SLOW:
-                cpu = graded(case, references, task).cpu
+                cpu = graded(case, references, *task).cpu
                 points[k] = replace(points[k], cpu=min(cpu, points[k].cpu))
     return [
         Point(case.name, CALLS, 0.0, math.nan, math.nan, calls, 0.0),
@@ -116,16 +112,16 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
     ]
 
 
-def graded(case: Case, references: Mapping[float, tuple[np.ndarray, np.ndarray]], task: Task) -> Point:
+def graded(case: Case, right: References, method: str, setting: float, run: Run) -> Point:
     """From every start of the case."""
-    outcomes = [task.run(start) for start in references]
+    outcomes = [run(start) for start in right]
     for outcome in outcomes:
         if outcome.failure:
-            return Point(case.name, task.method, task.setting, *[math.nan] * 4, outcome.failure)
-    misses = np.array([(o.F, o.F_mean) for o in outcomes]) - [*references.values()]  # [start, which, step]
+            return Point(case.name, method, setting, *[math.nan] * 4, outcome.failure)
+    misses = np.array([(o.F, o.F_mean) for o in outcomes]) - [*right.values()]  # [start, which, step]
     errors = np.abs(misses).max(axis=(0, 2)) / case.F_C
     costs = np.median([(o.cpu, o.evaluations) for o in outcomes], axis=0)
-    return Point(case.name, task.method, task.setting, *errors, *PERIOD / case.step * costs)
+    return Point(case.name, method, setting, *errors, *PERIOD / case.step * costs)
 
 
 def cost_at(points: Sequence[Point], error: float) -> float:

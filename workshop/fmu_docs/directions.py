@@ -52,16 +52,16 @@ def mean(fmu: FrictionFmu, start_values: dict[str, Value], V: np.ndarray) -> np.
 def draw(fmu: FrictionFmu, path: Path) -> None:
     figure, panels = style.subplots(3, 1, size=(5.2, 8.6), sharex=True)
     V = np.unique(np.concatenate([np.geomspace(1e-3, 10.0, 121), np.linspace(1.2, 1.5, 31), [AMPLITUDE]]))
-    titles = {
-        "along": f"Along the sliding, {AMPLITUDE} m/s",
-        "transverse": f"Transverse, {AMPLITUDE} m/s",
-        "normal": f"Normal, {1e6 * HEIGHT:g} µm",
-    }
-    for axes, direction in zip(panels, DIRECTIONS, strict=True):
+    titles = (
+        f"Along the sliding, {AMPLITUDE} m/s",
+        f"Transverse, {AMPLITUDE} m/s",
+        f"Normal, {1e6 * HEIGHT:g} µm",
+    )
+    for axes, direction, title in zip(panels, DIRECTIONS, titles, strict=True):
         for law, kappa, colour, dash, label in LINES:
             force = mean(fmu, scene(law, kappa, direction), V)
             axes.semilogx(V, force, dash, color=colour, lw=2.2, label=label)
-        axes.set(title=titles[direction], xlim=(V[0], V[-1]), ylim=(0.0, 1.06))
+        axes.set(title=title, xlim=(V[0], V[-1]), ylim=(0.0, 1.06))
         axes.set_ylabel("mean friction over $F_C$")
     panels[-1].set_xlabel("sliding velocity V [m/s]")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)

@@ -46,8 +46,7 @@ def new_axes() -> tuple[Figure, Axes]:
     figure, axes = style.subplots(size=SIZE)
     axes.tick_params(colors=INK, length=0)
     axes.grid(color=GRID)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
+    axes.spines[:].set_visible(False)
     return figure, axes
 
 

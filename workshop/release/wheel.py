@@ -23,10 +23,7 @@ from workshop.release.targets import PLATFORMS
 
 def wheels(fmu: Path, page: Path, hosts: Mapping[str, Path], output: Path) -> list[Path]:
     """A wheel for each platform with its batch host, and the sdist, in the folder output."""
-    made = [
-        packed("wheel", output, [fmu, page, host], PLATFORMS[platform].tag)
-        for platform, host in hosts.items()
-    ]
+    made = [packed("wheel", output, [fmu, page, host], PLATFORMS[name].tag) for name, host in hosts.items()]
     return [*made, packed("sdist", output, [page])]
 
 
@@ -37,13 +34,9 @@ def packed(target: str, output: Path, files: Sequence[Path], tag: str = "") -> P
         bundle.mkdir()
         for path in files:
             shutil.copy(path, bundle)
-        run = subprocess.run(
-            [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(made)],
-            cwd=ROOT,
-            env={**os.environ, "FRICTIONCONTACT_BUNDLE": str(bundle), "FRICTIONCONTACT_PLATFORM": tag},
-            capture_output=True,
-            text=True,
-        )
+        command = [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(made)]
+        given = {"FRICTIONCONTACT_BUNDLE": str(bundle), "FRICTIONCONTACT_PLATFORM": tag}
+        run = subprocess.run(command, cwd=ROOT, env=os.environ | given, capture_output=True, text=True)
         if run.returncode:
             raise UserError(f"the {target} fails: {' '.join(run.stderr.split())[-300:]}")
         (path,) = made.iterdir()

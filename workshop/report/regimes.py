@@ -37,15 +37,8 @@ Scenes = Mapping[str, Numbers]  # start values
 R_Q = Surfaces.R_q
 TO_STIFFNESS = 2.0 * math.pi * FREQUENCY * COULOMB_FORCE  # kappa times this over V_1 is sigma
 STEP = 1e-3  # of the central differences, relative or in rad
-SYMBOLS = {
-    "V": "V",
-    "vibration.V_1": "V_1",
-    "F_C": "F_C",
-    "vibration.a_d": "a_d",
-    "vibration.phase_d": "phase",
-    "E": "E",
-    "d": "d",
-}
+NAMES = ("V", "vibration.V_1", "F_C", "vibration.a_d", "vibration.phase_d", "E", "d")
+SYMBOLS = {name: name.removeprefix("vibration.").replace("phase_d", "phase") for name in NAMES}
 REGIMES = {
     "Coulomb": SKY,
     "Dahl, constant stiffness": GREEN,

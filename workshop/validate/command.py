@@ -132,10 +132,8 @@ def run(options: argparse.Namespace) -> None:
         console.print(scatter_line(whole), cycles_table(whole, record_fits), sep="\n")
         console.print(elements_table(elements.fits(whole)), unloading_table(whole, record_fits), sep="\n")
 
-    drawn = {
-        "longitudinal": figures.longitudinal(sliding),
-        "normal": figures.normal(path, vibration, normal_fits),
-    }
+    drawn = {"longitudinal": figures.longitudinal(sliding)}
+    drawn["normal"] = figures.normal(path, vibration, normal_fits)
     if record_fits:
         drawn["cycles"] = figures.cycles(whole, record_fits)
         drawn["unloading"] = figures.unloading(whole, record_fits)

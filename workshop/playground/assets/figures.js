@@ -33,13 +33,9 @@ function circle(radius) {
 // Spans of time where the surfaces slide backwards.
 function backwards({ time, velocity }) {
   const spans = [];
-  let from = null;
   velocity.forEach((V, k) => {
-    if (V < 0 && from === null) from = time[k];
-    if (from !== null && (V >= 0 || k === velocity.length - 1)) {
-      spans.push([from, time[k]]);
-      from = null;
-    }
+    if (V < 0 && !(velocity[k - 1] < 0)) spans.push([time[k], time[k]]);
+    if (V < 0 || velocity[k - 1] < 0) spans.at(-1)[1] = time[k];
   });
   return spans;
 }

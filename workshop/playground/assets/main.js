@@ -31,7 +31,7 @@ class Page {
     this.controls = new Map();
     this.makePresets();
     this.restore(); // the first picture, before anything that is not needed for it
-    afterPaint(() => this.complete(module));
+    requestAnimationFrame(() => setTimeout(() => this.complete(module)));
   }
 
   complete(module) {
@@ -314,21 +314,13 @@ function reachable(element) {
   }).observe(element);
 }
 
-// Calls work once something is on the screen.
-function afterPaint(work) {
-  const observer = new PerformanceObserver(() => {
-    observer.disconnect();
-    work();
-  });
-  observer.observe({ type: "paint", buffered: true });
-}
-
 function decoded(base64) {
   return Uint8Array.fromBase64?.(base64) ?? Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
 }
 
 // At once, so that the page is laid out with its picture in it; some browsers let only a worker do that.
-async function compiled(bytes) {
+async function compiled(base64) {
+  const bytes = decoded(base64);
   try {
     return new WebAssembly.Module(bytes);
   } catch (error) {
@@ -337,11 +329,9 @@ async function compiled(bytes) {
   }
 }
 
-async function main() {
-  new Page(await compiled(decoded(document.getElementById("wasm").textContent)));
-}
-
-main().catch((error) => {
-  setText("refusal", `This browser can't run the page: ${error.message}`);
-  throw error;
-});
+compiled(document.getElementById("wasm").textContent)
+  .then((module) => new Page(module))
+  .catch((error) => {
+    setText("refusal", `This browser can't run the page: ${error.message}`);
+    throw error;
+  });
