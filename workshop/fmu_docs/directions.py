@@ -44,19 +44,15 @@ def scene(law: str, kappa: float, direction: str) -> dict[str, Value]:
 
 def mean(fmu: FrictionFmu, start_values: dict[str, Value], V: np.ndarray) -> np.ndarray:
     """Settled mean friction over F_C at each V [m/s]."""
-    return (
-        simulate_many(start_values | {"V": V}, ["F_t_settled"], fmu=fmu.path)["F_t_settled"] / COULOMB_FORCE
-    )
+    found = simulate_many(start_values | {"V": V}, ["F_t_settled"], fmu=fmu.path)
+    return found["F_t_settled"] / COULOMB_FORCE
 
 
 def draw(fmu: FrictionFmu, path: Path) -> None:
     figure, panels = style.subplots(3, 1, size=(5.2, 8.6), sharex=True)
     V = np.unique(np.concatenate([np.geomspace(1e-3, 10.0, 121), np.linspace(1.2, 1.5, 31), [AMPLITUDE]]))
-    titles = (
-        f"Along the sliding, {AMPLITUDE} m/s",
-        f"Transverse, {AMPLITUDE} m/s",
-        f"Normal, {1e6 * HEIGHT:g} µm",
-    )
+    speed, height = f"{AMPLITUDE} m/s", f"{1e6 * HEIGHT:g} µm"
+    titles = f"Along the sliding, {speed}", f"Transverse, {speed}", f"Normal, {height}"
     for axes, direction, title in zip(panels, DIRECTIONS, titles, strict=True):
         for law, kappa, colour, dash, label in LINES:
             force = mean(fmu, scene(law, kappa, direction), V)

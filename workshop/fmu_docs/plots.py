@@ -27,7 +27,6 @@ V_1 = TABLE_2[1].V_1
 COLOURS = ("#0072b2", "#d55e00", "#00835f", "#a23e86")
 INK, GRID = "#222222", "#d0d0d0"
 VARIABLES = {**dict(zip(COLOURS, ("c1", "c2", "c3", "c4"), strict=True)), INK: "ink", GRID: "grid"}
-SIZE = (4.6, 3.1)  # inches
 
 
 def start_values(kappa: float, V: float) -> dict[str, Value]:
@@ -43,7 +42,7 @@ def start_values(kappa: float, V: float) -> dict[str, Value]:
 
 
 def new_axes() -> tuple[Figure, Axes]:
-    figure, axes = style.subplots(size=SIZE)
+    figure, axes = style.subplots(size=(4.6, 3.1))
     axes.tick_params(colors=INK, length=0)
     axes.grid(color=GRID)
     axes.spines[:].set_visible(False)

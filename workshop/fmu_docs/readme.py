@@ -167,10 +167,10 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "solver-period": partial(march.draw_map, fmu),
         "three-directions": partial(directions.draw, fmu),
     }
-    paths = [folder / f"{name}.png" for name in drawings]
-    for path, drawing in zip(paths, drawings.values(), strict=True):
+    paths = {folder / f"{name}.png": drawing for name, drawing in drawings.items()}
+    for path, drawing in paths.items():
         drawing(path)
-    return paths
+    return list(paths)
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
@@ -182,7 +182,5 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> None:
     with FrictionFmu(options.fmu or build_fmu()) as fmu:
-        for path in draw(fmu, options.output):
-            print(path)
-    for path in draw_tutorial(options.output / "tutorial"):
-        print(path)
+        print(*draw(fmu, options.output), sep="\n")
+    print(*draw_tutorial(options.output / "tutorial"), sep="\n")

@@ -26,12 +26,12 @@ from workshop.fmu_docs.page import page as index_page
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release import inspect as release_inspect
+from workshop.release.build_hook import PAGE
 from workshop.release.targets import PLATFORMS, build, zig
 from workshop.release.universal import universal
 from workshop.release.verify import SUMS, verify, write_sums
 from workshop.release.wheel import wheels
 
-PLAYGROUND = "playground.html"  # the page of the live FMU, inside the FMU and beside it
 QUICK = ("linux64", "aarch64-darwin")  # the compiler's two ways: with the linker's optimization, and without
 SUNDIALS = ROOT / "build" / "sundials-source"
 # Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
@@ -57,17 +57,16 @@ def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str,
     if not {"darwin64", "aarch64-darwin"} <= libraries.keys():
         return libraries
     path = folder / "universal.dylib"
-    path.write_bytes(
-        universal([libraries["darwin64"].read_bytes(), libraries["aarch64-darwin"].read_bytes()])
-    )
+    slices = [libraries[name].read_bytes() for name in ("darwin64", "aarch64-darwin")]
+    path.write_bytes(universal(slices))
     return {**libraries, "darwin64": path}
 
 
 def documents(folder: Path) -> dict[str, Path]:
     """The page of the live FMU and index.html with a link to it, in folder: name in the FMU -> file."""
-    files = {f"documentation/{name}": folder / name for name in ("index.html", PLAYGROUND)}
+    files = {f"documentation/{name}": folder / name for name in ("index.html", PAGE)}
     files["documentation/index.html"].write_text(index_page(playground=True), encoding="utf-8")
-    files[f"documentation/{PLAYGROUND}"].write_text(page_text(), encoding="utf-8")
+    files[f"documentation/{PAGE}"].write_text(page_text(), encoding="utf-8")
     return files
 
 
@@ -112,7 +111,7 @@ def make_release(output: Path, platforms: Sequence[str], progress: Progress) -> 
         progress.update(task, advance=1, description="Writing pages")
         files = documents(folder)
         progress.update(task, advance=1, description="Packing and validating")
-        fmu, page = folder / "FrictionContact.fmu", files[f"documentation/{PLAYGROUND}"]
+        fmu, page = folder / "FrictionContact.fmu", files[f"documentation/{PAGE}"]
         parts = libraries[platforms[0]].parent
         pack(fmu, with_universal_darwin(libraries, folder), parts, files)
         progress.update(task, advance=1, description="Packing wheels")

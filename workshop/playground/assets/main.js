@@ -25,7 +25,6 @@ class Page {
     this.wrong = ""; // what the address says that is no part of a scene
     this.frame = 0;
     this.copyKind = "fmpy";
-    this.worker = null;
     this.asked = { id: 0, values: {} };
     this.figures = new Figures((kind, at) => this.drag(kind, at));
     this.controls = new Map();

@@ -1,7 +1,8 @@
 """Writes the results that the FMU carries: data/related/EXPERIMENT.csv, from the independent reference.
 
-    python -m workshop.related.results
+    python -m workshop.related
 
+The folder is extra/org.fmi-standard.fmi-ls-ref/ of the FMU, by the layered standard FMI-LS-REF 1.0.0-beta.1.
 The reference solves Eq. 1-4, 12-14, 20-22 and 24 by itself, in extended precision: no number is the FMU's.
 """
 
