@@ -22,7 +22,7 @@ def test_it_writes_the_page(html: Path, tmp_path: Path) -> None:
 def test_what_goes_wrong_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(command, "page_text", lambda: "page")
     for output in ("/dev/null/page.html", str(tmp_path)):
-        with pytest.raises(SystemExit, match="error: .*(folder|directory)") as stopped:
+        with pytest.raises(SystemExit, match=r"error: .*(folder|directory)") as stopped:
             main(command, ["-o", output])
         assert "\n" not in str(stopped.value) and list(tmp_path.iterdir()) == []
 
