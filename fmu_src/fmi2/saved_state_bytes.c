@@ -6,13 +6,7 @@
 //     12      4     size of all the bytes
 //     16      38    guid of the FMU
 //     54            the variables in the order of modelDescription.xml: Real 8 bytes, Enumeration 4
-//                   time and its rounding, roundings of W_f and Q_f, rates of the last step, rates of the next step:
-//                   8 bytes each; whether the latter were set, and to which side the bristle slips: 4 each
-//                   the past from which inputs may jump: 8 bytes each
-//                   of model exchange: regime, whether a state was changed: 4 bytes each; when the inputs were seen
-//                   last, they and their speeds, two nominal values, the lag, its force and heat: 8 bytes each
-//                   interface, mode, outputs_stale, tolerance_is_set, has_stop_time: 4 bytes each; start and stop time:
-//                   8
+//                   the members of MEMBERS, in their order: Real 8 bytes, any other 4
 //     end - 8 8     FNV-1a hash of all the bytes before it
 //
 // Numbers are little-endian whatever the machine: integers in two's complement, doubles in IEEE 754. There
@@ -20,6 +14,7 @@
 // single byte: each step of it is one-to-one.
 #include <inttypes.h>
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "fmi2/log.h"
@@ -35,14 +30,37 @@ enum { MAGIC_SIZE = 8, GUID_SIZE = 38, HEADER_SIZE = MAGIC_SIZE + 4 + 4 + GUID_S
 
 static const char magic[MAGIC_SIZE + 1] = "FRICTION";
 
+// What a state holds besides the variables: neighbours of one kind in a row.
+typedef enum { REAL, INTEGER, FLAG } Kind;
+typedef struct {
+    size_t offset;
+    Kind kind;
+    int count;
+    const char* part; // of the state, for a message
+} Member;
+
+#define AT(member) offsetof(FcSavedState, member)
+static const Member MEMBERS[] = {
+    {AT(friction.time), REAL, 4 + 2 * FC_INPUT_COUNT, "the time or a rate of an input"},
+    {AT(friction.next_rate_set), FLAG, 1, "the time or a rate of an input"},
+    {AT(friction.slips), INTEGER, 1, "what the last step left"},
+    {AT(friction.past), REAL, sizeof(FcPast) / sizeof(double), "what the last step left"},
+    {AT(friction.hybrid.regime), INTEGER, 1, "what model exchange keeps"},
+    {AT(friction.hybrid.changed), FLAG, 1, "what model exchange keeps"},
+    {AT(friction.hybrid.seen_time), REAL, 6 + 2 * FC_INPUT_COUNT, "what model exchange keeps"},
+    {AT(experiment.interface), INTEGER, 2, "the state of the instance"},
+    {AT(experiment.outputs_stale), FLAG, 3, "the state of the instance"},
+    {AT(experiment.start_time), REAL, 2, "the state of the instance"},
+};
+enum { MEMBER_COUNT = sizeof MEMBERS / sizeof *MEMBERS };
+
 _Static_assert(sizeof(FcHybrid) == 2 * sizeof(int) + (6 + 2 * FC_INPUT_COUNT) * sizeof(double),
-               "a new member of FcHybrid must be added to transfer_hybrid");
-_Static_assert(sizeof(FcPast) == 8 * sizeof(double), "a new member of FcPast must be added to transfer_past");
+               "a new member of FcHybrid must be added to MEMBERS");
 _Static_assert(sizeof(FcFrictionState) == sizeof(FcVariables) + (4 + 2 * FC_INPUT_COUNT) * sizeof(double) +
                                               2 * sizeof(int) + sizeof(FcPast) + sizeof(FcHybrid),
-               "a new member of FcFrictionState must be added to transfer_state");
+               "a new member of FcFrictionState must be added to MEMBERS");
 _Static_assert(sizeof(FcExperiment) == 6 * sizeof(int) + 2 * sizeof(double),
-               "a new member of FcExperiment must be added to transfer_state");
+               "a new member of FcExperiment must be added to MEMBERS");
 
 static uint64_t fnv1a(const unsigned char* bytes, size_t size) {
     uint64_t hash = 14695981039346656037u;
@@ -102,39 +120,18 @@ static void transfer_real(Cursor* cursor, double* value) {
     expect(cursor, isfinite(*value));
 }
 
-static void transfer_flag(Cursor* cursor, int* value) {
-    transfer_integer(cursor, value);
-    expect(cursor, *value == 0 || *value == 1);
-}
-
-static void transfer_inputs(Cursor* cursor, double of[FC_INPUT_COUNT]) {
-    for (int input = 0; input < FC_INPUT_COUNT; input++) {
-        transfer_real(cursor, &of[input]);
+static void transfer_member(Cursor* cursor, const Member* member, FcSavedState* saved) {
+    char* first = (char*)saved + member->offset;
+    cursor->part = member->part;
+    for (int i = 0; i < member->count; i++) {
+        if (member->kind == REAL) {
+            transfer_real(cursor, (double*)(void*)first + i);
+        } else {
+            int* value = (int*)(void*)first + i;
+            transfer_integer(cursor, value);
+            expect(cursor, member->kind == INTEGER || *value == 0 || *value == 1);
+        }
     }
-}
-
-static void transfer_past(Cursor* cursor, FcPast* past) {
-    transfer_real(cursor, &past->d);
-    transfer_real(cursor, &past->V);
-    transfer_real(cursor, &past->V_y);
-    transfer_real(cursor, &past->E);
-    transfer_real(cursor, &past->limit);
-    transfer_real(cursor, &past->ratio);
-    transfer_real(cursor, &past->V_S);
-    transfer_real(cursor, &past->sigma);
-}
-
-static void transfer_hybrid(Cursor* cursor, FcHybrid* hybrid) {
-    transfer_integer(cursor, &hybrid->regime);
-    transfer_flag(cursor, &hybrid->changed);
-    transfer_real(cursor, &hybrid->seen_time);
-    transfer_inputs(cursor, hybrid->seen);
-    transfer_inputs(cursor, hybrid->speed);
-    transfer_real(cursor, &hybrid->nominal_delta);
-    transfer_real(cursor, &hybrid->nominal_energy);
-    transfer_real(cursor, &hybrid->lag);
-    transfer_real(cursor, &hybrid->lag_force);
-    transfer_real(cursor, &hybrid->lag_heat);
 }
 
 static bool mode_is_sound(const FcExperiment* experiment) {
@@ -172,31 +169,15 @@ static void transfer_state(Cursor* cursor, FcSavedState* saved) {
         }
         expect(cursor, fc_variable_allows(info, fc_variable_value(&friction->variables, info)));
     }
-    cursor->part = "the time or a rate of an input";
-    transfer_real(cursor, &friction->time);
-    transfer_real(cursor, &friction->time_rest);
-    transfer_real(cursor, &friction->W_f_rest);
-    transfer_real(cursor, &friction->Q_f_rest);
-    transfer_inputs(cursor, friction->rate);
-    transfer_inputs(cursor, friction->next_rate);
-    transfer_flag(cursor, &friction->next_rate_set);
+    for (int i = 0; i < MEMBER_COUNT; i++) {
+        transfer_member(cursor, &MEMBERS[i], saved);
+    }
     cursor->part = "what the last step left";
-    transfer_integer(cursor, &friction->slips);
     expect(cursor, friction->slips >= -1 && friction->slips <= 1);
-    transfer_past(cursor, &friction->past);
     cursor->part = "what model exchange keeps";
-    transfer_hybrid(cursor, &friction->hybrid);
     expect(cursor, regime_is_sound(friction));
     cursor->part = "the state of the instance";
-    FcExperiment* experiment = &saved->experiment;
-    transfer_integer(cursor, &experiment->interface);
-    transfer_integer(cursor, &experiment->mode);
-    expect(cursor, mode_is_sound(experiment));
-    transfer_flag(cursor, &experiment->outputs_stale);
-    transfer_flag(cursor, &experiment->tolerance_is_set);
-    transfer_flag(cursor, &experiment->has_stop_time);
-    transfer_real(cursor, &experiment->start_time);
-    transfer_real(cursor, &experiment->stop_time);
+    expect(cursor, mode_is_sound(&saved->experiment));
 }
 
 static size_t serialized_size(void) {
