@@ -12,6 +12,8 @@ static const double MOST_KAPPA = 1e8;
 static const double MOST_PLANAR = 30.0;   // periods of a step,
 static const double MOST_LEAP = 400.0;    // and of a leap: of one whose inputs move
 static const double SHORTEST = 1e-9;      // s, of a step
+static const double NEARLY_NONE = 1e-9;   // m/s, across
+static const double MOST_NEAR_LINE = 3.3; // periods of a step, for the reference's sake
 static const double MOST_PERIODS = 1e6;   // of a step
 static const double MOST_MOVING = 2000.0; // periods of a step whose inputs move, for the reference's sake
 
@@ -312,7 +314,8 @@ static bool is_in_domain(const ReferenceScene* s) {
             fmin(reference_rest(s).d, reference_rest(&end).d) > 4.0 * s->R_q / s->lambda);
 }
 
-Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
+Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
+    const bool plane = kind == PLANE;
     random_state = seed * 0xd1342543de82ef95u + number;
     random_bits();
     random_state ^= random_bits();
@@ -344,6 +347,12 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, bool plane) {
             break;
         }
         sequence.step[sequence.steps++] = s;
+    }
+    ReferenceScene* first = &sequence.step[0];
+    if (kind == NEAR_LINE && sequence.steps > 0) {
+        sequence.steps = 1;
+        first->V_y = NEARLY_NONE;
+        first->h = vibrates(first) ? fmin(first->h, MOST_NEAR_LINE / first->f) : first->h;
     }
     return sequence;
 }

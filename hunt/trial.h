@@ -62,8 +62,4 @@ typedef struct {
 
 void trial_run(Trial* trial, const Sequence* sequence);
 
-// The first step of a sequence in which V moves along a line, for some periods at the most, and once more with V_y [m/s]
-// across, which is nearly none. The results may differ by two tolerances, beside the difference of the reference's.
-void trial_near_line(Trial* trial, const Sequence* sequence, double V_y);
-
 #endif
