@@ -156,40 +156,39 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
 Vector direction(Real turns) {
     const Real quarters = rintl(4.0L * turns), rest = 2.0L * PI * (turns - 0.25L * quarters);
     const Real x = cosl(rest), y = sinl(rest);
-    const Vector of[] = {{x, y}, {-y, x}, {-x, -y}, {y, -x}};
+    const Vector of[] = {CMPLXL(x, y), CMPLXL(-y, x), CMPLXL(-x, -y), CMPLXL(y, -x)};
     return of[(long)quarters & 3];
 }
 
-Vector plus(Vector a, Real factor, Vector b) { return (Vector){a.x + factor * b.x, a.y + factor * b.y}; }
-Vector scaled(Real factor, Vector a) { return (Vector){factor * a.x, factor * a.y}; }
-Real dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
-Real length_of(Vector a) { return a.y == 0.0L ? fabsl(a.x) : sqrtl(dot(a, a)); }
+Real dot(Vector a, Vector b) { return creall(a) * creall(b) + cimagl(a) * cimagl(b); }
+Vector across(Vector a) { return CMPLXL(-cimagl(a), creall(a)); }
+Real length_of(Vector a) { return cimagl(a) == 0.0L ? fabsl(creall(a)) : sqrtl(dot(a, a)); }
 Vector along(Vector a, Real length) {
     const Real now = length_of(a);
-    return now > 0.0L ? scaled(length / now, a) : a;
+    return now > 0.0L ? (length / now * a) : a;
 }
 
 bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 || s->a_d != 0.0; }
 
 // (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
 static Vector turn_at(const World* w, Real t) {
-    const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : (Vector){1.0L, 0.0L};
-    return (Vector){-2.0L * half.y * half.y, 2.0L * half.x * half.y};
+    const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : 1.0L;
+    return 2.0L * cimagl(half) * CMPLXL(-cimagl(half), creall(half));
 }
 
 static Vector velocity(const World* w, Real t, Vector turn) {
-    return plus(plus(plus(w->start, t, w->rate), turn.x, w->cosine), -turn.y, w->sine);
+    return w->start + t * w->rate + creall(turn) * w->cosine - cimagl(turn) * w->sine;
 }
 
 void velocities(const World* w, Real t, int order, Vector* V) {
     Vector turn = turn_at(w, t);
     V[0] = velocity(w, t, turn);
-    turn.x += 1.0L;
+    turn += 1.0L;
     for (int k = 1; k <= order; k++) {
-        turn = (Vector){-w->omega * turn.y, w->omega * turn.x};
-        V[k] = plus(scaled(turn.x, w->cosine), -turn.y, w->sine);
+        turn = w->omega * across(turn);
+        V[k] = creall(turn) * w->cosine - cimagl(turn) * w->sine;
     }
-    V[1] = order > 0 ? plus(V[1], 1.0L, w->rate) : V[1];
+    V[1] = order > 0 ? (V[1] + w->rate) : V[1];
 }
 
 // The bristle, or Coulomb's limit, depends on the separation.
@@ -205,8 +204,9 @@ static At contact_at(const World* w, Real t, Vector turn) {
         return at;
     }
     const AtModulus of = s->E_rate == 0.0 ? w->held : at_modulus(s, (Real)s->E + s->E_rate * t);
-    const Real swing = w->d_cosine * (1.0L + turn.x) - w->d_sine * turn.y;
-    Real d, d_rate = -w->omega * (w->d_cosine * turn.y + w->d_sine * (1.0L + turn.x));
+    const Real cosine = 1.0L + creall(turn), sine = cimagl(turn),
+               swing = w->d_cosine * cosine - w->d_sine * sine;
+    Real d, d_rate = -w->omega * (w->d_cosine * sine + w->d_sine * cosine);
     if (s->input == INPUT_LOAD) {
         const Real rate = s->load_rate, load = rate == 0.0L ? s->load : rate * (t + s->load / rate);
         at.F_n = load / w->swell * expl(-w->decay * swing);
@@ -241,7 +241,7 @@ static const Real OPEN = 1e-100L; // N or N/m, of F_n and sigma without vibratio
 bool is_open(const World* w, Real t) {
     World rest = at_rest(w);
     rest.open = false;
-    const At at = contact_at(&rest, t, (Vector){0});
+    const At at = contact_at(&rest, t, 0.0L);
     return knows_contact(&w->scene) && !(at.F_n >= OPEN && at.sigma >= OPEN);
 }
 
@@ -251,7 +251,7 @@ At scene_at(const World* w, Real t) {
     At at = contact_at(w, t, turn);
     const Vector V = velocity(w, t, turn);
     Real excess = w->excess, V_S = s->V_S;
-    at.V = w->ramp ? (Vector){0} : V;
+    at.V = w->ramp ? 0.0L : V;
     at.input = V;
     at.coulomb = s->limit == LIMIT_LOAD ? s->mu * at.F_n : s->F_C;
     if (w->ramp) {
@@ -307,7 +307,7 @@ World held_world(const World* w, Real h) {
     World held = *w;
     ReferenceScene* s = &held.scene;
     s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
-    held.rate = (Vector){0};
+    held.rate = 0.0L;
     held.d_rate = 0.0L;
     held.h = h;
     return held;
@@ -329,12 +329,12 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.cycle = (Real)(cycles - floor(cycles)) + lost;
     const Vector x = direction(w.cycle), y = direction(w.cycle + scene->phase_2 / (2.0L * PI));
     const Vector separation = direction(w.cycle + scene->phase_d / (2.0L * PI));
-    w.cosine = (Vector){scene->V_1 * x.x, scene->V_2 * y.x};
-    w.sine = (Vector){scene->V_1 * x.y, scene->V_2 * y.y};
-    w.d_cosine = scene->a_d * separation.x;
-    w.d_sine = scene->a_d * separation.y;
-    w.start = plus((Vector){scene->V, scene->V_y}, 1.0L, w.cosine);
-    w.rate = (Vector){scene->V_rate, scene->V_y_rate};
+    w.cosine = CMPLXL(scene->V_1 * creall(x), scene->V_2 * creall(y));
+    w.sine = CMPLXL(scene->V_1 * cimagl(x), scene->V_2 * cimagl(y));
+    w.d_cosine = scene->a_d * creall(separation);
+    w.d_sine = scene->a_d * cimagl(separation);
+    w.start = CMPLXL(scene->V, scene->V_y) + w.cosine;
+    w.rate = CMPLXL(scene->V_rate, scene->V_y_rate);
     w.top = hypotl(fastest(scene->V, scene->V_rate, scene->V_1, h),
                    fastest(scene->V_y, scene->V_y_rate, scene->V_2, h));
     w.decay = (Real)scene->lambda / scene->R_q;
@@ -374,8 +374,8 @@ World ramp_between(const World* from, const World* to) {
     s->E_rate = end->E - s->E;
     w.d = separation(from);
     w.d_rate = separation(to) - w.d;
-    w.rate = plus(to->start, -1.0L, from->start);
-    w.cosine = w.sine = (Vector){0};
+    w.rate = to->start - from->start;
+    w.cosine = w.sine = 0.0L;
     w.d_cosine = w.d_sine = 0.0L;
     w.ln_rate.limit = s->limit == LIMIT_LOAD ? logl((Real)end->mu / s->mu) : logl((Real)end->F_C / s->F_C);
     w.ln_rate.scale = s->contact == CONTACT_CONSTANT ? logl((Real)end->contact_sigma / s->contact_sigma)

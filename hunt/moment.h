@@ -2,6 +2,8 @@
 #ifndef HUNT_MOMENT_H
 #define HUNT_MOMENT_H
 
+#include <complex.h>
+
 #include "reference.h"
 
 typedef long double Real;
@@ -26,14 +28,11 @@ typedef Real Function(const void* context, Real x);
 // The zero of a function between low and high, on the side of high.
 Real crossing(Function* function, const void* context, Real low, Real high);
 
-// Along the sliding, and across.
-typedef struct {
-    Real x, y;
-} Vector;
+// The real part is along the sliding, the imaginary one across.
+typedef long double _Complex Vector;
 
-Vector plus(Vector a, Real factor, Vector b); // a + factor b
-Vector scaled(Real factor, Vector a);
 Real dot(Vector a, Vector b);
+Vector across(Vector a); // turned by a quarter
 Real length_of(Vector a);
 Vector along(Vector a, Real length); // of that length along another, or 0
 Vector direction(Real turns);        // (cos, sin) of 2 pi turns

@@ -23,7 +23,7 @@ typedef struct {
 } Sums;
 
 static void add_times(Sums* sums, const Sums* one, Real factor) {
-    sums->impulse = plus(sums->impulse, factor, one->impulse);
+    sums->impulse = sums->impulse + factor * one->impulse;
     sums->work += factor * one->work;
     sums->heat += factor * one->heat;
     sums->path += factor * one->path;
@@ -32,7 +32,7 @@ static void add_times(Sums* sums, const Sums* one, Real factor) {
 static void add(Sums* sums, const Sums* part) {
     add_times(sums, part, 1.0L);
     sums->end = part->end;
-    sums->change = plus(sums->change, 1.0L, part->change);
+    sums->change = sums->change + part->change;
     sums->length = part->length;
     sums->blur = part->blur;
     sums->force += part->force;
@@ -41,11 +41,11 @@ static void add(Sums* sums, const Sums* part) {
 
 // Adds a time [s] with that force of the bristle, rate of its deflection and velocity.
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
-    const Vector rest = plus(scaled(w->scene.sigma_2, V), w->scene.sigma_1, rate);
+    const Vector rest = w->scene.sigma_2 * V + w->scene.sigma_1 * rate;
     const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
-    sums->impulse = plus(sums->impulse, time, plus(spring, w->scene.sigma_2, V));
+    sums->impulse = sums->impulse + time * (spring + w->scene.sigma_2 * V);
     sums->work += time * (dot(spring, V) + dot(rest, V));
-    sums->heat += time * (dot(spring, plus(V, -1.0L, rate)) + dot(rest, V));
+    sums->heat += time * (dot(spring, V - rate) + dot(rest, V));
     sums->path += time * speed;
     sums->force += time * (strong + viscous + w->S);
     sums->power +=
@@ -60,10 +60,10 @@ static Real relaxation(const World* w, const At* at) {
 // The rate [m/s] of a bristle by its law, or of one that slips along its bound.
 static Vector rate_of(const World* w, const At* at, Vector delta, bool slips) {
     if (!slips) {
-        return plus(at->V, -relaxation(w, at), delta);
+        return at->V - relaxation(w, at) * delta;
     }
-    const Vector n = along(delta, 1.0L), across = {-n.y, n.x};
-    return plus(scaled(bound_rate(w, at, false), n), dot(at->V, across), across);
+    const Vector n = along(delta, 1.0L);
+    return (bound_rate(w, at, false) * n) + dot(at->V, across(n)) * across(n);
 }
 
 // The speed [m/s] at which the law alone would carry a bristle of that direction beyond its kinetic bound.
@@ -135,25 +135,22 @@ static void collocate(const World* w, const At* at, Real size, Vector delta, Vec
     Real A[STAGES][STAGES + SIDES] = {{0}};
     for (int j = 0; j < STAGES; j++) {
         const Real r = relaxation(w, &at[j]);
-        const Vector rate = plus(at[j].V, -r, delta);
+        const Vector rate = at[j].V - r * delta;
         for (int i = 0; i < STAGES; i++) {
             const Real weight = size * w->rule->to[i][j];
             A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
-            A[i][STAGES] += weight * rate.x;
-            A[i][STAGES + 1] += weight * rate.y;
+            A[i][STAGES] += weight * creall(rate);
+            A[i][STAGES + 1] += weight * cimagl(rate);
         }
     }
     solve(A);
     for (int i = 0; i < STAGES; i++) {
-        change[i] = (Vector){A[i][STAGES], A[i][STAGES + 1]};
+        change[i] = CMPLXL(A[i][STAGES], A[i][STAGES + 1]);
     }
 }
 
 // That direction, turned by an angle [rad].
-static Vector turned(Vector n, Real angle) {
-    const Vector turn = angle == 0.0L ? (Vector){1.0L, 0.0L} : direction(angle / (2.0L * PI));
-    return (Vector){turn.x * n.x - turn.y * n.y, turn.x * n.y + turn.y * n.x};
-}
+static Vector turned(Vector n, Real angle) { return angle == 0.0L ? n : direction(angle / (2.0L * PI)) * n; }
 
 // The angles from the direction n at the nodes of a bristle that slips, by Newton from 0; returns false if it does not
 // converge.
@@ -164,8 +161,8 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             A[i][STAGES] = -angle[i];
         }
         for (int j = 0; j < STAGES; j++) {
-            const Vector now = turned(n, angle[j]), across = {-now.y, now.x}, V = at[j].V;
-            const Real lies = bound(w, &at[j], false), rate = dot(V, across) / lies,
+            const Vector now = turned(n, angle[j]), V = at[j].V;
+            const Real lies = bound(w, &at[j], false), rate = dot(V, across(now)) / lies,
                        slope = -dot(V, now) / lies;
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
@@ -196,7 +193,7 @@ static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
     Vector V[2] = {at->V};
     if (ends && length_of(at->V) <= 1e-17L * w->top) {
         velocities(w, t, 1, V);
-        V[0] = scaled(-1.0L, V[1]);
+        V[0] = -1.0L * V[1];
     }
     return along(V[0], at->coulomb);
 }
@@ -209,7 +206,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
     Panel p = {.sums = {.end = delta}};
     At at[STAGES];
-    Vector change[STAGES] = {{0}};
+    Vector change[STAGES] = {0.0L};
     Real angle[STAGES] = {0.0L};
     const Vector start = along(delta, 1.0L);
     w->panels += 1.0L;
@@ -217,7 +214,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         at[i] = scene_at(w, a + size * rule->node[i + 1]);
     }
     if (slips && !turn_over(w, at, size, start, angle)) {
-        p.sums.end.x = NAN; // agrees with nothing
+        p.sums.end = (Real)NAN; // agrees with nothing
         return p;
     }
     if (bristle && !slips) {
@@ -226,14 +223,14 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     Real relaxed = 0.0L, longest = length_of(delta), fastest = 0.0L;
     for (int i = 0; i < STAGES; i++) {
         const Real t = a + size * rule->node[i + 1];
-        Vector rate = {0}, spring = {0};
+        Vector rate = 0.0L, spring = 0.0L;
         if (slips) {
-            change[i] = plus(scaled(bound(w, &at[i], false), turned(start, angle[i])), -1.0L, delta);
+            change[i] = (bound(w, &at[i], false) * turned(start, angle[i])) - delta;
         }
-        const Vector now = plus(delta, 1.0L, change[i]);
+        const Vector now = delta + change[i];
         if (bristle) {
             rate = rate_of(w, &at[i], now, slips);
-            spring = scaled(at[i].sigma, now);
+            spring = at[i].sigma * now;
             relaxed += slips ? 0.0L : size * rule->weight[i] * relaxation(w, &at[i]);
             longest = fmaxl(longest, length_of(now));
             fastest = fmaxl(fastest, length_of(rate));
@@ -245,10 +242,10 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
     }
     if (bristle) {
         p.sums.change = change[last];
-        p.sums.end = plus(delta, 1.0L, change[last]);
+        p.sums.end = delta + change[last];
         p.sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
         p.sums.length = fmaxl(longest * expl(-relaxed), at[last].g / at[last].sigma);
-        p.sums.impulse = plus(p.sums.impulse, w->scene.sigma_1, p.sums.change);
+        p.sums.impulse = p.sums.impulse + w->scene.sigma_1 * p.sums.change;
         p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
     const At first = scene_at(w, a);
@@ -268,9 +265,9 @@ static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
     const Real force = share * LEAST * two->force / size;
     const Real impulse = same * two->force + force * w->h;
     const Real energy = same * two->power + force * (w->top * w->h + two->length);
-    return length_of(plus(one->end, -1.0L, two->end)) <= same * two->length + two->blur &&
-           length_of(plus(one->impulse, -1.0L, two->impulse)) <= impulse &&
-           fabsl(one->work - two->work) <= energy && fabsl(one->heat - two->heat) <= energy;
+    return length_of(one->end - two->end) <= same * two->length + two->blur &&
+           length_of(one->impulse - two->impulse) <= impulse && fabsl(one->work - two->work) <= energy &&
+           fabsl(one->heat - two->heat) <= energy;
 }
 
 // Whether a finite sign that is positive at three nodes may be negative between them: by the parabola through them.
@@ -348,7 +345,8 @@ typedef struct {
 
 // On a ramp V is linear, and the product V V' tells its zero, too.
 static bool is_on_line(const World* w) {
-    return !w->ramp && w->start.y == 0.0L && w->rate.y == 0.0L && w->cosine.y == 0.0L && w->sine.y == 0.0L;
+    return !w->ramp && cimagl(w->start) == 0.0L && cimagl(w->rate) == 0.0L && cimagl(w->cosine) == 0.0L &&
+           cimagl(w->sine) == 0.0L;
 }
 
 static Real square(const void* context, Real t) {
@@ -356,7 +354,7 @@ static Real square(const void* context, Real t) {
     Vector V[4];
     velocities(of->w, t, of->order, V);
     if (of->order > 0 && is_on_line(of->w)) {
-        return V[of->order - 1].x;
+        return creall(V[of->order - 1]);
     }
     return of->order == 0   ? dot(V[0], V[0]) - of->level
            : of->order == 1 ? dot(V[0], V[1])
@@ -457,9 +455,9 @@ static void begin(March* march, Real a, Real b) {
 static void break_away(March* march, const At* at) {
     const World* w = march->w;
     const Vector from = march->state.delta, to = along(from, bound(w, at, false));
-    const Vector damping = scaled(w->scene.sigma_1, plus(to, -1.0L, from));
-    const Real lost = dot(plus(from, -1.0L, to), plus(from, 1.0L, to));
-    march->sums.impulse = plus(march->sums.impulse, 1.0L, damping);
+    const Vector damping = w->scene.sigma_1 * (to - from);
+    const Real lost = dot(from - to, from + to);
+    march->sums.impulse = march->sums.impulse + damping;
     march->sums.work += dot(damping, at->V);
     march->sums.heat += dot(damping, at->V) + 0.5L * at->sigma * lost;
     march->state = (State){to, true};
@@ -606,27 +604,27 @@ typedef struct {
 } Map;
 
 static Map find_map(World* w, Real unit) {
-    static const Vector AT[4] = {{0.0L, 0.0L}, {1.0L, 0.0L}, {-1.0L, 0.0L}, {0.0L, 1.0L}};
+    const Vector at[4] = {0.0L, 1.0L, -1.0L, CMPLXL(0.0L, 1.0L)};
     Map map = {.m = {{1.0L}}};
     Real of[4][5], way[4];
-    Vector shift = {0};
+    Vector shift = 0.0L;
     const bool bounded = w->bounded;
     w->bounded = false; // of a period that touches none
     for (int k = 0; k < 4; k++) {
-        const March march = march_from(w, (State){scaled(unit, AT[k]), false});
+        const March march = march_from(w, (State){unit * at[k], false});
         const Sums* s = &march.sums;
-        shift = k == 0 ? scaled(1.0L / unit, s->change) : shift;
-        way[k] = s->change.x / unit;
-        of[k][0] = s->impulse.x, of[k][1] = s->impulse.y, of[k][2] = s->work, of[k][3] = s->heat;
+        shift = k == 0 ? (1.0L / unit * s->change) : shift;
+        way[k] = creall(s->change) / unit;
+        of[k][0] = creall(s->impulse), of[k][1] = cimagl(s->impulse), of[k][2] = s->work, of[k][3] = s->heat;
         of[k][4] = s->path;
     }
     w->bounded = bounded;
-    shift.x = w->elastic && w->scene.V == 0.0 ? 0.0L : shift.x; // it does not drift
-    shift.y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : shift.y;
+    const Real x = w->elastic && w->scene.V == 0.0 ? 0.0L : creall(shift); // it does not drift
+    const Real y = w->elastic && w->scene.V_y == 0.0 ? 0.0L : cimagl(shift);
     const Real kept = 1.0L + (w->elastic ? 0.0L : 0.5L * (way[1] - way[2]));
-    map.m[1][0] = shift.x, map.m[1][1] = kept;
-    map.m[2][0] = shift.y, map.m[2][2] = kept;
-    map.m[3][0] = dot(shift, shift), map.m[3][1] = 2.0L * shift.x * kept, map.m[3][2] = 2.0L * shift.y * kept;
+    map.m[1][0] = x, map.m[1][1] = kept;
+    map.m[2][0] = y, map.m[2][2] = kept;
+    map.m[3][0] = x * x + y * y, map.m[3][1] = 2.0L * x * kept, map.m[3][2] = 2.0L * y * kept;
     map.m[3][3] = kept * kept;
     for (int i = 0; i < 5; i++) {
         Real* row = map.m[4 + i];
@@ -662,15 +660,15 @@ static const Real FOR_EVER = 0x1p39L + 1.0L; // periods: the highest power, and 
 
 // delta after 2^k periods that touch no bound; adds their sums.
 static Vector after_untouched(const Period* p, int k, Vector delta, Sums* sums) {
-    const Vector x = scaled(1.0L / p->unit, delta);
+    const Vector x = 1.0L / p->unit * delta;
     Real of[ROWS];
     for (int i = 0; i < ROWS; i++) {
         const Real* row = p->power[k].m[i];
-        of[i] = row[0] + x.x * row[1] + x.y * row[2] + dot(x, x) * row[3];
+        of[i] = row[0] + creall(x) * row[1] + cimagl(x) * row[2] + dot(x, x) * row[3];
     }
-    const Sums part = {.impulse = {of[4], of[5]}, .work = of[6], .heat = of[7], .path = of[8]};
+    const Sums part = {.impulse = CMPLXL(of[4], of[5]), .work = of[6], .heat = of[7], .path = of[8]};
     add_times(sums, &part, 1.0L);
-    return scaled(p->unit, (Vector){of[1], of[2]});
+    return p->unit * CMPLXL(of[1], of[2]);
 }
 
 // Takes the periods that touch no bound, at the most n or FOR_EVER, and returns their number; the first one touches none. If a
@@ -707,8 +705,7 @@ typedef struct {
 } Mark;
 
 static bool are_equal(State a, State b, Real unit) {
-    return a.broke == b.broke &&
-           length_of(plus(a.delta, -1.0L, b.delta)) <= 3e-17L * (unit + length_of(b.delta));
+    return a.broke == b.broke && length_of(a.delta - b.delta) <= 3e-17L * (unit + length_of(b.delta));
 }
 
 // A length [m] of deflections.
@@ -734,7 +731,7 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
         if (!march.slipped) {
             const Real passed = pass_untouched(&p, state, n - done, sums);
             if (isinf(n) && passed == FOR_EVER) {
-                *mean = scaled(w->scene.f, march_from(w, *state).sums.impulse);
+                *mean = w->scene.f * march_from(w, *state).sums.impulse;
                 return true;
             }
             done += passed;
@@ -758,7 +755,7 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
         add_times(&cycle, &marks[k].sums, -1.0L);
         const Real length = done - marks[k].count;
         if (isinf(n)) {
-            *mean = scaled(w->scene.f / length, cycle.impulse);
+            *mean = w->scene.f / length * cycle.impulse;
             for (; k < count; k++) {
                 const bool is_less = length_of(marks[k].state.delta) < length_of(state->delta);
                 *state = is_less ? marks[k].state : *state;
@@ -775,17 +772,18 @@ static bool go_periods(const World* of, State* state, Real n, Sums* sums, Vector
 
 // Newton's step to the fixed point of a period's map, from a state, its end and its miss after the period.
 static Vector newton_step(World* w, State state, Vector end, Vector miss, Real step) {
-    const Vector x = {state.delta.x - step, state.delta.y}, y = {state.delta.x, state.delta.y - step};
-    const Vector by_x = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){x, false}).state.delta));
-    const Vector by_y = scaled(1.0L / step, plus(end, -1.0L, march_from(w, (State){y, false}).state.delta));
-    const Real a = 1.0L - by_x.x, b = -by_y.x, c = -by_x.y, d = 1.0L - by_y.y, all = a * d - b * c;
-    return (Vector){(d * miss.x - b * miss.y) / all, (a * miss.y - c * miss.x) / all};
+    const Vector x = state.delta - step, y = state.delta - CMPLXL(0.0L, step);
+    const Vector by_x = 1.0L / step * (end - march_from(w, (State){x, false}).state.delta);
+    const Vector by_y = 1.0L / step * (end - march_from(w, (State){y, false}).state.delta);
+    // of the columns 1 - by_x and i - by_y, by Cramer's rule
+    const Vector a = 1.0L - by_x, b = CMPLXL(0.0L, 1.0L) - by_y;
+    return CMPLXL(dot(across(b), miss), -dot(across(a), miss)) / dot(across(b), a);
 }
 
 // The periodic state by Newton, if it does not depend on the start. Small slips come to it in few steps, though each of
 // them changes the state by little.
 static bool settle_by_newton(World* w, State* state, Vector* mean) {
-    const Vector shift = scaled(1.0L / w->scene.f, (Vector){w->scene.V, w->scene.V_y});
+    const Vector shift = CMPLXL(w->scene.V, w->scene.V_y) / w->scene.f;
     const Real unit = unit_of(w), step = 1e-3L * (w->elastic ? fminl(length_of(shift), unit) : unit);
     w->panels = 0.0L;
     for (int k = 0; k < 60 && w->panels <= MOST_OF_SETTLING; k++) {
@@ -793,7 +791,7 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
         if (w->panels > MOST_PANELS) { // it did not come to the end of the period
             return false;
         }
-        const Vector miss = plus(march.state.delta, -1.0L, state->delta);
+        const Vector miss = march.state.delta - state->delta;
         if (w->elastic && !march.slipped) { // it drifts until it slips
             Sums unused = {0};
             Period p = {.world = *w, .unit = unit};
@@ -802,11 +800,11 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
         }
         const Vector newton = newton_step(w, *state, march.state.delta, miss, step);
         if (length_of(miss) <= 1e-15L * unit && !(length_of(newton) > 1e-12L * unit)) {
-            *mean = scaled(w->scene.f, march.sums.impulse);
+            *mean = w->scene.f * march.sums.impulse;
             return true;
         }
         const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
-        state->delta = plus(state->delta, 1.0L, plain ? miss : newton);
+        state->delta = state->delta + (plain ? miss : newton);
     }
     return false;
 }
@@ -824,7 +822,7 @@ static bool settle(World* w, State* state, Vector* mean) {
     if (length_of(at.V) > 0.0L) {
         *state = (State){along(at.V, at.g / at.sigma), has_static(w)};
     }
-    *mean = plus(scaled(at.sigma, state->delta), s->sigma_2, at.V);
+    *mean = at.sigma * state->delta + s->sigma_2 * at.V;
     return true;
 }
 
@@ -837,13 +835,13 @@ static Vector force_at(const World* w, Real t, State state) {
     there.open = is_open(w, t);
     const At at = scene_at(&there, t);
     if (s->law == LAW_COULOMB || there.open) {
-        return plus(along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L), s->sigma_2, at.V);
+        return along(at.V, s->law == LAW_COULOMB ? at.coulomb : 0.0L) + s->sigma_2 * at.V;
     }
     const bool slips = w->bounded && (state.broke || !has_static(w)) &&
                        length_of(state.delta) >= (1.0L - ON_BOUND) * bound(w, &at, false) &&
                        outward(w, &at, state.delta) > 0.0L;
     const Vector rate = rate_of(w, &at, state.delta, slips);
-    return plus(plus(scaled(at.sigma, state.delta), s->sigma_1, rate), s->sigma_2, at.V);
+    return (at.sigma * state.delta + s->sigma_1 * rate) + s->sigma_2 * at.V;
 }
 
 static bool is_held(const ReferenceScene* s) {
@@ -852,7 +850,7 @@ static bool is_held(const ReferenceScene* s) {
 }
 
 static State start_of(const ReferenceScene* s) {
-    return s->law == LAW_COULOMB ? (State){0} : (State){{s->delta_0, s->delta_y_0}, s->slips != 0};
+    return s->law == LAW_COULOMB ? (State){0} : (State){CMPLXL(s->delta_0, s->delta_y_0), s->slips != 0};
 }
 
 // Takes the step; returns false if it needs more panels or cycles than the reference takes.
@@ -893,12 +891,10 @@ void reference_step(const ReferenceScene* before, const ReferenceScene* scene, i
     }
     const Vector start = force_at(&held, 0.0L, seen);
     result->known = advance(&w, &state, &sums) && result->known;
-    const Vector force = force_at(&w, w.h, state), mean = scaled(1.0L / w.h, sums.impulse);
-    const Real results[RESULTS] = {
-        [F_T] = force.x,         [F_Y] = force.y,          [F_T_MEAN] = mean.x,
-        [F_Y_MEAN] = mean.y,     [F_T_START] = start.x,    [F_Y_START] = start.y,
-        [W_F] = sums.work,       [Q_F] = sums.heat,        [SLIPS_AT_END] = state.broke,
-        [DELTA] = state.delta.x, [DELTA_Y] = state.delta.y};
+    const Vector force = force_at(&w, w.h, state), mean = 1.0L / w.h * sums.impulse;
+    const Real results[RESULTS] = {creall(force), cimagl(force),       creall(mean),       cimagl(mean),
+                                   creall(start), cimagl(start),       sums.work,          sums.heat,
+                                   state.broke,   creall(state.delta), cimagl(state.delta)};
     for (int k = 0; k < RESULTS; k++) {
         result->result[k] = (double)results[k];
     }
@@ -916,6 +912,6 @@ bool reference_settled_force(const ReferenceScene* scene, double force[2], doubl
     jump(NULL, &w, &state);
     const bool known = settle(&w, &state, &mean);
     *S = (double)w.S;
-    force[0] = (double)mean.x, force[1] = (double)mean.y;
+    force[0] = (double)creall(mean), force[1] = (double)cimagl(mean);
     return known;
 }
