@@ -4,102 +4,6 @@
 #include <math.h>
 #include <stddef.h>
 
-// ---- Radau's right rule on [0, 1] and its collocation matrix; linear equations; roots ----
-
-// P_0 .. P_STAGES of Legendre at x.
-static void legendre(Real x, Real P[STAGES + 1]) {
-    P[0] = 1.0L;
-    P[1] = x;
-    for (int m = 1; m < STAGES; m++) {
-        P[m + 1] = ((Real)(2 * m + 1) * x * P[m] - (Real)m * P[m - 1]) / (Real)(m + 1);
-    }
-}
-
-// Its zeros are the nodes.
-static Real radau(const void* unused, Real x) {
-    Real P[STAGES + 1];
-    (void)unused;
-    legendre(x, P);
-    return P[STAGES] - P[STAGES - 1];
-}
-
-static Rule make_rule(void) {
-    enum { n = STAGES };
-    static const Real GRID = 1.0L / 64.0L; // less than the distance of two zeros
-    Rule rule = {.node = {0.0L}};
-    Real x[n], P[n][n + 1], from = -1.0L;
-    for (int i = 0; i < n; i++) {
-        while (i < n - 1 && radau(NULL, from) * radau(NULL, from + GRID) > 0.0L) {
-            from += GRID;
-        }
-        x[i] = i < n - 1 ? crossing(radau, NULL, from, from + GRID) : 1.0L;
-        from += GRID;
-        legendre(x[i], P[i]);
-        rule.node[i + 1] = 0.5L * (1.0L + x[i]);
-        rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
-    }
-    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
-    // Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            Real sum = 1.0L + x[i];
-            for (int m = 1; m < n; m++) {
-                sum += P[j][m] * (P[i][m + 1] - P[i][m - 1]);
-            }
-            rule.to[i][j] = 0.5L * rule.weight[j] * sum;
-        }
-    }
-    return rule;
-}
-
-// Each thread makes it once.
-static const Rule* the_rule(void) {
-    static _Thread_local Rule rule;
-    if (rule.node[STAGES] == 0.0L) {
-        rule = make_rule();
-    }
-    return &rule;
-}
-
-void solve(Real A[STAGES][STAGES + SIDES]) {
-    for (int k = 0; k < STAGES; k++) {
-        for (int j = STAGES + SIDES - 1; j >= k; j--) {
-            A[k][j] /= A[k][k];
-        }
-        for (int i = 0; i < STAGES; i++) {
-            for (int j = STAGES + SIDES - 1; j >= k && i != k; j--) {
-                A[i][j] -= A[i][k] * A[k][j];
-            }
-        }
-    }
-}
-
-// Chandrupatla's method: inverse quadratic interpolation through three points if it is safe there, otherwise bisection.
-Real crossing(Function* function, const void* context, Real low, Real high) {
-    // The last point, one on the other side of the zero, and the one before them.
-    Real a = high, b = low, share = 0.5L;
-    Real at_a = function(context, a), at_b = function(context, b);
-    for (;;) {
-        Real x = a + share * (b - a);
-        x = x > fminl(a, b) && x < fmaxl(a, b) ? x : 0.5L * (a + b);
-        if (!(x > fminl(a, b) && x < fmaxl(a, b))) {
-            return fmaxl(a, b);
-        }
-        const Real at = function(context, x);
-        const bool same = (at > 0.0L) == (at_a > 0.0L);
-        const Real c = same ? a : b, at_c = same ? at_a : at_b;
-        b = same ? b : a, at_b = same ? at_b : at_a;
-        a = x, at_a = at;
-        const Real way = (a - b) / (c - b), rise = (at_a - at_b) / (at_c - at_b);
-        const bool safe = rise * rise < way && (1.0L - rise) * (1.0L - rise) < 1.0L - way;
-        share = !safe ? 0.5L
-                      : at_a / (at_b - at_a) * at_c / (at_b - at_c) +
-                            (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b);
-        const Real least = 2.0L * LDBL_EPSILON * fabsl(a) / fabsl(b - a);
-        share = fmaxl(least, fminl(1.0L - least, share));
-    }
-}
-
 // ---- The contact ----
 
 static Real power_3_2(Real x) { return x * sqrtl(x); }
@@ -173,7 +77,7 @@ bool vibrates(const ReferenceScene* s) { return s->V_1 != 0.0 || s->V_2 != 0.0 |
 // (cos(omega t) - 1, sin(omega t)). The first keeps its digits: a step of 1e-14 s may lie next to a reversal.
 static Vector turn_at(const World* w, Real t) {
     const Vector half = vibrates(&w->scene) ? direction(0.5L * w->scene.f * t) : 1.0L;
-    return 2.0L * cimagl(half) * CMPLXL(-cimagl(half), creall(half));
+    return 2.0L * cimagl(half) * across(half);
 }
 
 static Vector velocity(const World* w, Real t, Vector turn) {
@@ -342,7 +246,6 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     w.held = at_modulus(scene, scene->E);
     w.d = scene->d;
     w.d_rate = scene->d_rate;
-    w.rule = the_rule();
     return w;
 }
 

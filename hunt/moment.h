@@ -1,4 +1,4 @@
-// Tools of the reference, and the scene at a time.
+// The scene at a time, and vectors.
 #ifndef HUNT_MOMENT_H
 #define HUNT_MOMENT_H
 
@@ -9,24 +9,6 @@
 typedef long double Real;
 
 static const Real PI = 3.141592653589793238462643383279502884L;
-
-enum { STAGES = 10 };
-
-// Radau's right rule on [0, 1] and its collocation matrix.
-typedef struct {
-    Real node[STAGES + 1];   // the first one is 0 and no stage, the last one is 1
-    Real weight[STAGES];     // sum 1
-    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i + 1]
-} Rule;
-
-// Solves linear equations without pivoting: the columns after the matrix are right sides, and then their solutions.
-enum { SIDES = 2 };
-void solve(Real A[STAGES][STAGES + SIDES]);
-
-typedef Real Function(const void* context, Real x);
-
-// The zero of a function between low and high, on the side of high.
-Real crossing(Function* function, const void* context, Real low, Real high);
 
 // The real part is along the sliding, the imaginary one across.
 typedef long double _Complex Vector;
@@ -65,7 +47,6 @@ typedef struct {
     } ln_rate;
     Real S;   // N
     Real top; // m/s, the largest |V|
-    const Rule* rule;
     int fineness;
     Real panels; // taken so far
 } World;

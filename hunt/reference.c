@@ -6,6 +6,96 @@
 
 #include "moment.h"
 
+// ---- Roots; Radau's right rule on [0, 1] and its collocation matrix; linear equations ----
+
+typedef Real Function(const void* context, Real x);
+
+// The zero of a function between low and high, on the side of high: by bisection.
+static Real crossing(Function* function, const void* context, Real low, Real high) {
+    const bool above = function(context, low) > 0.0L;
+    for (;;) {
+        const Real x = 0.5L * (low + high);
+        if (!(x > low && x < high)) {
+            return high;
+        }
+        *(above == (function(context, x) > 0.0L) ? &low : &high) = x;
+    }
+}
+
+enum { STAGES = 10 };
+
+// Radau's right rule on [0, 1] and its collocation matrix.
+typedef struct {
+    Real node[STAGES + 1];   // the first one is 0 and no stage, the last one is 1
+    Real weight[STAGES];     // sum 1
+    Real to[STAGES][STAGES]; // to[i][j]: integral of the j-th Lagrange polynomial over [0, node i + 1]
+} Rule;
+
+// P_0 .. P_STAGES of Legendre at x.
+static void legendre(Real x, Real P[STAGES + 1]) {
+    P[0] = 1.0L;
+    P[1] = x;
+    for (int m = 1; m < STAGES; m++) {
+        P[m + 1] = ((Real)(2 * m + 1) * x * P[m] - (Real)m * P[m - 1]) / (Real)(m + 1);
+    }
+}
+
+// Its zeros are the nodes.
+static Real radau(const void* unused, Real x) {
+    Real P[STAGES + 1];
+    (void)unused;
+    legendre(x, P);
+    return P[STAGES] - P[STAGES - 1];
+}
+
+// Each thread makes it once.
+static const Rule* the_rule(void) {
+    enum { n = STAGES };
+    static const Real GRID = 1.0L / 64.0L; // less than the distance of two zeros
+    static _Thread_local Rule rule;
+    if (rule.node[n] != 0.0L) {
+        return &rule;
+    }
+    Real x[n], P[n][n + 1], from = -1.0L;
+    for (int i = 0; i < n; i++) {
+        while (i < n - 1 && radau(NULL, from) * radau(NULL, from + GRID) > 0.0L) {
+            from += GRID;
+        }
+        x[i] = i < n - 1 ? crossing(radau, NULL, from, from + GRID) : 1.0L;
+        from += GRID;
+        legendre(x[i], P[i]);
+        rule.node[i + 1] = 0.5L * (1.0L + x[i]);
+        rule.weight[i] = 0.5L * (1.0L + x[i]) / ((Real)(n * n) * P[i][n - 1] * P[i][n - 1]);
+    }
+    // The rule integrates products of two polynomials of degree n - 1 exactly, so the Lagrange polynomials are sums of
+    // Legendre's with P_m(x_j) w_j (2 m + 1) for coefficients.
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            Real sum = 1.0L + x[i];
+            for (int m = 1; m < n; m++) {
+                sum += P[j][m] * (P[i][m + 1] - P[i][m - 1]);
+            }
+            rule.to[i][j] = 0.5L * rule.weight[j] * sum;
+        }
+    }
+    return &rule;
+}
+
+// Solves linear equations without pivoting: the columns after the matrix are right sides, and then their solutions.
+enum { SIDES = 2 };
+static void solve(Real A[STAGES][STAGES + SIDES]) {
+    for (int k = 0; k < STAGES; k++) {
+        for (int j = STAGES + SIDES - 1; j >= k; j--) {
+            A[k][j] /= A[k][k];
+        }
+        for (int i = 0; i < STAGES; i++) {
+            for (int j = STAGES + SIDES - 1; j >= k && i != k; j--) {
+                A[i][j] -= A[i][k] * A[k][j];
+            }
+        }
+    }
+}
+
 // ---- Panels ----
 
 // STICKS: the bristle follows its law inside a bound, if there is one. CATCHES: it has broken away, and its kinetic bound has
@@ -137,7 +227,7 @@ static void collocate(const World* w, const At* at, Real size, Vector delta, Vec
         const Real r = relaxation(w, &at[j]);
         const Vector rate = at[j].V - r * delta;
         for (int i = 0; i < STAGES; i++) {
-            const Real weight = size * w->rule->to[i][j];
+            const Real weight = size * the_rule()->to[i][j];
             A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
             A[i][STAGES] += weight * creall(rate);
             A[i][STAGES + 1] += weight * cimagl(rate);
@@ -168,7 +258,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
                 return false;
             }
             for (int i = 0; i < STAGES; i++) {
-                const Real weight = size * w->rule->to[i][j];
+                const Real weight = size * the_rule()->to[i][j];
                 A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
                 A[i][STAGES] += weight * rate;
             }
@@ -201,7 +291,7 @@ static Vector coulomb_force(const World* w, const At* at, Real t, bool ends) {
 static Panel panel(const March* march, Real a, Real b, Vector delta) {
     enum { last = STAGES - 1 };
     World* w = march->w;
-    const Rule* rule = w->rule;
+    const Rule* rule = the_rule();
     const Real size = b - a;
     const bool bristle = !w->open && w->scene.law != LAW_COULOMB, slips = march->motion == SLIPS;
     Panel p = {.sums = {.end = delta}};
@@ -272,12 +362,14 @@ static bool agree(const World* w, const Sums* one, const Sums* two, Real size) {
 
 // Whether a finite sign that is positive at three nodes may be negative between them: by the parabola through them.
 static bool dips(const Real* x, Real y_0, Real y_1, Real y_2, Real rounding) {
+    if (!(y_0 > rounding && y_0 < INFINITY)) {
+        return false;
+    }
     const Real left = (y_1 - y_0) / (x[1] - x[0]), right = (y_2 - y_1) / (x[2] - x[1]);
     const Real curve = (right - left) / (x[2] - x[0]), least = fminl(y_0, fminl(y_1, y_2));
     const Real lowest = 0.5L * (x[0] + x[1] - left / curve);
     const Real low = y_0 + (lowest - x[0]) * (left + curve * (lowest - x[1]));
-    return y_0 > rounding && curve > 0.0L && lowest > x[0] && lowest < x[2] && low < 0.5L * least &&
-           least - low > rounding;
+    return curve > 0.0L && lowest > x[0] && lowest < x[2] && low < 0.5L * least && least - low > rounding;
 }
 
 // Whether the motion is over at node k; 0 is the start. It is not if the bristle is beyond its bound by a double's rounding
@@ -290,7 +382,7 @@ static bool is_over(const Panel* p, int k) {
 
 // Whether a motion may end unseen in a panel. At its begin a sign is 0 and rises.
 static bool hides(const World* w, const Panel* p) {
-    const Real *x = w->rule->node, of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
+    const Real *x = the_rule()->node, of_room = 1e-15L * p->sums.length, of_lead = 1e-15L * w->top;
     for (int k = 0; k + 2 <= STAGES && !is_over(p, k + 2); k++) {
         const Signs* s = &p->sign[k];
         if (dips(&x[k], s[0].room, s[1].room, s[2].room, of_room) ||
@@ -318,7 +410,7 @@ static void commit(March* march, Real a, Real b, const Panel* p) {
         march->met = true;
         march->at_bound = p->sign[k].room < 0.0L;
         march->from = a;
-        const Real *x = march->w->rule->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
+        const Real *x = the_rule()->node, low = a + (b - a) * x[k < 2 ? 0 : k - 1];
         march->met_at = k == 0 ? a : crossing(beyond, march, low, a + (b - a) * x[k]);
         if (!(march->met_at > a)) {
             return;
