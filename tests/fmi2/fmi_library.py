@@ -146,6 +146,17 @@ class Instance:
         if state == "terminated":
             assert self.call("fmi2Terminate") == OK
 
+    def start(
+        self,
+        choices: Mapping[str, int] | None = None,
+        values: Mapping[str, float] | None = None,
+        state: str = "step complete",
+    ) -> Instance:
+        """Set while instantiated, then brought to a state."""
+        assert self.choose(choices or {}) == OK and self.set(values or {}) == OK, self.messages
+        self.bring_to(state)
+        return self
+
     # model exchange
 
     def new_discrete_states(self) -> EventInfo:
@@ -262,6 +273,12 @@ class Instance:
     def deserialize(self, data: bytes) -> tuple[int, c_void_p]:
         state = c_void_p()
         return self.call("fmi2DeSerializeFMUstate", data, len(data), byref(state)), state
+
+    def become(self, data: bytes) -> Instance:
+        """Goes to the state of those bytes."""
+        status, state = self.deserialize(data)
+        assert (status, self.restore(state), self.drop(state)) == (OK, OK, OK), self.messages
+        return self
 
     def fingerprint(self) -> bytes:
         """Everything that the instance will do depends on these bytes."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from ctypes import c_double
 
 import numpy as np
 import pytest
@@ -19,12 +18,11 @@ OUTPUTS = tuple(
     if variable["causality"] == "output" and not variable["name"].endswith("_settled")
 )
 STEPS = {"V": 1e-6, "d": 1e-11, "E": 1e5, "load": 3e-4, "V_y": 1e-6}
-ELASTIC_PLASTIC, LUGRE = {"friction.model": 3}, {"friction.model": 4}
+ELASTIC_PLASTIC = {"friction.model": 3}
 LIMIT_BY_LOAD, PRESSED = {"friction.limit": 2}, {"friction.limit": 2, "contact.input": 2}
 DAMPED = {"friction.sigma_1": 20.0, "friction.sigma_2": 30.0}
 STRIBECK = {"friction.staticRatio": 1.4, "friction.V_S": 0.01}
 FORCES = ("F_t", "F_y")
-INPUTS = ("V", "d", "E", "load")
 # A bristle that slips stays on the bound while the bound comes nearer: where an input moves this way.
 NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0, "V_y": 1.0}
 VIBRATING_SURFACES = {
@@ -44,10 +42,7 @@ SLIPPING = {
 def test_force_of_a_bristle_that_slips(new_instance: Callable[..., Instance], scene: str) -> None:
     """By one-sided differences, whose error falls with the step: extrapolated from two."""
     choices, values = SLIPPING[scene]
-    instance = new_instance()
-    assert instance.choose({**ELASTIC_PLASTIC, **choices}) == OK
-    assert instance.set({**DAMPED, **values, "V": 0.5}) == OK
-    instance.initialize()
+    instance = new_instance().start(ELASTIC_PLASTIC | choices, DAMPED | values | {"V": 0.5})
     assert instance.step(0.0, 1.23e-5) == OK
     for name, side in NEARER.items():
         status, exact = instance.directional(FORCES, {name: 1.0})
@@ -78,10 +73,10 @@ JUMPS = {  # a sliding contact, and values that jump after a step
 @pytest.mark.parametrize("jump", JUMPS)
 def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instance], jump: str) -> None:
     choices, before, after = JUMPS[jump]
-    instance = new_instance()
-    assert instance.choose({**ELASTIC_PLASTIC, "contact.model": 2, **choices}) == OK
-    assert instance.set({"friction.staticRatio": 1.5, "friction.V_S": 0.1, "V": 0.2, **before}) == OK
-    instance.initialize()
+    instance = new_instance().start(
+        ELASTIC_PLASTIC | {"contact.model": 2} | choices,
+        {"friction.staticRatio": 1.5, "friction.V_S": 0.1, "V": 0.2} | before,
+    )
     assert instance.step(0.0, 1e-3) == OK
     assert instance.set({"V": -0.15, **after}) == OK
     limits = ("F_C", "friction.mu", "friction.staticRatio", "friction.V_S", "contact.sigma")
@@ -96,8 +91,7 @@ def test_after_a_jump_that_moves_the_bristle(new_instance: Callable[..., Instanc
 
 
 def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
-    assert instance.set({"delta_0": 2e-9}) == OK
-    instance.initialize()
+    instance.start(values={"delta_0": 2e-9})
     assert instance.step(0.0, 1e-9) == OK
     direction = {"V": 0.3, "d": -2e-7, "E": 4e8}
     parts = [instance.directional(OUTPUTS, {name: slope})[1] for name, slope in direction.items()]
@@ -108,12 +102,9 @@ def test_a_direction_is_the_sum_of_its_parts(instance: Instance) -> None:
 
 
 @pytest.mark.parametrize("d", [1e-11, 3e-10])
-def test_a_jump_that_moves_the_bristle_a_little(new_instance: Callable[..., Instance], d: float) -> None:
+def test_a_jump_that_moves_the_bristle_a_little(instance: Instance, d: float) -> None:
     """On the bound F_t is mu F_n, and F_n goes with exp(-lambda d / R_q), though less d moves nothing."""
-    instance = new_instance()
-    assert instance.choose({"friction.model": 1, "friction.limit": 2, "contact.model": 2}) == OK
-    assert instance.set({"V": 0.1}) == OK
-    instance.initialize()
+    instance.start({"friction.model": 1, "friction.limit": 2, "contact.model": 2}, {"V": 0.1})
     assert instance.step(0.0, 1e-2) == OK
     assert instance.set({"d": 14e-6 + d}) == OK
     status, (slope,) = instance.directional(["F_t"], {"d": 1.0})
@@ -192,7 +183,7 @@ def by_richardson(
     start, *here = instance.get(name, *unknown)
 
     def at(x: float) -> np.ndarray:
-        set_it = instance.call("fmi2SetTime", c_double(x)) if name == "time" else instance.set({name: x})
+        set_it = instance.call("fmi2SetTime", x) if name == "time" else instance.set({name: x})
         assert set_it == OK
         return np.array(instance.get(*unknown))
 
@@ -215,16 +206,11 @@ def prepared(
 ) -> tuple[Instance, dict[str, float]]:
     """After a step of co-simulation; in model exchange at some time, slipping in a third of the scenes."""
     choices, values, t = drawn(number)
-    instance = new_instance(kind=kind)
-    slips = kind == MODEL_EXCHANGE and number % 3 == 0
-    assert instance.choose(choices) == OK
-    assert instance.set(values | ({"delta_0": 1e-3} if slips else {})) == OK
-    if kind == CO_SIMULATION:
-        instance.initialize()
-        assert instance.step(0.0, t) == OK
-    else:
-        instance.bring_to("continuous-time mode")
-        assert instance.call("fmi2SetTime", c_double(t)) == OK
+    slips = {"delta_0": 1e-3} if kind == MODEL_EXCHANGE and number % 3 == 0 else {}
+    state = "step complete" if kind == CO_SIMULATION else "continuous-time mode"
+    instance = new_instance(kind=kind).start(choices, values | slips, state)
+    moved = instance.step(0.0, t) if kind == CO_SIMULATION else instance.call("fmi2SetTime", t)
+    assert moved == OK
     return instance, values
 
 
@@ -267,9 +253,7 @@ def test_of_the_settled_force(instance: Instance, number: int) -> None:
     choices, values, _ = drawn(number)
     if choices == {**choices, **ELASTIC_PLASTIC}:
         values["friction.staticRatio"] = 1.0  # else it takes long
-    assert instance.choose(choices) == OK
-    assert instance.set(values | {"solver.tolerance": 1e-12}) == OK
-    instance.initialize()
+    instance.start(choices, values | {"solver.tolerance": 1e-12})
     here, asked = np.hypot(*instance.get(*SETTLED)), 0
     for name in (*STEPS, *TUNABLE):
         scale = scale_of(name, values) if values.get(name) else 0.0
@@ -299,10 +283,7 @@ REFUSED = {
 @pytest.mark.parametrize("case", REFUSED)
 def test_what_is_no_derivative_is_refused(new_instance: Callable[..., Instance], case: str) -> None:
     choices, values, state, unknown, known, reason = REFUSED[case]
-    instance = new_instance(logging_on=True)
-    assert instance.choose(choices) == OK
-    assert instance.set(values) == OK
-    instance.bring_to(state)
+    instance = new_instance(logging_on=True).start(choices, values, state)
     before = instance.fingerprint()
     assert instance.directional([unknown], {known: 1.0})[0] == ERROR
     assert re.search(reason, instance.last_message.text)

@@ -35,9 +35,10 @@ def test_asking_leaves_no_trace(
 ) -> None:
     asked, other = new_instance(), new_instance()
     for each in (asked, other):
-        assert each.choose({"friction.model": law, "friction.limit": 2, "initialState": initial}) == OK
-        assert each.set(VIBRATING | across | {"friction.staticRatio": 1.2, "solver.tolerance": 1e-3}) == OK
-        assert each.call("fmi2EnterInitializationMode") == OK
+        values = VIBRATING | across | {"friction.staticRatio": 1.2, "solver.tolerance": 1e-3}
+        each.start(
+            {"friction.model": law, "friction.limit": 2, "initialState": initial}, values, "initialization"
+        )
     first = ask(asked)
     assert asked.fingerprint() == other.fingerprint()
     for each in (asked, other):
@@ -63,15 +64,12 @@ def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance])
     changes = {"V": 0.3, "d": 15e-6, "E": 50e9, "F_C": 40.0, "contact.R_q": 5e-6, "solver.tolerance": 1e-3}
     changes |= {"contact.stiffnessScale": 2e-6, "friction.sigma_2": 5.0, "vibration.f": 1e4}
     changes |= {"vibration.V_1": 1.2, "vibration.a_d": 5e-7, "vibration.phase_d": 1.0, **ACROSS}
-    asked, so_far = new_instance(), dict(VIBRATING)
-    assert asked.set(VIBRATING) == OK and asked.call("fmi2EnterInitializationMode") == OK
+    asked, so_far = new_instance().start({}, VIBRATING, "initialization"), dict(VIBRATING)
     last, chosen = asked.get(*BOTH), {}
     for name, value in [*changes.items(), ("friction.model", 4), ("friction.staticRatio", 1.5)]:
         is_choice = isinstance(value, int)
         (chosen if is_choice else so_far)[name] = value
-        fresh = new_instance()
-        assert fresh.choose(chosen) == OK and fresh.set(so_far) == OK
-        assert fresh.call("fmi2EnterInitializationMode") == OK
+        fresh = new_instance().start(chosen, so_far, "initialization")
         assert (asked.choose if is_choice else asked.set)({name: value}) == OK
         now = asked.get(*BOTH)
         assert now == fresh.get(*BOTH) == asked.get(*BOTH)
@@ -81,8 +79,7 @@ def test_it_is_that_of_the_present_values(new_instance: Callable[..., Instance])
 
 def test_calls_that_ask_for_it_beside_others(instance: Instance) -> None:
     """More than once, and in a direction, which is the sum of its parts."""
-    assert instance.set(VIBRATING | ACROSS) == OK
-    instance.initialize()
+    instance.start(values=VIBRATING | ACROSS)
     V, first, F_t, second = instance.get("V", "F_t_settled", "F_t", "F_t_settled")
     assert (V, F_t) == (0.5, instance.get("F_t")[0]) and first == second == instance.get("F_t_settled")[0]
     _, _, *slopes = ask(instance)

@@ -184,10 +184,7 @@ class Machine(RuleBasedStateMachine):
         """The rest of the run happens in another instance, from the bytes."""
         bytes_before = self.instance.fingerprint()
         old, self.instance = self.instance, Instance(self.library)
-        status, state = self.instance.deserialize(bytes_before)
-        assert status == OK
-        assert self.instance.restore(state) == OK
-        assert self.instance.drop(state) == OK
+        self.instance.become(bytes_before)
         assert self.instance.fingerprint() == bytes_before
         old.free()
 

@@ -70,9 +70,7 @@ def test_a_step_with_a_finite_end_is_taken_however_long_it_is(
 
 
 def test_a_coarse_step_over_the_vibration_is_told_once(new_instance: Callable[..., Instance]) -> None:
-    instance = new_instance()
-    assert instance.set({"vibration.V_1": 1.44}) == OK
-    instance.initialize()
+    instance = new_instance().start(values={"vibration.V_1": 1.44})
     half_period = 0.5 / 20e3
     assert instance.step(0.0, 0.9 * half_period) == OK
     assert instance.messages == []
@@ -84,8 +82,7 @@ def test_a_coarse_step_over_the_vibration_is_told_once(new_instance: Callable[..
     assert (instance.last_message.status, instance.last_message.category) == (WARNING, "logStatusWarning")
     for part in ("0.001 s", "20000 Hz", "F_t_mean"):
         assert part in instance.last_message.text
-    steady = new_instance()
-    steady.initialize()
+    steady = new_instance().start()
     assert steady.step(0.0, 1.0) == OK
     assert steady.messages == []
 
@@ -93,11 +90,8 @@ def test_a_coarse_step_over_the_vibration_is_told_once(new_instance: Callable[..
 @pytest.mark.slow
 def test_a_settled_start_does_not_follow_surfaces_that_are_apart(instance: Instance) -> None:
     """The separation goes from 1 m to 2 km and back: no stiffness and no force anywhere on the way."""
-    assert instance.choose({"friction.model": 3, "initialState": 2}) == OK
-    assert instance.set({"d": 1e3, "vibration.a_d": 999.0, "vibration.V_1": 1.0}) == OK
-    assert instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0) == OK
-    assert instance.call("fmi2EnterInitializationMode") == OK
-    assert instance.call("fmi2ExitInitializationMode") == OK
+    apart = {"d": 1e3, "vibration.a_d": 999.0, "vibration.V_1": 1.0}
+    instance.start({"friction.model": 3, "initialState": 2}, apart)
     sigma, F_t, evaluations = instance.get("sigma", "F_t", "solver.evaluations")
     assert (sigma, F_t) == (0.0, 0.0)
     assert evaluations < 1e7
@@ -105,10 +99,8 @@ def test_a_settled_start_does_not_follow_surfaces_that_are_apart(instance: Insta
 
 def test_a_step_that_costs_too_much_is_refused_with_one_that_does_not(instance: Instance) -> None:
     """V_y moves through 600 000 periods, in which the bristle sticks and slips in a circle."""
-    assert instance.choose({"friction.model": 3}) == OK
-    assert instance.set({"vibration.V_1": 0.0025, "V": 0.0125, "friction.V_S": 8e-4}) == OK
-    assert instance.set({"contact.stiffnessScale": 5.38e-6}) == OK
-    instance.initialize()
+    values = {"vibration.V_1": 0.0025, "V": 0.0125, "friction.V_S": 8e-4, "contact.stiffnessScale": 5.38e-6}
+    instance.start({"friction.model": 3}, values)
     assert instance.set_input_rates({"V_y": 5.72e-5}) == OK
     assert instance.step(0.0, 30.0) == ERROR
     advice = re.search(
