@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from ctypes import c_char_p, c_double, c_int, c_uint
 from dataclasses import dataclass
+from typing import Any
 
 from fmi_library import CO_SIMULATION, MODEL_EXCHANGE, STATES, Instance
 
@@ -52,6 +53,16 @@ def _moved(name: str, rate: float, h: float, *named: str, **values: float) -> Ba
         mend=lambda i: i.set_input_rates({name: 0.0}),
     )
 
+
+INSTANTIATIONS: dict[str, tuple[dict[str, Any], str]] = {  # the arguments and the message
+    "another FMU's guid": (
+        {"guid": "{00000000-0000-0000-0000-000000000000}"},
+        "the guid is {00000000-0000-0000-0000-000000000000}",
+    ),
+    "fmuType = 17": ({"kind": 17}, "fmuType = 17 is neither fmi2ModelExchange (0) nor fmi2CoSimulation (1)"),
+    "an empty instance name": ({"name": ""}, "the instance name is"),
+    "no instance name": ({"name": None}, "the instance name is missing"),
+}
 
 CALLS = [
     _set("V", math.nan, "nan"),

@@ -7,24 +7,16 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from bad_calls import INSTANTIATIONS
 from fmi_library import CO_SIMULATION, OK, Instance, Library
 
 OUTPUTS = ("F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (
-            {"guid": "{00000000-0000-0000-0000-000000000000}"},
-            "the guid is {00000000-0000-0000-0000-000000000000}",
-        ),
-        ({"kind": 17}, "fmuType = 17 is neither fmi2ModelExchange (0) nor fmi2CoSimulation (1)"),
-        ({"name": None}, "the instance name is missing"),
-    ],
-)
-def test_refused_instantiation(library: Library, arguments: dict[str, object], told: str) -> None:
-    refused = Instance(library, **arguments)  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", INSTANTIATIONS)
+def test_refused_instantiation(library: Library, case: str) -> None:
+    arguments, told = INSTANTIATIONS[case]
+    refused = Instance(library, **arguments)
     assert refused.component is None
     assert len(refused.messages) == 1
     assert refused.last_message.category == "logStatusError"

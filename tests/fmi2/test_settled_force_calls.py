@@ -34,11 +34,10 @@ def test_asking_leaves_no_trace(
     new_instance: Callable[..., Instance], law: int, initial: int, across: dict[str, float]
 ) -> None:
     asked, other = new_instance(), new_instance()
+    choices = {"friction.model": law, "friction.limit": 2, "initialState": initial}
+    values = VIBRATING | across | {"friction.staticRatio": 1.2, "solver.tolerance": 1e-3}
     for each in (asked, other):
-        values = VIBRATING | across | {"friction.staticRatio": 1.2, "solver.tolerance": 1e-3}
-        each.start(
-            {"friction.model": law, "friction.limit": 2, "initialState": initial}, values, "initialization"
-        )
+        each.start(choices, values, "initialization")
     first = ask(asked)
     assert asked.fingerprint() == other.fingerprint()
     for each in (asked, other):
