@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from frictioncontact.fmu import FrictionError, FrictionFmu, Session, Value
+from frictioncontact.fmu import FrictionError, FrictionFmu, Value
 from workshop.project import ROOT
 
 PHYSICS = (ROOT / "docs" / "physics.md").read_text(encoding="utf-8")
 
 SETTLED = {"initialState": "Settled"}
-
-
 VIBRATING = {"V": 0.3, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "contact.stiffnessScale": 4.4e-7}
 
 
@@ -78,27 +76,6 @@ def test_dahl_s_force_stays_within_coulomb_s_at_constant_stiffness(fmu: Friction
                 assert np.abs(session.read(["F_t", "F_t_mean"])).max() <= 55.0 * (1 + 1e-6)
 
 
-def positions_of_a_stuck_mass(session: Session, cycles: int) -> list[float]:
-    """Mean position [m] in each cycle of a mass of 1 kg under a load of 30 N + 10 N cos, at 50 Hz.
-
-    The mass goes first, then the contact with its new velocity: stable up to 2 sqrt(m / sigma) = 2 ms.
-    """
-    h, per_cycle, mass = 2e-4, 100, 1.0
-    velocity = position = 0.0
-    means = []
-    for _ in range(cycles):
-        total = 0.0
-        for k in range(per_cycle):
-            load = 30.0 + 10.0 * math.cos(2 * math.pi * k / per_cycle)
-            velocity += h / mass * (load - session.get("F_t"))
-            session.set("V", velocity)
-            session.step(h)
-            position += h * velocity
-            total += position
-        means.append(total / per_cycle)
-    return means
-
-
 def test_damping_under_vibration_changes_the_force_and_the_heat_and_not_the_mean(fmu: FrictionFmu) -> None:
     """Against scipy's integration of Eq. 2; docs/physics.md states the numbers."""
     sigma, V, V_1, T, F_C, sigma_1 = 2.54e6, 0.5, 1.44, 1 / 20e3, 55.0, 500.0
@@ -138,35 +115,34 @@ def test_damping_under_vibration_changes_the_force_and_the_heat_and_not_the_mean
 
 
 def test_a_stuck_mass_creeps_with_dahl_and_not_with_elastic_plastic(fmu: FrictionFmu) -> None:
+    """1 kg under 30 N + 10 N cos at 50 Hz: it goes first, then the contact, stable up to 2 ms."""
     scene = {"V": 0.0, "contact.model": "Constant", "contact.sigma": 1e6, "friction.sigma_1": 300.0}
-    creep = {}
+    creep, h = {}, 2e-4
     for law in ("Dahl", "ElasticPlastic"):
+        velocities = [0.0]
         with fmu.session(scene | {"friction.model": law}) as session:
-            means = positions_of_a_stuck_mass(session, 20)
-            creep[law] = (means[-1] - means[-11]) / 10  # m per cycle
+            for k in range(2000):
+                load = 30.0 + 10.0 * math.cos(2 * math.pi * k / 100)
+                velocities.append(velocities[-1] + h * (load - session.get("F_t")))
+                session.set("V", velocities[-1])
+                session.step(h)
+        position = h * np.cumsum(velocities[1:])
+        creep[law] = (position[-100:].mean() - position[-1100:-1000].mean()) / 10  # m per cycle
     assert abs(creep["ElasticPlastic"]) < 1e-13
     assert creep["Dahl"] > 1e-8
-
-
-@pytest.mark.parametrize(
-    ("scene", "message"),
-    [
-        ({"contact.input": "Load", "load": 1e9}, "load = 1e+09 N presses the surfaces together"),
-        (
-            {"contact.input": "Load", "vibration.a_d": 1.1},
-            "vibration.a_d = 1.1 m presses the surfaces together under load = 312.44 N: ",
-        ),
-    ],
-)
-def test_what_has_no_meaning_is_refused(fmu: FrictionFmu, scene: dict[str, Value], message: str) -> None:
-    with pytest.raises(FrictionError, match=message.replace("+", r"\+")), fmu.session(scene):
-        pass
 
 
 def test_the_bound_of_an_amplitude_under_a_load_is_said(fmu: FrictionFmu) -> None:
     """The one in the message is a bound: a little less is accepted, a little more is not."""
     pressed = {"contact.input": "Load", "load": 1e4}
-    with pytest.raises(FrictionError) as refused, fmu.session(pressed | {"vibration.a_d": 1e-3}):
+    message = r"load = 1e\+09 N presses the surfaces together"
+    with pytest.raises(FrictionError, match=message), fmu.session(pressed | {"load": 1e9}):
+        pass
+    message = r"vibration\.a_d = 0\.001 m presses the surfaces together under load = 10000 N: "
+    with (
+        pytest.raises(FrictionError, match=message) as refused,
+        fmu.session(pressed | {"vibration.a_d": 1e-3}),
+    ):
         pass
     bound = float(re.search(r"up to (\S+) m,", str(refused.value))[1])
     with fmu.session(pressed | {"vibration.a_d": (1 - 1e-8) * bound}):

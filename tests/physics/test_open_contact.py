@@ -59,16 +59,6 @@ def test_surfaces_far_apart(fmu: FrictionFmu, d: float) -> None:
         assert_open(session, 0.2)
 
 
-def test_a_constant_limit_and_stiffness_do_not_know_the_load(fmu: FrictionFmu) -> None:
-    start = {"contact.input": "Load", "contact.model": "Constant", "V": 0.1}
-    forces = []
-    for load in (100.0, 0.0, -5.0):
-        with fmu.session(start | {"load": load}) as session:
-            session.step(1e-4)
-            forces.append(session.get("F_t"))
-    assert forces[0] == forces[1] == forces[2] > 1.0
-
-
 @pytest.mark.parametrize("law", ["Dahl", "ElasticPlastic", "LuGre"])
 def test_the_heat_of_a_load_that_jumps_down(fmu: FrictionFmu, law: str) -> None:
     """A constant stiffness gives up sigma (delta^2 - D^2) / 2, in one jump or in many."""
