@@ -7,7 +7,7 @@ from typing import Any
 
 from solver.test_tolerance import drawn as of_any_stiffness
 
-from frictioncontact.fmu import FrictionFmu, Value
+from frictioncontact.fmu import FrictionFmu
 from workshop.exchange import Host
 from workshop.reference import CHOICES, INPUTS, LAWS_WITH_A_STATE, Scene, start_values, step
 
@@ -39,14 +39,6 @@ def errors(now: Scene, found: dict[str, float]) -> dict[str, float]:
 
 def error(now: Scene, found: dict[str, float]) -> float:
     return max(errors(now, found).values())
-
-
-def stepped(now: Scene, fmu: FrictionFmu, settings: dict[str, Value]) -> dict[str, float]:
-    """Outputs after one step of co-simulation."""
-    with fmu.session(start_values(now) | settings) as session:
-        session.set_rates(**{name: getattr(now, f"{name}_rate") for name in INPUTS})
-        session.step(now.h)
-        return dict(zip(LARGEST, session.read(LARGEST), strict=True))
 
 
 def run(now: Scene, fmu: FrictionFmu, tolerance: float) -> dict[str, float]:

@@ -7,7 +7,8 @@ from itertools import count, islice, repeat
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from model_exchange.exchange_scenes import LARGEST, drawn, error, errors, is_held, run, stepped
+from model_exchange.exchange_scenes import LARGEST, drawn, error, errors, is_held, run
+from solver.test_tolerance import results
 
 from frictioncontact.fmu import FrictionFmu
 from workshop.reference import NAMES, changed, start_values, step
@@ -23,8 +24,7 @@ def test_scenes(fmu: FrictionFmu, planar: bool) -> None:
         scene = drawn(number, planar)
         assert error(scene, run(scene, fmu, TOLERANCE)) < (3 if planar else 1) * ALLOWED, number
         for tolerance in (1e-3, 1e-8):
-            found = stepped(scene, fmu, {"solver.tolerance": tolerance})
-            assert error(scene, found) < tolerance + 1e-11, number
+            assert error(scene, results(fmu, scene, tolerance)) < tolerance + 1e-11, number
 
 
 @pytest.mark.parametrize("planar", [False, True], ids=["line", "plane"])

@@ -6,7 +6,8 @@ import cmath
 import math
 
 import pytest
-from model_exchange.exchange_scenes import drawn, error, stepped
+from model_exchange.exchange_scenes import drawn, error
+from solver.test_tolerance import results
 
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.reference import changed, scene_of, step
@@ -75,7 +76,7 @@ def test_every_law_and_limit_along_a_line(fmu: FrictionFmu) -> None:
     for number in range(24):
         scene = drawn(number)
         for tolerance in (1e-4, 1e-8):
-            found = stepped(scene, fmu, {"solver.method": "cvode", "solver.tolerance": tolerance})
+            found = results(fmu, scene, tolerance, "cvode")
             assert error(scene, found) < 5 * tolerance, number
 
 

@@ -23,8 +23,9 @@ GRADED = ("F_t", "F_y", "F_t_mean", "F_y_mean", "W_f", "Q_f")
 Results = dict[str, float]
 
 
-def results(fmu: FrictionFmu, now: Scene, tolerance: float) -> Results:
-    with fmu.session(start_values(now) | {"solver.tolerance": tolerance}, now.start) as session:
+def results(fmu: FrictionFmu, now: Scene, tolerance: float, method: str = "collocation") -> Results:
+    solver = {"solver.tolerance": tolerance, "solver.method": method}
+    with fmu.session(start_values(now) | solver, now.start) as session:
         session.set_rates(**{name: getattr(now, f"{name}_rate") for name in INPUTS})
         session.step(now.h)
         names = (*GRADED, "solver.evaluations")
