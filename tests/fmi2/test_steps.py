@@ -45,17 +45,6 @@ def test_how_far_the_time_of_a_host_may_be_off(
         assert instance.step(start + side * allowed, h) == OK, instance.messages
 
 
-def test_the_stop_time_is_the_last_end(instance: Instance) -> None:
-    instance.initialize(start=0.0, stop=0.3)
-    for step in range(3):
-        assert instance.step(step * 0.1, 0.1) == OK, instance.messages  # 0.2 + 0.1 > 0.3 by rounding
-    before = instance.fingerprint()
-    assert instance.step(reached(instance), 1e-6) == ERROR
-    assert "after the stop time 0.3 s" in instance.last_message.text
-    assert instance.fingerprint() == before
-    assert instance.step(reached(instance), 0.0) == OK
-
-
 @pytest.mark.parametrize(("start", "h"), [(0.0, sys.float_info.max), (1e200, 1e200), (-1e308, 1e308)])
 def test_a_step_with_a_finite_end_is_taken_however_long_it_is(
     instance: Instance, start: float, h: float
