@@ -84,14 +84,7 @@ def page(folder: Path) -> str:
         instance.bring_to("step complete")
         instance.call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
         lines.append(ORDER.rstrip("\n").format(example=instance.last_message.text))
-    lines += [
-        "",
-        *_table(CO_SIMULATION),
-        "",
-        "An instance for model exchange:",
-        "",
-        *_table(MODEL_EXCHANGE),
-    ]
+    lines += ["", *_table(CO_SIMULATION), "", "An instance for model exchange:", "", *_table(MODEL_EXCHANGE)]
     lines += [INSTANTIATION.rstrip("\n"), "", *_instantiation(library), ""]
     return "\n".join(lines)
 

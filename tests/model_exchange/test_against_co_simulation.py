@@ -52,10 +52,7 @@ def heats_of_jumps(fmu: FrictionFmu, number: int) -> list[float]:
     }
     start = stiff(fmu, start, 20e6)
     start["delta_0"], start["delta_y_0"] = rng.uniform(-2, 2, 2) * [1.0, planar] * 55.0 / 20e6
-    with (
-        fmu.session(start) as session,
-        Host(fmu, start, lambda t, own: now, tolerance=1e-8) as host,
-    ):
+    with fmu.session(start) as session, Host(fmu, start, lambda t, own: now, tolerance=1e-8) as host:
         session.step(0.0)
         heats = [session.get("Q_f")]
         for _ in range(3):

@@ -108,8 +108,7 @@ def resolved(mass: float, pull: float, sigma: float, V_1: float, f: float, perio
 
 
 @pytest.mark.parametrize(
-    ("mass", "sigma", "periods", "least", "most"),
-    [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 700, 7.0, 9.0)],
+    ("mass", "sigma", "periods", "least", "most"), [(0.1, 2.5e6, 300, 0.01, 2.0), (1.0, 2.5e5, 700, 7.0, 9.0)]
 )
 def test_a_mass_follows_it_but_for_ripple_and_transient(
     fmu: FrictionFmu, mass: float, sigma: float, periods: int, least: float, most: float
