@@ -25,12 +25,8 @@ STRIBECK = {"friction.staticRatio": 1.4, "friction.V_S": 0.01}
 FORCES = ("F_t", "F_y")
 # A bristle that slips stays on the bound while the bound comes nearer: where an input moves this way.
 NEARER = {"V": 1.0, "d": -1.0, "E": 1.0, "load": 1.0, "V_y": 1.0}
-VIBRATING_SURFACES = {
-    "contact.stiffnessScale": 1e-5,
-    "friction.sigma_1": 200.0,
-    "vibration.a_d": 1e-6,
-    "vibration.phase_d": 0.7,
-}
+VIBRATING_SURFACES = {"vibration.a_d": 1e-6, "vibration.phase_d": 0.7}
+VIBRATING_SURFACES |= {"contact.stiffnessScale": 1e-5, "friction.sigma_1": 200.0}
 SLIPPING = {
     "the limit follows the load": (LIMIT_BY_LOAD, {}),
     "in the plane": (PRESSED, {**VIBRATING_SURFACES, "V_y": 0.3}),
@@ -135,29 +131,21 @@ def drawn(number: int) -> tuple[dict[str, int], dict[str, float], float]:
     stiffness, V_1 = between(1e6, 1e9), between(1e-2, 1.0)
     across = number // 4 % 2
     reach = between(0.2, 0.9) * 20.0 / stiffness  # within the least bound
-    values = {
-        "V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0),
-        "V_y": across * between(1e-2, 1.0),
+    values = {"V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0), "V_y": across * between(1e-2, 1.0)}
+    values |= {
         "d": 14e-6 * between(0.9, 1.1),
         "E": 58e9 * between(0.5, 2.0),
         "load": 312.0 * between(0.7, 1.4),
-        "F_C": between(30.0, 90.0),
-        "friction.mu": between(0.12, 0.3),
-        "friction.staticRatio": 1.0 + between(0.1, 1.0),
-        "friction.V_S": between(0.1, 1.0),
-        "friction.sigma_1": between(0.1, 10.0),
-        "friction.sigma_2": between(0.1, 10.0),
-        "contact.sigma": stiffness,
-        "contact.stiffnessScale": between(0.5, 2.0) * (1e-6 if choices["contact.model"] == 1 else 1e-3),
-        "vibration.f": between(1e4, 4e4),
-        "vibration.V_1": V_1,
-        "vibration.a_d": between(1e-7, 2e-6),
-        "vibration.phase_d": float(rng.uniform(-3.0, 3.0)),
-        "vibration.V_2": across * V_1 * between(0.1, 1.0),
-        "vibration.phase_2": float(rng.uniform(-3.0, 3.0)),
-        "delta_0": reach,
-        "delta_y_0": across * reach * float(rng.uniform(-0.5, 0.5)),
     }
+    values |= {"F_C": between(30.0, 90.0), "friction.mu": between(0.12, 0.3)}
+    values |= {"friction.staticRatio": 1.0 + between(0.1, 1.0), "friction.V_S": between(0.1, 1.0)}
+    values |= {"friction.sigma_1": between(0.1, 10.0), "friction.sigma_2": between(0.1, 10.0)}
+    scale = between(0.5, 2.0) * (1e-6 if choices["contact.model"] == 1 else 1e-3)
+    values |= {"contact.sigma": stiffness, "contact.stiffnessScale": scale, "vibration.f": between(1e4, 4e4)}
+    values |= {"vibration.V_1": V_1, "vibration.V_2": across * V_1 * between(0.1, 1.0)}
+    values |= {"vibration.a_d": between(1e-7, 2e-6)}
+    values |= {f"vibration.phase_{which}": float(rng.uniform(-3.0, 3.0)) for which in "d2"}
+    values |= {"delta_0": reach, "delta_y_0": across * reach * float(rng.uniform(-0.5, 0.5))}
     return choices, values, between(1e-6, 1e-4)
 
 

@@ -24,14 +24,8 @@ SOFT = {"contact.stiffnessScale": 4.4e-7}
 @pytest.mark.parametrize("law", LAWS)
 def test_without_vibration_it_is_steady_sliding(fmu: FrictionFmu, law: str, V: float) -> None:
     has_curve, excess, V_S = law in ("LuGre", "ElasticPlastic"), 0.4, 0.01
-    values = {
-        "friction.model": law,
-        "friction.staticRatio": 1.0 + excess,
-        "friction.V_S": V_S,
-        "friction.sigma_1": 30.0,
-        "friction.sigma_2": 2.0,
-        "V": V,
-    }
+    values = {"friction.model": law, "friction.staticRatio": 1.0 + excess, "friction.V_S": V_S, "V": V}
+    values |= {"friction.sigma_1": 30.0, "friction.sigma_2": 2.0}
     curve = excess * math.exp(-((V / V_S) ** 2)) if has_curve else 0.0
     with fmu.session(values) as session:
         steady = math.copysign(F_C * (1 + curve), V) + 2.0 * V
@@ -76,18 +70,13 @@ def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) ->
 def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
     """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
     values: dict[str, Value] = {
-        "friction.model": "ElasticPlastic",
-        "friction.staticRatio": 1.065,
-        "friction.V_S": 0.43,
         "contact.model": "Constant",
         "contact.sigma": 321.0,
-        "vibration.f": 1.0,
-        "vibration.V_1": 0.327,
-        "vibration.V_2": 0.114,
-        "vibration.phase_2": 1.9,
         "V": -0.0007,
         "V_y": -0.00105,
     }
+    values |= {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.065, "friction.V_S": 0.43}
+    values |= {"vibration.f": 1.0, "vibration.V_1": 0.327, "vibration.V_2": 0.114, "vibration.phase_2": 1.9}
     with fmu.session(values) as session:
         session.step(3000.0)
         session.step(2.0)
