@@ -132,12 +132,12 @@ def drawn(number: int) -> tuple[dict[str, int], dict[str, float], float]:
     across = number // 4 % 2
     reach = between(0.2, 0.9) * 20.0 / stiffness  # within the least bound
     values = {"V": float(rng.choice([-1.0, 1.0])) * between(1e-2, 2.0), "V_y": across * between(1e-2, 1.0)}
+    values |= {"d": 14e-6 * between(0.9, 1.1), "E": 58e9 * between(0.5, 2.0)}
     values |= {
-        "d": 14e-6 * between(0.9, 1.1),
-        "E": 58e9 * between(0.5, 2.0),
         "load": 312.0 * between(0.7, 1.4),
+        "F_C": between(30.0, 90.0),
+        "friction.mu": between(0.12, 0.3),
     }
-    values |= {"F_C": between(30.0, 90.0), "friction.mu": between(0.12, 0.3)}
     values |= {"friction.staticRatio": 1.0 + between(0.1, 1.0), "friction.V_S": between(0.1, 1.0)}
     values |= {"friction.sigma_1": between(0.1, 10.0), "friction.sigma_2": between(0.1, 10.0)}
     scale = between(0.5, 2.0) * (1e-6 if choices["contact.model"] == 1 else 1e-3)

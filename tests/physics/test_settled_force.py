@@ -69,12 +69,8 @@ def test_a_bristle_that_never_slips_keeps_what_delta_0_says(fmu: FrictionFmu) ->
 
 def test_a_cycle_in_the_plane_that_forgets_its_start_slowly(fmu: FrictionFmu) -> None:
     """A bristle that sticks and slips in turn forgets 0.8 % of its direction in a period: 1e-10 remains."""
-    values: dict[str, Value] = {
-        "contact.model": "Constant",
-        "contact.sigma": 321.0,
-        "V": -0.0007,
-        "V_y": -0.00105,
-    }
+    values: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": 321.0}
+    values |= {"V": -0.0007, "V_y": -0.00105}
     values |= {"friction.model": "ElasticPlastic", "friction.staticRatio": 1.065, "friction.V_S": 0.43}
     values |= {"vibration.f": 1.0, "vibration.V_1": 0.327, "vibration.V_2": 0.114, "vibration.phase_2": 1.9}
     with fmu.session(values) as session:
