@@ -194,7 +194,9 @@ def test_a_load_that_falls_on_a_bristle_at_rest(new_instance: Callable[..., Inst
         if instance.step_completed() or min(instance.indicators()[1:]) <= 0:
             instance.event()
             events += 1
+    instance.event()  # gives the heat of what has slipped since the last one
     assert instance.get("F_t")[0] == pytest.approx(0.176 * 50.0, rel=1e-12)
+    assert instance.get("Q_f")[0] == pytest.approx((17.0**2 - (0.176 * 50.0) ** 2) / (2 * 2.5e6), rel=1e-11)
     assert 1 <= events <= 3
 
 

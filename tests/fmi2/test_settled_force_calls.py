@@ -9,14 +9,8 @@ from fmi_library import ERROR, OK, Instance, Library
 
 from workshop import description
 
-VIBRATING = {
-    "V": 0.5,
-    "vibration.V_1": 1.44,
-    "vibration.a_d": 1.1e-6,
-    "contact.stiffnessScale": 4.4e-7,
-    "friction.sigma_2": 3.0,
-    "friction.V_S": 0.5,
-}
+VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6}
+VIBRATING |= {"contact.stiffnessScale": 4.4e-7, "friction.sigma_2": 3.0, "friction.V_S": 0.5}
 ACROSS = {"V_y": 0.2, "vibration.V_2": 0.7, "vibration.phase_2": 1.0}
 INPUTS = ("V", "d", "E", "load", "V_y")
 BOTH = ("F_t_settled", "F_y_settled")

@@ -87,16 +87,8 @@ def along(law: str, kappa: float, zeta: float) -> dict[str, Value]:
 
 # ---- the contact ----
 
-TABLE_1 = {
-    "R_q": 6e-6,
-    "R": 1.7e-6,
-    "eta": 47e9,
-    "A_n": 1e-4,
-    "nu": 0.33,
-    "Y": 410e6,
-    "c": 17.0,
-    "lambda": 3.0,
-}
+_NAMES = ("R_q", "R", "eta", "A_n", "nu", "Y", "c", "lambda")
+TABLE_1 = dict(zip(_NAMES, (6e-6, 1.7e-6, 47e9, 1e-4, 0.33, 410e6, 17.0, 3.0), strict=True))
 CONTACTS = [  # x = lambda omega_c / R_q from 1e-4 to 1e2
     TABLE_1,
     TABLE_1 | {"R_q": 1e-7, "R": 1e-3, "eta": 1e11, "Y": 2e9},

@@ -10,13 +10,8 @@ from frictioncontact.fmu import FrictionFmu, Value
 
 SIGMA, F_C, RATIO, V_S = 2.5e6, 55.0, 1.5, 0.01
 F_S = RATIO * F_C
-SPRING: dict[str, Value] = {
-    "friction.model": "ElasticPlastic",
-    "friction.staticRatio": RATIO,
-    "friction.V_S": V_S,
-    "contact.model": "Constant",
-    "contact.sigma": SIGMA,
-}
+SPRING: dict[str, Value] = {"contact.model": "Constant", "contact.sigma": SIGMA}
+SPRING |= {"friction.model": "ElasticPlastic", "friction.staticRatio": RATIO, "friction.V_S": V_S}
 
 
 @pytest.mark.parametrize("V_1", [0.02, 4.0])
