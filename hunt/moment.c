@@ -80,8 +80,12 @@ static Vector turn_at(const World* w, Real t) {
     return 2.0L * cimagl(half) * across(half);
 }
 
+static Vector vibration(const World* w, Vector turn) {
+    return CMPLXL(creall(w->x * turn), creall(w->y * turn));
+}
+
 static Vector velocity(const World* w, Real t, Vector turn) {
-    return w->start + t * w->rate + creall(turn) * w->cosine - cimagl(turn) * w->sine;
+    return w->start + t * w->rate + vibration(w, turn);
 }
 
 void velocities(const World* w, Real t, int order, Vector* V) {
@@ -90,7 +94,7 @@ void velocities(const World* w, Real t, int order, Vector* V) {
     turn += 1.0L;
     for (int k = 1; k <= order; k++) {
         turn = w->omega * across(turn);
-        V[k] = creall(turn) * w->cosine - cimagl(turn) * w->sine;
+        V[k] = vibration(w, turn);
     }
     V[1] = order > 0 ? (V[1] + w->rate) : V[1];
 }
@@ -108,16 +112,15 @@ static At contact_at(const World* w, Real t, Vector turn) {
         return at;
     }
     const AtModulus of = s->E_rate == 0.0 ? w->held : at_modulus(s, (Real)s->E + s->E_rate * t);
-    const Real cosine = 1.0L + creall(turn), sine = cimagl(turn),
-               swing = w->d_cosine * cosine - w->d_sine * sine;
-    Real d, d_rate = -w->omega * (w->d_cosine * sine + w->d_sine * cosine);
+    const Vector swing = w->swing * (1.0L + turn);
+    Real d, d_rate = -w->omega * cimagl(swing);
     if (s->input == INPUT_LOAD) {
         const Real rate = s->load_rate, load = rate == 0.0L ? s->load : rate * (t + s->load / rate);
-        at.F_n = load / w->swell * expl(-w->decay * swing);
-        d = logl(of.force * w->swell / load) / w->decay + swing;
+        at.F_n = load / w->swell * expl(-w->decay * creall(swing));
+        d = logl(of.force * w->swell / load) / w->decay + creall(swing);
         d_rate += (of.by_force * s->E_rate - s->load_rate / load) / w->decay;
     } else {
-        d = w->d + w->d_rate * t + swing;
+        d = w->d + w->d_rate * t + creall(swing);
         at.F_n = of.force * expl(-w->decay * d);
         d_rate += w->d_rate;
     }
@@ -136,7 +139,7 @@ static At contact_at(const World* w, Real t, Vector turn) {
 
 static World at_rest(const World* w) {
     World rest = *w;
-    rest.d_cosine = rest.d_sine = 0.0L;
+    rest.swing = 0.0L;
     return rest;
 }
 
@@ -190,31 +193,10 @@ Real bound_rate(const World* w, const At* at, bool sticks) {
 
 // ---- The step ----
 
-// Mean of the limit over a period of the vibration with the inputs of a time [N].
-static Real mean_limit(const World* w, Real t) {
+Real mean_limit(const World* w, Real t) {
     World rest = at_rest(w);
     rest.open = is_open(w, t);
     return scene_at(&rest, t).coulomb * (w->scene.limit == LIMIT_LOAD ? w->swell : 1.0L);
-}
-
-Real largest_force(const World* w, Vector delta) {
-    const ReferenceScene* s = &w->scene;
-    const bool bristle = s->law != LAW_COULOMB;
-    Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
-    if (bristle && !is_open(w, 0.0L)) {
-        S = fmaxl(S, scene_at(w, 0.0L).sigma * length_of(delta));
-    }
-    return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
-}
-
-World held_world(const World* w, Real h) {
-    World held = *w;
-    ReferenceScene* s = &held.scene;
-    s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
-    held.rate = 0.0L;
-    held.d_rate = 0.0L;
-    held.h = h;
-    return held;
 }
 
 // The largest speed [m/s] of a component, with its vibration.
@@ -231,13 +213,10 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     const double cycles = scene->f * scene->start;
     const double lost = fma(scene->f, scene->start, -cycles);
     w.cycle = (Real)(cycles - floor(cycles)) + lost;
-    const Vector x = direction(w.cycle), y = direction(w.cycle + scene->phase_2 / (2.0L * PI));
-    const Vector separation = direction(w.cycle + scene->phase_d / (2.0L * PI));
-    w.cosine = CMPLXL(scene->V_1 * creall(x), scene->V_2 * creall(y));
-    w.sine = CMPLXL(scene->V_1 * cimagl(x), scene->V_2 * cimagl(y));
-    w.d_cosine = scene->a_d * creall(separation);
-    w.d_sine = scene->a_d * cimagl(separation);
-    w.start = CMPLXL(scene->V, scene->V_y) + w.cosine;
+    w.x = scene->V_1 * direction(w.cycle);
+    w.y = scene->V_2 * direction(w.cycle + scene->phase_2 / (2.0L * PI));
+    w.swing = scene->a_d * direction(w.cycle + scene->phase_d / (2.0L * PI));
+    w.start = CMPLXL(scene->V, scene->V_y) + vibration(&w, 1.0L);
     w.rate = CMPLXL(scene->V_rate, scene->V_y_rate);
     w.top = hypotl(fastest(scene->V, scene->V_rate, scene->V_1, h),
                    fastest(scene->V_y, scene->V_y_rate, scene->V_2, h));
@@ -249,10 +228,9 @@ World make_world(const ReferenceScene* scene, Real h, int fineness) {
     return w;
 }
 
-// The separation [m] at the start, with the vibration.
-static Real separation(const World* w) {
+Real separation(const World* w) {
     const ReferenceScene* s = &w->scene;
-    return w->d_cosine +
+    return creall(w->swing) +
            (s->input == INPUT_LOAD ? logl(w->held.force * w->swell / s->load) / w->decay : w->d);
 }
 
@@ -262,28 +240,4 @@ ReferenceRest reference_rest(const ReferenceScene* scene) {
     const World moves = make_world(&loaded, 0.0L, 1), w = at_rest(&moves);
     const At at = scene_at(&w, 0.0L);
     return (ReferenceRest){(double)separation(&w), (double)at.coulomb, (double)at.sigma};
-}
-
-World ramp_between(const World* from, const World* to) {
-    World w = *from;
-    ReferenceScene* s = &w.scene;
-    const ReferenceScene* end = &to->scene;
-    w.ramp = true;
-    w.h = 1.0L;
-    w.S = to->S;
-    w.top = 0.0L;
-    s->input = INPUT_SEPARATION;
-    s->V_1 = s->V_2 = s->a_d = 0.0;
-    s->E_rate = end->E - s->E;
-    w.d = separation(from);
-    w.d_rate = separation(to) - w.d;
-    w.rate = to->start - from->start;
-    w.cosine = w.sine = 0.0L;
-    w.d_cosine = w.d_sine = 0.0L;
-    w.ln_rate.limit = s->limit == LIMIT_LOAD ? logl((Real)end->mu / s->mu) : logl((Real)end->F_C / s->F_C);
-    w.ln_rate.scale = s->contact == CONTACT_CONSTANT ? logl((Real)end->contact_sigma / s->contact_sigma)
-                                                     : logl((Real)end->stiffnessScale / s->stiffnessScale);
-    w.ln_rate.ratio = logl((1.0L + to->excess) / (1.0L + from->excess));
-    w.ln_rate.V_S = logl((Real)end->V_S / s->V_S);
-    return w;
 }

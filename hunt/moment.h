@@ -29,10 +29,11 @@ typedef struct {
 
 typedef struct {
     ReferenceScene scene;
-    // The velocity [m/s] is start + rate t + cosine (cos(omega t) - 1) - sine sin(omega t).
-    Vector start, rate, cosine, sine;
-    // The separation [m] is d + d_rate t + d_cosine cos(omega t) - d_sine sin(omega t).
-    Real d, d_rate, d_cosine, d_sine;
+    // The velocity [m/s] is start + rate t + Re(x turn), Re(y turn), with turn = e^(i omega t) - 1.
+    Vector start, rate, x, y;
+    // The separation [m] is d + d_rate t + Re(swing e^(i omega t)).
+    Real d, d_rate;
+    Vector swing;
     Real h, omega, decay, swell, excess;
     Real cycle;     // 1, the part of a period before the start
     AtModulus held; // at the modulus of the start
@@ -64,11 +65,8 @@ typedef struct {
 
 World make_world(const ReferenceScene* scene, Real h, int fineness);
 
-// The same with its inputs held.
-World held_world(const World* w, Real h);
-
-// The limit of a fast ramp from the start of a world to that of another, in a time of 1.
-World ramp_between(const World* from, const World* to);
+// The separation [m] at the start, with the vibration.
+Real separation(const World* w);
 
 bool is_open(const World* w, Real t);
 
@@ -81,7 +79,7 @@ At scene_at(const World* w, Real t);
 Real bound(const World* w, const At* at, bool sticks);
 Real bound_rate(const World* w, const At* at, bool sticks);
 
-// The scale of the tolerance [N], for the deflection at the start.
-Real largest_force(const World* w, Vector delta);
+// Mean of the limit over a period of the vibration with the inputs of a time [N].
+Real mean_limit(const World* w, Real t);
 
 #endif

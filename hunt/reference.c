@@ -113,7 +113,7 @@ typedef struct {
 } Sums;
 
 static void add_times(Sums* sums, const Sums* one, Real factor) {
-    sums->impulse = sums->impulse + factor * one->impulse;
+    sums->impulse += factor * one->impulse;
     sums->work += factor * one->work;
     sums->heat += factor * one->heat;
     sums->path += factor * one->path;
@@ -122,7 +122,7 @@ static void add_times(Sums* sums, const Sums* one, Real factor) {
 static void add(Sums* sums, const Sums* part) {
     add_times(sums, part, 1.0L);
     sums->end = part->end;
-    sums->change = sums->change + part->change;
+    sums->change += part->change;
     sums->length = part->length;
     sums->blur = part->blur;
     sums->force += part->force;
@@ -133,7 +133,7 @@ static void add(Sums* sums, const Sums* part) {
 static void account(const World* w, Sums* sums, Vector spring, Vector rate, Vector V, Real time) {
     const Vector rest = w->scene.sigma_2 * V + w->scene.sigma_1 * rate;
     const Real speed = length_of(V), strong = length_of(spring), viscous = w->scene.sigma_2 * speed;
-    sums->impulse = sums->impulse + time * (spring + w->scene.sigma_2 * V);
+    sums->impulse += time * (spring + w->scene.sigma_2 * V);
     sums->work += time * (dot(spring, V) + dot(rest, V));
     sums->heat += time * (dot(spring, V - rate) + dot(rest, V));
     sums->path += time * speed;
@@ -220,18 +220,22 @@ typedef struct {
     Signs sign[STAGES + 1]; // at the start and at the nodes
 } Panel;
 
+// Adds a rate at the node j, and its slope, to the equations Y_i - size sum_j to_ij slope_j Y_j = size sum_j to_ij rate_j.
+static void add_rate(Real A[STAGES][STAGES + SIDES], int j, Real size, Real slope, Vector rate) {
+    for (int i = 0; i < STAGES; i++) {
+        const Real weight = size * the_rule()->to[i][j];
+        A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
+        A[i][STAGES] += weight * creall(rate);
+        A[i][STAGES + 1] += weight * cimagl(rate);
+    }
+}
+
 // The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
 static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
     Real A[STAGES][STAGES + SIDES] = {{0}};
     for (int j = 0; j < STAGES; j++) {
         const Real r = relaxation(w, &at[j]);
-        const Vector rate = at[j].V - r * delta;
-        for (int i = 0; i < STAGES; i++) {
-            const Real weight = size * the_rule()->to[i][j];
-            A[i][j] = (i == j ? 1.0L : 0.0L) + weight * r;
-            A[i][STAGES] += weight * creall(rate);
-            A[i][STAGES + 1] += weight * cimagl(rate);
-        }
+        add_rate(A, j, size, -r, at[j].V - r * delta);
     }
     solve(A);
     for (int i = 0; i < STAGES; i++) {
@@ -257,11 +261,7 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
-            for (int i = 0; i < STAGES; i++) {
-                const Real weight = size * the_rule()->to[i][j];
-                A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-                A[i][STAGES] += weight * rate;
-            }
+            add_rate(A, j, size, slope, rate);
         }
         solve(A);
         for (int i = 0; i < STAGES; i++) {
@@ -335,7 +335,7 @@ static Panel panel(const March* march, Real a, Real b, Vector delta) {
         p.sums.end = delta + change[last];
         p.sums.blur = fastest * expl(-relaxed) * 2.0L * LDBL_EPSILON * b;
         p.sums.length = fmaxl(longest * expl(-relaxed), at[last].g / at[last].sigma);
-        p.sums.impulse = p.sums.impulse + w->scene.sigma_1 * p.sums.change;
+        p.sums.impulse += w->scene.sigma_1 * p.sums.change;
         p.sums.force += w->scene.sigma_1 * length_of(p.sums.change);
     }
     const At first = scene_at(w, a);
@@ -437,8 +437,7 @@ typedef struct {
 
 // On a ramp V is linear, and the product V V' tells its zero, too.
 static bool is_on_line(const World* w) {
-    return !w->ramp && cimagl(w->start) == 0.0L && cimagl(w->rate) == 0.0L && cimagl(w->cosine) == 0.0L &&
-           cimagl(w->sine) == 0.0L;
+    return !w->ramp && cimagl(w->start) == 0.0L && cimagl(w->rate) == 0.0L && w->y == 0.0L;
 }
 
 static Real square(const void* context, Real t) {
@@ -549,7 +548,7 @@ static void break_away(March* march, const At* at) {
     const Vector from = march->state.delta, to = along(from, bound(w, at, false));
     const Vector damping = w->scene.sigma_1 * (to - from);
     const Real lost = dot(from - to, from + to);
-    march->sums.impulse = march->sums.impulse + damping;
+    march->sums.impulse += damping;
     march->sums.work += dot(damping, at->V);
     march->sums.heat += dot(damping, at->V) + 0.5L * at->sigma * lost;
     march->state = (State){to, true};
@@ -643,6 +642,30 @@ static March march_from(World* w, State state) {
     march_part(&march, turn, w->h, at_end);
     w->open = false;
     return march;
+}
+
+// The limit of a fast ramp from the start of a world to that of another, in a time of 1.
+static World ramp_between(const World* from, const World* to) {
+    World w = *from;
+    ReferenceScene* s = &w.scene;
+    const ReferenceScene* end = &to->scene;
+    w.ramp = true;
+    w.h = 1.0L;
+    w.S = to->S;
+    w.top = 0.0L;
+    s->input = INPUT_SEPARATION;
+    s->V_1 = s->V_2 = s->a_d = 0.0;
+    s->E_rate = end->E - s->E;
+    w.d = separation(from);
+    w.d_rate = separation(to) - w.d;
+    w.rate = to->start - from->start;
+    w.x = w.y = w.swing = 0.0L;
+    w.ln_rate.limit = s->limit == LIMIT_LOAD ? logl((Real)end->mu / s->mu) : logl((Real)end->F_C / s->F_C);
+    w.ln_rate.scale = s->contact == CONTACT_CONSTANT ? logl((Real)end->contact_sigma / s->contact_sigma)
+                                                     : logl((Real)end->stiffnessScale / s->stiffnessScale);
+    w.ln_rate.ratio = logl((1.0L + to->excess) / (1.0L + from->excess));
+    w.ln_rate.V_S = logl((Real)end->V_S / s->V_S);
+    return w;
 }
 
 // The effect of a jump of the inputs, or of a start beyond the bound, on the bristle; returns its heat.
@@ -896,7 +919,7 @@ static bool settle_by_newton(World* w, State* state, Vector* mean) {
             return true;
         }
         const bool plain = k % 4 == 3 || !(length_of(newton) < 10.0L * unit); // there are kinks
-        state->delta = state->delta + (plain ? miss : newton);
+        state->delta += (plain ? miss : newton);
     }
     return false;
 }
@@ -919,6 +942,28 @@ static bool settle(World* w, State* state, Vector* mean) {
 }
 
 // ---- The step ----
+
+// The same with its inputs held.
+static World held_world(const World* w, Real h) {
+    World held = *w;
+    ReferenceScene* s = &held.scene;
+    s->V_rate = s->V_y_rate = s->d_rate = s->E_rate = s->load_rate = 0.0;
+    held.rate = 0.0L;
+    held.d_rate = 0.0L;
+    held.h = h;
+    return held;
+}
+
+// The scale of the tolerance [N], for the deflection at the start.
+static Real largest_force(const World* w, Vector delta) {
+    const ReferenceScene* s = &w->scene;
+    const bool bristle = s->law != LAW_COULOMB;
+    Real S = (1.0L + w->excess) * fmaxl(mean_limit(w, 0.0L), mean_limit(w, w->h));
+    if (bristle && !is_open(w, 0.0L)) {
+        S = fmaxl(S, scene_at(w, 0.0L).sigma * length_of(delta));
+    }
+    return fmaxl(S, ((bristle ? (Real)s->sigma_1 : 0.0L) + s->sigma_2) * w->top);
+}
 
 // The force [N] at a time.
 static Vector force_at(const World* w, Real t, State state) {
