@@ -173,16 +173,6 @@ def test_the_stop_time_is_refused_at_once(new_instance: Callable[..., Instance])
     assert instance.call("fmi2SetTime", 0.4) == OK
 
 
-def test_rounding_of_an_event_starts_no_second_one(new_instance: Callable[..., Instance]) -> None:
-    """The bristle is put onto the bound, to a few roundings, in either regime."""
-    for V in (0.1, -0.1, 0.0):
-        for rounding in (-4e-16, -1e-16, 0.0, 1e-16, 4e-16):
-            instance = block(new_instance, ELASTIC_PLASTIC, V=V)
-            assert instance.put_states(20e-6 * (1 + rounding), 0.0, 0.0) == OK
-            instance.event()
-            assert all(z > 0 for z in instance.indicators())
-
-
 def test_a_load_that_falls_on_a_bristle_at_rest(new_instance: Callable[..., Instance]) -> None:
     """V is 0 and the bound comes nearer: the bristle goes with it, and the host gets no thousand events."""
     choices = {"friction.model": ELASTIC_PLASTIC, "friction.limit": 2, "contact.input": 2, "contact.model": 2}

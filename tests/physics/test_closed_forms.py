@@ -197,20 +197,6 @@ def test_means_to_six_digits(
     assert found == pytest.approx(means, abs=6e-7)
 
 
-@pytest.mark.parametrize("turns", [0.25 - 1e-13, 0.25])
-@pytest.mark.parametrize(("law", "kappa"), [("Coulomb", 1.0), ("ElasticPlastic", 1e5), ("Dahl", 1e5)])
-def test_a_settled_mean_does_not_depend_on_the_phase(law: str, kappa: float, turns: float) -> None:
-    """The reference's, also where |V| is about the least at the start: at a quarter of a turn."""
-    for moves in ({"V_y": 0.01 * V_2}, {"V": 1e-3 * V_2}):
-        one, other = (
-            reference.settled(
-                scene_of(vibrating(law, kappa, 0.0) | moves | {"vibration.phase_2": 2 * math.pi * part})
-            )
-            for part in (turns, 0.0)
-        )
-        assert one == pytest.approx(other, abs=1e-12 * F_C)
-
-
 # ---- steps ----
 
 
