@@ -349,8 +349,8 @@ Sequence sequence_drawn(uint64_t seed, uint64_t number, Kind kind) {
         sequence.step[sequence.steps++] = s;
     }
     ReferenceScene* first = &sequence.step[0];
-    if (kind == NEAR_LINE && sequence.steps > 0) {
-        sequence.steps = 1;
+    if (kind == NEAR_LINE) {
+        sequence.steps = sequence.steps > 0 && (first->V != 0.0 || first->V_rate != 0.0 || first->V_1 != 0.0);
         first->V_y = NEARLY_NONE;
         first->h = vibrates(first) ? fmin(first->h, MOST_NEAR_LINE / first->f) : first->h;
     }

@@ -6,8 +6,8 @@
 
 #include "sequence.h"
 
-// PLANE: with a transverse vibration. NEAR_LINE: the first step of a sequence along a line, a few periods at the most, with a
-// V_y that is nearly none.
+// PLANE: with a transverse vibration. NEAR_LINE: the first step of a sequence that moves along a line, a few periods at the
+// most, with a V_y that is nearly none.
 typedef enum { ALONG, PLANE, NEAR_LINE } Kind;
 
 // A sequence, which depends only on its kind, the seed and the number.

@@ -174,9 +174,7 @@ static int ended(int status) {
         tell(TOO_LONG, "");
     }
     if (ordinary && raised) {
-        tell(EXCEPTION, raised & FE_INVALID     ? "invalid"
-                        : raised & FE_DIVBYZERO ? "division by zero"
-                                                : "overflow");
+        tell(EXCEPTION, raised & FE_INVALID ? "invalid" : "division by zero or overflow");
     }
     return status;
 }

@@ -6,6 +6,7 @@ docs/numerics.md promises.
 
 from __future__ import annotations
 
+import cmath
 import math
 import random
 from typing import Any
@@ -138,11 +139,10 @@ def turned(now: Scene, angle: float, V_y: float) -> Scene:
 
 
 def turned_back(found: Results, angle: float) -> Results:
-    x, y = math.cos(angle), math.sin(angle)
     back = dict(found)
     for along, across in (("F_t", "F_y"), ("F_t_mean", "F_y_mean")):
-        back[along] = found[along] * x + found[across] * y
-        back[across] = found[across] * x - found[along] * y
+        force = complex(found[along], found[across]) * cmath.exp(-1j * angle)
+        back[along], back[across] = force.real, force.imag
     return back
 
 
