@@ -12,45 +12,12 @@ typedef struct {
 static unsigned next_byte(Bytes* input) { return input->at < input->end ? *input->at++ : 0; }
 
 static double next_real(Bytes* input) {
-    static const double telling[] = {0.0,
-                                     -0.0,
-                                     1.0,
-                                     -1.0,
-                                     0.005,
-                                     -0.005,
-                                     14e-6,
-                                     20e-6,
-                                     1e-6,
-                                     1e-12,
-                                     1e-9,
-                                     1e-7,
-                                     5e-5,
-                                     1e-4,
-                                     1e-3,
-                                     0.01,
-                                     0.5,
-                                     2.0,
-                                     55.0,
-                                     1e3,
-                                     2e4,
-                                     1e6,
-                                     2.5e6,
-                                     58e9,
-                                     1e9,
-                                     1e12,
-                                     1e100,
-                                     1e300,
-                                     -1e300,
-                                     1e-300,
-                                     5e-324,
-                                     1.7e-5,
-                                     0.44,
-                                     3.0,
-                                     1.5707,
-                                     1.7976931348623157e308,
-                                     (double)NAN,
-                                     (double)INFINITY,
-                                     -(double)INFINITY};
+    static const double telling[] = {
+        0.0,   -0.0,     1.0,      -1.0,   0.005,  -0.005, 14e-6, 20e-6,  1e-6,
+        1e-12, 1e-9,     1e-7,     5e-5,   1e-4,   1e-3,   0.01,  0.5,    2.0,
+        55.0,  1e3,      2e4,      1e6,    2.5e6,  58e9,   1e9,   1e12,   1e100,
+        1e300, -1e300,   1e-300,   5e-324, 1.7e-5, 0.44,   3.0,   1.5707, 1.7976931348623157e308,
+        NAN,   INFINITY, -INFINITY};
     const unsigned count = sizeof telling / sizeof *telling;
     const unsigned choice = next_byte(input) % (count + 5);
     if (choice < count) {
