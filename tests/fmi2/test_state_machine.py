@@ -70,11 +70,8 @@ class Model:
         return ends
 
     def step_is_legal(self, t: float, h: float) -> bool:
-        if (
-            self.state != "step complete"
-            or not self.works()
-            or not (math.isfinite(h) and h >= 0 and t == self.time)
-        ):
+        begins = self.state == "step complete" and self.works() and t == self.time
+        if not (begins and math.isfinite(h) and h >= 0):
             return False
         if self.stop is not None and t + h > self.stop * (1 + 1e-9):
             return False

@@ -43,16 +43,6 @@ def test_order_of_convergence(fmu: FrictionFmu, method: str, damping: float) -> 
     assert np.log2(coarse / fine) == pytest.approx(ORDERS[method], abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("method", "evaluations"), [("explicitEuler", 8), ("backwardEuler", 8), ("trapezoid", 9), ("rk4", 17)]
-)
-def test_evaluations_of_eight_steps(fmu: FrictionFmu, method: str, evaluations: int) -> None:
-    """The end of a step is the start of the next; RK4 has a middle too."""
-    with fmu.session(SMOOTH | {"solver.method": method, "solver.stepSize": H / 8}) as session:
-        session.step(H)
-        assert session.get("solver.evaluations") == evaluations
-
-
 @pytest.mark.parametrize("method", ORDERS)
 def test_a_step_over_a_reversal_costs_high_orders(fmu: FrictionFmu, method: str) -> None:
     """|V| has a kink there, so no method of these keeps more than order 2; it still converges."""
