@@ -16,8 +16,6 @@ from frictioncontact.fmu import FrictionFmu, Value
 F_C = 55.0
 LAWS = ("Dahl", "Coulomb", "ElasticPlastic", "LuGre")
 BY_LOAD = {"friction.limit": "Load", "contact.input": "Load", "load": 200.0}
-VIBRATING = {"V": 0.5, "vibration.V_1": 1.44, "vibration.a_d": 1.1e-6, "vibration.phase_d": 3.9}
-SOFT = {"contact.stiffnessScale": 4.4e-7}
 
 
 @pytest.mark.parametrize("V", [1e-300, -3e-3, 1e15])
@@ -112,8 +110,3 @@ def test_a_mass_follows_it_but_for_ripple_and_transient(
     error = np.abs(mean - resolved(mass, pull, sigma, V_1, f, periods)).max()
     ripple = F_C / (2 * math.pi * f * mass)
     assert least * ripple < error < most * ripple
-
-
-def test_a_load_that_does_not_count_has_a_derivative_of_0(fmu: FrictionFmu) -> None:
-    with fmu.session(SOFT | VIBRATING | {"load": 0.0}) as session:
-        assert session.slope("F_t_settled", "load") == 0.0
