@@ -130,13 +130,11 @@ static Verdict verdict_by_rounding(const ReferenceScene* before, const TrialStep
     const double ulp = 2.0 * DBL_EPSILON * (fabs(taken->scene.start) + taken->scene.h);
     for (int k = 0; k < 6; k++) {
         ReferenceScene moved = taken->scene, past = before ? *before : moved;
-        const double way = k % 2 ? 1.0 : -1.0;
-        if (k < 4) {
-            *(k < 2 ? &moved.start : &moved.h) += way * ulp;
-        } else {
-            moved.delta_0 *= 1.0 + way * of_delta;
-            moved.delta_y_0 *= 1.0 + way * of_delta;
-        }
+        const double way = k % 2 ? 1.0 : -1.0, grown = k < 4 ? 1.0 : 1.0 + way * of_delta;
+        moved.start += k < 2 ? way * ulp : 0.0;
+        moved.h += k == 2 || k == 3 ? way * ulp : 0.0;
+        moved.delta_0 *= grown;
+        moved.delta_y_0 *= grown;
         past.start = moved.start;
         ReferenceStep found = taken->truth;
         if (moved.h > 0.0) {
