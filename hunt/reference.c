@@ -110,42 +110,6 @@ typedef struct {
     Real stiffness, by_stiffness; // N/m; N m2 for Asperities
 } AtModulus;
 
-typedef struct {
-    ReferenceScene scene;
-    // The velocity [m/s] is start + rate t + Re(x turn), Re(y turn), with turn = e^(i omega t) - 1.
-    Vector start, rate, x, y;
-    // The separation [m] is d + d_rate t + Re(swing e^(i omega t)).
-    Real d, d_rate;
-    Vector swing;
-    Real h, omega, decay, swell, excess;
-    Real cycle;     // 1, the part of a period before the start
-    AtModulus held; // at the modulus of the start
-    bool elastic;   // the law is ElasticPlastic
-    bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
-    bool open;      // nothing touches
-    bool ramp;      // between two steps: nothing moves a bristle but its bound
-    bool pushed;    // after the ramp, a bristle that has broken away
-    // On a ramp: rates [1/s] of the logarithms of F_C or mu, of the stiffness's factor, ..
-    struct {
-        Real limit, scale, ratio, V_S;
-    } ln_rate;
-    Real S;   // N
-    Real top; // m/s, the largest |V|
-    int fineness;
-    Real panels; // taken so far
-} World;
-
-// At a local time; rates are time derivatives of logarithms.
-typedef struct {
-    Vector V;                      // m/s, 0 on a ramp
-    Vector input;                  // m/s, the same on a ramp too
-    Real F_n, sigma;               // N, N/m
-    Real coulomb;                  // N, F_C or mu F_n
-    Real g;                        // N, the force to which a bristle tends
-    Real B;                        // N, the bound of a bristle that sticks
-    Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
-} At;
-
 static Real power_3_2(Real x) { return x * sqrtl(x); }
 
 // gamma(3/2, x); its rounding is that of Gamma(3/2).
@@ -195,6 +159,42 @@ static AtModulus at_modulus(const ReferenceScene* scene, Real E) {
 }
 
 // ---- The scene at a time ----
+
+typedef struct {
+    ReferenceScene scene;
+    // The velocity [m/s] is start + rate t + Re(x turn), Re(y turn), with turn = e^(i omega t) - 1.
+    Vector start, rate, x, y;
+    // The separation [m] is d + d_rate t + Re(swing e^(i omega t)).
+    Real d, d_rate;
+    Vector swing;
+    Real h, omega, decay, swell, excess;
+    Real cycle;     // 1, the part of a period before the start
+    AtModulus held; // at the modulus of the start
+    bool elastic;   // the law is ElasticPlastic
+    bool bounded;   // a bristle has a bound: ElasticPlastic's, or the limit of Dahl's and LuGre's that moves
+    bool open;      // nothing touches
+    bool ramp;      // between two steps: nothing moves a bristle but its bound
+    bool pushed;    // after the ramp, a bristle that has broken away
+    // On a ramp: rates [1/s] of the logarithms of F_C or mu, of the stiffness's factor, ..
+    struct {
+        Real limit, scale, ratio, V_S;
+    } ln_rate;
+    Real S;   // N
+    Real top; // m/s, the largest |V|
+    int fineness;
+    Real panels; // taken so far
+} World;
+
+// At a local time; rates are time derivatives of logarithms.
+typedef struct {
+    Vector V;                      // m/s, 0 on a ramp
+    Vector input;                  // m/s, the same on a ramp too
+    Real F_n, sigma;               // N, N/m
+    Real coulomb;                  // N, F_C or mu F_n
+    Real g;                        // N, the force to which a bristle tends
+    Real B;                        // N, the bound of a bristle that sticks
+    Real bound_rate, kinetic_rate; // of ln(B / sigma), ln(g / sigma)
+} At;
 
 // (cos, sin) of 2 pi turns: by an angle of at most an eighth of a turn, which the library need not reduce.
 static Vector direction(Real turns) {
