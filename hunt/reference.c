@@ -87,15 +87,16 @@ static const Rule* the_rule(void) {
     return &rule;
 }
 
-// Solves linear equations without pivoting: the columns after the matrix are right sides, and then their solutions.
-enum { SIDES = 2 };
-static void solve(Real A[STAGES][STAGES + SIDES]) {
+// Solves linear equations without pivoting: the right sides become the solution.
+static void solve(Real A[STAGES][STAGES], Vector* side) {
     for (int k = 0; k < STAGES; k++) {
-        for (int j = STAGES + SIDES - 1; j >= k; j--) {
+        side[k] /= A[k][k];
+        for (int j = STAGES - 1; j >= k; j--) {
             A[k][j] /= A[k][k];
         }
         for (int i = 0; i < STAGES; i++) {
-            for (int j = STAGES + SIDES - 1; j >= k && i != k; j--) {
+            side[i] -= i == k ? 0.0L : A[i][k] * side[k];
+            for (int j = STAGES - 1; j >= k && i != k; j--) {
                 A[i][j] -= A[i][k] * A[k][j];
             }
         }
@@ -513,26 +514,22 @@ typedef struct {
 } Panel;
 
 // Adds a rate at the node j, and its slope, to the equations Y_i - size sum_j to_ij slope_j Y_j = size sum_j to_ij rate_j.
-static void add_rate(Real A[STAGES][STAGES + SIDES], int j, Real size, Real slope, Vector rate) {
+static void add_rate(Real A[STAGES][STAGES], Vector* side, int j, Real size, Real slope, Vector rate) {
     for (int i = 0; i < STAGES; i++) {
         const Real weight = size * the_rule()->to[i][j];
         A[i][j] = (i == j ? 1.0L : 0.0L) - weight * slope;
-        A[i][STAGES] += weight * creall(rate);
-        A[i][STAGES + 1] += weight * cimagl(rate);
+        side[i] += weight * rate;
     }
 }
 
 // The changes of delta at the nodes by the law: Y_i = size sum_j to_ij (V_j - r_j delta - r_j Y_j).
 static void collocate(const World* w, const At* at, Real size, Vector delta, Vector* change) {
-    Real A[STAGES][STAGES + SIDES] = {{0}};
+    Real A[STAGES][STAGES];
     for (int j = 0; j < STAGES; j++) {
         const Real r = relaxation(w, &at[j]);
-        add_rate(A, j, size, -r, at[j].V - r * delta);
+        add_rate(A, change, j, size, -r, at[j].V - r * delta);
     }
-    solve(A);
-    for (int i = 0; i < STAGES; i++) {
-        change[i] = CMPLXL(A[i][STAGES], A[i][STAGES + 1]);
-    }
+    solve(A, change);
 }
 
 // That direction, turned by an angle [rad].
@@ -542,9 +539,10 @@ static Vector turned(Vector n, Real angle) { return angle == 0.0L ? n : directio
 // converge.
 static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* angle) {
     for (int k = 0; k < 25; k++) {
-        Real A[STAGES][STAGES + SIDES] = {{0}}, most = 0.0L;
+        Real A[STAGES][STAGES], most = 0.0L;
+        Vector step[STAGES];
         for (int i = 0; i < STAGES; i++) {
-            A[i][STAGES] = -angle[i];
+            step[i] = -angle[i];
         }
         for (int j = 0; j < STAGES; j++) {
             const Vector now = turned(n, angle[j]), V = at[j].V;
@@ -553,12 +551,12 @@ static bool turn_over(const World* w, const At* at, Real size, Vector n, Real* a
             if (!(size * slope < 1.0L)) { // an unstable direction: a long panel would not leave it
                 return false;
             }
-            add_rate(A, j, size, slope, rate);
+            add_rate(A, step, j, size, slope, rate);
         }
-        solve(A);
+        solve(A, step);
         for (int i = 0; i < STAGES; i++) {
-            angle[i] += A[i][STAGES];
-            most = fmaxl(most, fabsl(A[i][STAGES]));
+            angle[i] += creall(step[i]);
+            most = fmaxl(most, fabsl(creall(step[i])));
         }
         if (!(most < 3.0L)) {
             return false;
