@@ -5,8 +5,7 @@
 //     build/hunt/hunt --seed 1 --scenes 20000 --jobs 2
 //     build/hunt/hunt --replay "tolerance=1e-6 V=0.5 V_1=1.44 law=LuGre staticRatio=1.3 then V=0.2"
 //
-// Each miss is one line: the error over the allowed error, the result that missed, and the sequence, as --replay reads it. The
-// last line has the sums. Ends with 1 if a step missed.
+// Each miss is one line, with the sequence as --replay reads it. The last line has the sums. Ends with 1 if a step missed.
 #include <getopt.h>
 #include <math.h>
 #include <pthread.h>

@@ -61,12 +61,13 @@ def test_no_step_goes_over_a_stribeck_peak(fmu: FrictionFmu, V: float, V_S: floa
 
 
 def test_every_law_and_limit_along_a_line(fmu: FrictionFmu) -> None:
-    """Errors add up over the step."""
+    """ElasticPlastic holds the promise with any method; else errors add up over the step."""
     for number in range(24):
         scene = drawn(number)
         for tolerance in (1e-4, 1e-8):
             found = results(fmu, scene, tolerance, "cvode")
-            assert error(scene, found) < 5 * tolerance, number
+            most = 1 if scene.law == 3 else 5
+            assert error(scene, found) < most * tolerance, number
 
 
 @pytest.mark.parametrize("law", ["Dahl", "LuGre", "ElasticPlastic"])
