@@ -92,14 +92,12 @@ static void run_job(const Job* job, Run* run) {
         }
         const long at_start = allocations();
         const double cpu = cpu_seconds();
-        const double wall = wall_seconds();
         for (int k = 0; k < job->count; k++) {
             if (step(c, job, reference, k, run->row + k * job->outputs) > fmi2Warning) {
                 fail(&instance, run, k);
                 break;
             }
         }
-        run->wall = wall_seconds() - wall;
         run->cpu = cpu_seconds() - cpu;
         if (at_start >= 0) {
             run->allocations = allocations() - at_start;

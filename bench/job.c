@@ -8,14 +8,11 @@
 
 enum { LEAST_RUNS = 3, MOST_RUNS = 1001 };
 
-static double seconds(clockid_t clock) {
+double cpu_seconds(void) {
     struct timespec now;
-    clock_gettime(clock, &now);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
-
-double wall_seconds(void) { return seconds(CLOCK_MONOTONIC); }
-double cpu_seconds(void) { return seconds(CLOCK_THREAD_CPUTIME_ID); }
 
 static void stop(const char* what, const char* detail) {
     fprintf(stderr, "error: %s: %s\n", what, detail);
@@ -110,9 +107,6 @@ static double median(double* values, int count) {
 }
 
 static void print_rows(const Job* job, const Run* run) {
-    if (job->count > JOB_PRINTED) {
-        return;
-    }
     for (int k = 0; k < job->count; k++) {
         printf("row");
         for (int i = 0; i < job->outputs; i++) {
@@ -123,7 +117,6 @@ static void print_rows(const Job* job, const Run* run) {
 }
 
 void job_measure(const Job* job, RunJob run_job) {
-    static double wall[MOST_RUNS];
     static double cpu[MOST_RUNS];
     Run run = {.failed_at = -1, .allocations = -1};
     run.row = allocate((size_t)job->count * (size_t)job->outputs, sizeof *run.row);
@@ -135,16 +128,13 @@ void job_measure(const Job* job, RunJob run_job) {
             printf("failed %d %s\n", run.failed_at, run.reason);
             return;
         }
-        wall[runs] = run.wall;
-        cpu[runs] = run.cpu;
-        runs++;
+        cpu[runs++] = run.cpu;
         spent += run.cpu;
         if (spent > 20.0 * job->budget) {
             break; // a slow method: one run tells
         }
     }
-    printf("wall %.9g\ncpu %.9g\nevaluations %.17g\n", median(wall, runs), median(cpu, runs),
-           run.evaluations);
+    printf("cpu %.9g\nevaluations %.17g\n", median(cpu, runs), run.evaluations);
     if (run.allocations >= 0) {
         printf("allocations %ld\nallocations_to_start %ld\n", run.allocations, run.allocations_to_start);
     }

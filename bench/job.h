@@ -12,7 +12,7 @@
 //     input 0 4 1 2 3 4   value reference, number of samples, samples; taken in turn, again from the first
 //     evaluations 30      value reference of the count of right-hand sides, read at the end
 //
-// Printed: "wall" and "cpu", the median seconds of a run; "evaluations"; "allocations" in the last run's steps and
+// Printed: "cpu", the median seconds of a run; "evaluations"; "allocations" in the last run's steps and
 // "allocations_to_start" where count_allocations.c is preloaded; "row" with the outputs of every step; or "failed"
 // with the number of the step and the reason.
 #ifndef BENCH_JOB_H
@@ -20,7 +20,7 @@
 
 #include <stddef.h>
 
-enum { JOB_VALUES = 64, JOB_OUTPUTS = 8, JOB_INPUTS = 4, JOB_PRINTED = 100000 };
+enum { JOB_VALUES = 64, JOB_OUTPUTS = 8, JOB_INPUTS = 4 };
 
 typedef struct {
     unsigned reference;
@@ -54,9 +54,8 @@ typedef struct {
 Job job_read(void); // stops the program with a message if a line can't be understood
 double job_sample(const Input* input, int k);
 
-// One run of a job: its own set-up, then the steps between two looks at the clocks.
+// One run of a job: its own set-up, then the steps between two looks at the clock.
 typedef struct {
-    double wall;               // s
     double cpu;                // s
     double evaluations;        // of the right-hand side
     long allocations;          // heap allocations in the steps; -1 where nobody counts them
@@ -71,7 +70,6 @@ typedef void (*RunJob)(const Job* job, Run* run);
 // Repeats the run within the job's budget and prints the medians, or the failure.
 void job_measure(const Job* job, RunJob run_job);
 
-double wall_seconds(void);
 double cpu_seconds(void); // of this thread
 
 #endif

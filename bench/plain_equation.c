@@ -70,12 +70,10 @@ double plain_next_reversal(const Plain* plain, double t, double end) {
 void plain_run(const Job* job, Run* run, int is_open, PlainStep step, void* solver) {
     run->failed_at = is_open ? -1 : 0;
     const double cpu = cpu_seconds();
-    const double wall = wall_seconds();
     for (int k = 0; k < job->count && run->failed_at < 0; k++) {
         if (!step(solver, job, k, run->row + k * job->outputs)) {
             run->failed_at = k;
         }
     }
-    run->wall = wall_seconds() - wall;
     run->cpu = cpu_seconds() - cpu;
 }

@@ -53,7 +53,7 @@ double plain_next_reversal(const Plain* plain, double t, double end);
 // Takes the communication step k with a solver and writes F_t and its mean to row; false where it fails.
 typedef int (*PlainStep)(void* solver, const Job* job, int k, double* row);
 
-// All steps of the job between two looks at the clocks, unless the solver could not be opened.
+// All steps of the job between two looks at the clock, unless the solver could not be opened.
 void plain_run(const Job* job, Run* run, int is_open, PlainStep step, void* solver);
 
 #endif

@@ -3,10 +3,11 @@
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, BrowserContext, Error, Page, Playwright, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Error, Page, sync_playwright
 
 from frictioncontact.errors import UserError
 
@@ -26,19 +27,16 @@ def chromium() -> Iterator[Browser]:
     if executable is None:
         raise UserError("no Chromium is installed; on Debian or Ubuntu: sudo apt-get install chromium")
     with sync_playwright() as playwright:
+        launch = partial(playwright.chromium.launch, executable_path=executable, args=["--no-sandbox"])
         try:
-            browser = _launched(playwright, executable)
-        except Error:  # on a machine with much other work the first may be gone before it answers
             try:
-                browser = _launched(playwright, executable)
-            except Error as error:
-                raise UserError(f"Chromium does not start: {error.message.splitlines()[0]}") from None
+                browser = launch()
+            except Error:  # on a machine with much other work the first may be gone before it answers
+                browser = launch()
+        except Error as error:
+            raise UserError(f"Chromium does not start: {error.message.splitlines()[0]}") from None
         yield browser
         browser.close()
-
-
-def _launched(playwright: Playwright, executable: str) -> Browser:
-    return playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])
 
 
 def window(browser: Browser, size: str, **options: Any) -> BrowserContext:

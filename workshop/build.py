@@ -11,17 +11,19 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
-from rich.progress import Progress, TaskID
+from rich.progress import Progress
 
 from frictioncontact.command import finish, progress_bar
 from frictioncontact.errors import UserError
 from workshop.project import ROOT
 
 PERCENT = re.compile(r"^\[\s*(\d+)%\] (.*)")
+CMAKE_ERROR = re.compile(r"CMake Error(?: at [^\n]*)?:\s*\n?(.*?)(?:Call Stack|-- Configuring|\Z)", re.DOTALL)
 
 
 def presets() -> dict[str, Path]:
@@ -45,38 +47,37 @@ def build_targets(
     progress: Progress | None = None,
     options: Sequence[str] = (),
     environment: Mapping[str, str] | None = None,
-    anew: bool = False,
 ) -> Path:
     """Configures a preset and builds targets of CMake, without any the FMU; gives the folder of the build.
 
     Commands that are started together build one after the other. What a killed build left, and what came with
-    a copied or renamed project, is built anew, as is all where that is asked for.
-    environment: the whole of it, in place of this process's.
+    a copied or renamed project, is built anew. environment: the whole of it, in place of this process's.
     """
     if progress is None:
         with progress_bar() as own:
-            return build_targets(preset, targets, own, options, environment, anew)
+            return build_targets(preset, targets, own, options, environment)
     folder = presets()[preset]
     task = progress.add_task("Waiting for another build", total=100)
     with _locked(folder):
         progress.update(task, description="Configuring")
         cmake = [sys.executable, "-m", "cmake"]
         unfinished = folder / "unfinished"
-        anew = anew or unfinished.exists() or _is_of_another_folder(folder)
+        anew = unfinished.exists() or _is_of_another_folder(folder)
         settings = [f"-DPython3_EXECUTABLE={sys.executable}", *options]
-        settings += shlex.split(os.environ.get("CMAKE_ARGS", ""))
-        _run(
-            [*cmake, "--preset", preset, *settings, *(["--fresh"] if anew else [])],
-            environment,
-            progress,
-            task,
-            unfinished,
-        )
+        settings += [*shlex.split(os.environ.get("CMAKE_ARGS", "")), *(["--fresh"] if anew else [])]
         chosen = ["--target", *targets] if targets else []
         chosen += ["--parallel", str(os.cpu_count() or 1), *(["--clean-first"] if anew else [])]
-        _run([*cmake, "--build", str(folder), *chosen], environment, progress, task, unfinished)
+        for words in (["--preset", preset, *settings], ["--build", str(folder), *chosen]):
+            _run([*cmake, *words], environment, unfinished, partial(progress.update, task))
     progress.remove_task(task)
     return folder
+
+
+def forget(preset: str) -> None:
+    """All of a preset is built anew the next time."""
+    folder = presets()[preset]
+    with _locked(folder):
+        (folder / "unfinished").touch()
 
 
 @contextmanager
@@ -98,40 +99,26 @@ def _is_of_another_folder(folder: Path) -> bool:
         cache = (folder / "CMakeCache.txt").read_text(errors="replace")
     except FileNotFoundError:
         return False
-    home = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", cache, re.MULTILINE)
-    made_in = re.search(r"^CMAKE_CACHEFILE_DIR:INTERNAL=(.*)$", cache, re.MULTILINE)
-    return not (_is_folder(home, ROOT) and _is_folder(made_in, folder))
-
-
-def _is_folder(entry: re.Match[str] | None, folder: Path) -> bool:
-    return entry is not None and Path(entry[1]).exists() and Path(entry[1]).samefile(folder)
+    entries = re.findall(r"^CMAKE_(HOME_DIRECTORY|CACHEFILE_DIR):INTERNAL=(.*)$", cache, re.MULTILINE)
+    here = {"HOME_DIRECTORY": ROOT, "CACHEFILE_DIR": folder}
+    ours = [name for name, made in entries if Path(made).exists() and here[name].samefile(made)]
+    return len(ours) < 2
 
 
 def _run(
-    command: list[str],
-    environment: Mapping[str, str] | None,
-    progress: Progress,
-    task: TaskID,
-    unfinished: Path,
+    command: list[str], environment: Mapping[str, str] | None, unfinished: Path, show: Callable[..., None]
 ) -> None:
     """Runs a command of CMake. The file `unfinished` stays if it is killed; if it fails, it tidies up."""
     lines: list[str] = []
     unfinished.touch()
-    with subprocess.Popen(
-        command,
-        cwd=ROOT,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-    ) as process:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "errors": "replace"}
+    with subprocess.Popen(command, cwd=ROOT, env=environment, **pipes) as process:
         for line in process.stdout or ():
             lines.append(line)
             if match := PERCENT.match(line):
-                progress.update(task, completed=int(match[1]), description=match[2].strip()[:50])
+                show(completed=int(match[1]), description=match[2].strip()[:50])
             elif line.startswith("-- Fetching"):
-                progress.update(task, description="Fetching SUNDIALS")
+                show(description="Fetching SUNDIALS")
     if process.returncode >= 0:
         unfinished.unlink()
     if process.returncode:
@@ -140,10 +127,7 @@ def _run(
 
 def _reason(lines: list[str]) -> str:
     """CMake's own error message as one line, or else the compiler's output."""
-    text = "".join(lines)
-    if match := re.search(
-        r"CMake Error(?: at [^\n]*)?:\s*\n?(.*?)(?:Call Stack|-- Configuring|\Z)", text, re.DOTALL
-    ):
+    if match := CMAKE_ERROR.search("".join(lines)):
         return " ".join(match[1].split())
     return "".join(line for line in lines if not PERCENT.match(line))[-6000:].strip()
 

@@ -26,9 +26,9 @@ def display_unit(model: ModelDescription, variable: ScalarVariable) -> tuple[str
 def description(xml: Path = XML) -> dict[str, Any]:
     """Version and variables, in the order of the file.
 
-    A variable has name, reference, causality, description and start (SI; the name of the item for an
-    enumeration, None for an output); a Real has displayUnit and the factor from SI to it, an enumeration its
-    items with their descriptions.
+    A variable has name, reference, causality, variability, description and start (SI; the name of the item
+    for an enumeration, None for an output); a Real has displayUnit and the factor from SI to it, an
+    enumeration its items with their descriptions.
     """
     model = read(xml)
     starts = Variables(model).starts()
@@ -41,6 +41,7 @@ def _plain(model: ModelDescription, variable: ScalarVariable, start: Value | Non
         "name": variable.name,
         "reference": variable.valueReference,
         "causality": variable.causality,
+        "variability": variable.variability,
         "description": variable.description or "",
         "start": start,
     }

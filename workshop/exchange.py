@@ -11,8 +11,8 @@ the host sets the inputs in every evaluation of the right-hand side. Times in s,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from ctypes import c_double, c_uint
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from ctypes import Array, c_double, c_uint
 from types import SimpleNamespace
 from typing import Any
 
@@ -56,7 +56,7 @@ class Host(Closing):
         self.own = np.array(own, float)
         self.events = 0
         self._inputs, self._own_rates, self._own_nominals = inputs, own_rates, np.array(own_nominals, float)
-        self._forces = (c_uint * len(forces))(*(fmu.variables[name].valueReference for name in forces))
+        self._forces = self._references(forces)
         self._model = self._instantiated()
         try:
             self._start(start_values, start)
@@ -84,6 +84,10 @@ class Host(Closing):
         """Of every function of the FMU since the start."""
         return self._model.calls
 
+    def _references(self, names: Iterable[str]) -> Array[c_uint]:
+        found = [self.fmu.variables[name].valueReference for name in names]
+        return (c_uint * len(found))(*found)
+
     def _instantiated(self) -> FMU2Counted:
         model = FMU2Counted(
             guid=self.fmu.description.guid,
@@ -98,9 +102,7 @@ class Host(Closing):
 
     def _start(self, start_values: Mapping[str, Value], start: float) -> None:
         self._model.setupExperiment(startTime=start)
-        for name, value in start_values.items():
-            self._set(name, value)
-        for name, value in self._inputs(start, self.own).items():
+        for name, value in {**start_values, **self._inputs(start, self.own)}.items():
             self._set(name, value)
         self._model.enterInitializationMode()
         try:
@@ -127,9 +129,8 @@ class Host(Closing):
     def _set_inputs(self) -> None:
         values = self._inputs(self.time, self.own)
         if values:
-            references = (c_uint * len(values))(*(self.fmu.variables[n].valueReference for n in values))
             reals = (c_double * len(values))(*values.values())
-            self._model.fmi2SetReal(self._model.component, references, len(values), reals)
+            self._model.fmi2SetReal(self._model.component, self._references(values), len(values), reals)
 
     def _set_time(self, t: float) -> None:
         self.time = t
@@ -175,7 +176,7 @@ class Host(Closing):
         self._solver.reset(self.time)
 
     def get(self, *names: str) -> np.ndarray:
-        return np.array(self._model.getReal([self.fmu.variables[name].valueReference for name in names]))
+        return np.array(self._model.getReal(self._references(names)))
 
     def close(self) -> None:
         if self._model.component is not None:

@@ -1,12 +1,16 @@
-"""Scenes that the page of the live FMU offers and the FMU holds as parameter sets: the one place for them."""
+"""Scenes that the page of the live FMU offers and the FMU holds as parameter sets."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from lxml import etree
 
 from frictioncontact.fmu import SETTLED
 from frictioncontact.parameters import IDENTIFIED, PRINTED, TABLE_2, ParameterSet, Row, start_values
+from workshop.project import ROOT
 from workshop.validate.measurements import sliding
+
+RELATED = ROOT / "data" / "related"
 
 
 @dataclass(frozen=True)
@@ -100,66 +104,30 @@ def dry_rows() -> list[Preset]:
     ]
 
 
-SOFT: dict[str, float | str] = {"contact.model": "Constant", "contact.sigma": 14.4e6}
+SCENES = {  # the note on each; its title and its values stand in data/related/ID.ssv
+    "stick-slip": "A resting body on a belt of 10 mm/s + 50 mm/s cos(2π 2 Hz t), LuGre's law. Where the belt "
+    "slows below the Stribeck velocity the friction rises towards the static one; after each turn the "
+    "contact sticks and is loaded like a spring.",
+    "transverse": "The vibration of 1.44 m/s is transverse to the sliding. The force turns after the "
+    "velocity (figure b), so little is left of it along the sliding.",
+    "ellipse": "The surfaces vibrate in an ellipse of the plane while they slide at an angle. The mean force "
+    "has a transverse part, and it need not point against the sliding.",
+    "ultrasonic-motor": "The slider runs at 0.1 m/s over a stator of 40 kHz. While the stator moves with the "
+    "slider it is pressed on harder, so the mean friction is negative: it drives. Figure c is the motor's "
+    "force over its speed.",
+}
 
 
 def scenes() -> list[Preset]:
-    group = "Scenes"
-    return [
-        Preset(
-            "stick-slip",
-            group,
-            "Stick and slip: a belt that moves to and fro",
-            "A resting body on a belt of 10 mm/s + 50 mm/s cos(2π 2 Hz t), LuGre's law. Where the belt slows "
-            "below the Stribeck velocity the friction rises towards the static one; after each turn the "
-            "contact sticks and is loaded like a spring.",
-            SETTLED
-            | {
-                "friction.model": "LuGre",
-                "friction.staticRatio": 1.5,
-                "friction.V_S": 0.005,
-                "contact.stiffnessScale": IDENTIFIED.stiffnessScale,
-                "V": 0.01,
-                "vibration.V_1": 0.05,
-                "vibration.f": 2.0,
-            },
-        ),
-        Preset(
-            "transverse",
-            group,
-            "Transverse vibration: the velocity turns and never reverses",
-            "The vibration of 1.44 m/s is transverse to the sliding. The force turns after the velocity "
-            "(figure b), so little is left of it along the sliding.",
-            SETTLED | SOFT | {"V": 0.144, "vibration.V_2": 1.44},
-        ),
-        Preset(
-            "ellipse",
-            group,
-            "Ellipse in the plane, under oblique sliding",
-            "The surfaces vibrate in an ellipse of the plane while they slide at an angle. The mean force "
-            "has a transverse part, and it need not point against the sliding.",
-            SETTLED
-            | SOFT
-            | {"V": 0.3, "V_y": 0.2, "vibration.V_1": 1.44, "vibration.V_2": 0.9, "vibration.phase_2": 1.1},
-        ),
-        Preset(
-            "ultrasonic-motor",
-            group,
-            "Ultrasonic motor: a stator that moves in ellipses",
-            "The slider runs at 0.1 m/s over a stator of 40 kHz. While the stator moves with the slider it "
-            "is pressed on harder, so the mean friction is negative: it drives. Figure c is the motor's "
-            "force over its speed.",
-            SETTLED
-            | {
-                "friction.limit": "Load",
-                "friction.mu": 0.2,
-                "contact.model": "Mindlin",
-                "contact.input": "Load",
-                "load": 100.0,
-                "V": 0.1,
-                "vibration.V_1": 0.3,
-                "vibration.f": 40e3,
-                "vibration.a_d": 1.5e-6,
-            },
-        ),
-    ]
+    found = []
+    for name, note in SCENES.items():
+        root = etree.parse(RELATED / f"{name}.ssv").getroot()
+        given = {each.get("name"): each[0].get("value") for each in root.iterfind("*/*")}
+        values = {variable: _value(text) for variable, text in given.items()}
+        found.append(Preset(name, "Scenes", root.get("name"), note, values))
+    return found
+
+
+def _value(text: str) -> float | str:
+    """A number, or the name of an enumeration's item."""
+    return text if text.isidentifier() else float(text)

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
+from frictioncontact.fmu import INPUTS
 from workshop.build import build_targets
 from workshop.description import description
 from workshop.project import ROOT
@@ -26,7 +27,6 @@ CHOICES = {
 }
 RESULTS = """F_t F_y F_t_mean F_y_mean F_t_start F_y_start W_f Q_f slips
     delta delta_y S path""".split()
-INPUTS = ("V", "d", "E", "load", "V_y")
 LAWS_WITH_A_STATE = ("Dahl", "ElasticPlastic", "LuGre")
 NAMES = {variable: name for name, variable in FIELDS.items()}
 

@@ -36,25 +36,25 @@ def write_ssp(description: str, fmus: Sequence[Path], output: Path) -> Path:
 
 def parameters(description: str) -> dict[Signal, float]:
     """The start values that a SystemStructure.ssd gives its components."""
-    found = {}
-    for component in etree.fromstring(description.encode()).iter(f"{SSD}Component"):
-        for parameter in component.iter(f"{SSV}Parameter"):
-            value = parameter.find(f"{SSV}Real").get("value")
-            found[component.get("name"), parameter.get("name")] = float(value)
-    return found
+    places = _places(etree.fromstring(description.encode()))
+    return {signal: float(place.get("value")) for signal, place in places.items()}
+
+
+def _places(root: etree._Element) -> dict[Signal, etree._Element]:
+    """Of the start values of components."""
+    return {
+        (component.get("name"), parameter.get("name")): parameter.find(f"{SSV}Real")
+        for component in root.iter(f"{SSD}Component")
+        for parameter in component.iter(f"{SSV}Parameter")
+    }
 
 
 def with_parameters(description: str, values: Mapping[Signal, float]) -> str:
     """The SystemStructure.ssd with other start values in place of its own."""
     root = etree.fromstring(description.encode())
-    for (name, variable), value in values.items():
-        (found,) = (
-            parameter
-            for component in root.iter(f"{SSD}Component")
-            for parameter in component.iter(f"{SSV}Parameter")
-            if (component.get("name"), parameter.get("name")) == (name, variable)
-        )
-        found.find(f"{SSV}Real").set("value", repr(float(value)))
+    places = _places(root)
+    for signal, value in values.items():
+        places[signal].set("value", repr(float(value)))
     return etree.tostring(root, encoding="unicode")
 
 
@@ -67,21 +67,19 @@ def run_libcosim(ssp: Path, step_ns: int, count: int, signals: Sequence[Signal])
     execution = CosimExecution.from_ssp_file(str(folder), step_ns)
     observer = CosimObserver.create_time_series(count + 1)
     execution.add_observer(observer)
-    references = {}
+    places = {}
     for component, variable in signals:
         slave = execution.slave_index_from_instance_name(component)
-        names = {entry.name.decode(): entry.reference for entry in execution.slave_variables(slave)}
-        references[component, variable] = slave, names[variable]
-        observer.start_time_series(slave, names[variable], CosimVariableType.REAL)
+        references = {entry.name.decode(): entry.reference for entry in execution.slave_variables(slave)}
+        places[component, variable] = slave, references[variable]
+        observer.start_time_series(slave, references[variable], CosimVariableType.REAL)
     if not execution.step(count):
         raise UserError(f"libcosim stopped at {execution.status().current_time * 1e-9:g} s")
-    samples = {
-        signal: np.array(observer.time_series_real_samples(slave, reference, 1, count)[2])
-        for signal, (slave, reference) in references.items()
-    }
-    for (component, variable), values in samples.items():
-        if len(values) != count:
-            raise UserError(f"{component}.{variable}: {len(values)} samples of {count}")
+    samples = {}
+    for signal, place in places.items():
+        samples[signal] = np.array(observer.time_series_real_samples(*place, 1, count)[2])
+        if len(samples[signal]) != count:
+            raise UserError(f"{'.'.join(signal)}: {len(samples[signal])} samples of {count}")
     return samples
 
 
@@ -90,10 +88,6 @@ def run_fmpy(ssp: Path, step: float, count: int, signals: Sequence[Signal]) -> d
     with zipfile.ZipFile(ssp) as archive:
         given = parameters(archive.read("SystemStructure.ssd").decode())
     values = [SimpleNamespace(name=".".join(signal), value=value) for signal, value in given.items()]
-    result = simulate_ssp(
-        str(ssp),
-        stop_time=(count - 0.5) * step,
-        step_size=step,
-        parameter_set=SimpleNamespace(parameters=values),
-    )
+    times = {"stop_time": (count - 0.5) * step, "step_size": step}
+    result = simulate_ssp(str(ssp), parameter_set=SimpleNamespace(parameters=values), **times)
     return {signal: result[".".join(signal)] for signal in signals}

@@ -112,11 +112,7 @@ bool fc_make_panel(FcCrossing* crossing, double h, FcNodes* nodes, FcPanel* pane
     crossing->evaluations += FC_STAGES;
     switch (fc_kind(crossing)) {
     case FC_SLIPS:
-        if (!plane->on_line) {
-            return fc_plane_slip_panel(plane, nodes, from, panel);
-        }
-        fc_line_slip_panel(plane, nodes, from, panel);
-        return true;
+        return fc_slip_panel(plane, nodes, from, panel);
     case FC_NO_BRISTLE:
         fc_coulomb_panel(nodes, from->speed, panel);
         return true;

@@ -9,61 +9,10 @@
 #include <assert.h>
 #include <math.h>
 
+#include "solver/collocation.h"
 #include "solver/panel_error.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
-
-// The lengths of the loops below are known only once the outer one is unrolled; then they become vector
-// instructions.
-#ifdef FC_NO_UNROLLING
-#define UNROLL
-#elif defined __clang__
-#define UNROLL _Pragma("unroll")
-#else
-#define UNROLL _Pragma("GCC unroll 16")
-#endif
-
-// The matrix, and up to three right-hand sides, which become the solutions: the first in column 9, a pair in columns
-// 10 and 11.
-enum { FIRST = STAGES, PAIR = STAGES + 1, COLUMNS = STAGES + 3 };
-typedef double System[STAGES][COLUMNS] FC_PAIRED;
-
-// Gaussian elimination without pivoting.
-FC_INLINE void solve(System row, bool has_first, bool has_pair) {
-    const int columns = has_pair ? COLUMNS : PAIR;
-    UNROLL
-    for (int k = 0; k < STAGES; k++) {
-        const double pivot = 1.0 / row[k][k];
-        UNROLL
-        for (int i = k + 1; i < STAGES; i++) {
-            const double factor = row[i][k] * pivot;
-            UNROLL
-            for (int j = (k + 1) & ~1; j < columns; j += 2) {
-                fc_pair_put(&row[i][j], fc_pair(&row[i][j]) - factor * fc_pair(&row[k][j]));
-            }
-        }
-        row[k][k] = pivot;
-    }
-    UNROLL
-    for (int k = STAGES - 1; k >= 0; k--) {
-        if (has_pair) {
-            const FcPair solved = row[k][k] * fc_pair(&row[k][PAIR]);
-            fc_pair_put(&row[k][PAIR], solved);
-            UNROLL
-            for (int i = 0; i < k; i++) {
-                fc_pair_put(&row[i][PAIR], fc_pair(&row[i][PAIR]) - row[i][k] * solved);
-            }
-        }
-        if (has_first) {
-            const double solved = row[k][k] * row[k][FIRST];
-            row[k][FIRST] = solved;
-            UNROLL
-            for (int i = 0; i < k; i++) {
-                row[i][FIRST] -= row[i][k] * solved;
-            }
-        }
-    }
-}
 
 // delta = delta_0 + less_1 delta_0 + Q at the points for any start; for one start delta = Q.
 typedef struct {
@@ -74,23 +23,19 @@ typedef struct {
 
 FC_INLINE void by_collocation(const FcNodes* nodes, const double* z, FcVector delta_0, bool planar,
                               bool for_any, Solution* of) {
-    System row;
-    const int x = planar && !for_any ? PAIR : for_any ? PAIR + !planar : FIRST;
-    const int y = PAIR + 1;
-    const int homogeneous = planar ? FIRST : PAIR;
+    FcSystem row;
+    const int x = planar && !for_any ? FC_PAIR : for_any ? FC_PAIR + !planar : FC_FIRST;
+    const int y = FC_PAIR + 1;
+    const int homogeneous = planar ? FC_FIRST : FC_PAIR;
+    fc_collocation_begin(row, z);
     for (int i = 0; i < STAGES; i++) {
-        for (int j = 0; j < STAGES; j++) {
-            row[i][j] = FC_RADAU.inverse[i][j];
-        }
-        row[i][i] += z[i];
-        row[i][FIRST] = 0.0; // which pairs with column 8
         row[i][homogeneous] = -z[i];
         row[i][x] = nodes->tau[i] * nodes->V[i] - (for_any ? 0.0 : z[i] * delta_0.x);
         if (planar) {
             row[i][y] = nodes->tau[i] * nodes->V_y[i] - (for_any ? 0.0 : z[i] * delta_0.y);
         }
     }
-    solve(row, planar == for_any, planar || for_any);
+    fc_collocation_solve(row, planar == for_any, planar || for_any);
     for (int i = 0; i < STAGES; i++) {
         of->less_1[i] = for_any ? row[i][homogeneous] : 0.0;
         of->Q_x[i] = (for_any ? 0.0 : delta_0.x) + row[i][x];

@@ -44,27 +44,6 @@ static double to_kink(const FcScene* scene, double k) {
     return nearest;
 }
 
-// The largest |V| over V_1 from which on the periods of a block begin so that no kink lies at their ends. Chosen
-// empirically: at half of it blocks far from the kink pay for a further period.
-static const double NEAR_KINK = 0.8;
-
-// The time [s] into period k at which the periods of a block begin. If |V| comes near V_1, the last reversals
-// are to lie in the middle of the periods.
-static double begin_of_periods(const FcScene* scene, double k, double count) {
-    const FcDrive* drive = &scene->drive;
-    const double period = 1.0 / drive->vibration.f;
-    const double V = drive->V.value + k * period * drive->V.rate;
-    const double V_end = V + count * period * drive->V.rate;
-    if (drive->vibration.V_1 == 0.0) {
-        return 0.0;
-    }
-    const double most = fc_most(fabs(V), fabs(V_end)) / drive->vibration.V_1;
-    const double opposed = fc_part_until_opposed(drive, V + V_end);
-    return most > NEAR_KINK && most < 1.0 + 1e-6 && fabs(opposed - 0.5) > 0.25
-               ? fmod(opposed + 0.5, 1.0) * period
-               : 0.0;
-}
-
 double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* options, double periods,
                FcStepResult* total) {
     const double period = 1.0 / scene->drive.vibration.f;
@@ -84,9 +63,7 @@ double fc_leap(FcIntegration law, const FcScene* scene, const FcSolverOptions* o
         // On a line periods begin at the bound, if the bristle slips along it for any time.
         const bool on_line = slipped && !law.is_planar && total->slip_side != 0;
         const bool forgets = slipped && !on_line;
-        const double phase = on_line                    ? total->slip_time
-                             : forgets || law.is_planar ? 0.0
-                                                        : begin_of_periods(scene, k, room);
+        const double phase = on_line ? total->slip_time : 0.0;
         const bool closes = phase > 0.0 || forgets; // a last period, taken without interpolation
         const double count = closes ? room - 1.0 : room;
         const double fewest = forgets ? FEWEST_OF_SLIPS : FEWEST;

@@ -25,9 +25,6 @@ static const double MOST_BEFORE = 10.0;
 // or up to two more. Chosen empirically: a bristle often comes near its bound in a few periods. Half of them
 // may miss a meeting, twice as many cost evaluations.
 enum { MOST_PARTS = 64, MOST_CHECKS = 8 };
-// The largest push at the end of a slip, over V_1, if the slip's place along the path is wanted. Chosen empirically: the
-// path is then known to 1e-6 V_1 / omega. Ten times of it would leave 1e-4.
-static const double FAR_FROM_TURN = 1e-3;
 // The room over the bound that counts as none. Derived: between the ends of a part the bound bends by less, if
 // it changes by a factor of up to 10 in the block.
 static const double NO_ROOM = 1e-3;
@@ -41,22 +38,13 @@ typedef union {
     double of[NUMBERS];
 } Numbers;
 
-// The variable in which the maps of a block are smooth: the phase [rad] at which V reverses, else the period.
-// Near |V| = V_1 the phase goes with the root of the distance.
-typedef struct {
-    bool is_phase;
-    double V, rate;  // of V over V_1 in period 0, and a period: when V reverses, or nearly, at |V| = V_1
-    double from, to; // in the first and the last period
-} Variable;
-
 typedef struct {
     const FcBlock* of;
     double period;   // s
     FcBristle start; // at the block
     double* evaluations;
-    int numbers; // of a map, or of two in the plane
-    Variable variable;
-    double place[MOST_POINTS];  // of the variable at the points, in [-2, 2]
+    int numbers;                // of a map, or of two in the plane
+    double place[MOST_POINTS];  // of the points, in [-2, 2]
     Numbers point[MOST_POINTS]; // Newton's coefficients: divided differences
     int points;
 } Block;
@@ -197,47 +185,11 @@ static Numbers weights(const Block* block, const Numbers* typical) {
 // inside, where a kink would be.
 static const int ANGLE[MOST_POINTS] = {0, 16, 8, 12, 4, 14, 6, 2, 10, 15, 7, 1, 9, 13, 5, 3, 11};
 
-// The least range of the phase [rad]. Rounding: 1e-12 of it. A smaller one has no root within the block.
-static const double LEAST_RANGE = 1e-4;
+// The place of period k in the block, in [-2, 2]: a length that keeps products of distances near 1.
+static double place_in(const Block* block, double k) { return 4.0 * k / (block->of->count - 1.0) - 2.0; }
 
-double fc_part_until_opposed(const FcDrive* drive, double V) {
-    const FcPhase phase = fc_drive_phase(drive, 0.0);
-    const double turns = (V > 0.0 ? 0.5 : 0.0) - atan2(phase.sine, phase.cosine) / (2.0 * FC_PI);
-    return turns - floor(turns);
-}
-
-static Variable variable_of(const Block* block) {
-    const FcScene first = scene_at(block, 0.0);
-    const FcDrive* drive = &first.drive;
-    const double V_1 = drive->vibration.V_1;
-    const double last = block->of->count - 1.0;
-    if (!block->of->law->is_planar && V_1 > 0.0 && drive->V.rate != 0.0) {
-        const double middle = drive->V.value + 0.5 * last * block->period * drive->V.rate;
-        const double rate = drive->V.rate * block->period / V_1;
-        const double V = drive->V.value / V_1 + fc_part_until_opposed(drive, middle) * rate;
-        if (fc_most(fabs(V), fabs(V + last * rate)) <= 1.0) { // else V does not reverse
-            const Variable found = {true, V, rate, acos(V), acos(V + last * rate)};
-            if (fabs(found.to - found.from) > LEAST_RANGE) {
-                return found;
-            }
-        }
-    }
-    return (Variable){.to = last};
-}
-
-// The place of the variable in period k, in [-2, 2]: a length that keeps products of distances near 1.
-static double place_in(const Block* block, double k) {
-    const Variable* of = &block->variable;
-    const double now = of->is_phase ? acos(of->V + k * of->rate) : k;
-    return of->to != of->from ? 4.0 * (now - of->from) / (of->to - of->from) - 2.0 : 0.0;
-}
-
-// The period of point j.
 static double period_of_point(const Block* block, int j) {
-    const Variable* of = &block->variable;
-    const double now = of->from + (of->to - of->from) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
-    const double k = of->is_phase ? (cos(now) - of->V) / of->rate : now;
-    return fc_most(0.0, fc_least(k, block->of->count - 1.0));
+    return (block->of->count - 1.0) * 0.5 * (1.0 - cos(FC_PI / 16.0 * ANGLE[j]));
 }
 
 // Infinite if an error is no number. Without a path work and heat have infinite weights and no errors.
@@ -282,7 +234,6 @@ static bool interpolate(Block* block) {
     const double most = fc_least(MOST_POINTS, floor(MOST_PART * block->of->count));
     double before_last = HUGE_VAL;
     double largest = 0.0;
-    block->variable = variable_of(block);
     for (block->points = 0; block->points < most;) {
         const int j = block->points;
         const double k = period_of_point(block, j);
@@ -332,17 +283,12 @@ static bool slips_between_reversals(const Block* block) {
 
 // The time between a and b at which the push turns. If d does not vibrate, that is nearly the reversal of V.
 static double turn_of(FcPushed push, double a, double b, double* evaluations) {
-    const FcDrive* drive = &push.scene->drive;
-    if (drive->vibration.a_d != 0.0) {
-        const double at_a = fc_push_at(&push, a);
-        const double at_b = fc_push_at(&push, b);
-        *evaluations += 2.0;
-        if (at_a * at_b < 0.0) {
-            return fc_root_between(fc_push_at, &push, a, at_a, b, at_b, FAR_FROM_TURN * drive->vibration.V_1,
-                                   0.0, evaluations);
-        }
-    }
-    return fc_drive_next_event(drive, a, b).time;
+    const double at_a = fc_push_at(&push, a);
+    const double at_b = fc_push_at(&push, b);
+    *evaluations += 2.0;
+    return push.scene->drive.vibration.a_d != 0.0 && at_a * at_b < 0.0
+               ? fc_root_between(fc_push_at, &push, a, at_a, b, at_b, 0.0, 0.0, evaluations)
+               : fc_drive_next_event(&push.scene->drive, a, b).time;
 }
 
 // The distance of both bounds less the way of the bristle from the one that it leaves to the other [m], in period k of
@@ -355,15 +301,18 @@ static double distance_less_way(const Block* block, double k) {
     FcFriction other_friction;
     const FcScene bound = fc_scene_of_bound(&scene, side, &friction);
     const FcScene other = fc_scene_of_bound(&scene, 0, &other_friction);
-    // V opposes the slip most, half a period after the start of the scene or later.
+    // The vibration opposes the slip most half a period after the start of the scene or later.
+    const FcDrive* drive = &scene.drive;
+    const FcPhase phase = fc_drive_phase(drive, 0.0);
+    const double turns = (side > 0 ? 0.5 : 0.0) - atan2(phase.sine, phase.cosine) / (2.0 * FC_PI);
     const double half = 0.5 * block->period;
-    const double opposed = half + fmod(fc_part_until_opposed(&scene.drive, side) + 0.5, 1.0) * block->period;
+    const double opposed = half + (turns + 0.5 - floor(turns + 0.5)) * block->period;
     const double leaves =
         turn_of((FcPushed){&scene, &bound, side}, opposed - half, opposed, block->evaluations);
     const double nears =
         turn_of((FcPushed){&scene, &other, -side}, opposed, opposed + half, block->evaluations);
     return fc_bound(&bound, leaves) + fc_bound(&other, nears) -
-           fabs(fc_drive_displacement(&scene.drive, leaves, nears));
+           fabs(fc_drive_displacement(drive, leaves, nears));
 }
 
 // Whether the block also foretells the period in which a slip along the other bound is most likely to begin or to

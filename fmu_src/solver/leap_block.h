@@ -1,10 +1,9 @@
 // A block of vibration periods with moving inputs, whose maps are interpolated.
 //
-// The maps are sampled at Chebyshev points of a variable x in which they are smooth, and interpolated by Newton's
-// polynomial; the n maps are applied one after the other.
+// The maps are sampled at Chebyshev points and interpolated by Newton's polynomial; the n maps are applied one after the
+// other.
 //
-//     point       x = from + (to - from) (1 - cos(angle)) / 2,   angle = 0, pi, pi / 2, 3 pi / 4, pi / 4, ...
-//     variable    x = acos(V / V_1) if V reverses along a line, else x = k
+//     point k = (n - 1) (1 - cos(angle)) / 2,   angle = 0, pi, pi / 2, 3 pi / 4, pi / 4, ...
 //
 // A block is smooth if the points so far predict the map at the next one.
 #ifndef FC_SOLVER_LEAP_BLOCK_H
@@ -26,9 +25,5 @@ typedef struct {
 // Takes *total through the block. False, with *total unchanged but for its evaluations, if the block is not
 // smooth or a free bristle meets its bound.
 bool fc_block_take(const FcBlock* block, FcStepResult* total);
-
-// The part of a period, from the start of the drive on, after which the vibration opposes V and reverses it last
-// as |V| rises to V_1.
-double fc_part_until_opposed(const FcDrive* drive, double V);
 
 #endif

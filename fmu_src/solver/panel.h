@@ -1,8 +1,8 @@
 // The panels: intervals of time over which the bristle's motion or its force is known at 10 points (nodes.h).
 //
 //     free      delta' = V - r delta, one affine map for all starts; a stuck bristle has r = 0       free_panel.c
-//     known     Coulomb's force, and a slip along a line: quadratures                              known_panel.c
-//     slipping  in the plane, delta = D (cos a, sin a): D a' = V_y cos a - V sin a                  slip_panel.c
+//     slipping  delta = D (cos a, sin a): D a' = V_y cos a - V sin a in the plane, a constant along a line   slip_panel.c
+//     Coulomb   its force: quadratures                                                             coulomb_panel.c
 #ifndef FC_SOLVER_PANEL_H
 #define FC_SOLVER_PANEL_H
 
@@ -36,9 +36,8 @@ void fc_free_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* fro
 // Coulomb's law.
 void fc_coulomb_panel(const FcNodes* nodes, double speed, FcPanel* panel);
 
-// A slip along the bound on the side of from->delta, for that start alone: along a line, and in the plane, where false
-// means that the panel is too long to be solved.
-void fc_line_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel);
-bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel);
+// A slip along the bound on the side of from->delta, for that start alone. False if the panel is too long to be solved, in
+// the plane.
+bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel);
 
 #endif

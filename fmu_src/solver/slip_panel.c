@@ -1,39 +1,13 @@
-// A slip around the disc of the bound in the plane: one equation for the angle, not linear, by Newton's method.
+// A slip along the bound. Along a line its force is known at any time; around the disc in the plane the angle has one
+// equation, which is not linear, solved by Newton's method.
 #include <assert.h>
 #include <math.h>
 
 #include "model/extremes.h"
+#include "solver/collocation.h"
 #include "solver/panel_error.h"
 
 enum { STAGES = FC_STAGES, POINTS = FC_POINTS, START = FC_STAGES, LAST = FC_STAGES - 1 };
-
-// Solves (A^-1 + diagonal) x = right, in place; no diagonal is negative. Gaussian elimination without pivoting.
-static void solve(const double* diagonal, double* right) {
-    double row[STAGES][STAGES];
-    for (int i = 0; i < STAGES; i++) {
-        for (int j = 0; j < STAGES; j++) {
-            row[i][j] = FC_RADAU.inverse[i][j];
-        }
-        row[i][i] += diagonal[i];
-    }
-    for (int k = 0; k < STAGES; k++) {
-        const double pivot = 1.0 / row[k][k];
-        for (int i = k + 1; i < STAGES; i++) {
-            const double factor = row[i][k] * pivot;
-            for (int j = k + 1; j < STAGES; j++) {
-                row[i][j] -= factor * row[k][j];
-            }
-            right[i] -= factor * right[k];
-        }
-        row[k][k] = pivot;
-    }
-    for (int k = STAGES - 1; k >= 0; k--) {
-        right[k] *= row[k][k];
-        for (int i = 0; i < k; i++) {
-            right[i] -= row[i][k] * right[k];
-        }
-    }
-}
 
 // The largest number of iterations of Newton's method. Chosen empirically: a panel that needs more is too
 // long. Half of it refuses good panels, twice of it costs time.
@@ -60,24 +34,28 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
     guess_angles(nodes, bound, a_0, a);
     for (int tries = 0; tries < MOST_ITERATIONS; tries++) {
         double diagonal[STAGES];
-        double step[STAGES];
+        double left[STAGES];
         for (int i = 0; i < STAGES; i++) {
             const FcVector V = {nodes->V[i], nodes->V_y[i]};
             const double c = cos(a[i]);
             const double s = sin(a[i]);
             const double pace = nodes->tau[i] / bound[i].D;
-            double left = pace * (V.y * c - V.x * s);
+            left[i] = pace * (V.y * c - V.x * s);
             for (int j = 0; j < STAGES; j++) {
-                left -= FC_RADAU.inverse[i][j] * (a[j] - a_0);
+                left[i] -= FC_RADAU.inverse[i][j] * (a[j] - a_0);
             }
             diagonal[i] = fc_most(0.0, pace * (V.x * c + V.y * s));
-            step[i] = left;
         }
-        solve(diagonal, step);
+        FcSystem row;
+        fc_collocation_begin(row, diagonal);
+        for (int i = 0; i < STAGES; i++) {
+            row[i][FC_FIRST] = left[i];
+        }
+        fc_collocation_solve(row, true, false);
         double largest = 0.0;
         for (int i = 0; i < STAGES; i++) {
-            a[i] += step[i];
-            largest = fc_most(largest, fabs(step[i]));
+            a[i] += row[i][FC_FIRST];
+            largest = fc_most(largest, fabs(row[i][FC_FIRST]));
         }
         if (!(largest < 2.0)) { // also of no number
             return false;
@@ -89,44 +67,52 @@ static bool find_angles(const FcNodes* nodes, const FcPlaneBound* bound, double 
     return false;
 }
 
-bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
-    assert(!plane->on_line && from->push > 0.0);
+// The directions of the bristle at the points, from delta at the start.
+static bool find_directions(const FcNodes* nodes, const FcPlaneBound* bound, FcVector delta,
+                            FcVector n[POINTS]) {
+    double a[POINTS];
+    a[START] = atan2(delta.y, delta.x);
+    if (!find_angles(nodes, bound, a[START], a)) {
+        return false;
+    }
+    for (int i = 0; i < POINTS; i++) {
+        n[i] = (FcVector){cos(a[i]), sin(a[i])};
+    }
+    return true;
+}
+
+bool fc_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFrom* from, FcPanel* panel) {
+    assert(from->push > 0.0 && (!plane->on_line || from->delta.y == 0.0));
     FcPlaneCoefficients at[POINTS];
     FcPlaneBound bound[POINTS];
-    double a[POINTS];
+    FcVector n[POINTS];
     for (int i = 0; i < POINTS; i++) {
         at[i] = fc_nodes_at(nodes, i);
         bound[i] = fc_plane_bound(plane, &at[i], 1, nodes->t[i], nodes->phase[i]);
+        n[i] = (FcVector){from->delta.x < 0.0 ? -1.0 : 1.0, 0.0};
     }
-    const double a_0 = atan2(from->delta.y, from->delta.x);
-    if (!find_angles(nodes, bound, a_0, a)) {
+    if (!plane->on_line && !find_directions(nodes, bound, from->delta, n)) {
         return false;
     }
-    a[START] = a_0;
     double FC_PAIRED slope[POINTS];
-    double z[POINTS];
     double F_x[POINTS];
     double F_y[POINTS];
     double heat[POINTS]; // N, its power over a speed
     FcMap* map = &panel->along;
-    *map = (FcMap){.relaxation = 1.0};
-    panel->across = (FcMap){.relaxation = 1.0};
+    *map = panel->across = (FcMap){.relaxation = 1.0};
     panel->z = 0.0;
     for (int i = 0; i < POINTS; i++) {
-        const FcVector V = {nodes->V[i], nodes->V_y[i]};
-        const FcVector n = {cos(a[i]), sin(a[i])};
-        const double turns = V.y * n.x - V.x * n.y; // D a'
-        const double outwards = fc_product(n, V);
+        const double turns = fc_across(n[i], at[i].V); // D a'
+        const double outwards = fc_product(n[i], at[i].V);
         const double D = bound[i].D;
-        const double force = nodes->sigma[i] * D;
+        const double force = at[i].sigma * D;
         const double weight = FC_RADAU.weight[i] * nodes->tau[i];
         slope[i] = nodes->tau[i] / D * turns;
-        z[i] = nodes->tau[i] / D * outwards;
-        panel->z += FC_RADAU.weight[i] * z[i];
-        F_x[i] = force * n.x;
-        F_y[i] = force * n.y;
-        panel->delta[i] = (FcVector){D * n.x, D * n.y};
-        panel->to_bound[i] = fc_plane_push(plane, &at[i], &bound[i], n);
+        panel->z += weight / D * outwards;
+        F_x[i] = force * n[i].x;
+        F_y[i] = force * n[i].y;
+        panel->delta[i] = (FcVector){D * n[i].x, D * n[i].y};
+        panel->to_bound[i] = fc_plane_push(plane, &at[i], &bound[i], n[i]);
         map->impulse_offset += weight * F_x[i];
         panel->across.impulse_offset += weight * F_y[i];
         map->work_offset += weight * force * outwards;
@@ -137,18 +123,29 @@ bool fc_plane_slip_panel(const FcPlane* plane, const FcNodes* nodes, const FcFro
         map->heat_offset += weight * power;
         map->drag_offset += weight * (bound[i].rate * outwards + turns * turns);
     }
-    const double start = bound[START].D;
-    const double end = bound[LAST].D;
-    map->heat_offset -= 0.5 * (nodes->sigma[LAST] * end * end - nodes->sigma[START] * start * start);
+    const double D_start = bound[START].D;
+    const double D_end = bound[LAST].D;
+    map->heat_offset -= 0.5 * (nodes->sigma[LAST] * D_end * D_end - nodes->sigma[START] * D_start * D_start);
     map->offset = panel->delta[LAST].x;
     panel->across.offset = panel->delta[LAST].y;
     panel->sigma = nodes->sigma[LAST];
     panel->limit = nodes->limit[LAST];
-    panel->rate = z[LAST] / nodes->tau[LAST];
-    const double force = panel->sigma * bound[LAST].D;
-    const double quadrature = fc_error_of_force(nodes, from->speed, 0.0, true, F_x, nodes->V) +
-                              fc_error_of_force(nodes, from->speed, 0.0, true, F_y, nodes->V_y) +
-                              fc_error_of_mean(nodes, heat);
-    fc_set_errors(panel, 0.0, z[LAST], force, fc_radau_unresolved(slope, fc_most(0.0, panel->z)), quadrature);
+    panel->rate = fc_product(n[LAST], at[LAST].V) / D_end;
+    const double force = F_x[LAST];
+    if (plane->on_line && from->limit_stands && plane->scene->friction->sigma_1 == 0.0) { // it is exact
+        map->impulse_offset = force * nodes->duration;
+        map->work_offset = force * nodes->moved[LAST];
+        map->heat_offset = map->work_offset - fabs(force) * (D_end - D_start);
+        panel->end_error = panel->mean_error = 0.0;
+        return true;
+    }
+    double quadrature =
+        fc_error_of_force(nodes, from->speed, 0.0, true, F_x, nodes->V) + fc_error_of_mean(nodes, heat);
+    double unresolved = 0.0;
+    if (!plane->on_line) {
+        quadrature += fc_error_of_force(nodes, from->speed, 0.0, true, F_y, nodes->V_y);
+        unresolved = fc_radau_unresolved(slope, fc_most(0.0, panel->z));
+    }
+    fc_set_errors(panel, 0.0, panel->rate * nodes->tau[LAST], panel->sigma * D_end, unresolved, quadrature);
     return true;
 }

@@ -15,7 +15,7 @@ from workshop.bench.coupling import (
     monolithic,
     theoretical_edge,
 )
-from workshop.bench.stability_map import EDGES, classify, measured_edge
+from workshop.bench.stability import EDGES, classify, measured_edge
 
 
 @pytest.mark.parametrize(("method", "edge"), [(m, edge) for m, limits in EDGES.items() for edge in limits])

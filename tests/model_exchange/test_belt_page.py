@@ -11,7 +11,7 @@ import pytest
 from fmpy import simulate_fmu
 
 from frictioncontact.fmu import FrictionFmu
-from workshop.bench.exchange import CALLS, LAWS, LawBelt, Run, errors, exchange, reference, simulate
+from workshop.bench.exchange import CALLS, LAWS, Belt, Run, errors, exchange, reference, simulate
 from workshop.exchange import Host
 from workshop.project import ROOT
 
@@ -25,7 +25,7 @@ def rows() -> Iterator[tuple[str, str, float, float, float]]:
         yield (law, way, *map(float, numbers))  # type: ignore[misc]
 
 
-def again(fmu: FrictionFmu, belt: LawBelt, way: str, calls: float) -> Run:
+def again(fmu: FrictionFmu, belt: Belt, way: str, calls: float) -> Run:
     interface, how = way.split(", ")
     if interface == "co-simulation":
         coupling = COUPLINGS[how]
@@ -39,7 +39,7 @@ def test_table(fmu: FrictionFmu, law: str) -> None:
 
     At 1e-10 both solutions of the whole, which share no code, are one.
     """
-    belt = LawBelt(law=law)
+    belt = Belt(law=law)
     truth = reference(belt)
     of_law = [row for row in rows() if row[0] == law]
     assert len(of_law) == 4

@@ -9,7 +9,7 @@ from playground_page import Playground, native_wave
 
 from frictioncontact.fmu import FrictionError, FrictionFmu
 from workshop.description import description
-from workshop.playground.page import ASSETS
+from workshop.playground.page import ASSETS, controls
 
 LIMIT = 1e-12  # of the largest force
 VARIABLES = {variable["name"]: variable for variable in description()["variables"]}
@@ -36,6 +36,13 @@ def assert_same(playground: Playground, fmu: FrictionFmu, values: dict[str, floa
         values
     )
     return native
+
+
+def test_a_new_parameter_has_a_plain_control() -> None:
+    new = {"name": "friction.new", "start": 2.0, "causality": "parameter", "variability": "tunable"}
+    *known, plain = controls([*VARIABLES.values(), new])
+    assert [control["name"] for control in known] == CONTROLS
+    assert (plain["group"], plain["words"], plain["low"], plain["high"]) == ("Friction", "new", 2e-3, 2e3)
 
 
 def test_every_quantity_reaches_the_fmu(playground: Playground, fmu: FrictionFmu) -> None:

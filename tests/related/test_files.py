@@ -16,7 +16,7 @@ from lxml import etree
 
 from workshop.packing.archive import CHECKSUMS
 from workshop.presets import presets
-from workshop.related.results import COLUMNS, FOLDER, Experiment, experiments, rows
+from workshop.related import COLUMNS, FOLDER, Experiment, experiments, rows
 
 IN_FMU = "extra/org.fmi-standard.fmi-ls-ref"
 SCHEMAS = Path(fmpy.__file__).parent

@@ -1,19 +1,19 @@
-"""The scenes of the benchmarks, and what is right in each: the reference at every communication point."""
+"""The scenes of the benchmarks, what is right in each by the reference, and the peers that solve them too."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from types import MappingProxyType
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from frictioncontact.fmu import Value
 from frictioncontact.parameters import PERIOD, SEPARATION, STIFFNESS_PRINTED
-from workshop.bench.driver import Job
-from workshop.reference import Scene, changed, follow, scene_of, step
+from workshop.bench.driver import Bench, Job, Outcome
+from workshop.reference import CHOICES, Scene, changed, follow, rest, scene_of, step
 
 SIGMAS = (6e4, 6e6, 6e8, 6e10, 6e12)  # N/m at 14 um
 # No whole number of periods, so that what cancels over a period, and luck at one phase, do not count.
 VIBRATING_STEP = 0.93 * PERIOD
+STARTS = (0.0, 0.23 * PERIOD, 0.27 * PERIOD)
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,10 @@ class Case:
     linear: bool = False
 
     def job(
-        self, start: float = 0.0, budget: float = 0.02, settings: Mapping[str, Value] = MappingProxyType({})
+        self, start: float = 0.0, budget: float = 0.02, settings: Mapping[str, Value] | None = None
     ) -> Job:
-        return Job(
-            {**self.start_values, **settings}, self.step, self.count, start, self.inputs, self.linear, budget
-        )
+        values = {**self.start_values, **(settings or {})}
+        return Job(values, self.step, self.count, start, self.inputs, self.linear, budget)
 
     def scene_at(self, k: int, start: float) -> Scene:
         """The scene of step k, its inputs counted from the step's own start."""
@@ -66,7 +65,7 @@ def vibrating(sigma: float) -> Case:
         f"V and d vibrate, σ {sigma:.0e} N/m".replace("e+", "e"),
         {**values, "contact.stiffnessScale": sigma / STIFFNESS_PRINTED},
         step=VIBRATING_STEP,
-        starts=(0.0, 0.23 * PERIOD, 0.27 * PERIOD),
+        starts=STARTS,
     )
 
 
@@ -90,32 +89,52 @@ def cases() -> list[Case]:
     triangle = np.interp(np.arange(41), [0, 10, 30, 40], [0.0, 0.2, -0.2, 0.0])
     steps = np.random.default_rng(20).uniform(0.002, 0.02, 17)
     gaps = np.random.default_rng(21).uniform(13e-6, 15e-6, 17)
+    constant = {"contact.model": "Constant", "contact.sigma": 2.5e6}
+    V_alone, d_alone = constant | {"vibration.V_1": 1.44}, {"vibration.a_d": 1.1e-6}
     return [
         *(vibrating(sigma) for sigma in SIGMAS),
-        replace(
-            vibrating(2.5e6),
-            name="vibrating-V",
-            title="V vibrates, σ 2.5e6 N/m",
-            start_values={"vibration.V_1": 1.44, "contact.model": "Constant", "contact.sigma": 2.5e6},
-        ),
-        replace(
-            vibrating(SIGMAS[-1]),
-            name="vibrating-d",
-            title="d vibrates, V 5 mm/s",
-            start_values={"vibration.a_d": 1.1e-6},
-            starts=(0.0, 0.4 * PERIOD),
-        ),
+        Case("vibrating-V", "V vibrates, σ 2.5e6 N/m", V_alone, VIBRATING_STEP, starts=STARTS),
+        Case("vibrating-d", "d vibrates, V 5 mm/s", d_alone, VIBRATING_STEP, starts=(0.0, 0.4 * PERIOD)),
         Case("held", "no vibration, V and d held", {}, step=1e-6, count=16, inputs={"V": steps, "d": gaps}),
-        Case(
-            "linear",
-            "presliding, V linear",
-            {"contact.model": "Constant", "contact.sigma": 2.5e6},
-            step=5e-6,
-            count=40,
-            inputs={"V": triangle},
-            linear=True,
-        ),
+        Case("linear", "presliding, V linear", constant, 5e-6, 40, inputs={"V": triangle}, linear=True),
         sampled(20, 6e6, linear=True),
         sampled(20, 6e12, linear=True),
         sampled(20, 6e6, linear=False),
     ]
+
+
+# The peers: Radau IIA of orders 5, 9 and 13 that stops at reversals of V, and CVODE with its defaults, which
+# passes over them. All solve y = (sigma_ref delta / F_C, integral of F_t dt / F_C) or its equal.
+PLAIN_PROGRAMS = {
+    "Radau 5": "plain_radau_5",
+    "Radau 9": "plain_radau_9",
+    "Radau 13": "plain_radau_13",
+    "plain CVODE": "plain_cvode",
+}
+
+
+def plain_values(case: Case, tolerance: float) -> dict[str, float]:
+    """The equation's few numbers, in the order of bench/plain_equation.h."""
+    scene = scene_of(case.start_values)
+    asperities = scene.contact != 1 + CHOICES["contact"].index("Constant")
+    return {
+        "V": scene.V,
+        "d": scene.d,
+        "F_C": scene.F_C,
+        "sigma": rest(scene)[1],
+        "d_ref": scene.d,
+        "decay": getattr(scene, "lambda") / scene.R_q if asperities else 0.0,
+        "f": scene.f,
+        "V_1": scene.V_1,
+        "a_d": scene.a_d,
+        "phase_d": scene.phase_d,
+        "tolerance": tolerance,
+    }
+
+
+def plain(bench: Bench, method: str, case: Case, tolerance: float, budget: float, start: float) -> Outcome:
+    """One of PLAIN_PROGRAMS."""
+    job, values = case.job(start, budget), plain_values(case, tolerance)
+    lines = job.lines({"V": 0, "d": 1})
+    lines += [f"real {k} {value!r}" for k, value in enumerate(values.values())]
+    return bench.call([PLAIN_PROGRAMS[method]], [*lines, "output 0", "output 1"], job)

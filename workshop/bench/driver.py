@@ -14,22 +14,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import MappingProxyType
 
-import fmpy
 import numpy as np
 from PIL import Image
 from rich.progress import Progress
 
 from frictioncontact.command import add_output, command_line
-from frictioncontact.errors import UserError
 from frictioncontact.fmu import FrictionFmu, Value
 from workshop.build import build_targets
 from workshop.project import ROOT
 
 REPORT = ROOT / "build" / "report"
 TIME_LIMIT = 120.0  # s of wall time for one job
-PLAIN = ("V", "d", "F_C", "sigma", "d_ref", "decay", "f", "V_1", "a_d", "phase_d", "tolerance", "delta_0")
 
 
 @dataclass(frozen=True)
@@ -44,6 +40,17 @@ class Job:
     linear: bool = False  # inputs move linearly between their samples; else held over a step
     budget: float = 0.02  # s of CPU time for repetitions
     calls: bool = False  # steps of the length 0: what the calls of the FMU cost
+
+    def lines(self, references: Mapping[str, int]) -> list[str]:
+        """For bench/job.h, without start values and outputs; references of the inputs."""
+        steps = f"start {self.start!r} step {self.step!r} count {self.count} budget {self.budget!r}"
+        return [
+            f"{steps} calls {int(self.calls)} linear {int(self.linear)}",
+            *(
+                f"input {references[name]} {len(samples)} {' '.join(map(str, samples.tolist()))}"
+                for name, samples in self.inputs.items()
+            ),
+        ]
 
 
 @dataclass(frozen=True)
@@ -69,55 +76,34 @@ class Bench:
     def __init__(self, fmu: FrictionFmu, programs: Path) -> None:
         self.fmu = fmu
         self.programs = programs
-        identifier = fmu.description.coSimulation.modelIdentifier
-        self.library = fmu.directory / "binaries" / fmpy.platform / f"{identifier}.so"
-        if not self.library.is_file():
-            raise UserError("the FMU holds no .so for this machine: the benchmarks run on Linux only")
+        self.library = fmu.library
 
     def run(self, job: Job, count_allocations: bool = False) -> Outcome:
         """The FMU through its FMI functions."""
-        numbers = {name: variable.valueReference for name, variable in self.fmu.variables.items()}
-        lines = _steps(job)
+        references = {name: variable.valueReference for name, variable in self.fmu.variables.items()}
+        lines = job.lines(references)
         for name, value in job.start_values.items():
-            variable = self.fmu.variables[name]
             number = self.fmu.known.number(name, value, "job")
-            kind, number = ("real", number) if variable.type == "Real" else ("integer", int(number))
-            lines.append(f"{kind} {variable.valueReference} {number!r}")
-        lines += _inputs(job, numbers)
-        lines += [f"output {numbers['F_t']}", f"output {numbers['F_t_mean']}"]
-        lines.append(f"evaluations {numbers['solver.evaluations']}")
+            is_real = self.fmu.variables[name].type == "Real"
+            lines.append(f"{'real' if is_real else 'integer'} {references[name]} {number!r}")
+        lines += [f"output {references['F_t']}", f"output {references['F_t_mean']}"]
+        lines.append(f"evaluations {references['solver.evaluations']}")
         resources = (self.fmu.directory / "resources").as_uri()
         preload = {"LD_PRELOAD": str(self.programs / "count_allocations.so")} if count_allocations else {}
-        arguments = [self.library, self.fmu.description.guid, resources]
-        return self.call("fmu_driver", arguments, lines, job, preload)
-
-    def run_plain(self, program: str, job: Job, values: Mapping[str, float]) -> Outcome:
-        """A program of bench/plain_*.c with its arguments; values under the names of PLAIN."""
-        lines = _steps(job)
-        lines += [f"real {PLAIN.index(name)} {value!r}" for name, value in values.items()]
-        lines += _inputs(job, {"V": 0, "d": 1})
-        name, *arguments = program.split()
-        return self.call(name, arguments, [*lines, "output 0", "output 1"], job)
+        program = ["fmu_driver", str(self.library), self.fmu.description.guid, resources]
+        return self.call(program, lines, job, preload)
 
     def call(
-        self,
-        program: str,
-        arguments: list,
-        lines: list[str],
-        job: Job,
-        environment: Mapping[str, str] = MappingProxyType({}),
+        self, program: list[str], lines: list[str], job: Job, environment: Mapping[str, str] | None = None
     ) -> Outcome:
-        if program.startswith("plain_") and not (self.programs / program).is_file():
+        """A program of bench/ with its arguments, and the lines of the job."""
+        path = self.programs / program[0]
+        if not path.is_file():
             return failed("not in this build (built without SUNDIALS)")
-        command = [str(self.programs / program), *map(str, arguments)]
-        how = {
-            "capture_output": True,
-            "text": True,
-            "timeout": TIME_LIMIT,
-            "env": {**os.environ, **environment},
-        }
+        how = {"input": "\n".join(lines), "capture_output": True, "text": True, "timeout": TIME_LIMIT}
+        how["env"] = {**os.environ, **(environment or {})}
         try:
-            done = subprocess.run(command, input="\n".join(lines), check=False, **how)
+            done = subprocess.run([path, *program[1:]], check=False, **how)
         except subprocess.TimeoutExpired:
             return failed(f"not finished after {TIME_LIMIT:.0f} s")
         if done.returncode:
@@ -125,36 +111,13 @@ class Bench:
         return _parse(done.stdout, job)
 
 
-def _steps(job: Job) -> list[str]:
-    return [
-        f"start {job.start!r}",
-        f"step {job.step!r}",
-        f"count {job.count}",
-        f"budget {job.budget!r}",
-        f"calls {int(job.calls)}",
-        f"linear {int(job.linear)}",
-    ]
-
-
-def _inputs(job: Job, numbers: Mapping[str, int]) -> list[str]:
-    return [
-        f"input {numbers[name]} {len(samples)} " + " ".join(repr(float(sample)) for sample in samples)
-        for name, samples in job.inputs.items()
-    ]
-
-
 def _parse(text: str, job: Job) -> Outcome:
-    numbers: dict[str, float] = {}
-    rows = []
-    for line in text.splitlines():
-        keyword, _, rest = line.partition(" ")
-        if keyword == "failed":
-            return failed(rest.partition(" ")[2])
-        if keyword == "row":
-            rows.append([float(word) for word in rest.split()])
-        else:
-            numbers[keyword] = float(rest)
-    F, F_mean = np.array(rows).reshape(-1, 2).T
+    words = [line.split(maxsplit=1) for line in text.splitlines()]
+    if words[0][0] == "failed":
+        return failed(words[0][1].partition(" ")[2])
+    numbers = {keyword: float(rest) for keyword, rest in words if keyword != "row"}
+    rows = [rest.split() for keyword, rest in words if keyword == "row"]
+    F, F_mean = np.array(rows, float).reshape(-1, 2).T
     costs = (numbers[name] / job.count for name in ("cpu", "evaluations"))
     counted = {name: int(value) for name, value in numbers.items() if name.startswith("allocations")}
     return Outcome(F, F_mean, *costs, **counted)

@@ -2,29 +2,22 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from frictioncontact import command as shared
 from frictioncontact.advice.answer import PHASES, STEPS
 from frictioncontact.fmu import FrictionFmu, Value
-from frictioncontact.parameters import E_FULL, E_REDUCED, STIFFNESS_PRINTED, TABLE_2
+from frictioncontact.parameters import STIFFNESS_PRINTED, TABLE_2, start_values
 from workshop.bench.cases import Case, sampled, vibrating
 from workshop.bench.coupling import Belt, monolithic
 from workshop.bench.driver import REPORT
 from workshop.build import build_fmu
 from workshop.reference import Scene, changed, follow, rest, scene_of, settled_deflection
 
-
-@dataclass(frozen=True)
-class Run:
-    """What the reference gives from a start [s] and a deflection [m]: step by step F_t and its mean [N]."""
-
-    start: float
-    delta_0: float
-    steps: list[Scene]
-    right: list[tuple[float, float]]
+# Step by step a scene, and what the reference gives for it: F_t and its mean [N].
+Run = list[tuple[Scene, tuple[float, float]]]
 
 
 def runs_of(case: Case, phases: tuple[float, ...]) -> list[Run]:
@@ -43,11 +36,8 @@ def runs_of(case: Case, phases: tuple[float, ...]) -> list[Run]:
 
 def _run(case: Case, start: float, delta_0: float) -> Run:
     ratios = [1.0] * case.count if case.inputs else STEPS
-    steps = [
-        changed(case.scene_at(k, start), h=ratio * case.step, delta_0=delta_0)
-        for k, ratio in enumerate(ratios)
-    ]
-    return Run(start, delta_0, steps, [(found.F_t, found.F_t_mean) for found in follow(steps)])
+    steps = [changed(case.scene_at(k, start), h=x * case.step, delta_0=delta_0) for k, x in enumerate(ratios)]
+    return [(scene, (found.F_t, found.F_t_mean)) for scene, found in zip(steps, follow(steps), strict=True)]
 
 
 def largest_errors(
@@ -57,9 +47,10 @@ def largest_errors(
     errors = np.zeros(2)
     first = {name: float(samples[0]) for name, samples in case.inputs.items()}
     for run in runs:
-        values = {**case.start_values, "delta_0": run.delta_0, **settings, **first}
-        with fmu.session(values, run.start) as session:
-            for scene, right in zip(run.steps, run.right, strict=True):
+        begin, _ = run[0]
+        values = {**case.start_values, "delta_0": begin.delta_0, **settings, **first}
+        with fmu.session(values, begin.start) as session:
+            for scene, right in run:
                 for name in case.inputs:
                     session.set(name, getattr(scene, name))
                 if case.linear and case.inputs:
@@ -94,17 +85,9 @@ def scenes() -> list[Case]:
     """The scenes for which the table of levels is made."""
     wave = {"V": 0.3 * np.cos(2 * np.pi * np.arange(41) / 40)}
     soft, stiff, presliding = vibrating(2.5e6), vibrating(6e12), sampled(40, 2.5e6, linear=True)
-    of_paper = [
-        Case(
-            f"table-2-row-{row.number}",
-            f"Table 2, row {row.number}",
-            {"E": E_REDUCED if row.softened else E_FULL, "vibration.V_1": row.V_1, "vibration.a_d": row.a_d},
-        )
-        for row in TABLE_2
-    ]
     return [
         Case("steady", "steady sliding, 0.1 ms steps", {}, step=1e-4),
-        *of_paper,
+        *(Case(f"row-{row.number}", f"Table 2, row {row.number}", start_values(row)) for row in TABLE_2),
         replace(presliding, name="presliding", title="presliding hysteresis", inputs=wave),
         _stick_slip(),
         replace(soft, name="soft", title="soft contact, V and d vibrate"),

@@ -9,7 +9,7 @@ between its slides; with it the pull is constant. The error is the largest of v 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from functools import cache
 
 import numpy as np
@@ -80,7 +80,7 @@ def damping(master: str, output: str, H: float) -> float:
 
 def exchange(fmu: FrictionFmu, master: str, vibrates: bool, output: str, H: float, sigma_1: float) -> float:
     """The error of a master that exchanges values at its steps, from the force 0 on."""
-    v, force, times, speeds = 0.0, 0.0, [], []
+    v, force, speeds = 0.0, 0.0, []
     with fmu.session(scene(vibrates) | {"friction.sigma_1": sigma_1}) as session:
         for k in range(int(END / H)):
             rate = 0.0
@@ -94,12 +94,11 @@ def exchange(fmu: FrictionFmu, master: str, vibrates: bool, output: str, H: floa
                 session.set("V", v)
             session.step(H)
             force = session.get(output)
-            times.append((k + 1) * H)
             speeds.append(v)
-    return error(np.array(times), np.array(speeds), vibrates)
+    return error(H * np.arange(1, len(speeds) + 1), speeds, vibrates)
 
 
-def error(times: np.ndarray, speeds: np.ndarray, vibrates: bool) -> float:
+def error(times: np.ndarray, speeds: Sequence[float], vibrates: bool) -> float:
     truth = reference(vibrates)(times)
     return float(np.abs(speeds - truth).max() / np.abs(truth).max())
 
@@ -107,14 +106,13 @@ def error(times: np.ndarray, speeds: np.ndarray, vibrates: bool) -> float:
 def by_exchange(fmu: FrictionFmu, vibrates: bool, tolerance: float) -> float:
     """The error of an integrator that takes mass and bristle together."""
     times, speeds = np.linspace(0.0, END, 501)[1:], []
-    inputs = lambda t, own: {"V": own[0]}  # noqa: E731
     options = {"own": (0.0,), "own_nominals": (0.01,), "tolerance": tolerance}
-    rates = lambda t, own, F_t: ((pull(t, vibrates) - F_t) / M,)  # noqa: E731
-    with Host(fmu, scene(vibrates), inputs, own_rates=rates, **options) as host:
+    options["own_rates"] = lambda t, own, F_t: ((pull(t, vibrates) - F_t) / M,)
+    with Host(fmu, scene(vibrates), lambda t, own: {"V": own[0]}, **options) as host:
         for t in times:
             host.advance(t)
             speeds.append(host.own[0])
-    return error(times, np.array(speeds), vibrates)
+    return error(times, speeds, vibrates)
 
 
 def by_law() -> float:
@@ -124,21 +122,21 @@ def by_law() -> float:
     return error(times, run.y[0], True)
 
 
-def table(fmu: FrictionFmu) -> Iterator[tuple[str, bool, str, float, float, float]]:
-    """Master, vibration, output, step [s] or tolerance, sigma_1 [N s/m], error."""
-    for master, vibrates, output, H, sticks in ROWS:
-        sigma_1 = damping(master, output, H) if sticks else 0.0
-        yield master, vibrates, output, H, sigma_1, exchange(fmu, master, vibrates, output, H, sigma_1)
-    for vibrates in (False, True):
-        yield MODEL_EXCHANGE, vibrates, "F_t", 1e-6, 0.0, by_exchange(fmu, vibrates, 1e-6)
-    yield OWN, True, "F_t_settled", 2e-3, 0.0, by_law()
-
-
 def main() -> None:
     with FrictionFmu(build_fmu()) as fmu:
-        for master, vibrates, output, H, sigma_1, found in table(fmu):
-            on = "on" if vibrates else "off"
-            print(f"{master:18}{on:5}{output:13}{H:10.2g}{sigma_1:8.4g}{100 * found:10.2g} %")
+        for master, vibrates, output, H, sticks in ROWS:
+            sigma_1 = damping(master, output, H) if sticks else 0.0
+            found = exchange(fmu, master, vibrates, output, H, sigma_1)
+            show(master, vibrates, output, H, found, sigma_1)
+        for vibrates in (False, True):
+            show(MODEL_EXCHANGE, vibrates, "F_t", 1e-6, by_exchange(fmu, vibrates, 1e-6))
+        show(OWN, True, "F_t_settled", 2e-3, by_law())
+
+
+def show(master: str, vibrates: bool, output: str, H: float, found: float, sigma_1: float = 0.0) -> None:
+    """H: the step [s], or the tolerance."""
+    on = "on" if vibrates else "off"
+    print(f"{master:18}{on:5}{output:13}{H:10.2g}{sigma_1:8.4g}{100 * found:10.2g} %")
 
 
 if __name__ == "__main__":

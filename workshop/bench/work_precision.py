@@ -1,4 +1,9 @@
-"""Speed against accuracy: every method of the FMU and its peers, scene by scene."""
+"""Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
+5, 9 and 13 that stops at reversals, CVODE with its defaults) over tolerances or steps: CPU time, evaluations
+of the right-hand side, and the largest error of F_t and of its mean against an independent reference. The
+peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is added to theirs. Then the
+error against the communication step for held and linear inputs, and the cost of one step against the number
+of vibration periods in it."""
 
 import argparse
 import math
@@ -12,22 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from frictioncontact.command import as_table, finish, progress_bar, say_written, table_console, write_csv
+from frictioncontact.command import as_table, progress_bar, say_written, table_console, write_csv
 from frictioncontact.doubts import FIXED_STEPS
 from frictioncontact.parameters import PERIOD, STIFFNESS_PRINTED
 from workshop.bench import figures
-from workshop.bench.cases import SIGMAS, Case, cases, expected, sampled, vibrating
+from workshop.bench.cases import PLAIN_PROGRAMS, SIGMAS, Case, cases, expected, plain, sampled, vibrating
 from workshop.bench.driver import Bench, Job, Outcome, bench_options, open_bench, renew_docs
-from workshop.bench.peers import PLAIN_PROGRAMS, plain
 from workshop.project import ROOT
-
-DESCRIPTION = """\
-Measures speed against accuracy. For each scene, every method of the FMU and its peers (Radau IIA of orders
-5, 9 and 13 that stops at reversals, CVODE with its defaults) over tolerances or steps: CPU time, evaluations
-of the right-hand side, and the largest error of F_t and of its mean against an independent reference. The
-peers are not FMUs: the time of the FMI calls, measured with steps of length 0, is added to theirs. Then the
-error against the communication step for held and linear inputs, and the cost of one step against the number
-of vibration periods in it."""
 
 PAGE = ROOT / "docs" / "numerics.md"
 MATCHED_ERRORS = (1e-6, 1e-9)
@@ -72,27 +68,24 @@ class Point:
         return max(self.error_F_t, self.error_F_t_mean)
 
 
-@dataclass(frozen=True)
-class Task:
-    """A method at a setting: outcome from a start [s] for which there is a reference."""
-
-    method: str
-    setting: float
-    run: Callable[[float], Outcome]
+Run = Callable[[float], Outcome]  # from a start [s] for which there is a reference
+References = Mapping[float, tuple[np.ndarray, np.ndarray]]
 
 
-def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[Task]:
-    def fmu(method: str, name: str, value: float) -> Callable[[float], Outcome]:
+def tasks(bench: Bench, case: Case, effort: Effort) -> Iterator[tuple[str, float, Run]]:
+    """Each method at each setting."""
+
+    def fmu(method: str, name: str, value: float) -> Run:
         settings = {"solver.method": method, name: value}
         return lambda start: bench.run(case.job(start, effort.budget, settings))
 
     for tolerance in map(float, effort.tolerances):
         for method in ("collocation", "cvode"):
-            yield Task(method, tolerance, fmu(method, "solver.tolerance", tolerance))
+            yield method, tolerance, fmu(method, "solver.tolerance", tolerance)
         for method in PLAIN_PROGRAMS:
-            yield Task(method, tolerance, partial(plain, bench, method, case, tolerance, effort.budget))
+            yield method, tolerance, partial(plain, bench, method, case, tolerance, effort.budget)
     for steps, method in product(map(float, effort.steps), FIXED_STEPS):
-        yield Task(method, steps, fmu(method, "solver.stepSize", case.step / steps))
+        yield method, steps, fmu(method, "solver.stepSize", case.step / steps)
 
 
 def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
@@ -109,9 +102,9 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
         calls = min(calls, PERIOD / case.step * bench.run(empty).cpu)
         for k, task in enumerate(planned):
             if turn == 0:
-                points.append(graded(case, references, task))
+                points.append(graded(case, references, *task))
             elif not points[k].failure and points[k].cpu < SLOW:
-                cpu = graded(case, references, task).cpu
+                cpu = graded(case, references, *task).cpu
                 points[k] = replace(points[k], cpu=min(cpu, points[k].cpu))
     return [
         Point(case.name, CALLS, 0.0, math.nan, math.nan, calls, 0.0),
@@ -119,21 +112,16 @@ def measure(bench: Bench, case: Case, effort: Effort) -> list[Point]:
     ]
 
 
-def graded(case: Case, references: Mapping[float, tuple[np.ndarray, np.ndarray]], task: Task) -> Point:
+def graded(case: Case, right: References, method: str, setting: float, run: Run) -> Point:
     """From every start of the case."""
-    outcomes = [task.run(start) for start in references]
+    outcomes = [run(start) for start in right]
     for outcome in outcomes:
         if outcome.failure:
-            return Point(case.name, task.method, task.setting, *[math.nan] * 4, outcome.failure)
-    errors = np.max(
-        [
-            [np.abs(outcome.F - F).max(), np.abs(outcome.F_mean - F_mean).max()]
-            for outcome, (F, F_mean) in zip(outcomes, references.values(), strict=True)
-        ],
-        axis=0,
-    )
+            return Point(case.name, method, setting, *[math.nan] * 4, outcome.failure)
+    misses = np.array([(o.F, o.F_mean) for o in outcomes]) - [*right.values()]  # [start, which, step]
+    errors = np.abs(misses).max(axis=(0, 2)) / case.F_C
     costs = np.median([(o.cpu, o.evaluations) for o in outcomes], axis=0)
-    return Point(case.name, task.method, task.setting, *errors / case.F_C, *PERIOD / case.step * costs)
+    return Point(case.name, method, setting, *errors, *PERIOD / case.step * costs)
 
 
 def cost_at(points: Sequence[Point], error: float) -> float:
@@ -162,10 +150,10 @@ def step_size_points(bench: Bench, quick: bool) -> list[dict[str, object]]:
         for linear in (False, True):
             case = sampled(n, sigma, linear, periods=2)
             outcome = bench.run(case.job(0.0, 0.0, {"solver.tolerance": 1e-9}))
-            both = zip((outcome.F, outcome.F_mean), truth, strict=True)
-            F_t, F_t_mean = (float(np.abs(got - right).max()) / case.F_C for got, right in both)
+            misses = np.subtract((outcome.F, outcome.F_mean), truth)
+            errors = (np.abs(misses).max(axis=1) / case.F_C).tolist()
             row = {"sigma": sigma, "samples_per_period": n, "inputs": "linear" if linear else "held"}
-            rows.append({**row, "error_F_t": F_t, "error_F_t_mean": F_t_mean})
+            rows.append(row | dict(zip(("error_F_t", "error_F_t_mean"), errors, strict=True)))
     return rows
 
 
@@ -194,30 +182,25 @@ def period_points(bench: Bench, counts: Sequence[int] = PERIODS) -> list[dict[st
             inputs = {name: ends if moves else np.full(2, ends.mean()) for name, ends in samples.items()}
             outcome = bench.run(Job(values, periods * PERIOD, inputs=inputs, linear=moves, budget=0.005))
             one = one or outcome
-            costs = {
-                "evaluations": outcome.evaluations,
-                "ratio": outcome.evaluations / one.evaluations,
-                "cpu_ratio": outcome.cpu / one.cpu,
-                "failure": outcome.failure,
-            }
-            rows.append({"law": law, "limit": limit, "inputs": kind, "periods": periods, **costs})
+            ratio, cpu_ratio = outcome.evaluations / one.evaluations, outcome.cpu / one.cpu
+            costs = {"evaluations": outcome.evaluations, "ratio": ratio, "cpu_ratio": cpu_ratio}
+            row = {"law": law, "limit": limit, "inputs": kind, "periods": periods}
+            rows.append({**row, **costs, "failure": outcome.failure})
     return rows
 
 
 def ratios(points: Sequence[Point]) -> list[dict[str, object]]:
     """Cost of each method over that of collocation at each of the matched errors."""
-    methods = [m for m in dict.fromkeys(p.method for p in points) if m not in ("collocation", CALLS)]
+    own: dict[str, dict[str, list[Point]]] = {}  # by case and method
+    for p in points:
+        own.setdefault(p.case, {}).setdefault(p.method, []).append(p)
     rows: list[dict[str, object]] = []
-    for error in MATCHED_ERRORS:
-        for case in dict.fromkeys(p.case for p in points):
-            own = {
-                m: [p for p in points if p.case == case and p.method == m] for m in (*methods, DEFAULT, CALLS)
-            }
-            base = cost_at(own[DEFAULT], error)
-            calls = own[CALLS][0].cpu / base
-            row = {m: cost_at(own[m], error) / base for m in methods}
-            row |= {"calls": calls, BARE: min((row[m] for m in RADAU if m in row), default=math.nan) - calls}
-            rows.append({"error": error, "case": case, "collocation_us_per_period": 1e6 * base, **row})
+    for error, (case, methods) in product(MATCHED_ERRORS, own.items()):
+        base = cost_at(methods[DEFAULT], error)
+        calls = methods[CALLS][0].cpu / base
+        row = {m: cost_at(its, error) / base for m, its in methods.items() if m not in (DEFAULT, CALLS)}
+        row |= {"calls": calls, BARE: min((row[m] for m in RADAU if m in row), default=math.nan) - calls}
+        rows.append({"error": error, "case": case, "collocation_us_per_period": 1e6 * base, **row})
     return rows
 
 
@@ -230,21 +213,17 @@ COLUMNS: dict[str, Sequence[str]] = {  # of the tables of ratios: the least of t
 PERIOD_COLUMNS = ["law", "limit", "held", "moving", "moving, CPU time"]
 
 
-def ratio_cells(rows: Sequence[dict[str, object]], error: float) -> list[list[str]]:
+def ratio_cells(rows: Sequence[Mapping[str, Any]], error: float) -> list[list[str]]:
     """A line a scene: the calls' part of the default's time, and each peer's time over the default's."""
     return [
-        [
-            str(row["case"]),
-            f"{100 * float(str(row['calls'])):.0f} %",
-            *(cheapest(row, names) for names in COLUMNS.values()),
-        ]
+        [row["case"], f"{100 * row['calls']:.0f} %", *(cheapest(row, names) for names in COLUMNS.values())]
         for row in rows
         if row["error"] == error
     ]
 
 
 def renew_tables(
-    compared: Sequence[dict[str, object]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
+    compared: Sequence[Mapping[str, Any]], periods: Sequence[Mapping[str, Any]], titles: Mapping[str, str]
 ) -> Path:
     """The tables of docs/numerics.md, each under the words before it: of speed, and of long steps."""
     text = PAGE.read_text(encoding="utf-8")
@@ -268,27 +247,25 @@ def with_table(text: str, head: str, headings: Sequence[str], rows: Sequence[Seq
 
 def period_cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
     """A line a law and limit: evaluations of the longest step, held and moving, and the latter's CPU time."""
-    longest = {
-        (row["law"], row["limit"], row["inputs"]): row for row in rows if row["periods"] == PERIODS[-1]
-    }
+    longest = [row for row in rows if row["periods"] == PERIODS[-1]]
+    held, moving = ([row for row in longest if row["inputs"] == kind] for kind in ("held", "moving"))
     cells = []
-    for law, limit in dict.fromkeys(key[:2] for key in longest):
-        held, moving = (longest[law, limit, kind] for kind in ("held", "moving"))
-        costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (held, moving)]
-        cells.append([law, limit, *costs, f"{float(format(moving['cpu_ratio'], '.2g')):.0f}"])
+    for one, other in zip(held, moving, strict=True):
+        costs = [f"{row['ratio']:#.3g}".rstrip(".") for row in (one, other)]
+        cells.append([one["law"], one["limit"], *costs, f"{float(format(other['cpu_ratio'], '.2g')):.0f}"])
     return cells
 
 
-def cheapest(row: dict[str, object], names: Sequence[str]) -> str:
+def cheapest(row: Mapping[str, Any], names: Sequence[str]) -> str:
     """The least ratio of these methods."""
-    known = [float(str(row[name])) for name in names if name in row and not math.isnan(float(str(row[name])))]
-    if not known:
+    least = min((row[name] for name in names if not math.isnan(row.get(name, math.nan))), default=math.nan)
+    if math.isnan(least):
         return "not reached"
-    return f"{min(known):.3g}" if min(known) < 1000 else f"{min(known):.0f}"
+    return f"{least:.3g}" if least < 1000 else f"{least:.0f}"
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    finish(run, bench_options("work-precision", DESCRIPTION).parse_args(argv))
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    return bench_options("work-precision", __doc__).parse_args(argv)
 
 
 def run(options: argparse.Namespace) -> None:
@@ -300,12 +277,9 @@ def run(options: argparse.Namespace) -> None:
             points += measure(bench, case, QUICK if quick else FULL)
         step_sizes, periods = step_size_points(bench, quick), period_points(bench)
     compared, titles = ratios(points), {case.name: case.title for case in chosen}
-    tables: dict[str, Sequence[Mapping[str, object]]] = {
-        "work-precision": [asdict(p) for p in points],
-        "work-precision-ratios": compared,
-        "step-size": step_sizes,
-        "periods": periods,
-    }
+    tables: dict[str, Sequence[Mapping[str, object]]]
+    tables = {"work-precision": [*map(asdict, points)], "work-precision-ratios": compared}
+    tables |= {"step-size": step_sizes, "periods": periods}
     written = [write_csv(rows, output / f"{name}.csv") for name, rows in tables.items()]
     written += figures.work_precision(points, titles, output)
     written += figures.step_sizes(step_sizes, output)

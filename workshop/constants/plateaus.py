@@ -11,11 +11,11 @@ over the tolerance and the limit, against workshop.reference.
 import argparse
 import math
 import re
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import fmpy
@@ -24,6 +24,7 @@ from rich.progress import Progress
 
 from frictioncontact.command import progress_bar
 from frictioncontact.errors import UserError
+from frictioncontact.files import write_whole
 from frictioncontact.fmu import Value
 from workshop.bench.cases import Case, cases, expected
 from workshop.bench.driver import Bench, open_bench
@@ -39,9 +40,7 @@ SETTINGS: Mapping[str, Mapping[str, Value]] = {
     "Dahl, load": {"friction.limit": "Load"},
 }
 TOLERANCES = (1e-3, 1e-6, 1e-8)
-OPTIONS = (
-    "-std=c11 -O1 -w -DNDEBUG -ffp-contract=off -fno-math-errno -fPIC -shared -fvisibility=hidden".split()
-)
+OPTIONS = "-std=c11 -O1 -w -DNDEBUG -ffp-contract=off -fno-math-errno -fPIC -shared".split()
 
 
 def constants() -> dict[str, float]:
@@ -50,22 +49,17 @@ def constants() -> dict[str, float]:
 
 
 def built(folder: Path, changed: Mapping[str, float]) -> Path:
-    """The library of the core with those constants."""
-    sources = folder / "sources"
-    shutil.rmtree(sources, ignore_errors=True)
-    shutil.copytree(ROOT / "fmu_src", sources)
+    """The library of the core with those constants, from a header that is found before the core's."""
+    sources, library = ROOT / "fmu_src", folder / "changed.so"
     text = (sources / TUNING).read_text(encoding="utf-8")
     for name, value in changed.items():
         text = re.sub(rf"(double {name} = )[0-9.e-]+;", rf"\g<1>{value!r};", text)
-    (sources / TUNING).write_text(text, encoding="utf-8")
-    headers = Path(fmpy.__file__).parent / "c-code"
-    files = [*sources.rglob("*.c"), ROOT / "build/generated/variables.c"]
-    library = folder / "changed.so"
-    include = [f"-I{where}" for where in (sources, sources / "fmi2", headers)]
-    command = ["gcc", *OPTIONS, *include, *map(str, files), "-o", str(library), "-lm"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    write_whole(folder / TUNING, text)
+    include = [f"-I{where}" for where in (folder, sources, Path(fmpy.__file__).parent / "c-code")]
+    files = map(str, [*sources.rglob("*.c"), ROOT / "build/generated/variables.c"])
+    done = subprocess.run(["gcc", *OPTIONS, *include, *files, "-o", library, "-lm"], stderr=subprocess.PIPE)
     if done.returncode:
-        raise UserError(f"gcc: {done.stderr.strip()}")
+        raise UserError(f"gcc: {done.stderr.decode().strip()}")
     return library
 
 
@@ -73,15 +67,11 @@ Scenes = list[tuple[Case, float, np.ndarray, np.ndarray]]  # with a start and wh
 
 
 def scenes(progress: Progress) -> Scenes:
-    of = [
-        replace(case, name=f"{name}, {case.name}", start_values={**case.start_values, **setting})
-        for name, setting in SETTINGS.items()
-        for case in cases()
-    ]
     found = []
-    for case in progress.track(of, description="The reference"):
-        start = case.starts[-1]  # not at a whole phase
-        found.append((case, start, *expected(case, start)))
+    for (name, setting), case in progress.track([*product(SETTINGS.items(), cases())], None, "The reference"):
+        values, start = {**case.start_values, **setting}, case.starts[-1]  # not at a whole phase
+        changed = replace(case, name=f"{name}, {case.name}", start_values=values)
+        found.append((changed, start, *expected(changed, start)))
     return found
 
 

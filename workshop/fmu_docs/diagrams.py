@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,17 +10,17 @@ from matplotlib.patches import FancyBboxPatch
 
 from frictioncontact import style
 from frictioncontact.batch import simulate_many
-from frictioncontact.fmu import FrictionFmu, Value
+from frictioncontact.fmu import FrictionFmu
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, STIFFNESS_PRINTED, Surfaces
 
 # ---- which output to connect ----
 
-QUESTION, ANSWER = ("#fdf1e3", style.ORANGE), ("#eaf3fa", style.BLUE)
+QUESTION, ANSWER = {"fc": "#fdf1e3", "ec": style.ORANGE}, {"fc": "#eaf3fa", "ec": style.BLUE}
 WIDTH, HEIGHT = 0.56, 0.14  # of a box
-QUESTIONS = (  # what is asked; the answer that ends the way, and the output it leads to
-    ("Does the contact\nvibrate?", "no", "F_t\nat any step"),
-    ("Does your machine feel\nthe force within a period?", "yes", "F_t\nup to T/20"),
-    ("Can your mass stick, or does\nyour tool exchange values?", "no", "F_t_settled\nat any step"),
+QUESTIONS = (  # what is asked; the answers that end the way and go on, and the output that the first leads to
+    ("Does the contact\nvibrate?", "no", "yes", "F_t\nat any step"),
+    ("Does your machine feel\nthe force within a period?", "yes", "no", "F_t\nup to T/20"),
+    ("Can your mass stick, or does\nyour tool exchange values?", "no", "yes", "F_t_settled\nat any step"),
 )
 LAST = "F_t_mean\nsteps of whole periods T"
 
@@ -29,28 +30,31 @@ def draw_choice(path: Path) -> None:
     figure, axes = style.subplots(size=(4.4, 4.8))
     axes.set(xlim=(-0.01, 1.01), ylim=(0.0, 1.0))
     axes.axis("off")
-    for k, (question, ends, output) in enumerate(QUESTIONS):
+    for k, (question, ends, goes_on, output) in enumerate(QUESTIONS):
         y = 0.91 - 0.27 * k
-        _box(axes, 0.28, y, WIDTH, question, QUESTION)
-        _box(axes, 0.86, y, 0.28, output, ANSWER, bold=True)
+        box(axes, 0.28, y, (WIDTH, HEIGHT), question, QUESTION)
+        box(axes, 0.86, y, (0.28, HEIGHT), output, ANSWER, weight="bold")
         _arrow(axes, (0.56, y), (0.72, y), ends, (0.64, y + 0.03))
-        _arrow(axes, (0.28, y - HEIGHT / 2), (0.28, y - 0.27 + HEIGHT / 2), _other(ends), (0.32, y - 0.135))
-    _box(axes, 0.28, 0.1, WIDTH, LAST, ANSWER, bold=True)
+        _arrow(axes, (0.28, y - HEIGHT / 2), (0.28, y - 0.27 + HEIGHT / 2), goes_on, (0.32, y - 0.135))
+    box(axes, 0.28, 0.1, (WIDTH, HEIGHT), LAST, ANSWER, weight="bold")
     style.save(figure, path)
 
 
-def _other(answer: str) -> str:
-    return "yes" if answer == "no" else "no"
-
-
-def _box(
-    axes: Axes, x: float, y: float, width: float, text: str, look: tuple[str, str], *, bold: bool = False
+def box(
+    axes: Axes,
+    x: float,
+    y: float,
+    size: tuple[float, float],
+    text: str,
+    look: dict[str, str],
+    rounding: float = 0.02,
+    **font: Any,
 ) -> None:
-    corner = (x - width / 2, y - HEIGHT / 2)
-    box = FancyBboxPatch(corner, width, HEIGHT, boxstyle="round,pad=0,rounding_size=0.02")
-    box.set(facecolor=look[0], edgecolor=look[1], linewidth=1.4)
-    axes.add_patch(box)
-    axes.text(x, y, text, ha="center", va="center", fontsize=10, weight="bold" if bold else "normal")
+    """Around the middle (x, y), with round corners and a text."""
+    corner = (x - size[0] / 2, y - size[1] / 2)
+    patch = FancyBboxPatch(corner, *size, boxstyle=f"round,pad=0,rounding_size={rounding}", lw=1.4, **look)
+    axes.add_patch(patch)
+    axes.text(x, y, text, ha="center", va="center", **font)
 
 
 def _arrow(
@@ -113,36 +117,28 @@ def _number(axes: Axes, place: float, y: float, number: float, side: str) -> Non
 
 ZETA, V_1 = 0.3, 1.44  # V/V_1; m/s
 ALPHAS = {0.0: "d constant", 0.18: "a_d / R_q = 0.18"}
-LEVELS: dict[str, dict[str, Value]] = {
-    "Coulomb": {"friction.model": "Coulomb"},
-    "ElasticPlastic": {"friction.model": "ElasticPlastic"},
-    "Dahl, constant stiffness": {"contact.model": "Constant"},
-}
 
 
 def level_errors(fmu: FrictionFmu, kappas: np.ndarray, alpha: float) -> dict[str, np.ndarray]:
     """Largest error of the settled mean over F_C, at any phase, of each level against Dahl on asperities."""
     sigma = kappas * 2.0 * math.pi * FREQUENCY * COULOMB_FORCE / V_1
-    full = {
-        "V": ZETA * V_1,
-        "vibration.V_1": V_1,
+    sliding = {"V": ZETA * V_1, "vibration.V_1": V_1}
+    full = sliding | {
         "vibration.a_d": alpha * Surfaces.R_q,
         "vibration.phase_d": np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)[:, None],
         "contact.stiffnessScale": sigma / STIFFNESS_PRINTED,
     }
-
-    def means(level: dict[str, Value]) -> np.ndarray:
-        scene = full | level
-        if level.get("contact.model") == "Constant":
-            del scene["contact.stiffnessScale"], scene["vibration.a_d"], scene["vibration.phase_d"]
-            scene["contact.sigma"] = sigma
-        if level.get("friction.model") == "Coulomb":
-            scene = {name: value for name, value in scene.items() if not name.startswith("contact")}
-            del scene["vibration.a_d"], scene["vibration.phase_d"]
-        return simulate_many(scene, ["F_t_settled"], fmu=fmu.path)["F_t_settled"]
-
-    truth = means({})
-    return {name: np.abs(means(level) - truth).max(axis=0) / COULOMB_FORCE for name, level in LEVELS.items()}
+    levels: dict[str, dict[str, Any]] = {
+        "Coulomb": sliding | {"friction.model": "Coulomb"},
+        "ElasticPlastic": full | {"friction.model": "ElasticPlastic"},
+        "Dahl, constant stiffness": sliding | {"contact.model": "Constant", "contact.sigma": sigma},
+    }
+    truth, *means = (
+        simulate_many(scene, ["F_t_settled"], fmu=fmu.path)["F_t_settled"]
+        for scene in (full, *levels.values())
+    )
+    errors = [np.abs(mean - truth).max(axis=0) / COULOMB_FORCE for mean in means]
+    return dict(zip(levels, errors, strict=True))
 
 
 def draw_levels(fmu: FrictionFmu, path: Path) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from frictioncontact import style
+from frictioncontact.batch import simulate_many
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY
 
@@ -43,26 +44,20 @@ def scene(law: str, kappa: float, direction: str) -> dict[str, Value]:
 
 def mean(fmu: FrictionFmu, start_values: dict[str, Value], V: np.ndarray) -> np.ndarray:
     """Settled mean friction over F_C at each V [m/s]."""
-    found = []
-    for each in V:
-        with fmu.session(start_values | {"V": float(each)}) as session:
-            found.append(session.get("F_t_settled") / COULOMB_FORCE)
-    return np.array(found)
+    found = simulate_many(start_values | {"V": V}, ["F_t_settled"], fmu=fmu.path)
+    return found["F_t_settled"] / COULOMB_FORCE
 
 
 def draw(fmu: FrictionFmu, path: Path) -> None:
     figure, panels = style.subplots(3, 1, size=(5.2, 8.6), sharex=True)
     V = np.unique(np.concatenate([np.geomspace(1e-3, 10.0, 121), np.linspace(1.2, 1.5, 31), [AMPLITUDE]]))
-    titles = {
-        "along": f"Along the sliding, {AMPLITUDE} m/s",
-        "transverse": f"Transverse, {AMPLITUDE} m/s",
-        "normal": f"Normal, {1e6 * HEIGHT:g} µm",
-    }
-    for axes, direction in zip(panels, DIRECTIONS, strict=True):
+    speed, height = f"{AMPLITUDE} m/s", f"{1e6 * HEIGHT:g} µm"
+    titles = f"Along the sliding, {speed}", f"Transverse, {speed}", f"Normal, {height}"
+    for axes, direction, title in zip(panels, DIRECTIONS, titles, strict=True):
         for law, kappa, colour, dash, label in LINES:
             force = mean(fmu, scene(law, kappa, direction), V)
             axes.semilogx(V, force, dash, color=colour, lw=2.2, label=label)
-        axes.set(title=titles[direction], xlim=(V[0], V[-1]), ylim=(0.0, 1.06))
+        axes.set(title=title, xlim=(V[0], V[-1]), ylim=(0.0, 1.06))
         axes.set_ylabel("mean friction over $F_C$")
     panels[-1].set_xlabel("sliding velocity V [m/s]")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)

@@ -33,24 +33,13 @@ def main() -> None:
     lower = 0.27 + profile(x, (0.1, 0.27, 0.45, 0.62, 0.8, 0.94), (0.07, 0.11, 0.06, 0.11, 0.06, 0.1))
     upper = 0.50 - profile(x, (0.09, 0.28, 0.43, 0.61, 0.79, 0.93), (0.06, 0.125, 0.07, 0.125, 0.07, 0.08))
     inside = (x > 0.14) & (x < 0.86)
-    axes.fill_between(x, 0.06, lower, facecolor=BODY, edgecolor=EDGE, linewidth=2.2)
-    axes.fill_between(
-        x[inside], np.maximum(upper, lower)[inside], 0.66, facecolor=SLIDER, edgecolor=EDGE, linewidth=2.2
-    )
+    axes.fill_between(x, 0.06, lower, fc=BODY, ec=EDGE, lw=2.2)
+    axes.fill_between(x[inside], np.maximum(upper, lower)[inside], 0.66, fc=SLIDER, ec=EDGE, lw=2.2)
 
     wave = np.linspace(0.0, 1.0, 200)
-    axes.plot(
-        0.14 + 0.38 * wave, 0.82 + 0.085 * np.sin(3 * 2 * np.pi * wave), color=style.ORANGE, linewidth=5.5
-    )
-    axes.add_patch(
-        FancyArrowPatch(
-            (0.56, 0.82),
-            (0.95, 0.82),
-            arrowstyle="simple,head_width=17,head_length=15,tail_width=6",
-            color=style.GREY,
-            linewidth=0,
-        )
-    )
+    axes.plot(0.14 + 0.38 * wave, 0.82 + 0.085 * np.sin(6 * np.pi * wave), color=style.ORANGE, lw=5.5)
+    arrow = "simple,head_width=17,head_length=15,tail_width=6"
+    axes.add_patch(FancyArrowPatch((0.56, 0.82), (0.95, 0.82), arrowstyle=arrow, color=style.GREY, lw=0))
     path = FMU_DOCS / "model.png"
     figure.savefig(path, dpi=PIXELS / 2.56, transparent=True, metadata={"Software": None})
     print(f"wrote {path.relative_to(ROOT)}")

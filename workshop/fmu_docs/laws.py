@@ -36,17 +36,16 @@ STATIC: dict[str, Value] = {
 
 def open_contact(fmu: FrictionFmu, path: Path) -> None:
     """Load, sliding velocity, force and heat of a tool that is set down, lifted off and set down again."""
-    figure, (load, sliding, force, heat) = style.subplots(
-        4, 1, size=(5.2, 7.4), sharex=True, gridspec_kw={"height_ratios": (1.0, 0.7, 1.7, 1.2)}
-    )
+    heights = {"height_ratios": (1.0, 0.7, 1.7, 1.2)}
+    figure, panels = style.subplots(4, 1, size=(5.2, 7.4), sharex=True, **heights)
+    load, sliding, force, heat = panels
 
     def run(law: str, step: float, linear: bool) -> dict[str, np.ndarray]:
         count = round(CORNERS[-1] / step)
         time = step * np.arange(count + 1)
         inputs = {"load": np.interp(time, CORNERS, LOAD), "V": np.interp(time, CORNERS, SLIDING)}
-        return simulate(
-            fmu, LIFTED | {"friction.model": law}, step, count, inputs, linear, outputs=("F_t", "Q_f")
-        )
+        scene = LIFTED | {"friction.model": law}
+        return simulate(fmu, scene, step, count, inputs, linear, outputs=("F_t", "Q_f"))
 
     load.plot(CORNERS, LOAD, color=style.BLACK)
     sliding.plot(CORNERS, 1e3 * SLIDING, color=style.BLACK)
@@ -58,7 +57,7 @@ def open_contact(fmu: FrictionFmu, path: Path) -> None:
             axes.plot(ramp["time"], scale * ramp[name], color=colour, lw=2.2, label=law)
             axes.plot(held["time"], scale * held[name], ".", color=colour, ms=5, alpha=0.6)
     force.plot([], [], ".", color=style.GREY, label="held over 20 ms")
-    for axes in (load, sliding, force, heat):
+    for axes in panels:
         axes.axvspan(0.6, 0.7, color=style.AMBER, alpha=0.25, lw=0)
     load.text(0.65, 50.0, "open", ha="center", va="center")
     load.set(ylabel="load [N]", title="A tool is set down, lifted off and set down again")
@@ -121,19 +120,9 @@ def static_friction(fmu: FrictionFmu, path: Path) -> None:
     (fallen,) = bound_with_total_velocity(np.array([0.02]))
     shaken.plot(0.02, fallen, "o", color=style.ORANGE)
     shaken.text(0.023, fallen + 1.5, f"{fallen:.1f} N", fontsize=9)
-    shaken.set(
-        title="Loaded to 77 N (1.4 $F_C$), then vibrated at 20 kHz",
-        xlabel="amplitude $V_1$ of the vibration [m/s]",
-        ylabel="mean force [N]",
-        xlim=(V_1[0], V_1[-1]),
-        ylim=(45.0, 85.0),
-    )
-    moved.set(
-        title="Moved from rest at a constant V",
-        xlabel="V [m/s]",
-        ylabel="break-away force over $F_C$",
-        xlim=(V[0], V[-1]),
-        ylim=(0.9, 1.6),
-    )
+    shaken.set(title="Loaded to 77 N (1.4 $F_C$), then vibrated at 20 kHz", ylabel="mean force [N]")
+    shaken.set(xlabel="amplitude $V_1$ of the vibration [m/s]", xlim=V_1[[0, -1]], ylim=(45.0, 85.0))
+    moved.set(title="Moved from rest at a constant V", ylabel="break-away force over $F_C$")
+    moved.set(xlabel="V [m/s]", xlim=V[[0, -1]], ylim=(0.9, 1.6))
     figure.legend(*shaken.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     style.save(figure, path)

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
+from matplotlib.patches import FancyArrowPatch
 
 from frictioncontact import style
 from frictioncontact.fmu import FrictionFmu, Value
 from frictioncontact.parameters import COULOMB_FORCE, FREQUENCY, PERIOD, STIFFNESS_PRINTED
 from workshop.build import build_targets
+from workshop.fmu_docs.diagrams import ANSWER, box
 
 # ---- the panels of a period ----
 
@@ -38,10 +39,9 @@ def panels(stiffness: float) -> list[Panel]:
     """Those of a period from a settled start, as the march takes them."""
     program = build_targets("default", ["panels"]) / "hunt" / "panels"
     sequence = f"{SCENE} h={PERIOD!r} stiffnessScale={stiffness / STIFFNESS_PRINTED!r}"
-    lines = subprocess.run(
-        [program, sequence], check=True, capture_output=True, text=True
-    ).stdout.splitlines()
-    rows = [[float(word) for word in line.split()[:5]] for line in lines if line.endswith("relaxes")]
+    said = subprocess.run([program, sequence], check=True, capture_output=True, text=True).stdout
+    lines = [line for line in said.splitlines() if line.endswith("relaxes")]
+    rows = [[float(word) for word in line.split()[:5]] for line in lines]
     return [Panel((t, t_end), (u, u_end), length) for t, t_end, u, u_end, length in rows]
 
 
@@ -67,10 +67,9 @@ def _draw_course(axes: Axes, stiffness: float) -> None:
     axes.plot(0.0, 0.0, "o", color=style.ORANGE, ms=4.5)
     axes.text(0.02 * place, 1e6 * REVERSALS[0] + 0.7, "V = 0", color=style.PINK, fontsize=9)
     exponent = int(np.log10(stiffness))
-    axes.set_title(f"6·10$^{{{exponent}}}$ N/m: {len(found)} panels")
     straight = np.isinf(found[0].length)
+    axes.set(title=f"6·10$^{{{exponent}}}$ N/m: {len(found)} panels", ylim=(0.0, 1e6 * PERIOD))
     axes.set_xlabel("ω u, with t = u" if straight else "u, added up")
-    axes.set_ylim(0.0, 1e6 * PERIOD)
 
 
 # ---- the regimes ----
@@ -99,11 +98,7 @@ def draw_regimes(path: Path) -> None:
     axes.set(xlim=(0.0, 1.0), ylim=(-0.01, 1.01))
     axes.axis("off")
     for x, y, text in BOXES.values():
-        corner = (x - WIDTH / 2, y - HEIGHT / 2)
-        box = FancyBboxPatch(corner, WIDTH, HEIGHT, boxstyle="round,pad=0,rounding_size=0.03")
-        box.set(facecolor="#eaf3fa", edgecolor=style.BLUE, linewidth=1.4)
-        axes.add_patch(box)
-        axes.text(x, y, text, ha="center", va="center", fontsize=9.5)
+        box(axes, x, y, (WIDTH, HEIGHT), text, ANSWER, rounding=0.03, fontsize=9.5)
     for start, end, left, right, bend, text, place, side in ARROWS:
         _draw_arrow(axes, (left, BOXES[start][1]), (right, BOXES[end][1]), bend)
         axes.text(*place, text, ha=side, va="center", fontsize=9, color=style.ORANGE)
@@ -167,27 +162,15 @@ def draw_map(fmu: FrictionFmu, path: Path) -> None:
         axes.plot(starts, starts, color=style.GREY, lw=1.0)
         axes.plot(starts, slope * starts + offset, color=style.BLUE, lw=1.2, ls="--")
         axes.plot(starts, ends, color=style.BLUE, lw=2.6)
-        for level, name in ((low, "lo"), (high, "hi")):
+        for level, name, x, side in ((low, "lo", 0.98, "right"), (high, "hi", -0.98, "left")):
             axes.axhline(level, color=style.LIGHT, lw=1.0, zorder=1)
-            axes.text(
-                -0.98 * most if level == high else 0.98 * most,
-                level + 0.02 * most,
-                name,
-                ha="left" if level == high else "right",
-                va="bottom",
-                fontsize=9,
-            )
+            axes.text(x * most, level + 0.02 * most, name, ha=side, va="bottom", fontsize=9)
         edge = (high - offset) / slope
         axes.axvline(edge, color=style.PINK, lw=1.2, ls="--")
         axes.text(edge + 0.03 * most, -0.93 * most, "e", color=style.PINK)
         _draw_periods(axes, fmu, scene, D, first)
-        axes.set(
-            title=f"{title}: P = {slope:.2g}",
-            xlabel="δ₀/D",
-            xlim=(-most, most),
-            ylim=(-most, most),
-            aspect="equal",
-        )
+        square = {"xlim": (-most, most), "ylim": (-most, most), "aspect": "equal"}
+        axes.set(title=f"{title}: P = {slope:.2g}", xlabel="δ₀/D", **square)
     both[0].set_ylabel("δ₁/D, a period later")
     style.save(figure, path)
 

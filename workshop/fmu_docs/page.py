@@ -54,14 +54,13 @@ def page(xml: Path = description.XML, playground: bool = False) -> str:
 
 def variable_tables(model: ModelDescription) -> str:
     """One table for each causality, in the order of the model description."""
+    head = "".join(f"<th>{word}</th>" for word in ("Name", "Unit", "Start", "Allowed", "Meaning"))
     tables = []
     for causality, title in CAUSALITIES.items():
         rows = [_row(model, variable) for variable in model.modelVariables if variable.causality == causality]
         if rows:
-            tables.append(
-                f"<h3>{title}</h3>\n<table>\n<thead><tr><th>Name</th><th>Unit</th><th>Start</th><th>Allowed</th>"
-                "<th>Meaning</th></tr></thead>\n<tbody>\n" + "\n".join(rows) + "\n</tbody>\n</table>"
-            )
+            tables += [f"<h3>{title}</h3>", "<table>", f"<thead><tr>{head}</tr></thead>", "<tbody>"]
+            tables += [*rows, "</tbody>", "</table>"]
     return "\n".join(tables)
 
 
@@ -73,15 +72,11 @@ def _row(model: ModelDescription, variable: ScalarVariable) -> str:
         items = variable.declaredType.items
         unit, start = "", items[int(variable.start or "1") - 1].name
         allowed = f"{items[0].value} … {items[-1].value}"
-        options = "".join(
-            f"<li><code>{item.value}</code> {escape(item.name)}: {escape(item.description or '')}</li>"
-            for item in items
-        )
-        meaning += f"<ul>{options}</ul>"
+        entry = "<li><code>{}</code> {}: {}</li>".format
+        options = (entry(x.value, escape(x.name), escape(x.description or "")) for x in items)
+        meaning += f"<ul>{''.join(options)}</ul>"
     else:
-        unit = variable.unit or ""
-        start = _start(model, variable)
-        allowed = _allowed(variable)
+        unit, start, allowed = variable.unit or "", _start(model, variable), _allowed(variable)
     cells = [("Unit", TYPOGRAPHY.get(unit, unit)), ("Start", start), ("Allowed", allowed)]
     middle = "".join(f'<td data-label="{label}">{escape(text) or "–"}</td>' for label, text in cells)
     return f"<tr><th><code>{escape(variable.name)}</code></th>{middle}<td>{meaning}</td></tr>"
@@ -100,11 +95,9 @@ def _start(model: ModelDescription, variable: ScalarVariable) -> str:
 def _allowed(variable: ScalarVariable) -> str:
     """The bounds, in the unit of the Unit column."""
     low, high = variable.min, variable.max
-    if low is not None and high is not None:
-        return f"{low} … {high}"
     if low is not None:
-        return f"≥ {low}"
-    return f"≤ {high}" if high is not None else ""
+        return f"≥ {low}" if high is None else f"{low} … {high}"
+    return "" if high is None else f"≤ {high}"
 
 
 if __name__ == "__main__":

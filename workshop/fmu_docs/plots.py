@@ -27,7 +27,6 @@ V_1 = TABLE_2[1].V_1
 COLOURS = ("#0072b2", "#d55e00", "#00835f", "#a23e86")
 INK, GRID = "#222222", "#d0d0d0"
 VARIABLES = {**dict(zip(COLOURS, ("c1", "c2", "c3", "c4"), strict=True)), INK: "ink", GRID: "grid"}
-SIZE = (4.6, 3.1)  # inches
 
 
 def start_values(kappa: float, V: float) -> dict[str, Value]:
@@ -43,11 +42,10 @@ def start_values(kappa: float, V: float) -> dict[str, Value]:
 
 
 def new_axes() -> tuple[Figure, Axes]:
-    figure, axes = style.subplots(size=SIZE)
+    figure, axes = style.subplots(size=(4.6, 3.1))
     axes.tick_params(colors=INK, length=0)
     axes.grid(color=GRID)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
+    axes.spines[:].set_visible(False)
     return figure, axes
 
 
@@ -83,36 +81,25 @@ def force(fmu: FrictionFmu) -> str:
         run = periodic_waves(fmu, start_values(kappa, 0.5), ("F_t",), samples=200)
         axes.plot(FREQUENCY * run["time"], run["F_t"] / COULOMB_FORCE, color=colour, lw=2.0)
     label_lines(axes, 0.03, {"κ = 0.5": -0.66, "κ = 5": -0.8, "κ = 100": -0.94})
-    axes.set_xlabel("time in periods of the vibration", color=INK)
-    axes.set_ylabel("F_t / F_C", color=INK)
-    axes.set_xlim(0.0, 2.0)
-    axes.set_xticks([0.0, 0.5, 1.0, 1.5, 2.0])
-    axes.set_yticks([-1.0, -0.5, 0.0, 0.5, 1.0])
+    axes.set(xlabel="time in periods of the vibration", xlim=(0.0, 2.0), xticks=[0.0, 0.5, 1.0, 1.5, 2.0])
+    axes.set(ylabel="F_t / F_C", yticks=[-1.0, -0.5, 0.0, 0.5, 1.0])
     return as_svg(figure, "Friction force over two periods of the vibration for three contact stiffnesses")
 
 
 def mean(fmu: FrictionFmu) -> str:
     """The mean friction over V / V_1 for four stiffnesses, and the Coulomb limit."""
     figure, axes = new_axes()
-    ratios = np.concatenate(
-        [np.linspace(0.0, 0.9, 37), np.linspace(0.91, 1.09, 19), np.linspace(1.1, 1.5, 9)]
-    )
+    ratios = np.r_[0.0:0.9:37j, 0.91:1.09:19j, 1.1:1.5:9j]
     for kappa, colour in zip((0.2, 1.0, 5.0, 100.0), COLOURS, strict=True):
         means = [periodic_mean(fmu, start_values(kappa, ratio * V_1)) / COULOMB_FORCE for ratio in ratios]
         axes.plot(ratios, means, color=colour, lw=2.0)
     coulomb = [2.0 / math.pi * math.asin(min(ratio, 1.0)) for ratio in ratios]
     axes.plot(ratios, coulomb, color=INK, lw=2.0, ls="--")
-    heights = {"κ = 0.2": 0.5, "κ = 1": 0.42, "κ = 5": 0.34, "κ = 100": 0.26, "Coulomb": 0.18}
-    label_lines(axes, 1.12, heights)
-    axes.set_xlabel("V / V_1", color=INK)
-    axes.set_ylabel("F_t_mean / F_C", color=INK)
-    axes.set_xlim(0.0, 1.5)
-    axes.set_ylim(0.0, 1.05)
-    axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0])
-    return as_svg(
-        figure,
-        "Mean friction against the velocity over the vibration's amplitude for four contact stiffnesses",
-    )
+    label_lines(axes, 1.12, {"κ = 0.2": 0.5, "κ = 1": 0.42, "κ = 5": 0.34, "κ = 100": 0.26, "Coulomb": 0.18})
+    axes.set(xlabel="V / V_1", xlim=(0.0, 1.5))
+    axes.set(ylabel="F_t_mean / F_C", ylim=(0.0, 1.05), yticks=[0.0, 0.25, 0.5, 0.75, 1.0])
+    words = "Mean friction against the velocity over the vibration's amplitude for four contact stiffnesses"
+    return as_svg(figure, words)
 
 
 def main() -> None:

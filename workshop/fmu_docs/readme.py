@@ -11,11 +11,10 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 
 from frictioncontact import style, table2
 from frictioncontact.command import add_fmu, add_output, command_line
-from frictioncontact.fmu import SETTLED, FrictionFmu, simulate
+from frictioncontact.fmu import SETTLED, FrictionFmu, Session, simulate
 from frictioncontact.parameters import IDENTIFIED, PERIOD, TABLE_2, start_values
 from workshop.build import build_fmu
 from workshop.fmu_docs import diagrams, directions, laws, march
@@ -25,6 +24,7 @@ from workshop.project import ROOT
 FOLDER = ROOT / "docs" / "pictures"
 SCENE = start_values(TABLE_2[1], IDENTIFIED)  # row 2: everything vibrates
 V_1 = TABLE_2[1].V_1
+STILL = {"vibration.V_1": 0.0, "vibration.a_d": 0.0}
 
 
 def overview(fmu: FrictionFmu, path: Path) -> None:
@@ -37,33 +37,32 @@ def overview(fmu: FrictionFmu, path: Path) -> None:
 
 def _switched_on(axes: Axes, fmu: FrictionFmu) -> None:
     step, before, after = PERIOD / 200, 200, 800
-    times, force, mean = [], [], []
-    with fmu.session(SCENE | {"vibration.V_1": 0.0, "vibration.a_d": 0.0}) as session:
+    times, force = [], []
+    with fmu.session(SCENE | STILL) as session:
         # Steady sliding, to a time at which the vibration of d passes zero: sigma starts without a jump.
         session.step((100.75 - SCENE["vibration.phase_d"] / (2 * np.pi)) * PERIOD)
         start = session.time
         for k in range(before + after):
             if k == before:
-                session.set("vibration.V_1", V_1)
-                session.set("vibration.a_d", SCENE["vibration.a_d"])
+                _vibrate(session, 1.0)
             session.step(step)
             times.append(session.time - start - before * step)
             force.append(session.get("F_t"))
-    for k in range(4):
-        mean.append(np.mean(force[before + 200 * k : before + 200 * (k + 1)]))
-    axes.plot(1e6 * np.array(times), force, color=style.BLUE, lw=2)
+    mean = np.mean(np.reshape(force[before:], (4, 200)), axis=1)
+    axes.plot(1e6 * np.array(times), force, color=style.BLUE, lw=2, label="$F_t$")
     axes.hlines(mean, [0, 50, 100, 150], [50, 100, 150, 200], color=style.ORANGE, lw=2.2)
+    axes.plot([], [], color=style.ORANGE, lw=2.2, label="its mean over each period")
     axes.axvline(0.0, color=style.GREY, lw=1.0, ls="--")
-    axes.set_xlim(-50.0, 200.0)
-    axes.set_ylim(0.0, 1.05 * max(force))
-    axes.set_xlabel("time [µs]")
-    axes.set_ylabel("friction force [N]")
-    axes.set_title("Vibration of 20 kHz switched on at t = 0")
-    handles = [
-        Line2D([], [], color=style.BLUE, lw=2.0, label="$F_t$"),
-        Line2D([], [], color=style.ORANGE, lw=2.2, label="its mean over each period"),
-    ]
-    axes.legend(handles=handles, loc="upper right")
+    axes.set(
+        xlabel="time [µs]", ylabel="friction force [N]", title="Vibration of 20 kHz switched on at t = 0"
+    )
+    axes.set(xlim=(-50.0, 200.0), ylim=(0.0, 1.05 * max(force)))
+    axes.legend(loc="upper right")
+
+
+def _vibrate(session: Session, part: float) -> None:
+    for name in STILL:
+        session.set(name, part * SCENE[name])
 
 
 def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
@@ -71,30 +70,24 @@ def _ramped(axes: Axes, fmu: FrictionFmu) -> None:
     step, count = 1.01e-3, 60
     share = np.clip(1.5 * np.sin(np.pi * np.arange(count + 1) / count) ** 2, 0.0, 1.0)
     rows = []
-    with fmu.session(SCENE | {"vibration.V_1": 0.0, "vibration.a_d": 0.0}, start=-step) as session:
+    with fmu.session(SCENE | STILL, start=-step) as session:
         session.step(step)
         for part in share[1:]:
-            session.set("vibration.V_1", part * V_1)
-            session.set("vibration.a_d", part * SCENE["vibration.a_d"])
+            _vibrate(session, part)
             session.step(step)
             rows.append((session.time, session.get("F_t"), session.get("F_t_mean")))
     time, sample, mean = np.array(rows).T
     amplitude = axes.twinx()
     amplitude.fill_between(1e3 * time, share[1:] * V_1, step="pre", color=style.LIGHT, alpha=0.45, lw=0)
-    amplitude.set_ylim(0.0, 6.0)
-    amplitude.set_yticks([0.0, V_1])
+    amplitude.set(ylim=(0.0, 6.0), yticks=[0.0, V_1])
     amplitude.set_ylabel("$V_1$ [m/s]", y=0.12)
     amplitude.grid(visible=False)
     axes.set_zorder(amplitude.get_zorder() + 1)
     axes.patch.set_visible(False)
     axes.plot(1e3 * time, sample, "o", color=style.BLUE, ms=3.5, mfc="white", label="$F_t$: a sample")
     axes.plot(1e3 * time, mean, color=style.ORANGE, lw=2.4, label="its mean over the step")
-    axes.set_xlim(0.0, 1e3 * time[-1])
-    axes.set_ylim(0.0, 95.0)
-    axes.set_yticks([0, 20, 40, 60, 80])
-    axes.set_xlabel("time [ms]")
-    axes.set_ylabel("friction force [N]")
-    axes.set_title("The same contact in steps of 1.01 ms")
+    axes.set(xlabel="time [ms]", ylabel="friction force [N]", title="The same contact in steps of 1.01 ms")
+    axes.set(xlim=(0.0, 1e3 * time[-1]), ylim=(0.0, 95.0), yticks=[0, 20, 40, 60, 80])
     axes.legend(loc="upper center", ncols=2)
 
 
@@ -102,21 +95,16 @@ def fmpy_example(fmu: FrictionFmu, path: Path) -> None:
     """The result of the README's `fmpy simulate`: the default experiment from rest."""
     run = simulate(fmu, SCENE, 5e-7, 400)
     time = 1e6 * run["time"]
-    figure, panels = style.subplots(3, 1, size=(7.6, 5.6), sharex=True)
-    for axes, names, scale, label in (
-        (panels[0], ("F_t", "F_t_mean"), 1.0, "force [N]"),
-        (panels[1], ("sigma",), 1e-6, "stiffness [MN/m]"),
-        (panels[2], ("W_f",), 1e3, "work [mJ]"),
-    ):
-        for name, width in zip(names, (2.0, 1.0), strict=False):
-            axes.plot(time, scale * run[name], lw=width, label=name)
-        axes.set_ylabel(label)
-        axes.legend(loc="upper right", ncols=2)
-    panels[0].set_ylim(top=72.0)
-    panels[1].set_ylim(top=10.5)
-    panels[2].legend(loc="upper left")
-    panels[2].set_xlabel("time [µs]")
-    panels[2].set_xlim(0.0, time[-1])
+    figure, (force, stiffness, work) = style.subplots(3, 1, size=(7.6, 5.6), sharex=True)
+    force.plot(time, run["F_t"], lw=2.0, label="F_t")
+    force.plot(time, run["F_t_mean"], lw=1.0, label="F_t_mean")
+    stiffness.plot(time, 1e-6 * run["sigma"], lw=2.0, label="sigma")
+    work.plot(time, 1e3 * run["W_f"], lw=2.0, label="W_f")
+    force.set(ylabel="force [N]", ylim=(None, 72.0))
+    stiffness.set(ylabel="stiffness [MN/m]", ylim=(None, 10.5))
+    work.set(ylabel="work [mJ]", xlabel="time [µs]", xlim=(0.0, time[-1]))
+    for axes, place in ((force, "upper right"), (stiffness, "upper right"), (work, "upper left")):
+        axes.legend(loc=place, ncols=2)
     style.save(figure, path)
 
 
@@ -132,28 +120,22 @@ def step_sizes(fmu: FrictionFmu, path: Path) -> None:
                 session.step(PERIOD * (np.ceil(session.time / PERIOD) + phase / phases) - session.time)
                 session.step(step)
                 values[k, phase] = session.read(("F_t", "F_t_mean"))
-    for number, (name, colour, strength) in enumerate(
-        (("F_t", style.SKY, 0.35), ("F_t_mean", style.ORANGE, 0.75))
+    looks = ("F_t", style.SKY, 0.35), ("F_t_mean", style.ORANGE, 0.75)
+    for (name, colour, strength), *ends in zip(
+        looks, values.min(axis=1).T, values.max(axis=1).T, strict=True
     ):
-        low, high = values[..., number].min(axis=1), values[..., number].max(axis=1)
-        axes.fill_between(1e6 * steps, low, high, color=colour, alpha=strength, lw=0, label=name)
+        axes.fill_between(1e6 * steps, *ends, color=colour, alpha=strength, lw=0, label=name)
     exact = table2.mean_force(fmu, TABLE_2[1], IDENTIFIED)
     axes.axhline(exact, color=style.BLACK, lw=1.0, label=f"mean of the periodic state, {exact:.2f} N")
     axes.set_xscale("log")
     for part, words in ((1 / 20, "1/20 of a period"), (1 / 2, "half a period")):
         axes.axvline(1e6 * part * PERIOD, color=style.BLACK, lw=1.0, ls="--")
         axes.text(1.07e6 * part * PERIOD, 62.5, words, fontsize=8.5, va="center")
-    for place, text in (
-        (1.6, "use F_t"),
-        (7.9, "F_t or\nF_t_mean"),
-        (160.0, "use F_t_mean"),
-    ):
+    for place, text in ((1.6, "use F_t"), (7.9, "F_t or\nF_t_mean"), (160.0, "use F_t_mean")):
         axes.text(place, 55.0, text, ha="center", va="center", fontsize=9)
-    axes.set_ylim(0.0, 66.0)
-    axes.set_xlim(1e6 * steps[0], 1e6 * steps[-1])
+    axes.set(ylim=(0.0, 66.0), xlim=1e6 * steps[[0, -1]], ylabel="force after a step, at any phase [N]")
     axes.set_xticks([1, 10, 50, 100, 500, 1000], ["1", "10", "50", "100", "500", "1000"])
     axes.set_xlabel("communication step [µs]; T = 50 µs")
-    axes.set_ylabel("force after a step, at any phase [N]")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     style.save(figure, path)
 
@@ -185,10 +167,10 @@ def draw(fmu: FrictionFmu, folder: Path) -> list[Path]:
         "solver-period": partial(march.draw_map, fmu),
         "three-directions": partial(directions.draw, fmu),
     }
-    paths = [folder / f"{name}.png" for name in drawings]
-    for path, drawing in zip(paths, drawings.values(), strict=True):
+    paths = {folder / f"{name}.png": drawing for name, drawing in drawings.items()}
+    for path, drawing in paths.items():
         drawing(path)
-    return paths
+    return list(paths)
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
@@ -200,7 +182,5 @@ def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
 
 def run(options: argparse.Namespace) -> None:
     with FrictionFmu(options.fmu or build_fmu()) as fmu:
-        for path in draw(fmu, options.output):
-            print(path)
-    for path in draw_tutorial(options.output / "tutorial"):
-        print(path)
+        print(*draw(fmu, options.output), sep="\n")
+    print(*draw_tutorial(options.output / "tutorial"), sep="\n")

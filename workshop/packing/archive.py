@@ -5,6 +5,7 @@ The same input gives the same bytes: names are sorted and timestamps fixed.
 
 import argparse
 import hashlib
+import re
 import struct
 import sys
 import zipfile
@@ -17,7 +18,6 @@ FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 CHECKSUMS = "extra/org.fmi-standard.fmi-ls-ref/sha256sums.txt"
 # ELF, PE, Mach-O, universal Mach-O
 BINARY_BEGINNINGS = (b"\x7fELF", b"MZ", b"\xcf\xfa\xed\xfe", b"\xca\xfe\xba\xbe")
-BINARY_SUFFIXES = {"linux": ".so", "win": ".dll", "windows": ".dll", "darwin": ".dylib"}
 
 
 def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, Path]:
@@ -30,14 +30,6 @@ def source_files(source_dir: Path, table: Path, fmi_headers: Path) -> dict[str, 
     files["fmi2/variables.c"] = table
     files |= {name: fmi_headers / name for name in FMI_HEADERS}
     return files
-
-
-def binary_name(platform: str, identifier: str) -> str:
-    """binaries/linux64/FrictionContact.so and its like: platform is linux64, win64, aarch64-darwin, ..."""
-    system = platform.rsplit("-", maxsplit=1)[-1].rstrip("0123456789")
-    if system not in BINARY_SUFFIXES:
-        raise ValueError(f"unknown FMI platform {platform}")
-    return f"binaries/{platform}/{identifier}{BINARY_SUFFIXES[system]}"
 
 
 def whole_binary(path: Path) -> bytes:
@@ -56,21 +48,14 @@ def whole_binary(path: Path) -> bytes:
 def packaged_xml(path: Path, sources: list[str]) -> bytes:
     """The model description as it goes into the FMU: with its guid and the list of its C sources."""
     xml = path.read_bytes()
-    guid = model_description.guid_of(xml)
-    text = xml.decode()
+    text, files = xml.decode(), "".join(f'      <File name="{name}"/>\n' for name in sources)
     for interface in ("ModelExchange", "CoSimulation"):
-        text = _with_sources(path, text, interface, sources)
+        listed = f">\n    <SourceFiles>\n{files}    </SourceFiles>\n  </{interface}>"
+        text, count = re.subn(rf"(<{interface}\n[^<]*?)/>", rf"\1{listed}", text)
+        if count != 1:
+            raise ValueError(f"{path}: expected one {interface} element without content")
+    guid = model_description.guid_of(xml)
     return text.replace(f'guid="{model_description.GUID_PLACEHOLDER}"', f'guid="{guid}"').encode()
-
-
-def _with_sources(path: Path, text: str, interface: str, sources: list[str]) -> str:
-    head, found, rest = text.partition(f"<{interface}\n")
-    attributes, closed, rest = rest.partition("/>")
-    if not found or not closed or "<" in attributes:
-        raise ValueError(f"{path}: expected one {interface} element without content")
-    files = "".join(f'      <File name="{name}"/>\n' for name in sources)
-    listed = f">\n    <SourceFiles>\n{files}    </SourceFiles>\n  </{interface}>"
-    return f"{head}<{interface}\n{attributes}{listed}{rest}"
 
 
 def build_description(identifier: str, sources: list[str]) -> bytes:
@@ -104,7 +89,8 @@ def write_fmu(
     identifier = model_description.read(xml).coSimulation.modelIdentifier
     c_files = sorted(name for name in sources if name.endswith(".c"))
     entries = {"modelDescription.xml": packaged_xml(xml, c_files)}
-    entries |= {binary_name(platform, identifier): whole_binary(path) for platform, path in binaries.items()}
+    for platform, path in binaries.items():
+        entries[f"binaries/{platform}/{identifier}{path.suffix}"] = whole_binary(path)
     entries |= {f"sources/{name}": path.read_bytes() for name, path in sources.items()}
     entries["sources/buildDescription.xml"] = build_description(identifier, c_files)
     entries |= {name: path.read_bytes() for name, path in others.items()}
@@ -137,18 +123,11 @@ def main() -> None:
     parser.add_argument("--fmi-headers", type=Path, required=True, help="folder of the FMI headers")
     parser.add_argument("--binary", type=_pair, action="append", default=[], metavar="PLATFORM=FILE")
     parser.add_argument("--file", type=_pair, action="append", default=[], metavar="NAME=FILE")
-    parser.add_argument(
-        "--folder", type=_pair, action="append", default=[], metavar="NAME=FOLDER", help="all files in it"
-    )
-    arguments = parser.parse_args()
-    write_fmu(
-        arguments.output,
-        arguments.xml,
-        dict(arguments.binary),
-        source_files(arguments.sources, arguments.table, arguments.fmi_headers),
-        dict(arguments.file)
-        | {f"{name}/{path.name}": path for name, folder in arguments.folder for path in folder.iterdir()},
-    )
+    parser.add_argument("--folder", type=_pair, action="append", default=[], metavar="NAME=FOLDER")
+    given = parser.parse_args()
+    others = {f"{name}/{path.name}": path for name, folder in given.folder for path in folder.iterdir()}
+    sources = source_files(given.sources, given.table, given.fmi_headers)
+    write_fmu(given.output, given.xml, dict(given.binary), sources, others | dict(given.file))
 
 
 if __name__ == "__main__":

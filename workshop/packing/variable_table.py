@@ -33,15 +33,12 @@ def table(description: ModelDescription) -> str:
     for enumeration in description.typeDefinitions:
         names = ", ".join(_string(item.name) for item in enumeration.items)
         lines.append(f"static const char* const literals_of_{enumeration.name}[] = {{{names}}};")
-    lines += ["", *(_type_check(variable) for variable in description.modelVariables), ""]
-    inputs = [
-        str(k) for k, variable in enumerate(description.modelVariables) if variable.causality == "input"
-    ]
+    variables = description.modelVariables
+    inputs = [str(k) for k, variable in enumerate(variables) if variable.causality == "input"]
     lines += [
-        "const FcVariableInfo fc_variables[] = {",
-        *(_row(variable) for variable in description.modelVariables),
-        "};",
-        f"const unsigned fc_variables_count = {len(description.modelVariables)};",
+        *("", *map(_type_check, variables), ""),
+        *("const FcVariableInfo fc_variables[] = {", *map(_row, variables), "};"),
+        f"const unsigned fc_variables_count = {len(variables)};",
         f"const unsigned fc_inputs[] = {{{', '.join(inputs)}}};",
         f"const unsigned fc_inputs_count = {len(inputs)};",
         *_doubts(description),
@@ -58,9 +55,7 @@ def _doubts(description: ModelDescription) -> list[str]:
             literals = description.modelVariables[reference[decider]].declaredType.items
             bits = sum(1 << k for k, literal in enumerate(literals) if literal.name in items)
             uses.append(f"    {{{reference[setting]}, {reference[decider]}, {bits}}}, // {setting}")
-    likely = [
-        f"    {{{reference[name]}, {low!r}, {high!r}}}, // {name}" for name, (low, high) in LIKELY.items()
-    ]
+    likely = [f"    {{{reference[n]}, {low!r}, {high!r}}}, // {n}" for n, (low, high) in LIKELY.items()]
     lines = []
     for declaration, rows in (("FcUse fc_uses", uses), ("FcLikely fc_likely", likely)):
         count = f"const unsigned {declaration.split()[1]}_count = {len(rows)};"
@@ -71,10 +66,8 @@ def _doubts(description: ModelDescription) -> list[str]:
 def _type_check(variable: ScalarVariable) -> str:
     c_type = "double" if variable.type == "Real" else "int"
     member = model_description.c_member(variable.name)
-    return (
-        f"_Static_assert(_Generic(((FcVariables*)0)->{member}, {c_type}: 1, default: 0),"
-        f' "{variable.name} must be of type {c_type}");'
-    )
+    is_right = f"_Generic(((FcVariables*)0)->{member}, {c_type}: 1, default: 0)"
+    return f'_Static_assert({is_right}, "{variable.name} must be of type {c_type}");'
 
 
 def _row(variable: ScalarVariable) -> str:
@@ -105,13 +98,9 @@ def _string(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def main() -> None:
-    source, target = Path(sys.argv[1]), Path(sys.argv[2])
-    target.write_text(table(model_description.read(source)), encoding="utf-8")
-
-
 if __name__ == "__main__":
     try:
-        main()
+        source, target = map(Path, sys.argv[1:])
+        target.write_text(table(model_description.read(source)), encoding="utf-8")
     except (ValueError, KeyError) as error:
         sys.exit(f"modelDescription.xml: {error}")

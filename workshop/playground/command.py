@@ -1,14 +1,13 @@
-"""One HTML file with the FMU alive in it: `scripts/playground`."""
+"""Make one self-contained HTML file with the FMU, compiled to WebAssembly, in it."""
 
 import argparse
-import sys
+from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
 
 from playwright.sync_api import Browser
 
-from frictioncontact.command import shown
-from frictioncontact.errors import UserError
+from frictioncontact.command import command_line, shown
 from frictioncontact.files import write_whole
 from workshop.browser import SIZES, chromium, window
 from workshop.playground.page import page_text
@@ -18,30 +17,23 @@ DEFAULT = ROOT / "build" / "playground.html"
 SCHEMES = ("light", "dark")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="scripts/playground",
-        description="Make one self-contained HTML file with the FMU, compiled to WebAssembly, in it.",
-    )
-    parser.add_argument(
-        "-o", "--output", type=Path, default=DEFAULT, metavar="HTML", help="default: build/playground.html"
-    )
-    parser.add_argument(
-        "--pictures", type=Path, metavar="FOLDER", help="open it in Chromium and write four pictures of it"
-    )
-    options = parser.parse_args()
-    try:
-        text = page_text()
-        write_whole(options.output, text)
-        print(f"{shown(options.output)}, {len(text.encode()) / 1e3:.0f} kB: open it in a browser")
-        if options.pictures:
-            with chromium() as browser:
-                for path in take_pictures(browser, options.output, options.pictures):
-                    print(shown(path))
-    except UserError as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {options.output} can't be written: {error.strerror}")
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = command_line("scripts/playground", __doc__)
+    default = "default: build/playground.html"
+    parser.add_argument("-o", "--output", type=Path, default=DEFAULT, metavar="HTML", help=default)
+    what = "open it in Chromium and write four pictures of it"
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help=what)
+    return parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> None:
+    text = page_text()
+    write_whole(options.output, text)
+    print(f"{shown(options.output)}, {len(text.encode()) / 1e3:.0f} kB: open it in a browser")
+    if options.pictures:
+        with chromium() as browser:
+            for path in take_pictures(browser, options.output, options.pictures):
+                print(shown(path))
 
 
 def take_pictures(browser: Browser, html: Path, folder: Path) -> list[Path]:

@@ -12,37 +12,35 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 
 from fmpy.validation import validate_fmu
 from rich.progress import Progress
 
-from frictioncontact.command import finish, progress_bar, shown
+from frictioncontact.command import command_line, progress_bar, shown
 from frictioncontact.errors import UserError
 from frictioncontact.files import whole_file
+from workshop.build import forget
 from workshop.fmu_docs.page import page as index_page
 from workshop.playground.page import page_text
 from workshop.project import ROOT
 from workshop.release import inspect as release_inspect
+from workshop.release.build_hook import PAGE
 from workshop.release.targets import PLATFORMS, build, zig
 from workshop.release.universal import universal
 from workshop.release.verify import SUMS, verify, write_sums
 from workshop.release.wheel import wheels
 
-PLAYGROUND = "playground.html"  # the page of the live FMU, inside the FMU and beside it
 QUICK = ("linux64", "aarch64-darwin")  # the compiler's two ways: with the linker's optimization, and without
 SUNDIALS = ROOT / "build" / "sundials-source"
 # Parts of the compiler's run-time library are linked into every binary, of MinGW-w64's into that of Windows.
 TOOLCHAIN_LICENSES = {"zig-license.txt": "LICENSE", "mingw-w64-license.txt": "lib/libc/mingw/COPYING"}
 
 
-def compile_platform(platform: str, progress: Progress | None = None, anew: bool = False) -> Path:
-    """The library of a platform, in CMake's folder for it, inspected; beside it the wheel's batch host.
-
-    anew: everything is compiled, whatever has been compiled before.
-    """
-    folder = build(platform, ["fmu_parts", "friction_batch"], progress, anew)
+def compile_platform(platform: str, progress: Progress | None = None) -> Path:
+    """The library of a platform, in CMake's folder for it, inspected; beside it the wheel's batch host."""
+    folder = build(platform, ["fmu_parts", "friction_batch"], progress)
     library = folder / f"FrictionContact{PLATFORMS[platform].suffix}"
     release_inspect.check(platform, library)
     release_inspect.check(platform, batch_host(library), "batch_")
@@ -59,17 +57,16 @@ def with_universal_darwin(libraries: dict[str, Path], folder: Path) -> dict[str,
     if not {"darwin64", "aarch64-darwin"} <= libraries.keys():
         return libraries
     path = folder / "universal.dylib"
-    path.write_bytes(
-        universal([libraries["darwin64"].read_bytes(), libraries["aarch64-darwin"].read_bytes()])
-    )
+    slices = [libraries[name].read_bytes() for name in ("darwin64", "aarch64-darwin")]
+    path.write_bytes(universal(slices))
     return {**libraries, "darwin64": path}
 
 
 def documents(folder: Path) -> dict[str, Path]:
     """The page of the live FMU and index.html with a link to it, in folder: name in the FMU -> file."""
-    files = {f"documentation/{name}": folder / name for name in ("index.html", PLAYGROUND)}
+    files = {f"documentation/{name}": folder / name for name in ("index.html", PAGE)}
     files["documentation/index.html"].write_text(index_page(playground=True), encoding="utf-8")
-    files[f"documentation/{PLAYGROUND}"].write_text(page_text(), encoding="utf-8")
+    files[f"documentation/{PAGE}"].write_text(page_text(), encoding="utf-8")
     return files
 
 
@@ -78,31 +75,23 @@ def pack(output: Path, libraries: dict[str, Path], parts: Path, files: dict[str,
 
     parts: CMake's folder of one of the platforms; files: name in the FMU -> file, besides what CMake lists.
     """
-    arguments = [f"@{parts / 'generated' / 'package.txt'}"]
-    for platform, library in libraries.items():
-        arguments += ["--binary", f"{platform}={library}"]
-    for name, path in TOOLCHAIN_LICENSES.items():
-        arguments += ["--file", f"documentation/licenses/{name}={zig().parent / path}"]
-    for name, path in files.items():
-        arguments += ["--file", f"{name}={path}"]
+    licenses = {f"documentation/licenses/{n}": zig().parent / path for n, path in TOOLCHAIN_LICENSES.items()}
+    words = [f"@{parts / 'generated' / 'package.txt'}"]
+    words += [f"--binary={platform}={library}" for platform, library in libraries.items()]
+    words += [f"--file={name}={path}" for name, path in (licenses | files).items()]
     packer = [sys.executable, "-B", "-m", "workshop.packing.archive"]
     with whole_file(output) as unchecked:
-        run = subprocess.run(
-            [*packer, str(unchecked.absolute()), *arguments], cwd=ROOT, capture_output=True, text=True
-        )
-        if run.returncode:
-            raise UserError(f"packing fails: {' '.join(run.stderr.split())[-300:]}")
+        command = [*packer, str(unchecked.absolute()), *words]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+        if done.returncode:
+            raise UserError(f"packing fails: {' '.join(done.stderr.split())[-300:]}")
         problems = validate_fmu(str(unchecked))
         if problems:
             raise UserError(f"the validator finds: {' '.join(problems[0].split())}")
 
 
-def make_release(output: Path, platforms: Iterable[str], progress: Progress, anew: bool = False) -> None:
-    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not.
-
-    anew: every file is compiled, whatever has been compiled before.
-    """
-    platforms = list(platforms)
+def make_release(output: Path, platforms: Sequence[str], progress: Progress) -> None:
+    """Writes output whole or not at all, the page and the checksums beside it; UserError says why not."""
     zig()
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
@@ -116,13 +105,13 @@ def make_release(output: Path, platforms: Iterable[str], progress: Progress, ane
     task = progress.add_task("Compiling", total=len(platforms) + 3)
     for platform in platforms:
         progress.update(task, advance=1, description=f"Compiling for {platform}")
-        libraries[platform] = compile_platform(platform, progress, anew)
+        libraries[platform] = compile_platform(platform, progress)
     with tempfile.TemporaryDirectory(prefix="release-") as temporary:
         folder = Path(temporary)
         progress.update(task, advance=1, description="Writing pages")
         files = documents(folder)
         progress.update(task, advance=1, description="Packing and validating")
-        fmu, page = folder / "FrictionContact.fmu", files[f"documentation/{PLAYGROUND}"]
+        fmu, page = folder / "FrictionContact.fmu", files[f"documentation/{PAGE}"]
         parts = libraries[platforms[0]].parent
         pack(fmu, with_universal_darwin(libraries, folder), parts, files)
         progress.update(task, advance=1, description="Packing wheels")
@@ -144,30 +133,19 @@ def sundials_version() -> str:
     return f"{'.'.join(numbers)} (sha256 {(SUNDIALS / 'archive.sha256').read_text().strip()})"
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="scripts/release",
-        description="Build one FrictionContact.fmu for Linux, Windows and macOS, cross-compiled with zig.",
-    )
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu"
-    )
-    parser.add_argument(
-        "--platforms", nargs="+", choices=list(PLATFORMS), metavar="PLATFORM", help=", ".join(PLATFORMS)
-    )
-    parser.add_argument(
-        "--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick"
-    )
-    parser.add_argument(
-        "--check",
-        type=Path,
-        metavar="FMU",
-        help="tell whether a file is one of ours, as it was packed, and gives its reference results",
-    )
-    finish(_run, parser.parse_args())
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    description = "Build one FrictionContact.fmu for Linux, Windows and macOS, cross-compiled with zig."
+    parser = command_line("scripts/release", description)
+    add = parser.add_argument
+    add("-o", "--output", type=Path, metavar="FMU", help="default: build/release/FrictionContact.fmu")
+    add("--platforms", nargs="+", choices=list(PLATFORMS), metavar="PLATFORM", help=", ".join(PLATFORMS))
+    add("--quick", action="store_true", help=f"{' and '.join(QUICK)} only, in build/release-quick")
+    what = "tell whether a file is one of ours, as it was packed, and gives its reference results"
+    add("--check", type=Path, metavar="FMU", help=what)
+    return parser.parse_args(argv)
 
 
-def _run(options: argparse.Namespace) -> None:
+def run(options: argparse.Namespace) -> None:
     if options.check:
         for line in verify(options.check):
             print(f"ok  {line}", flush=True)
@@ -175,8 +153,10 @@ def _run(options: argparse.Namespace) -> None:
     name = "release-quick" if options.quick else "release"
     output = options.output or ROOT / "build" / name / "FrictionContact.fmu"
     platforms = options.platforms or (QUICK if options.quick else list(PLATFORMS))
+    for platform in () if options.quick else platforms:
+        forget(platform)
     with progress_bar() as progress:
-        make_release(output, platforms, progress, anew=not options.quick)
+        make_release(output, platforms, progress)
     print(f"SUNDIALS {sundials_version()}")
     print(f"zig {importlib.metadata.version('ziglang')}")
     for line in output.with_name(SUMS).read_text().splitlines():

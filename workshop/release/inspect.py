@@ -20,6 +20,7 @@ IMAGE_SYMBOLS = {"__mh_dylib_header", "___dso_handle"}
 SYSTEM_LIBRARIES = re.compile(
     r"lib(c|m|dl|pthread)\.so\.\d|ld-linux-.*|/usr/lib/libSystem\.B\.dylib|KERNEL32\.dll|api-ms-win-crt-.*\.dll|ntdll\.dll"
 )
+DEBUG = re.compile(r"\.symtab$|.*debug")  # sections
 ADHOC_FLAG = 0x2
 
 
@@ -37,14 +38,25 @@ class Library:
 
 
 def inspect(path: Path) -> Library:
-    binary = lief.parse(str(path))
+    binary, more = lief.parse(str(path)), {}
     if isinstance(binary, lief.ELF.Binary):
-        return _elf(binary)
-    if isinstance(binary, lief.PE.Binary):
-        return _pe(binary)
-    if isinstance(binary, lief.MachO.Binary):
-        return _macho(binary, path.read_bytes())
-    raise UserError(f"{path} is no shared library")
+        processor, more["glibc"] = binary.header.machine_type, _newest_glibc(binary)
+        exports, needs = (symbol.name for symbol in binary.exported_symbols), binary.libraries
+    elif isinstance(binary, lief.PE.Binary):
+        processor = binary.header.machine
+        exports, needs = (function.name for function in binary.exported_functions), binary.libraries
+    elif isinstance(binary, lief.MachO.Binary):
+        processor, more["minimum_macos"] = binary.header.cpu_type, tuple(binary.build_version.minos)[:2]
+        more["signature"] = _signature(binary, path.read_bytes())
+        found = {str(entry.symbol.name) for entry in binary.dyld_info.exports if entry.symbol is not None}
+        exports = (name.removeprefix("_") for name in found - IMAGE_SYMBOLS)
+        own = lief.MachO.LoadCommand.TYPE.ID_DYLIB
+        needs = (library.name for library in binary.libraries if library.command != own)
+    else:
+        raise UserError(f"{path} is no shared library")
+    debug = {name for section in binary.sections if DEBUG.match(name := str(section.name))}
+    name = str(processor).rpartition(".")[2]
+    return Library(name, set(map(str, exports)), set(map(str, needs)), debug, **more)
 
 
 def fmi2_functions() -> set[str]:
@@ -81,52 +93,10 @@ def check(platform: str, path: Path, prefix: str = "fmi2") -> Library:
     return library
 
 
-def _elf(binary: lief.ELF.Binary) -> Library:
-    versions = [
-        tuple(int(part) for part in match[1].split("."))
-        for requirement in binary.symbols_version_requirement
-        for version in requirement.get_auxiliary_symbols()
-        if (match := re.fullmatch(r"GLIBC_([\d.]+)", str(version.name)))
-    ]
-    return Library(
-        processor=str(binary.header.machine_type).rpartition(".")[2],
-        exports={str(symbol.name) for symbol in binary.exported_symbols},
-        needs=set(map(str, binary.libraries)),
-        glibc=max(versions, default=()),
-        debug_sections={
-            str(section.name)
-            for section in binary.sections
-            if str(section.name) == ".symtab" or str(section.name).startswith(".debug")
-        },
-    )
-
-
-def _pe(binary: lief.PE.Binary) -> Library:
-    return Library(
-        processor=str(binary.header.machine).rpartition(".")[2],
-        exports={str(function.name) for function in binary.exported_functions},
-        needs=set(map(str, binary.libraries)),
-        debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},
-    )
-
-
-def _macho(binary: lief.MachO.Binary, content: bytes) -> Library:
-    exported = {str(entry.symbol.name) for entry in binary.dyld_info.exports if entry.symbol is not None}
-    return Library(
-        processor=str(binary.header.cpu_type).rpartition(".")[2],
-        exports={name.removeprefix("_") for name in exported - IMAGE_SYMBOLS},
-        needs={str(library.name) for library in binary.libraries} - {f"@rpath/{_install_name(binary)}"},
-        minimum_macos=tuple(binary.build_version.minos)[:2],
-        signature=_signature(binary, content),
-        debug_sections={str(section.name) for section in binary.sections if "debug" in str(section.name)},
-    )
-
-
-def _install_name(binary: lief.MachO.Binary) -> str:
-    for command in binary.commands:
-        if command.command == lief.MachO.LoadCommand.TYPE.ID_DYLIB:
-            return str(command.name).rpartition("/")[2]
-    return ""
+def _newest_glibc(binary: lief.ELF.Binary) -> tuple[int, ...]:
+    asked = (every for one in binary.symbols_version_requirement for every in one.get_auxiliary_symbols())
+    found = (re.fullmatch(r"GLIBC_([\d.]+)", str(version.name)) for version in asked)
+    return max((tuple(map(int, match[1].split("."))) for match in found if match), default=())
 
 
 def _signature(binary: lief.MachO.Binary, content: bytes) -> str:
@@ -147,7 +117,7 @@ def _signature(binary: lief.MachO.Binary, content: bytes) -> str:
     flags, hashes, count, limit = (number(directory + offset) for offset in (12, 16, 28, 32))
     hash_size, page = content[directory + 36], 1 << content[directory + 39]
     for k in range(count):
-        expected = content[directory + hashes + k * hash_size : directory + hashes + (k + 1) * hash_size]
-        if hashlib.sha256(content[k * page : min((k + 1) * page, limit)]).digest()[:hash_size] != expected:
+        listed = content[directory + hashes + k * hash_size :][:hash_size]
+        if hashlib.sha256(content[k * page : min((k + 1) * page, limit)]).digest()[:hash_size] != listed:
             return "broken"
     return "ad hoc" if flags & ADHOC_FLAG and limit == start else "broken"

@@ -40,11 +40,7 @@ def zig() -> Path:
             "the cross compiler is missing: the Python package ziglang of requirements-release.txt is not "
             "installed; scripts/setup release installs it"
         )
-    folder = Path(found.submodule_search_locations[0])
-    for name in ("zig", "zig.exe"):
-        if (folder / name).is_file():
-            return folder / name
-    raise UserError(f"the cross compiler is missing: no zig in the package ziglang, {folder}")
+    return Path(found.submodule_search_locations[0]) / "zig"
 
 
 def environment() -> dict[str, str]:
@@ -54,15 +50,13 @@ def environment() -> dict[str, str]:
     return {**zig_cache, "MAKEFLAGS": "--output-sync=target", **os.environ}
 
 
-def build(
-    platform: str, targets: Sequence[str], progress: Progress | None = None, anew: bool = False
-) -> Path:
+def build(platform: str, targets: Sequence[str], progress: Progress | None = None) -> Path:
     """Builds targets of CMake for a platform, one of PLATFORMS, and gives CMake's folder.
 
     UserError holds the compiler's first error.
     """
     try:
-        return build_targets(platform, targets, progress, [f"-DZIG={zig()}"], environment(), anew)
+        return build_targets(platform, targets, progress, [f"-DZIG={zig()}"], environment())
     except UserError as error:
         lines = [line for line in str(error).splitlines() if re.search(r"\berror:", line)]
         raise UserError(f"the build fails: {lines[0]}" if lines else str(error)) from None

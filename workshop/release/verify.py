@@ -65,13 +65,10 @@ def _contents(fmu: Path, entries: dict[str, bytes]) -> str:
         raise UserError(f"{fmu} holds no checksums: {CHECKSUMS} is missing")
     found = {name: hashlib.sha256(content).hexdigest() for name, content in entries.items()}
     del found[CHECKSUMS]
-    for name in sorted(listed.keys() | found.keys()):
-        if name not in found:
-            raise UserError(f"{fmu}: {name} was taken out of it")
-        if name not in listed:
-            raise UserError(f"{fmu}: {name} was added to it")
-        if listed[name] != found[name]:
-            raise UserError(f"{fmu}: {name} was changed")
+    if different := sorted(listed.items() ^ found.items()):
+        name, _ = different[0]
+        happened = "taken out of it" if name not in found else "changed" if name in listed else "added to it"
+        raise UserError(f"{fmu}: {name} was {happened}")
     return f"{len(found)} files as they were packed"
 
 

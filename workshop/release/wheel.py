@@ -1,4 +1,6 @@
-"""Wheels with the FMU inside: scripts/wheel makes this platform's, scripts/release those of all platforms."""
+"""\
+Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
+page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
 
 import argparse
 import os
@@ -18,17 +20,10 @@ from workshop.project import ROOT
 from workshop.release.build_hook import PAGE
 from workshop.release.targets import PLATFORMS
 
-DESCRIPTION = """\
-Makes a wheel of this clone for the platform it runs on: the Python package with the FMU, the batch host, the
-page of the live FMU and the measurements inside. pip installs it where there is no compiler."""
-
 
 def wheels(fmu: Path, page: Path, hosts: Mapping[str, Path], output: Path) -> list[Path]:
     """A wheel for each platform with its batch host, and the sdist, in the folder output."""
-    made = [
-        packed("wheel", output, [fmu, page, host], PLATFORMS[platform].tag)
-        for platform, host in hosts.items()
-    ]
+    made = [packed("wheel", output, [fmu, page, host], PLATFORMS[name].tag) for name, host in hosts.items()]
     return [*made, packed("sdist", output, [page])]
 
 
@@ -39,13 +34,9 @@ def packed(target: str, output: Path, files: Sequence[Path], tag: str = "") -> P
         bundle.mkdir()
         for path in files:
             shutil.copy(path, bundle)
-        run = subprocess.run(
-            [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(made)],
-            cwd=ROOT,
-            env={**os.environ, "FRICTIONCONTACT_BUNDLE": str(bundle), "FRICTIONCONTACT_PLATFORM": tag},
-            capture_output=True,
-            text=True,
-        )
+        command = [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(made)]
+        given = {"FRICTIONCONTACT_BUNDLE": str(bundle), "FRICTIONCONTACT_PLATFORM": tag}
+        run = subprocess.run(command, cwd=ROOT, env=os.environ | given, capture_output=True, text=True)
         if run.returncode:
             raise UserError(f"the {target} fails: {' '.join(run.stderr.split())[-300:]}")
         (path,) = made.iterdir()
@@ -54,7 +45,7 @@ def packed(target: str, output: Path, files: Sequence[Path], tag: str = "") -> P
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("scripts/wheel", DESCRIPTION)
+    parser = command_line("scripts/wheel", __doc__)
     add_output(parser, ROOT / "build" / "wheel")
     return parser.parse_args(argv)
 

@@ -1,4 +1,7 @@
-"""The paper's figures, tables and claims from the FMU, the regimes and the identification on one page."""
+"""Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the
+equations give, the height statistics, the regimes and sensitivities of the mean friction, and the
+identification. Writes build/report/index.html, one page that needs no network, and each figure as SVG and
+PNG beside it."""
 
 import argparse
 import platform
@@ -12,30 +15,21 @@ from frictioncontact.fmu import FrictionFmu
 from frictioncontact.table2 import results
 from workshop.build import build_fmu
 from workshop.project import ROOT
-from workshop.report import heights, paper, recovery, regimes
+from workshop.report import paper, recovery, regimes
 from workshop.report.figure import Figure
 from workshop.report.page import page
-
-DESCRIPTION = """\
-Draws Figures 2-6 and 8-13 of the paper from the FMU, Table 2 and the abstract's claims with what the
-equations give, the height statistics, the regimes and sensitivities of the mean friction, and the
-identification. Writes build/report/index.html, one page that needs no network, and each figure as SVG and
-PNG beside it."""
 
 # Figures that the README and the documents show, and their names there.
 IN_DOCS = ("fig-04", "heights", "mean", "regimes", "reduction")
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("scripts/report", DESCRIPTION)
+    parser = command_line("scripts/report", __doc__)
     parser.add_argument("--quick", action="store_true", help="coarser maps, no PNG")
     add_fmu(parser)
     add_output(parser, ROOT / "build" / "report")
-    parser.add_argument(
-        "--docs",
-        action="store_true",
-        help="also renew the figures that docs/ shows, docs/pictures/paper-*.png",
-    )
+    what = "also renew the figures that docs/ shows, docs/pictures/paper-*.png"
+    parser.add_argument("--docs", action="store_true", help=what)
     return parser.parse_args(argv)
 
 
@@ -43,7 +37,7 @@ def jobs(fmu: FrictionFmu, quick: bool) -> list[Callable[[], Figure]]:
     of_regimes = (regimes.means, regimes.regimes, regimes.reduction, regimes.sensitivity_cuts)
     return [
         *(partial(figure, fmu) for figure in paper.FIGURES),
-        heights.areas,
+        paper.heights,
         *(partial(figure, fmu.path, quick) for figure in of_regimes),
         partial(recovery.figure, fmu, 4 if quick else 20),
     ]

@@ -2,7 +2,7 @@
 
 import html
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from markdown_it import MarkdownIt
@@ -29,9 +29,8 @@ def page(results: Sequence[Result], claims: Claims, figures: Mapping[str, Figure
     }
     source = (FOLDER / "report.md").read_text(encoding="utf-8")
     source = re.sub(r"\[\[([\w-]+)\]\]", lambda match: parts[match[1]], source)
-    made = re.split(
-        r"(<code.*?</code>|<[^>]*>)", MarkdownIt().enable("table").render(source), flags=re.DOTALL
-    )
+    made = MarkdownIt().enable("table").render(source)
+    made = re.split(r"(<code.*?</code>|<[^>]*>)", made, flags=re.DOTALL)
     body = "".join(part if k % 2 else text(part, "<sub>", "</sub>") for k, part in enumerate(made))
     title = re.search(r"^# (.*)$", source, re.MULTILINE)[1]
     return f"""<!doctype html>
@@ -49,20 +48,18 @@ def figure_html(figure: Figure) -> str:
     return f'<figure id="{figure.key}"><h3>{title}</h3>{picture}<figcaption>{caption}</figcaption></figure>\n'
 
 
-def table(heading: str, rows: Sequence[Sequence[str]]) -> str:
+def table(heading: str, rows: Iterable[Sequence[str]]) -> str:
     """In Markdown, after a line that aligns its columns."""
     return "\n".join([heading, *(f"| {' | '.join(row)} |" for row in rows)]) + "\n"
 
 
 def claims_table(claims: Claims) -> str:
     heading = "| Change of the mean, in % | paper | exact | identified | why |\n|---|--:|--:|--:|---|"
-    return table(
-        heading,
-        [
-            [words, percent(printed, 0), *("" if x is None else percent(x, 2) for x in values), why]
-            for words, printed, *values, why in claims
-        ],
+    cells = (
+        [words, percent(printed, 0), *("" if x is None else percent(x, 2) for x in values), why]
+        for words, printed, *values, why in claims
     )
+    return table(heading, cells)
 
 
 def percent(value: float, digits: int) -> str:

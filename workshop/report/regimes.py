@@ -37,15 +37,8 @@ Scenes = Mapping[str, Numbers]  # start values
 R_Q = Surfaces.R_q
 TO_STIFFNESS = 2.0 * math.pi * FREQUENCY * COULOMB_FORCE  # kappa times this over V_1 is sigma
 STEP = 1e-3  # of the central differences, relative or in rad
-SYMBOLS = {
-    "V": "V",
-    "vibration.V_1": "V_1",
-    "F_C": "F_C",
-    "vibration.a_d": "a_d",
-    "vibration.phase_d": "phase",
-    "E": "E",
-    "d": "d",
-}
+NAMES = ("V", "vibration.V_1", "F_C", "vibration.a_d", "vibration.phase_d", "E", "d")
+SYMBOLS = {name: name.removeprefix("vibration.").replace("phase_d", "phase") for name in NAMES}
 REGIMES = {
     "Coulomb": SKY,
     "Dahl, constant stiffness": GREEN,
@@ -192,21 +185,13 @@ def regimes(fmu: Path, quick: bool) -> Figure:
         for name, colour in REGIMES.items():
             axes.plot([], [], "s", color=colour, alpha=0.75, ms=8, label=name)
 
-    row = TABLE_2[2]
-    points = [
-        Line(
-            [parameters.stiffness * row.V_1 / TO_STIFFNESS],
-            [parameters.V / row.V_1],
-            f"row 3 of Table 2, {parameters.name}",
-            colour,
-            "o",
-        )
-        for parameters, colour in ((PRINTED, BLACK), (IDENTIFIED, ORANGE))
-    ]
-    dry = sliding("dry")
+    V_1, points = TABLE_2[2].V_1, []
+    for found, colour in ((PRINTED, BLACK), (IDENTIFIED, ORANGE)):
+        kappa, label = found.stiffness * V_1 / TO_STIFFNESS, f"row 3 of Table 2, {found.name}"
+        points.append(Line([kappa], [found.V / V_1], label, colour, "o"))
+    dry, panels = sliding("dry"), []
     kappa = DRY_STIFFNESS * dry.V_1 / (2.0 * math.pi * dry.f * dry.without)
     measured = Line(kappa, dry.V / dry.V_1, "dry rows, measured", RED, "o")
-    panels = []
     amplitudes = {0.0: "d constant", 0.02: "a_d / R_q = 0.02", ALPHA: "a_d / R_q = 0.18 (paper)"}
     for alpha, words in amplitudes.items():
         z = regime_map(fmu, kappas, zetas, alpha, phases=8 if quick else 12)
@@ -225,20 +210,13 @@ def regimes(fmu: Path, quick: bool) -> Figure:
 def reduction(fmu: Path, quick: bool) -> Figure:
     """Friction reduction over V / V_1 with the limits."""
     zetas = np.geomspace(1e-3, 2.0, 60 if quick else 160)
-    coulomb, soft = (
-        Line(zetas, 100.0 * (1.0 - limit(scene(0.0, zetas))), label, colour, "--")
-        for limit, label, colour in (
-            (coulomb_limit, "Coulomb limit, κ → ∞", BLACK),
-            (soft_limit, "soft limit, κ → 0", BLUE),
-        )
-    )
-    of_fmu = [
-        Line(zetas, 100.0 * (1.0 - mean(fmu, scene(kappa, zetas))), f"FMU, κ = {kappa:g}", colour)
-        for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY))
-    ]
-    printed = Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, "o")
+    curves = [(coulomb_limit(scene(0.0, zetas)), "Coulomb limit, κ → ∞", BLACK, "--")]
+    for kappa, colour in ((10.0, AMBER), (3.0, GREEN), (1.0, SKY)):
+        curves.append((mean(fmu, scene(kappa, zetas)), f"FMU, κ = {kappa:g}", colour, "-"))
+    curves.append((soft_limit(scene(0.0, zetas)), "soft limit, κ → 0", BLUE, "--"))
+    items = [Line(zetas, 100.0 * (1.0 - left), *look) for left, *look in curves]
+    items.append(Line([0.005 / 1.44], [51.0], "Table 2, row 3, as printed", ORANGE, "o"))
     look = {"xscale": "log", "xlim": (1e-3, 2.0), "ylim": (0.0, 105.0)}
-    items = [coulomb, *of_fmu, soft, printed]
     panel = Panel("Tangential vibration, d constant", "V / V_1", "friction reduction [%]", items, look)
     caption = (
         "With a constant separation every stiffness lies between the two dashed limits. The printed V / V_1 "

@@ -1,4 +1,5 @@
-"""scripts/site: the project's pages as a web site that works from a folder, without a server."""
+"""Builds the web site from the Markdown pages, the docstrings and the playground. Open index.html of the
+folder in a browser; search works there too."""
 
 import argparse
 import shutil
@@ -18,13 +19,10 @@ from workshop.project import ROOT
 from workshop.site.check import problems
 
 HERE = Path(__file__).resolve().parent
-DESCRIPTION = """\
-Builds the web site from the Markdown pages, the docstrings and the playground. Open index.html of the
-folder in a browser; search works there too."""
 
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("scripts/site", DESCRIPTION)
+    parser = command_line("scripts/site", __doc__)
     add_output(parser, ROOT / "build" / "site")
     parser.add_argument(
         "--older", type=Path, nargs="*", default=[], metavar="FOLDER", help="sites of older versions, by name"

@@ -10,14 +10,13 @@ from sphinx.addnodes import desc_annotation
 from sphinx.application import Sphinx
 from sphinx.writers.html5 import HTML5Translator
 
-ROOT = Path(__file__).resolve().parents[2]
+from workshop import description
+from workshop.project import ROOT
 
 project = "FrictionContact"
 author = "The FrictionContact authors"
 copyright = "the FrictionContact authors, BSD-3-Clause"
-version = release = re.search(
-    r'^\s+version="([^"]+)"', (ROOT / "modelDescription.xml").read_text(encoding="utf-8"), re.MULTILINE
-)[1]
+version = release = description.read().version
 
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
 root_doc = "README"

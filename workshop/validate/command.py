@@ -1,4 +1,7 @@
-"""Every law of friction against measurements that others published."""
+"""Holds every law of friction against measurements that others published: sliding under longitudinal
+vibration (dry, oil), a record of cycles and of an unloading, sliding under normal vibration. Says what
+was fixed, what was fitted on which rows, and what was predicted on the others, and draws a picture of each.
+What it means: docs/validation.md."""
 
 import argparse
 from collections.abc import Sequence
@@ -11,15 +14,9 @@ from frictioncontact.fmu import FrictionFmu
 from workshop.build import build_fmu
 from workshop.validate import elements, figures, longitudinal, measurements, normal, record
 
-DESCRIPTION = """\
-Holds every law of friction against measurements that others published: sliding under longitudinal
-vibration (dry, oil), a record of cycles and of an unloading, sliding under normal vibration. Says what
-was fixed, what was fitted on which rows, and what was predicted on the others, and draws a picture of each.
-What it means: docs/validation.md."""
-
 
 def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
-    parser = command_line("scripts/validate", DESCRIPTION)
+    parser = command_line("scripts/validate", __doc__)
     add_fmu(parser)
     add_output(parser, resources.output("validation"))
     parser.add_argument("--quick", action="store_true", help="without the record, which takes some 10 s")
@@ -135,10 +132,8 @@ def run(options: argparse.Namespace) -> None:
         console.print(scatter_line(whole), cycles_table(whole, record_fits), sep="\n")
         console.print(elements_table(elements.fits(whole)), unloading_table(whole, record_fits), sep="\n")
 
-    drawn = {
-        "longitudinal": figures.longitudinal(sliding),
-        "normal": figures.normal(path, vibration, normal_fits),
-    }
+    drawn = {"longitudinal": figures.longitudinal(sliding)}
+    drawn["normal"] = figures.normal(path, vibration, normal_fits)
     if record_fits:
         drawn["cycles"] = figures.cycles(whole, record_fits)
         drawn["unloading"] = figures.unloading(whole, record_fits)

@@ -42,8 +42,7 @@ def longitudinal(results: Mapping[str, tuple[Sliding, Sequence[Fit]]]) -> Figure
         panel.set(ylabel="mean friction [N]", title=f"{name}: 26 kHz, 0.35 µm along the sliding")
         panel.set_ylim(1e-3, 20.0)
     axes[-1].set_xlabel("sliding velocity [mm/s]")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 

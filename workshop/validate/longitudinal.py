@@ -97,13 +97,6 @@ def fit(fmu: Path, data: Sliding, law: str) -> Fit:
 
     stiffness = best(rows)
     others = [best(rows[rows != k]) for k in rows]
-    predicted = np.array([means(np.array([others[k]]))[0, k] for k in rows])
-    return Fit(
-        law,
-        stiffness,
-        max(others) / min(others),
-        means(np.array([stiffness]))[0],
-        predicted,
-        grid.min(axis=0),
-        grid.max(axis=0),
-    )
+    predicted, model = np.diagonal(means(np.array(others))), means(np.array([stiffness]))[0]
+    factor = max(others) / min(others)
+    return Fit(law, stiffness, factor, model, predicted, grid.min(axis=0), grid.max(axis=0))

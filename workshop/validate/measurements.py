@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +20,6 @@ def _table(name: str) -> np.ndarray:
 class Sliding:
     """Mean friction of sliding, without and with a longitudinal vibration (Luo 2024)."""
 
-    lubrication: str  # dry, oil
     V: np.ndarray  # m/s; without the row at rest
     without: np.ndarray  # N
     vibrated: np.ndarray  # N
@@ -42,7 +40,7 @@ def sliding(lubrication: str) -> Sliding:
     rows = rows[rows["lubrication"] == lubrication]
     V, without, vibrated = (rows[name] for name in ("V_m_per_s", "F_without_N", "F_with_N"))
     rest = V == 0.0
-    return Sliding(lubrication, V[~rest], without[~rest], vibrated[~rest], float(without[rest][0]))
+    return Sliding(V[~rest], without[~rest], vibrated[~rest], float(without[rest][0]))
 
 
 @dataclass(frozen=True)
@@ -62,8 +60,7 @@ class Record:
 
 def record() -> Record:
     """The whole record."""
-    with gzip.open(FOLDER / "friction-record.csv.gz", "rt", encoding="utf-8") as file:
-        return Record(*np.loadtxt(file, delimiter=",", skiprows=1, unpack=True))
+    return Record(*np.loadtxt(FOLDER / "friction-record.csv.gz", delimiter=",", skiprows=1, unpack=True))
 
 
 @dataclass(frozen=True)

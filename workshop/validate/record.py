@@ -21,7 +21,6 @@ CYCLE = 4.0  # s
 FIRST = 12.75  # s, where the second cycle begins; the first one starts from rest
 FITTED = 2  # cycles
 CYCLES = 49  # from FIRST on, the fitted ones among them
-UNLOADED = 5.0  # s, until which no load is on
 UNLOADING = (209.4, 212.0)  # s
 LEAST_LOAD = 1e-3  # N; below it the measured load is the sensor's noise
 CARRYING = 0.7  # N; below it force over load is dominated by what the sensors miss
@@ -134,22 +133,14 @@ def fit(fmu: FrictionFmu, record: Record, law: str) -> RecordFit:
     found = least_squares(
         lambda x: model(x, cycles) - cycles.friction, guess, diff_step=1e-4, x_scale=[1.0, 0.2]
     )
-    friction = model(found.x, whole)
-    predicted = predicted_cycles(record)
+    friction, constant = model(found.x, whole), model(found.x, whole, "Constant")
+    predicted, unloading = predicted_cycles(record), whole.time >= UNLOADING[0]
     of_predicted = friction[np.isin(whole.time, predicted.time)]
+    misfits = rms(found.fun) / sliding, rms(of_predicted - predicted.friction) / sliding
+    works = work(of_predicted, predicted) / work(predicted.friction, predicted)
     stiffness, mu = map(float, np.exp(found.x))
-    unloading = whole.time >= UNLOADING[0]
-    return RecordFit(
-        law,
-        None if law == "Coulomb" else stiffness,
-        mu,
-        friction,
-        rms(found.fun) / sliding,
-        rms(of_predicted - predicted.friction) / sliding,
-        work(of_predicted, predicted) / work(predicted.friction, predicted),
-        friction[unloading],
-        model(found.x, whole, "Constant")[unloading],
-    )
+    known = None if law == "Coulomb" else stiffness
+    return RecordFit(law, known, mu, friction, *misfits, works, friction[unloading], constant[unloading])
 
 
 def without_bound(record: Record, fit: RecordFit) -> np.ndarray:

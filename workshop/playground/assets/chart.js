@@ -29,6 +29,8 @@ function logTicks([low, high], count) {
   return Array.from({ length: Math.floor((last - first) / every) + 1 }, (_, k) => 10 ** (first + k * every));
 }
 
+const ticks = ({ log }, range, count) => (log ? logTicks : linearTicks)(range, Math.max(3, Math.round(count)));
+
 // The smallest round number that is not below value.
 function roundUp(value) {
   if (!(value > 0)) return 1;
@@ -120,14 +122,12 @@ class Chart {
     this.gridKey = key;
     this.grid.replaceChildren();
     const bottom = height - MARGIN.bottom;
-    const across = Math.max(3, Math.round(width / 75));
-    for (const tick of this.axes.x.log ? logTicks(xRange, across) : linearTicks(xRange, across)) {
+    for (const tick of ticks(this.axes.x, xRange, width / 75)) {
       const at = this.x(tick);
       svg("line", { x1: at, x2: at, y1: MARGIN.top, y2: bottom }, this.grid);
       this.label(tick, this.axes.x.log, { x: at, y: bottom + 16, "text-anchor": "middle" });
     }
-    const up = Math.max(3, Math.round(height / 48));
-    for (const tick of this.axes.y.log ? logTicks(yRange, up) : linearTicks(yRange, up)) {
+    for (const tick of ticks(this.axes.y, yRange, height / 48)) {
       const at = this.y(tick);
       const zero = !this.axes.y.log && Math.abs(tick) < 1e-12 * yRange[1];
       svg("line", { x1: MARGIN.left, x2: width - MARGIN.right, y1: at, y2: at, class: zero ? "zero" : "" }, this.grid);
@@ -164,16 +164,10 @@ class Chart {
   }
 
   path(xs, ys) {
-    const parts = [];
-    let pen = "M";
-    for (let k = 0; k < xs.length; k++) {
-      if (!Number.isFinite(ys[k])) {
-        pen = "M";
-        continue;
-      }
-      parts.push(`${pen}${this.x(xs[k]).toFixed(1)} ${this.y(ys[k]).toFixed(1)}`);
-      pen = "L";
-    }
+    const parts = Array.from(xs, (x, k) => {
+      if (!Number.isFinite(ys[k])) return "";
+      return `${Number.isFinite(ys[k - 1]) ? "L" : "M"}${this.x(x).toFixed(1)} ${this.y(ys[k]).toFixed(1)}`;
+    });
     return parts.join("");
   }
 

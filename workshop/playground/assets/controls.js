@@ -77,9 +77,7 @@ class Control {
       return;
     }
     const shown = value * this.variable.factor;
-    if (document.activeElement !== this.field || Number(this.field.value) !== shown) {
-      this.field.value = plain(shown, 6);
-    }
+    if (document.activeElement !== this.field || Number(this.field.value) !== shown) this.field.value = plain(shown);
     this.slider.value = this.toSlider(value);
     this.slider.setAttribute("aria-valuetext", withUnit(shown, unitText(this.variable)));
   }
@@ -94,7 +92,7 @@ class Control {
 
   // Whether the variable has an effect in this scene.
   matters(valueOf) {
-    return Object.entries(this.spec.when ?? {}).every(([name, items]) => {
+    return Object.entries(this.spec.when).every(([name, items]) => {
       const value = valueOf(name);
       return value === undefined || items.includes(value);
     });

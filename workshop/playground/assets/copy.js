@@ -8,11 +8,6 @@ function escapeXml(text) {
   return text.replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
 }
 
-// fmpy takes the number of an enumeration's item.
-function itemNumber(variable, value) {
-  return variable.items ? variable.items.findIndex((item) => item.name === value) + 1 : value;
-}
-
 // scene: {name, values, valueOf, variables, settles, hash, wave}
 const COPIES = {
   fmpy: ({ values, valueOf, variables }) => {
@@ -57,13 +52,9 @@ const COPIES = {
     ].join("\n");
   },
 
-  CSV: ({ wave }) =>
+  CSV: ({ wave: { time, velocity, displacement, force, transverse } }) =>
     ["time_s,velocity_m_per_s,displacement_m,F_t_N,F_y_N"]
-      .concat(
-        Array.from(wave.time, (t, k) =>
-          [t, wave.velocity[k], wave.displacement[k], wave.force[k], wave.transverse[k]].join(","),
-        ),
-      )
+      .concat(Array.from(time, (t, k) => [t, velocity[k], displacement[k], force[k], transverse[k]].join(",")))
       .join("\n"),
 
   Link: ({ hash }) => location.href.split("#")[0] + hash,

@@ -43,11 +43,8 @@ function wave(fmu, values) {
   const outputs = ["F_t", "F_y"];
   const sums = ["W_f", "Q_f"];
   const before = fmu.read(sums);
-  const time = new Float64Array(count + 1);
-  const force = new Float64Array(count + 1);
-  const transverse = new Float64Array(count + 1);
-  const velocity = new Float64Array(count + 1);
-  const displacement = new Float64Array(count + 1);
+  const columns = Array.from({ length: 5 }, () => new Float64Array(count + 1));
+  const [time, force, transverse, velocity, displacement] = columns;
   fmu.choose(outputs);
   for (let k = 0; k <= count; k++) {
     if (k > 0) fmu.step(step);
@@ -97,9 +94,9 @@ function between(low, high, count) {
 
 // Mean force over that without vibration against V over the amplitude in the plane; without vibration in the
 // plane, the force [N] against V [m/s].
-function curve(fmu, values, count = 97) {
+function curve(fmu, values) {
   const amplitude = swing(values);
-  const x = amplitude > 0 ? between(CURVE_LOW, CURVE_HIGH, count) : between(1e-6, 10, count);
+  const x = amplitude > 0 ? between(CURVE_LOW, CURVE_HIGH, 97) : between(1e-6, 10, 97);
   const y = x.map((x) => {
     const scene = { ...values, V: amplitude > 0 ? x * amplitude : x };
     const mean = meanForce(fmu, scene);
@@ -119,22 +116,23 @@ function stiffnessName(values) {
 
 // The scene moved to another point of the map: its V and its stiffness changed, all else as it is.
 function sceneAt(fmu, values, kappa, zeta) {
+  return { ...values, V: zeta * swing(values), [stiffnessName(values)]: kappa * stiffnessOfOne(fmu, values) };
+}
+
+// The value of the variable that scales the stiffness, over kappa.
+function stiffnessOfOne(fmu, values) {
   const name = stiffnessName(values);
-  const own = values[name] ?? fmu.variables.get(name).start;
-  const here = regime(fmu, values).kappa;
-  return { ...values, V: zeta * swing(values), [name]: (own * kappa) / here };
+  return (values[name] ?? fmu.variables.get(name).start) / regime(fmu, values).kappa;
 }
 
 // Cells of the regime map, row by row from low to high zeta: means over the force without vibration.
 function* regimeMap(fmu, values, columns, rows) {
   const kappas = between(...MAP.kappa, columns);
   const zetas = between(...MAP.zeta, rows);
-  const here = regime(fmu, values).kappa;
-  const name = stiffnessName(values);
-  const own = values[name] ?? fmu.variables.get(name).start;
+  const [name, one] = [stiffnessName(values), stiffnessOfOne(fmu, values)];
   for (const zeta of zetas) {
     const moved = { ...values, V: zeta * swing(values) };
     const without = steadyForce(fmu, moved);
-    for (const kappa of kappas) yield meanForce(fmu, { ...moved, [name]: (own * kappa) / here }) / without;
+    for (const kappa of kappas) yield meanForce(fmu, { ...moved, [name]: kappa * one }) / without;
   }
 }

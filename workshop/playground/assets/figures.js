@@ -13,13 +13,8 @@ function handy(units, size) {
 }
 
 function extent(numbers) {
-  let low = Infinity;
-  let high = -Infinity;
-  for (const number of numbers) {
-    if (number < low) low = number;
-    if (number > high) high = number;
-  }
-  return [low, high];
+  const known = [...numbers].filter((number) => !Number.isNaN(number));
+  return [Math.min(...known), Math.max(...known)];
 }
 
 // Round limits around zero and all values; the limit of friction keeps them still while a slider moves.
@@ -38,13 +33,9 @@ function circle(radius) {
 // Spans of time where the surfaces slide backwards.
 function backwards({ time, velocity }) {
   const spans = [];
-  let from = null;
   velocity.forEach((V, k) => {
-    if (V < 0 && from === null) from = time[k];
-    if (from !== null && (V >= 0 || k === velocity.length - 1)) {
-      spans.push([from, time[k]]);
-      from = null;
-    }
+    if (V < 0 && !(velocity[k - 1] < 0)) spans.push([time[k], time[k]]);
+    if (V < 0 || velocity[k - 1] < 0) spans.at(-1)[1] = time[k];
   });
   return spans;
 }
@@ -126,10 +117,6 @@ class Figures {
     setHtml("loop-x", `${V_1 > 0 ? "Displacement of the vibration" : "Sliding distance"} in ${lengthUnit}`);
   }
 
-  setCurve(curve) {
-    this.curve = curve;
-  }
-
   // here: {ratio, V, mean, without, amplitude: "1" or "2", rigid: what a rigid contact would give, or null}; measured:
   // points of the preset, or none.
   showMean(here, measured) {
@@ -191,17 +178,15 @@ class Figures {
   }
 }
 
-const written = new Map(); // what setText and setHtml last put into an element, by its id
+const written = new Map(); // what was last put into an element, by its id
 
-function setText(id, text) {
-  if (written.get(id) !== text) document.getElementById(id).textContent = text;
-  written.set(id, text);
+function put(id, property, content) {
+  if (written.get(id) !== content) document.getElementById(id)[property] = content;
+  written.set(id, content);
 }
 
-function setHtml(id, html) {
-  if (written.get(id) !== html) document.getElementById(id).innerHTML = html;
-  written.set(id, html);
-}
+const setText = (id, text) => put(id, "textContent", text);
+const setHtml = (id, html) => put(id, "innerHTML", html);
 
 // Shows a number in a handy unit; the value attribute holds it in full, in SI.
 function setNumber(id, value, unit, units) {

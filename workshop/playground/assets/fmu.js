@@ -10,6 +10,11 @@ class Refusal extends Error {
   }
 }
 
+// The number of an enumeration's item; any other value itself.
+function itemNumber(variable, value) {
+  return variable.items ? variable.items.findIndex((item) => item.name === value) + 1 : value;
+}
+
 class Fmu {
   // module: the WebAssembly.Module; description: modelDescription.xml as JSON.
   constructor(module, description) {
@@ -22,10 +27,6 @@ class Fmu {
     this.numbersAt = core.host_numbers();
     this.referencesAt = core.host_references();
     this.time = 0;
-  }
-
-  has(name) {
-    return this.variables.has(name);
   }
 
   // A fresh start: values maps names to SI numbers, or to the name of an enumeration's item.
@@ -43,15 +44,10 @@ class Fmu {
     if (!variable) throw new Refusal(`${name} is no variable of this FMU`, name);
     const view = this.view();
     view.setUint32(this.referencesAt, variable.reference, true);
-    let status;
-    if (variable.items) {
-      view.setInt32(this.numbersAt, variable.items.findIndex((item) => item.name === value) + 1, true);
-      status = this.core.fmi2SetInteger(this.component, this.referencesAt, 1, this.numbersAt);
-    } else {
-      view.setFloat64(this.numbersAt, value, true);
-      status = this.core.fmi2SetReal(this.component, this.referencesAt, 1, this.numbersAt);
-    }
-    if (status > 1) throw new Refusal(this.message(), name);
+    if (variable.items) view.setInt32(this.numbersAt, itemNumber(variable, value), true);
+    else view.setFloat64(this.numbersAt, value, true);
+    const set = this.core[variable.items ? "fmi2SetInteger" : "fmi2SetReal"];
+    if (set(this.component, this.referencesAt, 1, this.numbersAt) > 1) throw new Refusal(this.message(), name);
   }
 
   // Advances by h [s].
@@ -91,9 +87,6 @@ class Fmu {
 
   // The memory may have grown since the last call, which takes the old view away.
   view() {
-    if (!this.dataView || this.dataView.buffer !== this.core.memory.buffer) {
-      this.dataView = new DataView(this.core.memory.buffer);
-    }
-    return this.dataView;
+    return new DataView(this.core.memory.buffer);
   }
 }

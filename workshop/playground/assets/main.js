@@ -6,6 +6,15 @@ const json = (id) => JSON.parse(document.getElementById(id).textContent);
 const description = json("description");
 const presets = json("presets");
 
+function element(name, properties, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+// The members of each group, in the order in which the groups appear.
+const grouped = (members) => Object.entries(Object.groupBy(members, ({ group }) => group));
+
 class Page {
   constructor(module) {
     this.fmu = new Fmu(module, description);
@@ -16,13 +25,12 @@ class Page {
     this.wrong = ""; // what the address says that is no part of a scene
     this.frame = 0;
     this.copyKind = "fmpy";
-    this.worker = null;
     this.asked = { id: 0, values: {} };
     this.figures = new Figures((kind, at) => this.drag(kind, at));
     this.controls = new Map();
     this.makePresets();
     this.restore(); // the first picture, before anything that is not needed for it
-    afterPaint(() => this.complete(module));
+    requestAnimationFrame(() => setTimeout(() => this.complete(module)));
   }
 
   complete(module) {
@@ -52,7 +60,7 @@ class Page {
 
   receive({ id, curve: newCurve, map, done }) {
     if (newCurve && id === this.asked.id) {
-      this.figures.setCurve(newCurve);
+      this.figures.curve = newCurve;
       if (this.state) this.figures.showMean(this.state.here, this.preset?.measured);
     }
     if (map !== undefined) this.figures.map.setMap(map);
@@ -65,35 +73,22 @@ class Page {
   }
 
   makeControls() {
-    for (const spec of json("controls-json")) {
-      const variable = this.fmu.variables.get(spec.name);
-      if (!variable) continue;
-      const control = new Control(spec, variable, (name, value) => this.set(name, value));
-      this.controls.set(spec.name, control);
-      this.groupFor(spec.group).append(control.root);
+    for (const [group, specs] of grouped(json("controls-json"))) {
+      const fieldset = element("fieldset", {}, element("legend", { textContent: group }));
+      for (const spec of specs) {
+        const variable = this.fmu.variables.get(spec.name);
+        const control = new Control(spec, variable, (name, value) => this.change({ [name]: value }, name));
+        this.controls.set(spec.name, control);
+        fieldset.append(control.root);
+      }
+      document.getElementById("controls").append(fieldset);
     }
-  }
-
-  groupFor(name) {
-    const id = `group-${name}`;
-    const known = document.getElementById(id);
-    if (known) return known;
-    const group = document.createElement("fieldset");
-    group.id = id;
-    group.append(Object.assign(document.createElement("legend"), { textContent: name }));
-    document.getElementById("controls").append(group);
-    return group;
   }
 
   makePresets() {
     const select = document.getElementById("preset");
-    for (const preset of presets) {
-      let group = [...select.children].find((child) => child.label === preset.group);
-      if (!group) {
-        group = Object.assign(document.createElement("optgroup"), { label: preset.group });
-        select.append(group);
-      }
-      group.append(new Option(preset.title, preset.id));
+    for (const [label, members] of grouped(presets)) {
+      select.append(element("optgroup", { label }, ...members.map(({ title, id }) => new Option(title, id))));
     }
     select.addEventListener("change", () => this.choose(presets.find(({ id }) => id === select.value)));
   }
@@ -117,9 +112,10 @@ class Page {
     else this.values[name] = value;
   }
 
-  set(name, value) {
-    this.keep(name, value);
-    this.touched = name;
+  // A person touches a variable, by which these values change.
+  change(values, touched) {
+    for (const [name, value] of Object.entries(values)) this.keep(name, value);
+    this.touched = touched;
     this.wrong = "";
     this.refresh();
   }
@@ -128,14 +124,13 @@ class Page {
     const amplitude = swing(this.full());
     const inside = (value, [low, high]) => Math.min(Math.max(value, low), high);
     if (kind === "mean") {
-      this.set("V", amplitude > 0 ? inside(x, [CURVE_LOW, CURVE_HIGH]) * amplitude : inside(x, [1e-6, 10]));
+      const V = amplitude > 0 ? inside(x, [CURVE_LOW, CURVE_HIGH]) * amplitude : inside(x, [1e-6, 10]);
+      this.change({ V }, "V");
     } else if (amplitude > 0) {
       const moved = this.unlessRefused(() => sceneAt(this.fmu, this.full(), inside(x, MAP.kappa), inside(y, MAP.zeta)));
       if (!moved) return; // the scene that was to be moved is refused
-      for (const name of ["V", stiffnessName(moved)]) this.keep(name, moved[name]);
-      this.touched = "V";
-      this.wrong = "";
-      this.refresh();
+      const name = stiffnessName(moved);
+      this.change({ V: moved.V, [name]: moved[name] }, "V");
     }
   }
 
@@ -220,7 +215,7 @@ class Page {
   // The name and the note of the scene.
   showScene() {
     const preset = this.preset;
-    const same = preset && this.isUnchanged(preset.values);
+    const same = preset && this.hashOf("", preset.values) === this.hashOf("", this.values);
     document.getElementById("preset").value = preset?.id ?? "";
     setText("changed", preset && !same ? "changed" : "");
     setHtml("note", preset?.note ?? "");
@@ -231,19 +226,11 @@ class Page {
     }
   }
 
-  isUnchanged(values) {
-    return [...this.fmu.variables.values()].every(({ name, start }) => this.valueOf(name) === (values[name] ?? start));
-  }
-
   // The address of the scene and the texts to copy, once the hand rests.
   showAddress() {
-    history.replaceState(null, "", this.hash());
+    history.replaceState(null, "", this.hashOf(this.preset?.id, this.values));
     this.showCopy();
     document.body.dataset.address = "done";
-  }
-
-  hash() {
-    return this.hashOf(this.preset?.id, this.values);
   }
 
   hashOf(id, values) {
@@ -280,8 +267,7 @@ class Page {
   makeCopies() {
     const bar = document.getElementById("copy-kinds");
     for (const kind of Object.keys(COPIES)) {
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: kind });
-      button.addEventListener("click", () => this.openCopy(kind));
+      const button = element("button", { type: "button", textContent: kind, onclick: () => this.openCopy(kind) });
       button.dataset.kind = kind;
       bar.append(button);
     }
@@ -327,21 +313,13 @@ function reachable(element) {
   }).observe(element);
 }
 
-// Calls work once something is on the screen.
-function afterPaint(work) {
-  const observer = new PerformanceObserver(() => {
-    observer.disconnect();
-    work();
-  });
-  observer.observe({ type: "paint", buffered: true });
-}
-
 function decoded(base64) {
   return Uint8Array.fromBase64?.(base64) ?? Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
 }
 
 // At once, so that the page is laid out with its picture in it; some browsers let only a worker do that.
-async function compiled(bytes) {
+async function compiled(base64) {
+  const bytes = decoded(base64);
   try {
     return new WebAssembly.Module(bytes);
   } catch (error) {
@@ -350,11 +328,9 @@ async function compiled(bytes) {
   }
 }
 
-async function main() {
-  new Page(await compiled(decoded(document.getElementById("wasm").textContent)));
-}
-
-main().catch((error) => {
-  setText("refusal", `This browser can't run the page: ${error.message}`);
-  throw error;
-});
+compiled(document.getElementById("wasm").textContent)
+  .then((module) => new Page(module))
+  .catch((error) => {
+    setText("refusal", `This browser can't run the page: ${error.message}`);
+    throw error;
+  });

@@ -24,9 +24,7 @@ class RegimeChart extends Chart {
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("aria-hidden", "true");
     host.prepend(this.canvas);
-    this.contours = []; // segments in fractions of the map
-    this.paths = []; // the same in pixels
-    this.place();
+    this.contours = []; // paths in fractions of the map
   }
 
   // map: {columns, rows, cells}, or null where there is none.
@@ -35,7 +33,7 @@ class RegimeChart extends Chart {
     document.getElementById("drives-key").hidden = !map?.cells.some((value) => value < -0.005);
     this.contours = map ? LEVEL_LINES.map((level) => contour(map, level)) : [];
     if (map) this.paint(map);
-    this.place();
+    if (this.content) this.draw(this.content);
   }
 
   paint({ columns, rows, cells }) {
@@ -52,29 +50,19 @@ class RegimeChart extends Chart {
     context.putImageData(image, 0, 0);
   }
 
+  // With canvas and contours between the axes.
   draw(content) {
     super.draw(content);
-    for (const d of this.paths) svg("path", { d, class: "contour" }, this.data);
-  }
-
-  resize() {
-    super.resize();
-    if (this.canvas) this.place();
-  }
-
-  // Puts canvas and contours between the axes.
-  place() {
     if (!this.size) return;
     const { width, height } = this.inner();
     const box = { left: MARGIN.left, top: MARGIN.top, width, height };
     for (const [side, pixels] of Object.entries(box)) this.canvas.style[side] = `${pixels}px`;
-    const pixel = ([x, y]) => `${(MARGIN.left + x * width).toFixed(1)} ${(MARGIN.top + (1 - y) * height).toFixed(1)}`;
-    this.paths = this.contours.map((segments) => segments.map(([a, b]) => `M${pixel(a)}L${pixel(b)}`).join(""));
-    if (this.content) this.draw(this.content);
+    const transform = `translate(${MARGIN.left} ${MARGIN.top + height}) scale(${width} ${-height})`;
+    for (const d of this.contours) svg("path", { d, transform, class: "contour" }, this.data);
   }
 }
 
-// Marching squares: segments of the line where the cells pass level, in fractions of the map's width and height.
+// Marching squares: the line where the cells pass level as a path, in fractions of the map's width and height.
 function contour({ columns, rows, cells }, level) {
   const segments = [];
   const value = (column, row) => cells[row * columns + column] - level;
@@ -88,13 +76,11 @@ function contour({ columns, rows, cells }, level) {
         const b = value(...to);
         if (a < 0 === b < 0) return;
         const part = a / (a - b);
-        crossings.push([
-          (from[0] + part * (to[0] - from[0])) / (columns - 1),
-          (from[1] + part * (to[1] - from[1])) / (rows - 1),
-        ]);
+        const [x, y] = from.map((start, axis) => start + part * (to[axis] - start));
+        crossings.push(`${(x / (columns - 1)).toFixed(5)} ${(y / (rows - 1)).toFixed(5)}`);
       });
-      for (let k = 0; k + 1 < crossings.length; k += 2) segments.push([crossings[k], crossings[k + 1]]);
+      for (let k = 0; k + 1 < crossings.length; k += 2) segments.push(`M${crossings[k]}L${crossings[k + 1]}`);
     }
   }
-  return segments;
+  return segments.join("");
 }

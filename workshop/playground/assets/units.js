@@ -19,23 +19,21 @@ function noNumber(text) {
   return `${text.trim() || "an empty field"} is not a number${hint}`;
 }
 
-// A number that an input field and Number() understand, with at most digits significant digits.
-function plain(value, digits = 15) {
-  if (!Number.isFinite(value)) return "";
-  const text = String(Number(value.toPrecision(digits)));
-  return text.replace("e+", "e");
+// A number that an input field and Number() understand, with at most 6 significant digits.
+function plain(value) {
+  return Number.isFinite(value) ? String(Number(value.toPrecision(6))).replace("e+", "e") : "";
 }
 
 // A number to read: 4 digits, true minus, powers of ten.
-function readable(value, digits = 4) {
+function readable(value) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e6 || size < 1e-3)) {
     const exponent = Math.floor(Math.log10(size));
     const raised = String(exponent).replace(/[-\d]/g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
-    return `${readable(value / 10 ** exponent, digits)}·10${raised}`;
+    return `${readable(value / 10 ** exponent)}·10${raised}`;
   }
-  return String(Number(value.toPrecision(digits))).replace("-", "−");
+  return String(Number(value.toPrecision(4))).replace("-", "−");
 }
 
 function withUnit(value, unit) {

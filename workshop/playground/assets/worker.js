@@ -14,11 +14,8 @@ let mapKey = null; // of the map that is finished
 const mail = () => new Promise((resolve) => setTimeout(resolve));
 
 onmessage = async ({ data }) => {
-  if (data.module) {
-    fmu = new Fmu(data.module, data.description);
-  } else {
-    latest = data;
-  }
+  if (data.module) fmu = new Fmu(data.module, data.description);
+  else latest = data;
   if (fmu && latest && !working) {
     working = true;
     while (latest) await work();
@@ -81,7 +78,6 @@ async function work() {
     }
     mapKey = key;
   } catch (error) {
-    if (!(error instanceof Refusal)) throw error;
-    postMessage({ id, refusal: error.message });
+    if (!(error instanceof Refusal)) throw error; // the page shows what the FMU refuses
   }
 }

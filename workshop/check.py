@@ -1,12 +1,5 @@
 """scripts/check: the long runs that look for crashes, leaks, races, hangs and drift.
 
-    scripts/check                  all of them, an hour and more
-    scripts/check fuzz soak        these
-    scripts/check --quick ...      minutes
-    scripts/check hunt --minutes 10 --seed 1
-    scripts/check near-line
-    scripts/check --ci             sanitizers, valgrind and fuzzers in under four minutes
-
 Each prints its figures and the command behind them. docs/reliability.md says what they found.
 """
 
@@ -17,11 +10,11 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from frictioncontact.command import command_line
 from frictioncontact.errors import UserError
 from workshop.build import build_fmu, build_targets
 from workshop.project import ROOT
@@ -46,7 +39,6 @@ class Extent:
 
     tests: tuple[str, ...]  # of the library; without any, those in C and the fuzzers alone
     fuzz_seconds: int
-    fuzz_runs: int
     soak: tuple[str, str]  # held steps, seconds of vibration
     hunt_minutes: float
     near_line: int  # scenes
@@ -54,11 +46,12 @@ class Extent:
     seed: int = 0  # of the hunts and the watchdog
 
 
-FULL = Extent(OF_LIBRARY, 3600, 10_000_000, ("1e9", "1e5"), 60.0, 20_000, "1000000")
-QUICK = Extent(
-    ("tests/fmi2", "tests/solver", "-m", "not slow"), 60, 10_000_000, ("1e7", "1e3"), 1.0, 1000, "100000"
-)
-CI = Extent((), 3, 10_000_000, ("1e6", "1e2"), 0.2, 300, "20000")
+FULL = Extent(OF_LIBRARY, 3600, ("1e9", "1e5"), 60.0, 20_000, "1000000")
+FEW_TESTS = ("tests/fmi2", "tests/solver", "-m", "not slow")
+QUICK = Extent(FEW_TESTS, 60, ("1e7", "1e3"), 1.0, 1000, "100000")
+CI = Extent((), 3, ("1e6", "1e2"), 0.2, 300, "20000")
+FUZZ_RUNS = 10_000_000  # at the most
+CORES = os.cpu_count() or 1
 
 
 def _run(command: list[str], environment: Mapping[str, str] | None = None) -> None:
@@ -71,13 +64,6 @@ def _run(command: list[str], environment: Mapping[str, str] | None = None) -> No
         raise UserError(f"{Path(command[0]).name} ended with {done.returncode}")
 
 
-def _tool(name: str, package: str) -> str:
-    found = shutil.which(name)
-    if found is None:
-        raise Skipped(f"{name} is missing (Debian: apt-get install {package})")
-    return found
-
-
 def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | None = None) -> None:
     # A worker that dies ends the run: with new ones in its place, pytest-xdist may wait without end.
     parallel = ("-n", "logical", "--maxprocesses", "8", "--dist", "loadfile", "--max-worker-restart", "0")
@@ -87,16 +73,13 @@ def _test(fmu: Path, tests: tuple[str, ...], environment: Mapping[str, str] | No
 
 def _runtimes(*names: str) -> str:
     """The sanitizer runtimes, to be loaded before Python, which was built without."""
-    compiler = os.environ.get("CC", "cc")
-    paths = []
+    compiler, paths = os.environ.get("CC", "cc"), []
     for name in names:
-        answer = subprocess.run(
-            [*compiler.split(), f"-print-file-name={name}"], capture_output=True, text=True, check=True
+        paths.append(
+            subprocess.check_output([*compiler.split(), f"-print-file-name={name}"], text=True).strip()
         )
-        path = Path(answer.stdout.strip())
-        if not path.is_absolute():
+        if not Path(paths[-1]).is_absolute():
             raise Skipped(f"{compiler} has no {name} (with gcc it comes along)")
-        paths.append(str(path.resolve()))
     return " ".join(paths)
 
 
@@ -104,19 +87,16 @@ def check_sanitize(extent: Extent) -> None:
     """The library's tests and the C unit tests with AddressSanitizer and UndefinedBehaviorSanitizer."""
     folder = build_targets("asan", ["unit_tests"])
     ctest = str(Path(sys.executable).with_name("ctest"))
-    cores = str(os.cpu_count() or 1)
-    _run([ctest, "--test-dir", str(folder), "--output-on-failure", "--parallel", cores])
+    _run([ctest, "--test-dir", str(folder), "--output-on-failure", "--parallel", str(CORES)])
     if not extent.tests:
         return
-    runtimes = _runtimes("libasan.so", "libubsan.so")
     environment = {
-        "LD_PRELOAD": runtimes,
+        "LD_PRELOAD": _runtimes("libasan.so", "libubsan.so"),
         "ASAN_OPTIONS": "detect_leaks=0:halt_on_error=1:allocator_may_return_null=1",  # Python itself leaks
         "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
     }
     # CasADi loads its plugins in a way that sanitizers refuse (RTLD_DEEPBIND).
-    without = ("-k", "not casadi")
-    _test(build_fmu("asan"), (*extent.tests, *without), environment)
+    _test(build_fmu("asan"), (*extent.tests, "-k", "not casadi"), environment)
 
 
 def check_threads(extent: Extent) -> None:
@@ -135,26 +115,16 @@ def check_fuzz_many(extent: Extent) -> None:
     _fuzz("fuzz-fast", extent)
 
 
-@contextmanager
-def _clang() -> Iterator[None]:
-    """What is built inside is built with clang."""
+def _fuzz(preset: str, extent: Extent) -> None:
     clang = os.environ.get("CC") or shutil.which("clang") or shutil.which("clang-14")
     if clang is None or "clang" not in clang:
         raise Skipped("clang is missing (Debian: apt-get install clang libclang-rt-14-dev)")
-    os.environ["CC"] = clang
-    try:
-        yield
-    finally:
-        del os.environ["CC"]
-
-
-def _fuzz(preset: str, extent: Extent) -> None:
-    with _clang():
-        folder = build_targets(preset, [*(f"fuzz_{name}" for name in FUZZERS)])
+    fuzzers = [f"fuzz_{name}" for name in FUZZERS]
+    folder = build_targets(preset, fuzzers, environment={**os.environ, "CC": clang})
     for name, longest in FUZZERS.items():
         found = folder / f"corpus-{name}"
         found.mkdir(exist_ok=True)
-        length = f"-max_len={longest} -max_total_time={extent.fuzz_seconds} -runs={extent.fuzz_runs}"
+        length = f"-max_len={longest} -max_total_time={extent.fuzz_seconds} -runs={FUZZ_RUNS}"
         options = f"{length} -timeout=30 -print_final_stats=1 -verbosity=0 -print_funcs=0".split()
         options += [f"-artifact_prefix={folder}/{name}-", str(found), f"tests/fuzz/corpus/{name}"]
         _run([str(folder / f"fuzz_{name}"), *options])
@@ -175,8 +145,7 @@ def check_watchdog(extent: Extent) -> None:
 
 def _hunt(extent: Extent, *words: object) -> None:
     folder = build_targets("default", ["hunt"])
-    jobs = os.cpu_count() or 1
-    _run([str(folder / "hunt/hunt"), *map(str, ("--seed", extent.seed, "--jobs", jobs, *words))])
+    _run([str(folder / "hunt/hunt"), *map(str, ("--seed", extent.seed, "--jobs", CORES, *words))])
 
 
 def check_hunt(extent: Extent) -> None:
@@ -192,13 +161,14 @@ def check_near_line(extent: Extent) -> None:
 
 def check_leaks(extent: Extent) -> None:
     """valgrind on the fuzzers' seeds and a short soak: no leak, no invalid access, no undefined value."""
-    valgrind = _tool("valgrind", "valgrind")
+    if not shutil.which("valgrind"):
+        raise Skipped("valgrind is missing (Debian: apt-get install valgrind)")
     folder = build_targets("debug", ["soak", *(f"replay_{name}" for name in FUZZERS)])
-    options = ["--quiet", "--leak-check=full", "--show-leak-kinds=all", "--error-exitcode=1"]
+    valgrind = "valgrind --quiet --leak-check=full --show-leak-kinds=all --error-exitcode=1".split()
     for name in FUZZERS:
         seeds = sorted(str(seed.relative_to(ROOT)) for seed in (ROOT / "tests/fuzz/corpus" / name).iterdir())
-        _run([valgrind, *options, str(folder / f"replay_{name}"), *seeds])
-    _run([valgrind, *options, str(folder / "soak"), "1e5", "1"])
+        _run([*valgrind, str(folder / f"replay_{name}"), *seeds])
+    _run([*valgrind, str(folder / "soak"), "1e5", "1"])
 
 
 def check_coverage(extent: Extent) -> None:
@@ -218,45 +188,46 @@ def check_analysis(extent: Extent) -> None:
 
 
 CHECKS: dict[str, Callable[[Extent], None]] = {
-    "sanitize": check_sanitize,
-    "threads": check_threads,
-    "fuzz": check_fuzz,
-    "fuzz-many": check_fuzz_many,
-    "soak": check_soak,
-    "hunt": check_hunt,
-    "near-line": check_near_line,
-    "watchdog": check_watchdog,
-    "leaks": check_leaks,
-    "coverage": check_coverage,
-    "analysis": check_analysis,
+    check.__name__.removeprefix("check_").replace("_", "-"): check
+    for check in (
+        *(
+            check_sanitize,
+            check_threads,
+            check_fuzz,
+            check_fuzz_many,
+            check_soak,
+            check_hunt,
+            check_near_line,
+        ),
+        *(check_watchdog, check_leaks, check_coverage, check_analysis),
+    )
 }
 IN_CI = ("sanitize", "leaks", "fuzz")
 
 
-def main() -> None:
+def arguments(argv: Sequence[str] | None = None) -> argparse.Namespace:
     what = "\n".join(f"  {name:14} {check.__doc__}" for name, check in CHECKS.items())
-    parser = argparse.ArgumentParser(
-        prog="scripts/check",
-        description="The long runs: crashes, leaks, races, hangs, drift.",
-        epilog=f"checks:\n{what}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("checks", nargs="*", metavar="CHECK", help="which ones; all when none is named")
-    parser.add_argument("--quick", action="store_true", help="shorter runs, in minutes")
-    parser.add_argument(
-        "--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes"
-    )
-    parser.add_argument("--minutes", type=float, help="of the hunt")
-    parser.add_argument("--seed", type=int, help="of the hunts and the watchdog; drawn anew when not given")
-    arguments = parser.parse_args()
-    for name in arguments.checks:
+    description = "The long runs: crashes, leaks, races, hangs, drift."
+    parser = command_line("scripts/check", description, f"checks:\n{what}")
+    add = parser.add_argument
+    add("checks", nargs="*", metavar="CHECK", help="which ones; all when none is named")
+    add("--quick", action="store_true", help="shorter runs, in minutes")
+    add("--ci", action="store_true", help="sanitizers, valgrind and fuzzers in under four minutes")
+    add("--minutes", type=float, help="of the hunt")
+    add("--seed", type=int, help="of the hunts and the watchdog; drawn anew when not given")
+    options = parser.parse_args(argv)
+    for name in options.checks:
         if name not in CHECKS:
             parser.error(f"unknown check {name}; there are: {', '.join(CHECKS)}")
-    extent = CI if arguments.ci else QUICK if arguments.quick else FULL
-    seed = random.randrange(10**6) if arguments.seed is None else arguments.seed
-    extent = replace(extent, seed=seed, hunt_minutes=arguments.minutes or extent.hunt_minutes)
+    return options
+
+
+def run(options: argparse.Namespace) -> None:
+    extent = CI if options.ci else QUICK if options.quick else FULL
+    seed = random.randrange(10**6) if options.seed is None else options.seed
+    extent = replace(extent, seed=seed, hunt_minutes=options.minutes or extent.hunt_minutes)
     failed = []
-    for name in arguments.checks or (IN_CI if arguments.ci else CHECKS):
+    for name in options.checks or (IN_CI if options.ci else CHECKS):
         print(f"\n== {name}: {CHECKS[name].__doc__}", flush=True)
         begin = time.monotonic()
         try:
@@ -269,4 +240,4 @@ def main() -> None:
             failed.append(name)
         print(f"== {name}: {result} ({time.monotonic() - begin:.0f} s)", flush=True)
     if failed:
-        sys.exit(f"error: {', '.join(failed)} failed")
+        raise UserError(f"{', '.join(failed)} failed")

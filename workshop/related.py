@@ -1,7 +1,8 @@
 """Writes the results that the FMU carries: data/related/EXPERIMENT.csv, from the independent reference.
 
-    python -m workshop.related.results
+    python -m workshop.related
 
+The folder is extra/org.fmi-standard.fmi-ls-ref/ of the FMU, by the layered standard FMI-LS-REF 1.0.0-beta.1.
 The reference solves Eq. 1-4, 12-14, 20-22 and 24 by itself, in extended precision: no number is the FMU's.
 """
 
@@ -13,11 +14,10 @@ from pathlib import Path
 from lxml import etree
 
 from frictioncontact.command import write_csv
+from workshop.presets import RELATED as FOLDER
 from workshop.presets import presets
-from workshop.project import ROOT
 from workshop.reference import changed, follow, rest, scene_of, settled_deflection
 
-FOLDER = ROOT / "data" / "related"
 COLUMNS = ("time", "F_t", "F_t_mean", "W_f", "sigma", "A_r", "delta")
 
 
@@ -38,14 +38,10 @@ class Experiment:
 def experiments() -> list[Experiment]:
     """Those of validation.exp."""
     values = {preset.id: preset.values for preset in presets()}
+    found = [dict(each.attrib) for each in etree.parse(FOLDER / "validation.exp").getroot()]
     return [
-        Experiment(
-            each.get("name"),
-            values.get(each.get("name"), {}),
-            float(each.get("stopTime")),
-            float(each.get("stepSize")),
-        )
-        for each in etree.parse(FOLDER / "validation.exp").getroot()
+        Experiment(x["name"], values.get(x["name"], {}), float(x["stopTime"]), float(x["stepSize"]))
+        for x in found
     ]
 
 

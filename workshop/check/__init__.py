@@ -1,1 +1,0 @@
-"""Sanitizers, fuzzers, soak and coverage: the long runs."""
